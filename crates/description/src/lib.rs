@@ -1,0 +1,1 @@
+//! What the author of a scene said: typed descriptions, source spans and diagnostics

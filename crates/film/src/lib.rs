@@ -1,0 +1,1 @@
+//! Radiance samples to pixels: filters, sensors and exact accumulation

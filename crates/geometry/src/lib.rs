@@ -1,0 +1,1 @@
+//! Rays against shapes: meshes, quadrics, patches, instances and the tree over them

@@ -1,0 +1,1 @@
+//! Pixel arrays, pyramids, file formats and error metrics

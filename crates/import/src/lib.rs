@@ -1,0 +1,1 @@
+//! Scene and mesh files read into a scene description

@@ -1,0 +1,1 @@
+//! The algorithms of light transport and the one loop that runs them

@@ -1,0 +1,1 @@
+//! Random numbers, warps with their densities, distributions, low-discrepancy samplers

@@ -1,0 +1,1 @@
+//! Light meeting matter in a local frame: BxDFs, Fresnel equations, microfacets

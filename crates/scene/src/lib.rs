@@ -1,0 +1,1 @@
+//! The compiled world: textures, materials, lights, cameras and the scene they make

@@ -1,0 +1,1 @@
+//! Light over wavelength: spectra, sampled wavelengths, colour spaces, RGB uplifting

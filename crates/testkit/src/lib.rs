@@ -1,0 +1,1 @@
+//! Statistical tests on plain numbers: chi-squared, t and z
