@@ -22,5 +22,6 @@ pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};
 pub use metadata::{Attribute, Chromaticities, ImageMetadata, Window};
+pub use pyramid::{Pyramid, TextureFilter};
 
 pub use wrap::WrapMode;
