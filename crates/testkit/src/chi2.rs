@@ -13,7 +13,7 @@ use std::fmt::Write;
 /// the given density.
 ///
 /// ```
-/// use testkit::Chi2;
+/// use alhazen_testkit::Chi2;
 /// let cosine = |z: f32| (z.max(0.0) / std::f32::consts::PI) as f64;
 /// let sample = |u: [f32; 2]| {
 ///     let (z, phi) = ((1.0 - u[0]).sqrt(), std::f32::consts::TAU * u[1]);
