@@ -1,0 +1,326 @@
+//! Values of light at the few wavelengths that a path carries, and the choice of those wavelengths.
+//!
+//! A path carries [`N`] wavelengths λ₁…λ_N with densities p(λᵢ) per nanometre. An integral over wavelength,
+//! ∫ f(λ) dλ, is estimated by 1/N Σ f(λᵢ)/p(λᵢ). Each wavelength alone has the density p; the N of them are one
+//! uniform number rotated by 1/N ("hero wavelengths"), so that they always spread over the range.
+//!
+//! Sources: [Wilkie 2014], [Pharr 2023 §4.5.4]; the density proportional to sech² that follows the eye's response is
+//! from [Radziszewski 2009].
+
+use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// Number of wavelengths that a path carries.
+pub const N: usize = 4;
+
+/// Shortest wavelength considered, in nanometres.
+pub const LAMBDA_MIN: f32 = 360.0;
+
+/// Longest wavelength considered, in nanometres.
+pub const LAMBDA_MAX: f32 = 830.0;
+
+/// A function of wavelength known at the [`N`] wavelengths of a [`SampledWavelengths`].
+///
+/// Arithmetic is per wavelength. The values mean nothing without the wavelengths that they were taken at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SampledSpectrum(pub [f32; N]);
+
+impl SampledSpectrum {
+    /// Zero at every wavelength.
+    pub const ZERO: Self = Self([0.0; N]);
+
+    /// One at every wavelength.
+    pub const ONE: Self = Self([1.0; N]);
+
+    /// From one value per wavelength.
+    #[inline]
+    pub const fn new(values: [f32; N]) -> Self {
+        Self(values)
+    }
+
+    /// The same value at every wavelength.
+    #[inline]
+    pub const fn splat(value: f32) -> Self {
+        Self([value; N])
+    }
+
+    /// Applies `f` to each value.
+    #[inline]
+    pub fn map(self, f: impl FnMut(f32) -> f32) -> Self {
+        Self(self.0.map(f))
+    }
+
+    /// Applies `f` to each pair of values.
+    #[inline]
+    pub fn zip(self, other: Self, mut f: impl FnMut(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+
+    /// The largest value.
+    #[inline]
+    pub fn max_component(self) -> f32 {
+        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The smallest value.
+    #[inline]
+    pub fn min_component(self) -> f32 {
+        self.0.into_iter().fold(f32::INFINITY, f32::min)
+    }
+
+    /// The smaller of both at each wavelength.
+    #[inline]
+    pub fn min(self, other: Self) -> Self {
+        self.zip(other, f32::min)
+    }
+
+    /// The larger of both at each wavelength.
+    #[inline]
+    pub fn max(self, other: Self) -> Self {
+        self.zip(other, f32::max)
+    }
+
+    /// The mean of the values.
+    #[inline]
+    pub fn average(self) -> f32 {
+        self.0.iter().sum::<f32>() / N as f32
+    }
+
+    /// Whether every value is zero.
+    #[inline]
+    pub fn is_black(self) -> bool {
+        self.0.iter().all(|&v| v == 0.0)
+    }
+
+    /// Whether no value is infinite or not a number.
+    #[inline]
+    pub fn is_finite(self) -> bool {
+        self.0.iter().all(|v| v.is_finite())
+    }
+
+    /// The square root of each value.
+    #[inline]
+    pub fn sqrt(self) -> Self {
+        self.map(f32::sqrt)
+    }
+
+    /// The exponential of each value.
+    #[inline]
+    pub fn exp(self) -> Self {
+        self.map(f32::exp)
+    }
+
+    /// Each value to a whole power.
+    #[inline]
+    pub fn powi(self, exponent: i32) -> Self {
+        self.map(|v| v.powi(exponent))
+    }
+
+    /// Each value to a real power.
+    #[inline]
+    pub fn powf(self, exponent: f32) -> Self {
+        self.map(|v| v.powf(exponent))
+    }
+
+    /// Each value between `low` and `high`.
+    #[inline]
+    pub fn clamp(self, low: f32, high: f32) -> Self {
+        self.map(|v| v.clamp(low, high))
+    }
+
+    /// Negative values become zero.
+    #[inline]
+    pub fn clamp_zero(self) -> Self {
+        self.map(|v| v.max(0.0))
+    }
+
+    /// The quotient where the divisor is not zero, zero elsewhere.
+    #[inline]
+    pub fn safe_div(self, divisor: Self) -> Self {
+        self.zip(divisor, |a, b| if b == 0.0 { 0.0 } else { a / b })
+    }
+
+    /// (1 − t)·`self` + t·`other`.
+    #[inline]
+    pub fn lerp(self, other: Self, t: f32) -> Self {
+        self * (1.0 - t) + other * t
+    }
+}
+
+impl From<f32> for SampledSpectrum {
+    #[inline]
+    fn from(value: f32) -> Self {
+        Self::splat(value)
+    }
+}
+
+impl Index<usize> for SampledSpectrum {
+    type Output = f32;
+
+    #[inline]
+    fn index(&self, i: usize) -> &f32 {
+        &self.0[i]
+    }
+}
+
+impl IndexMut<usize> for SampledSpectrum {
+    #[inline]
+    fn index_mut(&mut self, i: usize) -> &mut f32 {
+        &mut self.0[i]
+    }
+}
+
+impl Neg for SampledSpectrum {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        self.map(|v| -v)
+    }
+}
+
+impl std::iter::Sum for SampledSpectrum {
+    fn sum<I: Iterator<Item = Self>>(values: I) -> Self {
+        values.fold(Self::ZERO, |a, b| a + b)
+    }
+}
+
+impl std::iter::Product for SampledSpectrum {
+    fn product<I: Iterator<Item = Self>>(values: I) -> Self {
+        values.fold(Self::ONE, |a, b| a * b)
+    }
+}
+
+/// Implements one operator between spectra, between a spectrum and a number, and its assigning form.
+macro_rules! operator {
+    ($trait:ident $method:ident $assign_trait:ident $assign_method:ident $op:tt) => {
+        impl $trait for SampledSpectrum {
+            type Output = Self;
+
+            #[inline]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, |a, b| a $op b)
+            }
+        }
+
+        impl $trait<f32> for SampledSpectrum {
+            type Output = Self;
+
+            #[inline]
+            fn $method(self, other: f32) -> Self {
+                self.map(|a| a $op other)
+            }
+        }
+
+        impl $trait<SampledSpectrum> for f32 {
+            type Output = SampledSpectrum;
+
+            #[inline]
+            fn $method(self, other: SampledSpectrum) -> SampledSpectrum {
+                other.map(|b| self $op b)
+            }
+        }
+
+        impl $assign_trait for SampledSpectrum {
+            #[inline]
+            fn $assign_method(&mut self, other: Self) {
+                *self = *self $op other;
+            }
+        }
+
+        impl $assign_trait<f32> for SampledSpectrum {
+            #[inline]
+            fn $assign_method(&mut self, other: f32) {
+                *self = *self $op other;
+            }
+        }
+    };
+}
+
+operator!(Add add AddAssign add_assign +);
+operator!(Sub sub SubAssign sub_assign -);
+operator!(Mul mul MulAssign mul_assign *);
+operator!(Div div DivAssign div_assign /);
+
+/// The wavelengths of a path, in nanometres, and the density that each was chosen with, per nanometre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampledWavelengths {
+    lambda: [f32; N],
+    pdf: [f32; N],
+}
+
+impl SampledWavelengths {
+    /// Wavelengths of equal density over the range from `u` in [0, 1).
+    pub fn sample_uniform(u: f32) -> Self {
+        Self::sample_uniform_in(u, LAMBDA_MIN, LAMBDA_MAX)
+    }
+
+    /// Wavelengths of equal density over `min..max` from `u` in [0, 1).
+    pub fn sample_uniform_in(u: f32, min: f32, max: f32) -> Self {
+        let lambda = rotations(u).map(|u| min + u * (max - min));
+        Self { lambda, pdf: [1.0 / (max - min); N] }
+    }
+
+    /// Wavelengths chosen about in proportion to the eye's response, from `u` in [0, 1).
+    pub fn sample_visible(u: f32) -> Self {
+        let lambda = rotations(u).map(sample_visible_wavelength);
+        Self { lambda, pdf: lambda.map(visible_wavelength_pdf) }
+    }
+
+    /// The wavelengths in nanometres.
+    #[inline]
+    pub fn lambda(&self) -> &[f32; N] {
+        &self.lambda
+    }
+
+    /// The density of each wavelength, per nanometre; zero for secondary wavelengths that were terminated.
+    #[inline]
+    pub fn pdf(&self) -> SampledSpectrum {
+        SampledSpectrum(self.pdf)
+    }
+
+    /// Keeps the first wavelength alone, as dispersion demands; its density accounts for the others' share.
+    pub fn terminate_secondary(&mut self) {
+        if !self.secondary_terminated() {
+            let hero = self.pdf[0] / N as f32;
+            self.pdf = [0.0; N];
+            self.pdf[0] = hero;
+        }
+    }
+
+    /// Whether the first wavelength alone is alive.
+    #[inline]
+    pub fn secondary_terminated(&self) -> bool {
+        self.pdf[1..].iter().all(|&p| p == 0.0)
+    }
+}
+
+impl Index<usize> for SampledWavelengths {
+    type Output = f32;
+
+    /// The `i`th wavelength in nanometres.
+    #[inline]
+    fn index(&self, i: usize) -> &f32 {
+        &self.lambda[i]
+    }
+}
+
+/// `u` and its rotations by 1/N, 2/N, … within [0, 1).
+fn rotations(u: f32) -> [f32; N] {
+    std::array::from_fn(|i| {
+        let rotated = u + i as f32 / N as f32;
+        if rotated >= 1.0 { rotated - 1.0 } else { rotated }
+    })
+}
+
+/// A wavelength with the density of [`visible_wavelength_pdf`].
+pub fn sample_visible_wavelength(u: f32) -> f32 {
+    (538.0 - 138.888_89 * (0.856_910_62 - 1.827_502 * u).atanh()).clamp(LAMBDA_MIN, LAMBDA_MAX)
+}
+
+/// p(λ) ∝ sech²(0.0072 (λ − 538)) on the range of wavelengths, per nanometre.
+pub fn visible_wavelength_pdf(lambda: f32) -> f32 {
+    if !(LAMBDA_MIN..=LAMBDA_MAX).contains(&lambda) {
+        return 0.0;
+    }
+    0.003_939_804 / (0.0072 * (lambda - 538.0)).cosh().powi(2)
+}
