@@ -81,8 +81,8 @@ mod tests {
             ("metal-Ag-k", 506.057_86, 2.973_75),
             ("metal-Al-eta", 604.800_84, 1.22),
             ("metal-CuZn-eta", 600.0, 0.450),
-            ("metal-TiO2-eta", 619.900_02, 2.88),
-            ("metal-MgO-eta", 589.258_97, 1.737_37),
+            ("metal-TiO2-eta", 619.9, 2.88),
+            ("metal-MgO-eta", 589.259, 1.737_37),
             // The helium d line of the catalogue.
             ("glass-BK7", 587.56, 1.516_80),
             ("glass-F11", 587.56, 1.784_72),
