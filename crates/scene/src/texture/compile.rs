@@ -5,8 +5,9 @@
 //! wrong, or not drawn yet, is reported and replaced by a stand-in.
 
 use super::{
-    Checkerboard, FloatImage, FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage,
-    SpectrumTextureId, SpectrumType, Texture, Textures, compile_spectrum, pyramids::Pyramids,
+    Checkerboard, FloatImage, FloatTexture, FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage,
+    SpectrumTexture, SpectrumTextureId, SpectrumType, Texture, Textures, compile_spectrum,
+    pyramids::Pyramids,
 };
 use description::{
     Arena, Diagnostic, FloatParameter, Handle, ImageDesc, ImageTextureDesc, MappingDesc, Origin, Parameter,
@@ -83,8 +84,11 @@ impl Textures {
     }
 }
 
-/// The two sorts of values that textures have: numbers and spectra.
-trait Value: From<f32> {
+/// The texture that gives a sort of values.
+type TextureOf<V> = Texture<<V as Value>::Constant, <V as Value>::Id, <V as Value>::Image>;
+
+/// The two sorts of values that textures give, as the author says them: numbers and spectra.
+trait Value: From<f32> + Clone {
     /// What the value stands for.
     type Use: Copy;
     type Constant: Clone;
@@ -93,7 +97,7 @@ trait Value: From<f32> {
 
     fn constant(&self, usage: Self::Use, span: Span, diagnostics: &mut Vec<Diagnostic>) -> Self::Constant;
     fn id(handle: Handle<TextureDesc<Self>>, usage: Self::Use) -> Self::Id;
-    fn push(textures: &mut Textures, texture: Texture<Self::Constant, Self::Id, Self::Image>) -> Self::Id;
+    fn push(textures: &mut Textures, texture: TextureOf<Self>) -> Self::Id;
     fn image(lookup: ImageLookup, image: &ImageDesc, usage: Self::Use) -> Self::Image;
     /// Whether images keep their colours.
     const IN_COLOR: bool;
@@ -118,10 +122,7 @@ impl Value for f32 {
         FloatTextureId(handle.index() as u32)
     }
 
-    fn push(
-        textures: &mut Textures,
-        texture: Texture<f32, FloatTextureId, FloatImage>,
-    ) -> FloatTextureId {
+    fn push(textures: &mut Textures, texture: FloatTexture) -> FloatTextureId {
         textures.push_float(texture)
     }
 
@@ -151,17 +152,16 @@ impl Value for SpectrumDesc {
         SpectrumTextureId((handle.index() * SpectrumType::ALL.len() + usage as usize) as u32)
     }
 
-    fn push(
-        textures: &mut Textures,
-        texture: Texture<Spectrum, SpectrumTextureId, SpectrumImage>,
-    ) -> SpectrumTextureId {
+    fn push(textures: &mut Textures, texture: SpectrumTexture) -> SpectrumTextureId {
         textures.push_spectrum(texture)
     }
 
     fn image(lookup: ImageLookup, image: &ImageDesc, spectrum_type: SpectrumType) -> SpectrumImage {
-        let space = image.image.metadata.chromaticities.and_then(|c| {
-            RgbColorSpace::from_chromaticities([c.red, c.green, c.blue], c.white)
-        });
+        let space = image
+            .image
+            .metadata
+            .chromaticities
+            .and_then(|c| RgbColorSpace::from_chromaticities([c.red, c.green, c.blue], c.white));
         SpectrumImage { lookup, space: space.unwrap_or(RgbColorSpace::srgb()), spectrum_type }
     }
 }
@@ -195,9 +195,10 @@ fn depth<V>(
     let name = &texture.name;
     match (below(parts[0], same), below(parts[1], same), below(factor, floats)) {
         (Some(a), Some(b), Some(c)) if a.max(b).max(c) <= MAX_DEPTH => Some(a.max(b).max(c)),
-        (Some(_), Some(_), Some(_)) => {
-            error("texture-depth", format!("texture `{name}` depends on more than {MAX_DEPTH} others in a row"))
-        }
+        (Some(_), Some(_), Some(_)) => error(
+            "texture-depth",
+            format!("texture `{name}` depends on more than {MAX_DEPTH} others in a row"),
+        ),
         _ => error("texture-cycle", format!("texture `{name}` refers to itself or to a later one")),
     }
 }
@@ -211,11 +212,7 @@ struct Compiler<'a> {
 }
 
 impl Compiler<'_> {
-    fn texture<V: Value>(
-        &mut self,
-        desc: &Stated<TextureDesc<V>>,
-        usage: V::Use,
-    ) -> Texture<V::Constant, V::Id, V::Image> {
+    fn texture<V: Value>(&mut self, desc: &Stated<TextureDesc<V>>, usage: V::Use) -> TextureOf<V> {
         let origin = &desc.origin;
         match &desc.kind {
             TextureKind::Constant(value) => {
@@ -232,37 +229,31 @@ impl Compiler<'_> {
             TextureKind::Checkerboard { textures, mapping } => {
                 let pattern = match mapping {
                     Some(mapping) => Checkerboard::Squares(self.mapping(mapping, desc)),
-                    None => Checkerboard::Cubes(Mapping3d { texture_from_render: self.texture_from_render(desc) }),
+                    None => {
+                        Checkerboard::Cubes(Mapping3d { texture_from_render: self.texture_from_render(desc) })
+                    }
                 };
                 Texture::Checkerboard { textures: self.pair(textures, usage, origin), pattern }
             }
             TextureKind::Image(image) => match self.image(image, desc, usage) {
                 Some(image) => Texture::Image(image),
-                None => Texture::Constant(V::from(0.5).constant(usage, origin.span, self.diagnostics)),
+                None => self.half::<V>(usage, origin),
             },
-            TextureKind::DirectionMix { textures, .. } => {
-                self.not_drawn("directionmix", "an even mix", origin);
-                Texture::Mix { textures: self.pair(textures, usage, origin), amount: self.constant(0.5) }
-            }
             TextureKind::Bilerp { corners: [v00, _, _, v11], .. } => {
-                self.not_drawn("bilerp", "the mean of `v00` and `v11`", origin);
-                let mut corner = |value: &V, name| {
-                    let value = value.constant(usage, origin.parameter(name), self.diagnostics);
-                    V::push(&mut self.textures, Texture::Constant(value))
-                };
-                let textures = [corner(v00, "v00"), corner(v11, "v11")];
-                Texture::Mix { textures, amount: self.constant(0.5) }
+                let corners = [v00, v11].map(|corner| Parameter::Value(corner.clone()));
+                self.even_mix("bilerp", &corners, usage, origin)
             }
-            TextureKind::Dots { outside, .. } => {
-                self.not_drawn("dots", "`outside`", origin);
-                let outside = self.parameter(outside, usage, origin.parameter("outside"));
-                Texture::Scale { texture: outside, scale: self.constant(1.0) }
+            TextureKind::DirectionMix { textures, .. } => {
+                self.even_mix("directionmix", textures, usage, origin)
             }
-            TextureKind::Fbm { .. } => self.stand_in("fbm", usage, origin),
-            TextureKind::Wrinkled { .. } => self.stand_in("wrinkled", usage, origin),
-            TextureKind::Windy => self.stand_in("windy", usage, origin),
-            TextureKind::Marble { .. } => self.stand_in("marble", usage, origin),
-            TextureKind::Ptex { .. } => self.stand_in("ptex", usage, origin),
+            TextureKind::Dots { inside, outside, .. } => {
+                self.even_mix("dots", &[inside.clone(), outside.clone()], usage, origin)
+            }
+            TextureKind::Fbm { .. } => self.middle::<V>("fbm", usage, origin),
+            TextureKind::Wrinkled { .. } => self.middle::<V>("wrinkled", usage, origin),
+            TextureKind::Windy => self.middle::<V>("windy", usage, origin),
+            TextureKind::Marble { .. } => self.middle::<V>("marble", usage, origin),
+            TextureKind::Ptex { .. } => self.middle::<V>("ptex", usage, origin),
         }
     }
 
@@ -284,17 +275,26 @@ impl Compiler<'_> {
         ]
     }
 
-    fn constant(&mut self, value: f32) -> FloatTextureId {
-        self.textures.push_float(Texture::Constant(value))
-    }
-
-    fn stand_in<V: Value>(
+    /// What stands in for a texture that lies between two others.
+    fn even_mix<V: Value>(
         &mut self,
         name: &str,
+        textures: &[Parameter<V>; 2],
         usage: V::Use,
         origin: &Origin,
-    ) -> Texture<V::Constant, V::Id, V::Image> {
+    ) -> TextureOf<V> {
+        self.not_drawn(name, "an even mix of its values", origin);
+        let amount = self.textures.push_float(Texture::Constant(0.5));
+        Texture::Mix { textures: self.pair(textures, usage, origin), amount }
+    }
+
+    /// What stands in for a texture that makes its own values.
+    fn middle<V: Value>(&mut self, name: &str, usage: V::Use, origin: &Origin) -> TextureOf<V> {
         self.not_drawn(name, "the constant 0.5", origin);
+        self.half::<V>(usage, origin)
+    }
+
+    fn half<V: Value>(&mut self, usage: V::Use, origin: &Origin) -> TextureOf<V> {
         Texture::Constant(V::from(0.5).constant(usage, origin.span, self.diagnostics))
     }
 
@@ -317,7 +317,11 @@ impl Compiler<'_> {
         }
         if desc.filter == description::TextureFilter::Ewa && !(desc.max_anisotropy >= 1.0) {
             let message = format!("the greatest anisotropy must be at least 1, not {}", desc.max_anisotropy);
-            self.diagnostics.push(Diagnostic::error("invalid-value", message, origin.parameter("maxanisotropy")));
+            self.diagnostics.push(Diagnostic::error(
+                "invalid-value",
+                message,
+                origin.parameter("maxanisotropy"),
+            ));
         }
         let pyramid = match self.pyramids.get(desc, V::IN_COLOR) {
             Ok(pyramid) => pyramid,

@@ -67,9 +67,9 @@ fn numbers(image: Arc<Image>) -> Arc<Image> {
         return image;
     }
     let (width, height) = (image.width(), image.height());
-    let opacity = image.alpha_index().filter(|&alpha| {
-        (0..height).any(|y| (0..width).any(|x| image.channel(x, y, alpha) != 1.0))
-    });
+    let opacity = image
+        .alpha_index()
+        .filter(|&alpha| (0..height).any(|y| (0..width).any(|x| image.channel(x, y, alpha) != 1.0)));
     Arc::new(Image::from_fn(width, height, ["Y"], |x, y| match opacity {
         Some(alpha) => [image.channel(x, y, alpha)],
         None => [image.rgb(x, y).iter().sum::<f32>() / 3.0],
