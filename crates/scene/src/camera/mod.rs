@@ -15,9 +15,11 @@ mod orthographic;
 mod perspective;
 mod screen;
 mod spherical;
+#[cfg(test)]
+mod tests;
 mod transform;
 
-use math::{Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vector3, lerp};
+use math::{Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vec3, Vector3, lerp};
 
 pub use compile::compile;
 pub use footprint::{Footprint, differential_scale};
@@ -76,6 +78,14 @@ impl Projection {
             Self::Perspective(p) => p.ray(film, lens),
             Self::Orthographic(p) => p.ray(film, lens),
             Self::Spherical(p) => p.ray(film),
+        }
+    }
+
+    /// Unit direction and length of the way from the camera to `p`, in camera space, through the centre of a lens.
+    fn way_to(&self, p: Point3) -> (Vector3, f32) {
+        match self {
+            Self::Orthographic(o) if o.is_parallel() => (Vec3::Z, p.z),
+            _ => (p.try_normalize().unwrap_or(Vec3::Z), p.length()),
         }
     }
 
@@ -179,8 +189,8 @@ impl Camera {
     pub fn approximate_dp_dxy(&self, p: Point3, n: Normal3, time: f32, scale: f32) -> [Vector3; 2] {
         let render_from_camera = self.transform.render_from_camera(time);
         let camera_from_render = render_from_camera.inverse();
-        self.footprint
-            .dp_dxy(camera_from_render.point(p), camera_from_render.normal(n))
-            .map(|dp| render_from_camera.vector(dp * scale))
+        let (d, distance) = self.projection.way_to(camera_from_render.point(p));
+        let n = camera_from_render.normal(n);
+        self.footprint.dp_dxy(d, distance, n).map(|dp| render_from_camera.vector(dp * scale))
     }
 }

@@ -23,6 +23,8 @@ mod imagemap;
 mod mapping;
 mod pyramids;
 mod spectrum_type;
+#[cfg(test)]
+mod tests;
 
 use math::{Normal3, Point2, Point3, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
