@@ -22,7 +22,7 @@
 //! cancels. The field of view is given over the shorter side: it is θ where the picture is at least as wide as high,
 //! and tan(θ/2) = tan(fov/2)/aspect where it is not. A screen window other than the default cuts a part out of the same plane.
 //!
-//! Sources: [Hill 1990 ch. 12] for the observer; [Pharr 2023 §5.2.2] for field of view and screen window.
+//! Sources: [Hill & Kelley 2007 ch. 12] for the observer; [Pharr 2023 §5.2.2] for field of view and screen window.
 
 use super::{Screen, ThinLens};
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};

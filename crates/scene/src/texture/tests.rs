@@ -3,8 +3,9 @@
 use super::*;
 use ::image::{ColorEncoding, Image, Pixels};
 use description::{
-    ColorSpaceDesc, Diagnostic, EncodingDesc, FloatTextureDesc, Handle, ImageDesc, ImageTextureDesc, MappingDesc,
-    Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc, TextureFilter, TextureKind, WrapMode,
+    ColorSpaceDesc, Diagnostic, EncodingDesc, FloatTextureDesc, Handle, ImageDesc, ImageTextureDesc,
+    MappingDesc, Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc, TextureFilter, TextureKind,
+    WrapMode,
 };
 use math::{DMat4, DVec3, Transform, Vec2, Vec3};
 use spectrum::{RgbColorSpace, SampledWavelengths};
@@ -133,8 +134,8 @@ fn a_checkerboard_seen_from_afar_is_grey() {
 }
 
 fn mappings() -> Vec<Mapping2d> {
-    let texture_from_render =
-        Transform::rotate(0.7, Vec3::new(1.0, -2.0, 0.4)).after(&Transform::translate(Vec3::new(0.2, -0.1, 0.3)));
+    let texture_from_render = Transform::rotate(0.7, Vec3::new(1.0, -2.0, 0.4))
+        .after(&Transform::translate(Vec3::new(0.2, -0.1, 0.3)));
     vec![
         Mapping2d::Uv { scale: Vec2::new(3.0, -2.0), delta: Vec2::new(0.5, 0.1) },
         Mapping2d::Spherical { texture_from_render },
@@ -171,7 +172,10 @@ fn derivatives_of_mappings_are_finite_differences() {
         let st = |x, y| mapping.map(&moved(x, y)).st;
         let c = mapping.map(&ctx);
         let (dx, dy) = ((st(h, 0.0) - st(-h, 0.0)) / (2.0 * h), (st(0.0, h) - st(0.0, -h)) / (2.0 * h));
-        assert!((c.dstdx - dx).length() < 1e-3 && (c.dstdy - dy).length() < 1e-3, "{mapping:?} {c:?} {dx} {dy}");
+        assert!(
+            (c.dstdx - dx).length() < 1e-3 && (c.dstdy - dy).length() < 1e-3,
+            "{mapping:?} {c:?} {dx} {dy}"
+        );
     }
 }
 
@@ -380,7 +384,10 @@ fn what_is_not_drawn_is_said_once_and_has_a_stand_in() {
         let mut scene = SceneDesc::default();
         scene.spectrum_textures.push(SpectrumTextureDesc::new(kind));
         let (t, diagnostics) = compiled(&scene);
-        assert_eq!(diagnostics.iter().map(|d| (d.code, d.is_error())).collect::<Vec<_>>(), [("not-drawn", false)]);
+        assert_eq!(
+            diagnostics.iter().map(|d| (d.code, d.is_error())).collect::<Vec<_>>(),
+            [("not-drawn", false)]
+        );
         for i in 0..3 {
             let found = t.spectrum(SpectrumTextureId(i), &at(0.1, 0.1), &lambda());
             assert_spectrum(found, SampledSpectrum::splat(value), 1e-6);
@@ -417,12 +424,17 @@ fn values_without_sense_are_reported() {
         change(&mut scene);
         compiled(&scene).1.iter().map(|d| d.code).collect::<Vec<_>>()
     };
-    let constant = |value: SpectrumDesc| move |scene: &mut SceneDesc| {
-        scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Constant(value.clone())));
+    let constant = |value: SpectrumDesc| {
+        move |scene: &mut SceneDesc| {
+            scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Constant(value.clone())));
+        }
     };
     assert_eq!(codes(&constant(SpectrumDesc::Named("metal-Unobtainium-eta".into()))), ["invalid-value"]);
     assert_eq!(codes(&constant(SpectrumDesc::Blackbody(-3.0))), ["invalid-value"]);
-    assert_eq!(codes(&constant(SpectrumDesc::Samples([(500.0, 1.0), (400.0, 1.0)].into()))), ["invalid-value"]);
+    assert_eq!(
+        codes(&constant(SpectrumDesc::Samples([(500.0, 1.0), (400.0, 1.0)].into()))),
+        ["invalid-value"]
+    );
     assert!(codes(&constant(SpectrumDesc::rgb(2.0, 0.0, 0.0))).is_empty(), "it may be meant as light");
     let image = |change: fn(&mut FloatTextureDesc, &mut ImageTextureDesc)| {
         move |scene: &mut SceneDesc| {
@@ -459,7 +471,10 @@ fn spectra_are_made_for_their_use() {
     let white = RgbColorSpace::rec2020().illuminant();
     assert!((light.at(550.0) / white.at(550.0) - 2.0).abs() < 1e-2);
     assert_eq!(make(&SpectrumDesc::Illuminant(ColorSpaceDesc::Rec2020), SpectrumType::Illuminant).0, white);
-    assert_eq!(make(&SpectrumDesc::rgb(-1.0, 0.0, 0.0), SpectrumType::Unbounded).1[0].0, "color-out-of-range");
+    assert_eq!(
+        make(&SpectrumDesc::rgb(-1.0, 0.0, 0.0), SpectrumType::Unbounded).1[0].0,
+        "color-out-of-range"
+    );
     assert!(make(&SpectrumDesc::rgb(f32::NAN, 0.0, 0.0), SpectrumType::Albedo).1[0].1);
     assert!(make(&SpectrumDesc::Constant(f32::INFINITY), SpectrumType::Unbounded).1[0].1);
     assert!(make(&SpectrumDesc::Named("glass-BK7".into()), SpectrumType::Unbounded).1.is_empty());
