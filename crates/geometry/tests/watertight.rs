@@ -94,7 +94,7 @@ fn walks_inside_do_not_leak() {
         for (k, world) in closed_worlds(rng, &m).iter().enumerate() {
             let center = m.point(Vec3::ZERO);
             let mut ray = Ray::new(center, direction(rng), 0.0);
-            for step in 0..5000 {
+            for step in 0..10_000 {
                 let Some(hit) = nearest(world, &ray) else {
                     panic!("world {k} under transform {i} leaks at step {step}: {ray:?}")
                 };
@@ -160,7 +160,7 @@ fn transmitted_rays_reach_the_far_side() {
     for i in 0..TRANSFORMS {
         let m = transform(rng, i);
         let world = world([Shape::from(Sphere::whole(&m, false, 1.0)).into()]);
-        for _ in 0..5000 {
+        for _ in 0..10_000 {
             let o = m.point(direction(rng) * 3.0);
             let target = m.point(direction(rng) * 0.9);
             let ray = Ray::new(o, target - o, 0.0);
