@@ -1,0 +1,36 @@
+//! Lights in proportion to their power, wherever the point is.
+
+use crate::light::{Light, LightId};
+use sampling::AliasTable;
+use spectrum::SampledWavelengths;
+
+/// Lights by power.
+#[derive(Clone, Debug)]
+pub struct PowerLightSampler {
+    table: Option<AliasTable>,
+}
+
+impl PowerLightSampler {
+    /// For these lights. When none has any power, all are alike.
+    pub fn new(lights: &[Light]) -> Self {
+        if lights.is_empty() {
+            return Self { table: None };
+        }
+        let lambda = SampledWavelengths::sample_visible(0.5);
+        let mut powers: Vec<f32> =
+            lights.iter().map(|light| light.phi(&lambda).safe_div(lambda.pdf()).average().max(0.0)).collect();
+        if powers.iter().all(|&p| p == 0.0) {
+            powers.fill(1.0);
+        }
+        Self { table: Some(AliasTable::new(&powers)) }
+    }
+
+    pub(super) fn sample(&self, u: f32) -> Option<(LightId, f32)> {
+        let (index, pmf) = self.table.as_ref()?.sample(u);
+        (pmf > 0.0).then_some((LightId(index as u32), pmf))
+    }
+
+    pub(super) fn pmf(&self, light: LightId) -> f32 {
+        self.table.as_ref().map_or(0.0, |table| table.pmf(light.0 as usize))
+    }
+}
