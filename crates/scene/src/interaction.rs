@@ -74,6 +74,7 @@ impl SurfaceInteraction {
             dudy: f.dudy,
             dvdx: f.dvdx,
             dvdy: f.dvdy,
+            face_index: 0,
         }
     }
 

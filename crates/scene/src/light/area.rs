@@ -9,7 +9,7 @@ use crate::texture::{FloatTextureId, TextureContext, Textures};
 use geometry::Shape;
 use image::{Image, WrapMode};
 use math::{Normal3, Point2, Vec2, Vector3};
-use sampling::hash_floats;
+use sampling::hash_float;
 use spectrum::{Rgb, RgbColorSpace, RgbIlluminantSpectrum, SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -32,10 +32,8 @@ pub struct AreaEmission {
 /// An image of emitted colours.
 #[derive(Clone, Debug)]
 pub struct EmissionImage {
-    /// Pixels; v = 0 is the bottom row.
+    /// Pixels with red, green and blue; v = 0 is the bottom row.
     pub image: Arc<Image>,
-    /// Its red, green and blue channel.
-    pub rgb: [usize; 3],
     /// What the channels mean.
     pub color_space: &'static RgbColorSpace,
 }
@@ -51,15 +49,12 @@ pub struct AreaLight {
 impl EmissionImage {
     fn pixels(&self) -> impl Iterator<Item = Rgb> + '_ {
         let (width, height) = (self.image.width(), self.image.height());
-        (0..width * height).map(move |i| {
-            let at = |c: usize| self.image.channel(i % width, i / width, self.rgb[c]).max(0.0);
-            Rgb::new(at(0), at(1), at(2))
-        })
+        (0..width * height).map(move |i| Rgb::from(self.image.rgb(i % width, i / width)).clamp_zero())
     }
 
     /// Mean luminance in the image's colour space.
     pub fn mean_luminance(&self) -> f32 {
-        let y = self.color_space.luminance_vector();
+        let y = self.color_space.luminance_weights();
         let sum: f64 = self.pixels().map(|p| (p.r * y.r + p.g * y.g + p.b * y.b) as f64).sum();
         (sum / (self.image.width() * self.image.height()) as f64) as f32
     }
@@ -85,8 +80,7 @@ impl AreaLight {
             None => emission.radiance.sample(lambda),
             Some(image) => {
                 let st = Vec2::new(uv.x, 1.0 - uv.y);
-                let at = |c: usize| image.image.bilinear(st, image.rgb[c], WrapMode::Clamp).max(0.0);
-                let rgb = Rgb::new(at(0), at(1), at(2));
+                let rgb = Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)).clamp_zero();
                 RgbIlluminantSpectrum::new(image.color_space, rgb).sample(lambda) * emission.radiance.scale
             }
         }
@@ -122,8 +116,8 @@ impl AreaLight {
             return None;
         }
         if let Some(alpha) = self.emission.alpha.filter(|_| !self.emission.invisible) {
-            let cut = textures.float(alpha, &TextureContext::at_point(s.p.p, s.n, s.uv));
-            if cut < 1.0 && (cut <= 0.0 || hash_floats(&s.p.p.to_array()) > cut) {
+            let there = textures.float(alpha, &TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() });
+            if there < 1.0 && hash_float(&s.p.p.to_array().map(f32::to_bits)) >= there {
                 return None;
             }
         }

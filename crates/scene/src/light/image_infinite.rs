@@ -17,7 +17,6 @@ use std::sync::Arc;
 pub struct ImageInfiniteLight {
     render_from_light: Transform,
     image: Arc<Image>,
-    rgb: [usize; 3],
     color_space: &'static RgbColorSpace,
     scale: f32,
     scene: SceneSphere,
@@ -26,30 +25,29 @@ pub struct ImageInfiniteLight {
 }
 
 impl ImageInfiniteLight {
-    /// From a square image whose channels `rgb` are red, green and blue in `color_space`.
+    /// From a square image with red, green and blue in `color_space`.
     pub fn new(
         render_from_light: Transform,
         image: Arc<Image>,
-        rgb: [usize; 3],
-        color_space: &'static RgbColorSpace,
+            color_space: &'static RgbColorSpace,
         scale: f32,
         scene: SceneSphere,
     ) -> Self {
         let (width, height) = (image.width(), image.height());
-        let mut density = Vec::with_capacity(width * height);
+        let mut density = Vec::with_capacity(width as usize * height as usize);
         for y in 0..height {
             for x in 0..width {
-                density.push(rgb.iter().map(|&c| image.channel(x, y, c).max(0.0)).sum::<f32>() / 3.0);
+                density.push(Rgb::from(image.rgb(x, y)).clamp_zero().average());
             }
         }
-        let distribution = PiecewiseConstant2d::new(&density, width, height, Bounds2::UNIT);
+        let distribution = PiecewiseConstant2d::new(&density, width as usize, Bounds2::UNIT);
         let mean = (density.iter().map(|&d| d as f64).sum::<f64>() / density.len().max(1) as f64) as f32;
         density.iter_mut().for_each(|d| *d = (*d - mean).max(0.0));
         if density.iter().all(|&d| d == 0.0) {
             density.fill(1.0);
         }
-        let compensated = PiecewiseConstant2d::new(&density, width, height, Bounds2::UNIT);
-        Self { render_from_light, image, rgb, color_space, scale, scene, distribution, compensated }
+        let compensated = PiecewiseConstant2d::new(&density, width as usize, Bounds2::UNIT);
+        Self { render_from_light, image, color_space, scale, scene, distribution, compensated }
     }
 
     fn distribution(&self, allow_incomplete: bool) -> &PiecewiseConstant2d {
@@ -61,8 +59,9 @@ impl ImageInfiniteLight {
     }
 
     fn lookup(&self, uv: Point2, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let at = |c: usize| self.image.nearest(uv, self.rgb[c], WrapMode::OctahedralSphere).max(0.0);
-        self.spectrum(Rgb::new(at(0), at(1), at(2)), lambda)
+        let pixel = |x: f32, resolution: u32| (x * resolution as f32) as i32;
+        let (x, y) = (pixel(uv.x, self.image.width()), pixel(uv.y, self.image.height()));
+        self.spectrum(Rgb::from(self.image.rgb_wrapped(x, y, WrapMode::OctahedralSphere)).clamp_zero(), lambda)
     }
 
     pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
@@ -70,8 +69,7 @@ impl ImageInfiniteLight {
         let (width, height) = (self.image.width(), self.image.height());
         for y in 0..height {
             for x in 0..width {
-                let at = |c: usize| self.image.channel(x, y, self.rgb[c]).max(0.0);
-                sum += self.spectrum(Rgb::new(at(0), at(1), at(2)), lambda);
+                sum += self.spectrum(Rgb::from(self.image.rgb(x, y)).clamp_zero(), lambda);
             }
         }
         sum * (4.0 * PI * PI * self.scene.radius * self.scene.radius / (width * height) as f32)

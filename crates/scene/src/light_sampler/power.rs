@@ -13,21 +13,18 @@ pub struct PowerLightSampler {
 impl PowerLightSampler {
     /// For these lights. When none has any power, all are alike.
     pub fn new(lights: &[Light]) -> Self {
-        if lights.is_empty() {
-            return Self { table: None };
-        }
         let lambda = SampledWavelengths::sample_visible(0.5);
         let mut powers: Vec<f32> =
             lights.iter().map(|light| light.phi(&lambda).safe_div(lambda.pdf()).average().max(0.0)).collect();
         if powers.iter().all(|&p| p == 0.0) {
             powers.fill(1.0);
         }
-        Self { table: Some(AliasTable::new(&powers)) }
+        Self { table: AliasTable::new(&powers) }
     }
 
     pub(super) fn sample(&self, u: f32) -> Option<(LightId, f32)> {
-        let (index, pmf) = self.table.as_ref()?.sample(u);
-        (pmf > 0.0).then_some((LightId(index as u32), pmf))
+        let choice = self.table.as_ref()?.sample(u);
+        (choice.pmf > 0.0).then_some((LightId(choice.index as u32), choice.pmf))
     }
 
     pub(super) fn pmf(&self, light: LightId) -> f32 {

@@ -6,7 +6,7 @@
 use super::MaterialId;
 use crate::interaction::SurfaceInteraction;
 use crate::texture::{FloatTextureId, Textures};
-use sampling::hash_floats;
+use sampling::hash_float;
 
 /// A stochastic mixture.
 #[derive(Clone, Debug)]
@@ -27,8 +27,8 @@ impl MixMaterial {
             return self.materials[1];
         }
         let (p, wo) = (interaction.surface.p.p, interaction.surface.wo);
-        let ids = self.materials.map(|m| m.0 as f32);
-        let u = hash_floats(&[p.x, p.y, p.z, wo.x, wo.y, wo.z, ids[0], ids[1]]);
+        let words = [p.x, p.y, p.z, wo.x, wo.y, wo.z].map(f32::to_bits);
+        let u = hash_float(&[&words[..], &self.materials.map(|m| m.0)].concat());
         self.materials[usize::from(u < amount)]
     }
 }
