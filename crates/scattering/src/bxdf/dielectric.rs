@@ -86,7 +86,7 @@ impl Dielectric {
         mode: TransportMode,
         directions: Directions,
     ) -> Option<BsdfSample> {
-        let fresnel = fr_dielectric(wo.z, self.eta);
+        let fresnel = if self.eta == 1.0 { 0.0 } else { fr_dielectric(wo.z, self.eta) };
         let pr = directions.probability_of_reflection(fresnel, 1.0 - fresnel)?;
         if uc < pr {
             let wi = Vec3::new(-wo.x, -wo.y, wo.z);

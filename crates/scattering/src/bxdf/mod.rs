@@ -125,7 +125,7 @@ pub enum Bxdf {
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a name.
 ///
 /// ```
-/// use scattering::{Bxdf, Scatter, each_bxdf};
+/// use alhazen_scattering::{Bxdf, Scatter, each_bxdf};
 /// fn scatters(bxdf: &Bxdf) -> bool {
 ///     each_bxdf!(bxdf, member => !member.flags().is_empty())
 /// }
