@@ -127,10 +127,10 @@ fn samples_have_their_density() {
         let strips = Strips::new(&bxdf, wo);
         let sample = |u: [f32; 2]| {
             let sample = bxdf.sample_f(wo, random.get_1d(), u.into(), TransportMode::Radiance, directions)?;
-            Some([strips.from_theta(spherical_theta(sample.wi)), spherical_phi(sample.wi)])
+            Some([strips.coordinate(spherical_theta(sample.wi)), spherical_phi(sample.wi)])
         };
         let pdf = |[x, phi]: [f32; 2]| {
-            let (theta, width) = strips.to_theta(x);
+            let (theta, width) = strips.theta(x);
             let wi = spherical_direction(theta.sin(), theta.cos(), phi);
             (bxdf.pdf(wo, wi, TransportMode::Radiance, directions) * theta.sin() * width) as f64
         };
@@ -150,13 +150,13 @@ impl Strips {
         Strips([0.0, edge.min(FRAC_PI_2), edge.max(FRAC_PI_2), PI])
     }
 
-    fn from_theta(&self, theta: f32) -> f32 {
+    fn coordinate(&self, theta: f32) -> f32 {
         let i = (1..3).filter(|&i| theta >= self.0[i]).count();
         i as f32 + (theta - self.0[i]) / (self.0[i + 1] - self.0[i])
     }
 
     /// θ and dθ/dx.
-    fn to_theta(&self, x: f32) -> (f32, f32) {
+    fn theta(&self, x: f32) -> (f32, f32) {
         let i = (x as usize).min(2);
         let width = self.0[i + 1] - self.0[i];
         (self.0[i] + (x - i as f32) * width, width)
