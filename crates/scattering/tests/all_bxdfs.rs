@@ -140,8 +140,8 @@ fn samples_have_their_density() {
     }
 }
 
-/// The sphere in three strips of θ, each one unit high: rough glass has an edge where its facets stand upright, and every
-/// surface one at the horizon; quadrature wants both between cells.
+/// The sphere in three strips of θ, each one unit high: rough glass has an edge where its facets stand
+/// upright, and every surface one at the horizon; quadrature wants both between cells.
 struct Strips([f32; 4]);
 
 impl Strips {
