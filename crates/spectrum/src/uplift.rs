@@ -55,10 +55,10 @@ fn sigmoid(x: f32) -> f32 {
 }
 
 /// Number of nodes over the largest component.
-pub const VALUES: usize = 32;
+pub const VALUES: usize = 48;
 
 /// Number of nodes over each ratio.
-pub const RATIOS: usize = 48;
+pub const RATIOS: usize = 40;
 
 /// Number of nodes in a table.
 pub const NODES: usize = 3 * VALUES * RATIOS * RATIOS;
