@@ -1,14 +1,40 @@
 //! Points, vectors, bounds, transforms, rays, frames and float-error intervals.
 //!
-//! Points, vectors and normals are one type, [`Vec3`]; the alias in a signature says how the value transforms.
+//! Points, vectors and normals are one type, [`Vec3`]; the alias in a signature says how the value transforms
+//! ([`Transform::point`], [`Transform::vector`], [`Transform::normal`]).
 
+mod animated;
+mod bounds;
+mod cone;
+mod error;
+mod float;
+mod frame;
+mod interval;
+mod octahedral;
+mod quadratic;
+mod ray;
+mod spherical;
+mod transform;
+
+pub use animated::AnimatedTransform;
+pub use bounds::{Bounds2, Bounds2i, Bounds3};
+pub use cone::{DirectionCone, bound_subtended_directions};
+pub use error::{Point3Error, offset_ray_origin};
+pub use float::*;
+pub use frame::{Frame, coordinate_system};
 pub use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
+pub use interval::Interval;
+pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere, wrap_equal_area_square};
+pub use quadratic::solve_quadratic;
+pub use ray::{Differentials, Ray, RayDifferential};
+pub use spherical::*;
+pub use transform::Transform;
 
 /// A point in the plane, or a pair of sample values.
 pub type Point2 = Vec2;
-/// A position; moves with [`Vec3`] translation.
+/// A position.
 pub type Point3 = Vec3;
-/// A difference of positions or a direction; does not move with translation.
+/// A difference of positions, or a direction.
 pub type Vector3 = Vec3;
 /// A surface normal; transforms by the inverse transpose.
 pub type Normal3 = Vec3;

@@ -1,1 +1,4 @@
-//! The compiled world: textures, materials, lights, cameras and the scene they make
+//! The compiled world: textures, materials, lights, cameras and the scene they make.
+
+pub mod camera;
+pub mod texture;

@@ -1,0 +1,87 @@
+//! Rays r(t) = o + t·d at a moment in time, and their neighbours one pixel away.
+
+use crate::{Normal3, Point3, Point3Error, Vector3, offset_ray_origin};
+
+/// A half line. The direction need not have unit length; t counts in its length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Origin.
+    pub o: Point3,
+    /// Direction, of any length but zero.
+    pub d: Vector3,
+    /// Moment in the shutter's time.
+    pub time: f32,
+}
+
+impl Ray {
+    /// How far towards a target a shadow ray goes, in units of the distance: just short of the target's own surface.
+    pub const SHADOW_END: f32 = 1.0 - 1e-4;
+
+    /// A ray from `o` along `d`.
+    #[inline]
+    pub fn new(o: Point3, d: Vector3, time: f32) -> Self {
+        Self { o, d, time }
+    }
+
+    /// The point o + t·d.
+    #[inline]
+    pub fn at(&self, t: f32) -> Point3 {
+        self.o + self.d * t
+    }
+
+    /// The ray that leaves a surface at `p` with geometric normal `n` along `d`.
+    #[inline]
+    pub fn spawn(p: Point3Error, n: Normal3, d: Vector3, time: f32) -> Self {
+        Self::new(offset_ray_origin(p, n, d), d, time)
+    }
+
+    /// The ray from one surface to another, on which t = 1 is the (offset) target; pass [`Ray::SHADOW_END`] as its end.
+    /// An end without a surface (a point light, a camera) has the normal zero.
+    #[inline]
+    pub fn between(from: Point3Error, from_n: Normal3, to: Point3Error, to_n: Normal3, time: f32) -> Self {
+        let o = offset_ray_origin(from, from_n, to.p - from.p);
+        let target = offset_ray_origin(to, to_n, o - to.p);
+        Self::new(o, target - o, time)
+    }
+}
+
+/// The rays through the neighbouring pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Differentials {
+    /// Origin one pixel to the right.
+    pub rx_origin: Point3,
+    /// Direction one pixel to the right.
+    pub rx_direction: Vector3,
+    /// Origin one pixel down.
+    pub ry_origin: Point3,
+    /// Direction one pixel down.
+    pub ry_direction: Vector3,
+}
+
+/// A ray that may know its neighbours, so that a texture can be filtered over the footprint of a pixel ([Igehy 1999]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayDifferential {
+    /// The ray itself.
+    pub ray: Ray,
+    /// Its neighbours, where known.
+    pub differentials: Option<Differentials>,
+}
+
+impl RayDifferential {
+    /// Brings the neighbours nearer by `s`: with n samples a pixel, 1/√n is their mean spacing.
+    pub fn scale(&mut self, s: f32) {
+        if let Some(d) = &mut self.differentials {
+            let (o, dir) = (self.ray.o, self.ray.d);
+            d.rx_origin = o + (d.rx_origin - o) * s;
+            d.ry_origin = o + (d.ry_origin - o) * s;
+            d.rx_direction = dir + (d.rx_direction - dir) * s;
+            d.ry_direction = dir + (d.ry_direction - dir) * s;
+        }
+    }
+}
+
+impl From<Ray> for RayDifferential {
+    fn from(ray: Ray) -> Self {
+        Self { ray, differentials: None }
+    }
+}

@@ -1,0 +1,106 @@
+//! Directions as angles: θ from +z, φ from +x towards +y; and the trigonometry of a local shading frame.
+
+use crate::{Vec3, Vector3, safe_acos, safe_sqrt};
+use std::f32::consts::TAU;
+
+/// The unit vector with the given sine and cosine of θ, and φ in radians.
+#[inline]
+pub fn spherical_direction(sin_theta: f32, cos_theta: f32, phi: f32) -> Vector3 {
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
+}
+
+/// θ ∈ [0, π] of a unit vector.
+#[inline]
+pub fn spherical_theta(v: Vector3) -> f32 {
+    safe_acos(v.z)
+}
+
+/// φ ∈ [0, 2π) of a vector.
+#[inline]
+pub fn spherical_phi(v: Vector3) -> f32 {
+    let phi = v.y.atan2(v.x);
+    if phi < 0.0 { phi + TAU } else { phi }
+}
+
+/// cos²θ of a local direction.
+#[inline]
+pub fn cos2_theta(w: Vector3) -> f32 {
+    w.z * w.z
+}
+
+/// sin²θ of a local direction.
+#[inline]
+pub fn sin2_theta(w: Vector3) -> f32 {
+    (1.0 - cos2_theta(w)).max(0.0)
+}
+
+/// sin θ ≥ 0 of a local direction.
+#[inline]
+pub fn sin_theta(w: Vector3) -> f32 {
+    safe_sqrt(1.0 - cos2_theta(w))
+}
+
+/// tan²θ of a local direction; infinite at the horizon.
+#[inline]
+pub fn tan2_theta(w: Vector3) -> f32 {
+    sin2_theta(w) / cos2_theta(w)
+}
+
+/// cos φ of a local direction; 1 at the pole.
+#[inline]
+pub fn cos_phi(w: Vector3) -> f32 {
+    let sin = sin_theta(w);
+    if sin == 0.0 { 1.0 } else { (w.x / sin).clamp(-1.0, 1.0) }
+}
+
+/// sin φ of a local direction; 0 at the pole.
+#[inline]
+pub fn sin_phi(w: Vector3) -> f32 {
+    let sin = sin_theta(w);
+    if sin == 0.0 { 0.0 } else { (w.y / sin).clamp(-1.0, 1.0) }
+}
+
+/// Whether two local directions lie on the same side of the surface.
+#[inline]
+pub fn same_hemisphere(a: Vector3, b: Vector3) -> bool {
+    a.z * b.z > 0.0
+}
+
+/// `v` or −`v`, whichever lies on the side of `reference`.
+#[inline]
+pub fn face_forward(v: Vector3, reference: Vector3) -> Vector3 {
+    if v.dot(reference) < 0.0 { -v } else { v }
+}
+
+/// The angle between two unit vectors in radians, exact near 0 and π too.
+#[inline]
+pub fn angle_between(a: Vector3, b: Vector3) -> f32 {
+    if a.dot(b) < 0.0 {
+        std::f32::consts::PI - 2.0 * crate::safe_asin((a + b).length() * 0.5)
+    } else {
+        2.0 * crate::safe_asin((b - a).length() * 0.5)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_round_trip() {
+        for (theta, phi) in [(0.1f32, 0.2f32), (1.5, 3.0), (3.0, 6.0)] {
+            let v = spherical_direction(theta.sin(), theta.cos(), phi);
+            assert!((spherical_theta(v) - theta).abs() < 1e-5 && (spherical_phi(v) - phi).abs() < 1e-5);
+            assert!((cos_phi(v) - phi.cos()).abs() < 1e-4 && (sin_phi(v) - phi.sin()).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn small_angles_are_exact() {
+        let a = Vec3::Z;
+        let b = spherical_direction(1e-4, 1.0, 0.3).normalize();
+        assert!((angle_between(a, b) - 1e-4).abs() < 1e-9);
+        assert!((angle_between(a, -a) - std::f32::consts::PI).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,177 @@
+//! Affine and projective maps with their inverses.
+
+use crate::{
+    Bounds3, DMat4, Differentials, Mat4, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec3, Vector3,
+    gamma,
+};
+
+/// A 4 × 4 matrix and its inverse. Names read right to left: `render_from_object`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    m: Mat4,
+    inverse: Mat4,
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+impl Transform {
+    /// The map that changes nothing.
+    pub const IDENTITY: Self = Self { m: Mat4::IDENTITY, inverse: Mat4::IDENTITY };
+
+    /// From a double-precision matrix, whose inverse is taken in double precision. `None` when there is no inverse.
+    pub fn from_f64(m: DMat4) -> Option<Self> {
+        let inverse = m.inverse();
+        (inverse.is_finite() && m.is_finite()).then(|| Self { m: m.as_mat4(), inverse: inverse.as_mat4() })
+    }
+
+    /// From a matrix and its inverse.
+    pub fn from_parts(m: Mat4, inverse: Mat4) -> Self {
+        Self { m, inverse }
+    }
+
+    /// Moves by `v`.
+    pub fn translate(v: Vector3) -> Self {
+        Self { m: Mat4::from_translation(v), inverse: Mat4::from_translation(-v) }
+    }
+
+    /// Scales each axis; no factor may be zero.
+    pub fn scale(s: Vec3) -> Self {
+        Self { m: Mat4::from_scale(s), inverse: Mat4::from_scale(s.recip()) }
+    }
+
+    /// Turns by `angle` radians around `axis`, counter-clockwise as seen from the axis's tip.
+    pub fn rotate(angle: f32, axis: Vector3) -> Self {
+        let m = Mat4::from_axis_angle(axis.normalize(), angle);
+        Self { m, inverse: m.transpose() }
+    }
+
+    /// The matrix.
+    #[inline]
+    pub fn matrix(&self) -> &Mat4 {
+        &self.m
+    }
+
+    /// The inverse map.
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self { m: self.inverse, inverse: self.m }
+    }
+
+    /// This map after `first`.
+    #[inline]
+    pub fn after(&self, first: &Self) -> Self {
+        Self { m: self.m * first.m, inverse: first.inverse * self.inverse }
+    }
+
+    /// Whether nothing changes.
+    pub fn is_identity(&self) -> bool {
+        self.m == Mat4::IDENTITY
+    }
+
+    /// Whether a right hand becomes a left hand.
+    pub fn swaps_handedness(&self) -> bool {
+        glam::Mat3::from_mat4(self.m).determinant() < 0.0
+    }
+
+    /// Maps a position, dividing by w where the map is projective.
+    #[inline]
+    pub fn point(&self, p: Point3) -> Point3 {
+        let q = self.m * p.extend(1.0);
+        if q.w == 1.0 { q.truncate() } else { q.truncate() / q.w }
+    }
+
+    /// Maps a difference of positions.
+    #[inline]
+    pub fn vector(&self, v: Vector3) -> Vector3 {
+        self.m.transform_vector3(v)
+    }
+
+    /// Maps a normal (by the inverse transpose); the length changes.
+    #[inline]
+    pub fn normal(&self, n: Normal3) -> Normal3 {
+        let i = &self.inverse;
+        Vec3::new(i.x_axis.truncate().dot(n), i.y_axis.truncate().dot(n), i.z_axis.truncate().dot(n))
+    }
+
+    /// Maps a point by an affine map and bounds the error: that of the product, and that the point brought along.
+    #[inline]
+    pub fn point_with_error(&self, p: Point3Error) -> Point3Error {
+        let (x, y, z, t) = (
+            self.m.x_axis.truncate(),
+            self.m.y_axis.truncate(),
+            self.m.z_axis.truncate(),
+            self.m.w_axis.truncate(),
+        );
+        let a = p.p.abs();
+        let rounding = x.abs() * a.x + y.abs() * a.y + z.abs() * a.z + t.abs();
+        let carried = x.abs() * p.error.x + y.abs() * p.error.y + z.abs() * p.error.z;
+        Point3Error::new(
+            x * p.p.x + y * p.p.y + z * p.p.z + t,
+            rounding * gamma(3) + carried * (1.0 + gamma(3)),
+        )
+    }
+
+    /// Maps a ray; t keeps its meaning.
+    #[inline]
+    pub fn ray(&self, ray: &Ray) -> Ray {
+        Ray::new(self.m.transform_point3(ray.o), self.vector(ray.d), ray.time)
+    }
+
+    /// Maps a ray with its neighbours.
+    pub fn ray_differential(&self, r: &RayDifferential) -> RayDifferential {
+        RayDifferential {
+            ray: self.ray(&r.ray),
+            differentials: r.differentials.map(|d| Differentials {
+                rx_origin: self.m.transform_point3(d.rx_origin),
+                rx_direction: self.vector(d.rx_direction),
+                ry_origin: self.m.transform_point3(d.ry_origin),
+                ry_direction: self.vector(d.ry_direction),
+            }),
+        }
+    }
+
+    /// The box around the mapped box.
+    pub fn bounds(&self, b: &Bounds3) -> Bounds3 {
+        if b.is_empty() { *b } else { Bounds3::around(b.corners().map(|p| self.point(p))) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn inverse_undoes(tx in -9f32..9.0, s in 0.2f32..5.0, angle in -3f32..3.0, x in -9f32..9.0, y in -9f32..9.0) {
+            let t = Transform::translate(Vec3::new(tx, 1.0, -2.0))
+                .after(&Transform::rotate(angle, Vec3::new(1.0, 2.0, -0.5)))
+                .after(&Transform::scale(Vec3::new(s, 1.0, -2.0)));
+            let p = Vec3::new(x, y, 3.0);
+            prop_assert!((t.inverse().point(t.point(p)) - p).length() < 1e-4);
+            // A normal stays at right angles to what it was at right angles to.
+            let (n, v) = (Vec3::new(y, -x, 0.0), Vec3::new(x, y, 0.7));
+            prop_assert!(t.normal(n).dot(t.vector(v)).abs() < 1e-2);
+            prop_assert!(t.swaps_handedness());
+        }
+
+        #[test]
+        fn error_bounds_hold(x in -99f32..99.0, y in -99f32..99.0, angle in -3f32..3.0) {
+            let t = Transform::rotate(angle, Vec3::new(1.0, 1.0, 0.2)).after(&Transform::scale(Vec3::new(3.0, 0.1, 7.0)));
+            let p = Vec3::new(x, y, 5.0);
+            let q = t.point_with_error(Point3Error::exact(p));
+            let exact = t.matrix().as_dmat4().transform_point3(p.as_dvec3());
+            let off = (q.p.as_dvec3() - exact).abs();
+            prop_assert!(off.cmple(q.error.as_dvec3()).all(), "{off} {}", q.error);
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_has_no_transform() {
+        assert!(Transform::from_f64(DMat4::from_scale(crate::DVec3::new(1.0, 0.0, 1.0))).is_none());
+    }
+}
