@@ -3,8 +3,8 @@
 //! An RGB reflectance becomes s(c₀t² + c₁t + c₂) with t = (λ − 540) / 100 and the sigmoid s(x) = ½ + x / (2√(1 + x²)),
 //! which lies in [0, 1] whatever the coefficients. The coefficients come from a table over the RGB cube, made by
 //! `cargo xtask rgb-table`: for each position i of the largest component, over its value z and the ratios x, y of
-//! the two next components to it. Between nodes the coefficients are trilinear in x, y and 1/√z: reflectances that
-//! differ in scale alone have coefficients proportional to 1/√z where they are dark, so that dark colours come out right.
+//! the two next components to it. Between nodes the coefficients are trilinear in x, y and (z − ½) / √(z (1 − z)), in which
+//! those of grey are linear, so that dark and bright colours come out right.
 //!
 //! In the file a node is three 16-bit numbers, asinh of the polynomial at 440, 540 and 640 nm over ±10: what the eye
 //! sees of a spectrum depends on the polynomial there, and asinh makes the steps fine where the sigmoid is steep.
@@ -83,6 +83,11 @@ fn ratio_position(ratio: f32) -> f32 {
     ((0.36 + 1.6 * ratio).sqrt() - 0.6) / 0.8
 }
 
+/// What coefficients are about linear in over the largest component z: (z − ½) / √(z (1 − z)), kept finite at z = 1.
+fn value_coordinate(z: f32) -> f32 {
+    (z - 0.5) / (z * (1.05 - z)).sqrt()
+}
+
 /// Index of the node for largest component `largest`, its value node and the ratio nodes of the two components after
 /// it.
 pub fn node_index(largest: usize, value: usize, ratios: [usize; 2]) -> usize {
@@ -149,8 +154,8 @@ impl RgbToSpectrumTable {
 
         let (darkest, z) = (self.values[0], largest_value.max(self.values[0]));
         let z0 = self.values.partition_point(|&v| v <= z).clamp(1, VALUES - 1) - 1;
-        let [a, b, c] = [self.values[z0], z, self.values[z0 + 1]].map(|v| 1.0 / v.sqrt());
-        let tz = (a - b) / (a - c);
+        let [a, b, c] = [self.values[z0], z, self.values[z0 + 1]].map(value_coordinate);
+        let tz = (b - a) / (c - a);
 
         let mut coefficients = [0.0; 3];
         for (dz, wz) in [(0, 1.0 - tz), (1, tz)] {
