@@ -75,7 +75,8 @@ fn projection(
         }
         CameraKind::Spherical { mapping } => Projection::Spherical(Spherical::new(*mapping, resolution)),
         CameraKind::Realistic(_) => {
-            let message = "camera `realistic` is not drawn yet; drawn as a `perspective` pinhole of 90 degrees";
+            let message =
+                "camera `realistic` is not drawn yet; drawn as a `perspective` pinhole of 90 degrees";
             diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
             let window = Screen::window(&ScreenDesc::default(), resolution);
             Projection::Perspective(Perspective::new(90.0, window, LensDesc::default().into(), resolution))

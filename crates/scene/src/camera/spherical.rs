@@ -6,7 +6,10 @@
 //! continue on the sphere ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
-use math::{Point2, Point3, Vec2, Vec3, Vector3, equal_area_square_to_sphere, spherical_direction, wrap_equal_area_square};
+use math::{
+    Point2, Point3, Vec2, Vec3, Vector3, equal_area_square_to_sphere, spherical_direction,
+    wrap_equal_area_square,
+};
 use std::f32::consts::{PI, TAU};
 
 /// All directions.

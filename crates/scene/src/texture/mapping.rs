@@ -19,7 +19,7 @@
 //! Source: [Pharr 2023 §10.2].
 
 use super::TextureContext;
-use math::{Point2, Point3, Transform, Vec2, Vec3, Vector3, sqr, spherical_phi, spherical_theta};
+use math::{Point2, Point3, Transform, Vec2, Vec3, Vector3, spherical_phi, spherical_theta, sqr};
 use std::f32::consts::{PI, TAU};
 
 /// Texture coordinates in two dimensions.

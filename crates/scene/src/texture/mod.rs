@@ -21,6 +21,7 @@ mod checkerboard;
 mod compile;
 mod imagemap;
 mod mapping;
+mod pyramids;
 mod spectrum_type;
 
 use math::{Normal3, Point2, Point3, Vector3};
