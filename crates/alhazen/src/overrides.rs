@@ -205,7 +205,10 @@ impl Overrides {
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
         if let Some(name) = &self.integrator {
             let changed = integrator(name, &mut desc.integrator).ok_or_else(|| {
-                OverrideError(format!("no integrator is called `{name}`; there are {}", INTEGRATORS.join(", ")))
+                OverrideError(format!(
+                    "no integrator is called `{name}`; there are {}",
+                    INTEGRATORS.join(", ")
+                ))
             })?;
             desc.integrator.value = changed;
         }
@@ -219,9 +222,8 @@ impl Overrides {
         }
         if let Some(samples) = self.samples_per_pixel {
             let samples = i32::try_from(samples).ok().filter(|&samples| samples > 0);
-            let samples = samples.ok_or_else(|| {
-                OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX))
-            })?;
+            let samples = samples
+                .ok_or_else(|| OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)))?;
             set_samples_per_pixel(desc, samples);
         }
         if let Some(resolution) = self.resolution {
@@ -234,7 +236,9 @@ impl Overrides {
         if let Some([x, y]) = self.pixel {
             let [width, height] = desc.film.resolution;
             if !((0..width).contains(&x) && (0..height).contains(&y)) {
-                return Err(OverrideError(format!("pixel {x},{y} is not in the image of {width} × {height} pixels")));
+                return Err(OverrideError(format!(
+                    "pixel {x},{y} is not in the image of {width} × {height} pixels"
+                )));
             }
             desc.film.pixel_bounds = Some([x, x + 1, y, y + 1]);
         }
@@ -362,11 +366,8 @@ mod tests {
     #[test]
     fn another_algorithm_keeps_the_settings_that_it_shares() {
         let mut desc = SceneDesc::default();
-        desc.integrator.value = IntegratorDesc::Path {
-            max_depth: 9,
-            regularize: true,
-            light_sampler: LightSamplerDesc::Power,
-        };
+        desc.integrator.value =
+            IntegratorDesc::Path { max_depth: 9, regularize: true, light_sampler: LightSamplerDesc::Power };
         for name in INTEGRATORS {
             let mut copy = desc.clone();
             let integrator = Some(name.to_owned());
@@ -396,7 +397,9 @@ mod tests {
 
     #[test]
     fn settings_reach_the_scene_in_order() {
-        let desc = with_settings(&[("maxdepth", "3"), ("filter", "box"), ("filterradius", "2"), ("iso", "400")]).unwrap();
+        let desc =
+            with_settings(&[("maxdepth", "3"), ("filter", "box"), ("filterradius", "2"), ("iso", "400")])
+                .unwrap();
         assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath { max_depth: 3, .. }));
         assert_eq!(desc.filter.value, FilterDesc::Box { radius: [2.0, 2.0] });
         assert_eq!(desc.film.sensor.iso, 400.0);
@@ -412,7 +415,10 @@ mod tests {
             "cannot set cossample to `true`: the scene's algorithm has no such setting"
         );
         let pixel = Overrides { pixel: Some([2000, 0]), ..Overrides::default() };
-        assert_eq!(changed(pixel).unwrap_err().to_string(), "pixel 2000,0 is not in the image of 1280 × 720 pixels");
+        assert_eq!(
+            changed(pixel).unwrap_err().to_string(),
+            "pixel 2000,0 is not in the image of 1280 × 720 pixels"
+        );
     }
 
     #[test]
@@ -420,7 +426,9 @@ mod tests {
         for (samples, strata) in [(1, [1, 1]), (12, [4, 3]), (16, [4, 4]), (17, [17, 1])] {
             let mut desc = with_settings(&[("sampler", "stratified")]).unwrap();
             Overrides { samples_per_pixel: Some(samples), ..Overrides::default() }.apply(&mut desc).unwrap();
-            assert!(matches!(desc.sampler.kind, SamplerKind::Stratified { strata: found, .. } if found == strata));
+            assert!(
+                matches!(desc.sampler.kind, SamplerKind::Stratified { strata: found, .. } if found == strata)
+            );
         }
     }
 
