@@ -324,3 +324,77 @@ pub fn visible_wavelength_pdf(lambda: f32) -> f32 {
     }
     0.003_939_804 / (0.0072 * (lambda - 538.0)).cosh().powi(2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ of the density over the range by the midpoint rule.
+    fn integral_of(pdf: impl Fn(f32) -> f32) -> f64 {
+        let steps = 47_000;
+        let width = f64::from(LAMBDA_MAX - LAMBDA_MIN) / f64::from(steps);
+        (0..steps).map(|i| f64::from(pdf((360.0 + (f64::from(i) + 0.5) * width) as f32)) * width).sum()
+    }
+
+    #[test]
+    fn the_visible_density_integrates_to_one() {
+        assert!((integral_of(visible_wavelength_pdf) - 1.0).abs() < 1e-4);
+        assert_eq!(visible_wavelength_pdf(359.9), 0.0);
+        assert_eq!(visible_wavelength_pdf(830.1), 0.0);
+    }
+
+    #[test]
+    fn visible_wavelengths_have_their_density() {
+        // u is the share of the density below the wavelength: its integral up to there gives u again.
+        let steps = 4700;
+        let width = 0.1;
+        let mut below = 0.0;
+        for i in 0..steps {
+            let lambda = 360.0 + (f64::from(i) + 0.5) * width;
+            let share = below + 0.5 * f64::from(visible_wavelength_pdf(lambda as f32)) * width;
+            assert!((f64::from(sample_visible_wavelength(share as f32)) - lambda).abs() < 0.35, "{lambda}");
+            below += f64::from(visible_wavelength_pdf(lambda as f32)) * width;
+        }
+        assert_eq!(SampledWavelengths::sample_visible(0.0)[0].round(), LAMBDA_MIN);
+    }
+
+    #[test]
+    fn wavelengths_are_one_number_rotated() {
+        let lambda = SampledWavelengths::sample_uniform(0.9);
+        for (ours, expected) in lambda.lambda().iter().zip([783.0, 430.5, 548.0, 665.5]) {
+            assert!((ours - expected).abs() < 1e-2);
+        }
+        for u in [0.0, 0.25, 0.75, 0.999_999_94] {
+            for l in *SampledWavelengths::sample_visible(u).lambda() {
+                assert!((LAMBDA_MIN..=LAMBDA_MAX).contains(&l) && visible_wavelength_pdf(l) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn termination_happens_once_and_leaves_a_quarter_of_the_density() {
+        let mut lambda = SampledWavelengths::sample_uniform(0.3);
+        assert!(!lambda.secondary_terminated());
+        let before = lambda.pdf()[0];
+        for _ in 0..2 {
+            lambda.terminate_secondary();
+            assert!(lambda.secondary_terminated());
+            assert_eq!(lambda.pdf().0, [before / 4.0, 0.0, 0.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn arithmetic_is_per_wavelength() {
+        let a = SampledSpectrum::new([1.0, 2.0, 3.0, 4.0]);
+        let b = SampledSpectrum::new([2.0, 0.0, 1.0, -4.0]);
+        assert_eq!((a + b).0, [3.0, 2.0, 4.0, 0.0]);
+        assert_eq!((2.0 - a * 0.5).0, [1.5, 1.0, 0.5, 0.0]);
+        assert_eq!(a.safe_div(b).0, [0.5, 0.0, 3.0, -1.0]);
+        assert_eq!(b.clamp_zero().0, [2.0, 0.0, 1.0, 0.0]);
+        assert_eq!((b.max_component(), b.min_component(), a.average()), (2.0, -4.0, 2.5));
+        assert_eq!(a.lerp(b, 0.5).0, [1.5, 1.0, 2.0, 0.0]);
+        assert!(SampledSpectrum::ZERO.is_black() && !b.is_black());
+        assert!(!SampledSpectrum::new([0.0, f32::NAN, 0.0, 0.0]).is_finite());
+        assert_eq!([a, b].into_iter().sum::<SampledSpectrum>(), a + b);
+    }
+}

@@ -1,0 +1,10 @@
+//! Low-discrepancy sequences: radical inverses in prime bases, and Sobol' points.
+
+mod radical_inverse;
+mod sobol;
+
+pub use radical_inverse::{
+    PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, prime, radical_inverse,
+    scrambled_radical_inverse,
+};
+pub use sobol::{SOBOL_DIMENSIONS, fast_owen_scramble, owen_scramble, sobol_bits};

@@ -1,0 +1,147 @@
+//! The radical inverse: the digits of an index mirrored at the radix point, Φ_b(Σ dᵢ bⁱ) = Σ dᵢ b^(−i−1), plain or with
+//! its digits permuted at random.
+//!
+//! Digits are permuted alike wherever they stand in the sequence ([`scrambled_radical_inverse`], [Faure 1982]), or by the
+//! digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]). See [Pharr 2023 §8.6].
+
+use crate::{hash, mix_bits, permutation_element};
+use math::ONE_MINUS_EPSILON;
+use std::sync::LazyLock;
+
+/// How many primes serve as bases.
+pub const PRIME_COUNT: usize = 1000;
+
+static PRIMES: LazyLock<Box<[u32]>> = LazyLock::new(|| {
+    /// The thousandth prime.
+    const LAST: usize = 7919;
+    let mut composite = [false; LAST + 1];
+    let mut primes = Vec::with_capacity(PRIME_COUNT);
+    for n in 2..=LAST {
+        if !composite[n] {
+            primes.push(n as u32);
+            (n * n..=LAST).step_by(n).for_each(|multiple| composite[multiple] = true);
+        }
+    }
+    primes.into()
+});
+
+/// The prime with this index, 2 having index 0; `index` is below [`PRIME_COUNT`].
+#[inline]
+pub fn prime(index: usize) -> u32 {
+    PRIMES[index]
+}
+
+/// The radical inverse of `a` in the base of prime number `prime_index`.
+#[inline]
+pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
+    let base = prime(prime_index) as u64;
+    if base == 2 {
+        return to_unit(a.reverse_bits() as f64 * 0.5f64.powi(64));
+    }
+    mirror(base, a, |a, _| a > 0, |_, _, digit| digit)
+}
+
+/// The number below baseⁿ whose radical inverse in `base` has the integer `inverse` as its n digits.
+#[inline]
+pub fn inverse_radical_inverse(mut inverse: u64, base: u64, digits: u32) -> u64 {
+    let mut index = 0;
+    for _ in 0..digits {
+        index = index * base + inverse % base;
+        inverse /= base;
+    }
+    index
+}
+
+/// As [`radical_inverse`], each digit permuted at random by its place and `seed`.
+#[inline]
+pub fn scrambled_radical_inverse(prime_index: usize, a: u64, seed: u32) -> f32 {
+    let base = prime(prime_index);
+    // Leading zeros are permuted too, as far down as a digit still shows in the sum.
+    let shows = |_, scale: f64| (base - 1) as f64 * scale > VISIBLE;
+    let permute =
+        |place, _, digit| permutation_element(digit as u32, base, hash(&[base, place, seed]) as u32) as u64;
+    mirror(base as u64, a, shows, permute)
+}
+
+/// As [`radical_inverse`], with Owen's scrambling: each digit permuted by those before it and `hash`.
+#[inline]
+pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> f32 {
+    let base = prime(prime_index);
+    let shows = |_, scale: f64| scale > VISIBLE;
+    let permute = |_, before: u64, digit| {
+        permutation_element(digit as u32, base, mix_bits(hash as u64 ^ before) as u32) as u64
+    };
+    mirror(base as u64, a, shows, permute)
+}
+
+/// Terms below half an epsilon of single precision do not change a sum near 1.
+const VISIBLE: f64 = 0.5 * f32::EPSILON as f64;
+
+/// Mirrors the digits of `a`, while `more(rest, scale of the last digit)`, each replaced by
+/// `permute(place, mirrored digits before it, digit)`.
+#[inline]
+fn mirror(
+    base: u64,
+    mut a: u64,
+    more: impl Fn(u64, f64) -> bool,
+    permute: impl Fn(u32, u64, u64) -> u64,
+) -> f32 {
+    // Beyond this the mirrored integer might overflow.
+    let limit = u64::MAX / base - base;
+    let inverse_base = 1.0 / base as f64;
+    let (mut mirrored, mut scale, mut place) = (0u64, 1.0f64, 0);
+    while more(a, scale) && mirrored < limit {
+        let next = a / base;
+        mirrored = mirrored * base + permute(place, mirrored, a - next * base);
+        scale *= inverse_base;
+        place += 1;
+        a = next;
+    }
+    to_unit(mirrored as f64 * scale)
+}
+
+#[inline]
+fn to_unit(x: f64) -> f32 {
+    (x as f32).min(ONE_MINUS_EPSILON)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bases_are_the_first_thousand_primes() {
+        assert_eq!(PRIMES.len(), PRIME_COUNT);
+        assert_eq!((prime(0), prime(1), prime(4), prime(999)), (2, 3, 11, 7919));
+    }
+
+    #[test]
+    fn digits_are_mirrored() {
+        assert_eq!(radical_inverse(0, 0b1101), 0.6875);
+        assert!((radical_inverse(1, 5) - (2.0 / 3.0 + 1.0 / 9.0)).abs() < 1e-7);
+        for a in 0..81 {
+            let digits = (radical_inverse(1, a) as f64 * 81.0).round() as u64;
+            assert_eq!(inverse_radical_inverse(digits, 3, 4), a);
+        }
+        assert!((0..PRIME_COUNT).all(|i| radical_inverse(i, u64::MAX) < 1.0));
+    }
+
+    #[test]
+    fn scrambling_keeps_the_strata() {
+        for prime_index in [0, 1, 3, 10] {
+            let base = prime(prime_index) as usize;
+            for seed in 0..10 {
+                for scrambled in [scrambled_radical_inverse, owen_scrambled_radical_inverse] {
+                    let count = base * base;
+                    let mut seen = vec![false; count];
+                    for a in 0..count {
+                        let x = scrambled(prime_index, a as u64, seed);
+                        assert!((0.0..1.0).contains(&x));
+                        seen[(x as f64 * count as f64 + 1e-4) as usize] = true;
+                    }
+                    assert!(seen.iter().all(|&s| s), "base {base}, seed {seed}");
+                }
+            }
+        }
+    }
+}

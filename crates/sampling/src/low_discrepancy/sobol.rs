@@ -1,0 +1,123 @@
+//! Sobol' points: in each dimension, the exclusive or of the columns of a binary matrix that the bits of the index pick.
+//!
+//! The columns are direction numbers v_k, begun with those of [Joe 2008] (`data/sobol-joe-kuo.txt`) and continued by the
+//! recurrence of a primitive polynomial of degree s with coefficients a: v_k = a₁v_{k−1} ⊕ … ⊕ a_{s−1}v_{k−s+1} ⊕ v_{k−s}
+//! ⊕ (v_{k−s} ≫ s). Scrambling follows [Owen 1995]; the fast form is a hash of [Laine 2011] with constants of [Vegdahl 2021].
+
+use crate::mix_bits;
+use std::sync::LazyLock;
+
+/// How many dimensions have direction numbers.
+pub const SOBOL_DIMENSIONS: usize = 1024;
+/// Columns of a matrix: one for each bit of an index.
+const COLUMNS: usize = 64;
+
+static MATRICES: LazyLock<Box<[[u32; COLUMNS]]>> = LazyLock::new(|| {
+    let table = include_str!("../../data/sobol-joe-kuo.txt");
+    let van_der_corput = std::array::from_fn(|k| if k < 32 { 1 << (31 - k) } else { 0 });
+    let lines = table.lines().filter(|line| !line.starts_with('#'));
+    std::iter::once(van_der_corput).chain(lines.map(matrix)).collect()
+});
+
+/// The matrix of a line of the table: polynomial, then initial numbers.
+fn matrix(line: &str) -> [u32; COLUMNS] {
+    let mut numbers =
+        line.split(' ').map(|n| n.parse::<u64>().expect("invariant: the table is made of numbers"));
+    let polynomial = numbers.next().expect("invariant: a line begins with a polynomial");
+    let degree = polynomial.ilog2() as usize;
+    let mut v = [0u64; COLUMNS];
+    for (k, m) in numbers.enumerate() {
+        v[k] = m << (63 - k);
+    }
+    for k in degree..COLUMNS {
+        v[k] = v[k - degree] ^ (v[k - degree] >> degree);
+        for i in 1..degree {
+            if (polynomial >> (degree - i)) & 1 == 1 {
+                v[k] ^= v[k - i];
+            }
+        }
+    }
+    v.map(|v| (v >> 32) as u32)
+}
+
+/// The coordinate of point `index` in a dimension below [`SOBOL_DIMENSIONS`], as a binary fraction of 32 bits.
+#[inline]
+pub fn sobol_bits(mut index: u64, dimension: usize) -> u32 {
+    let matrix = &MATRICES[dimension];
+    let mut bits = 0;
+    while index != 0 {
+        bits ^= matrix[index.trailing_zeros() as usize];
+        index &= index - 1;
+    }
+    bits
+}
+
+/// Owen's scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above it and `seed`.
+#[inline]
+pub fn owen_scramble(mut v: u32, seed: u32) -> u32 {
+    if seed & 1 == 1 {
+        v ^= 1 << 31;
+    }
+    for b in 1..32 {
+        let above = u32::MAX << (32 - b);
+        if mix_bits(((v & above) ^ seed) as u64) as u32 & (1 << b) != 0 {
+            v ^= 1 << (31 - b);
+        }
+    }
+    v
+}
+
+/// A scrambling of the same form as [`owen_scramble`], by a hash in which bits act only on lower ones.
+#[inline]
+pub fn fast_owen_scramble(v: u32, seed: u32) -> u32 {
+    let mut v = v.reverse_bits();
+    v ^= v.wrapping_mul(0x3d20_adea);
+    v = v.wrapping_add(seed);
+    v = v.wrapping_mul((seed >> 16) | 1);
+    v ^= v.wrapping_mul(0x0552_6c56);
+    v ^= v.wrapping_mul(0x53a2_2864);
+    v.reverse_bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn the_table_is_whole() {
+        assert_eq!(MATRICES.len(), SOBOL_DIMENSIONS);
+    }
+
+    #[test]
+    fn first_points_of_the_published_sequence() {
+        // The order is that of the index, not of Gray's code.
+        let point = |i| [0, 1, 2, 3, 4].map(|d| sobol_bits(i, d) as f64 / 4294967296.0);
+        assert_eq!(point(1), [0.5; 5]);
+        assert_eq!(point(2), [0.25, 0.75, 0.75, 0.75, 0.25]);
+        assert_eq!(point(3), [0.75, 0.25, 0.25, 0.25, 0.75]);
+    }
+
+    #[test]
+    fn each_dimension_is_stratified() {
+        for dimension in 0..SOBOL_DIMENSIONS {
+            let cells: HashSet<u32> = (0..256).map(|i| sobol_bits(i, dimension) >> 24).collect();
+            assert_eq!(cells.len(), 256, "dimension {dimension}");
+        }
+    }
+
+    #[test]
+    fn scrambling_permutes_every_level_of_strata() {
+        for scramble in [owen_scramble, fast_owen_scramble] {
+            for seed in [0, 1, 0x1234_5678, u32::MAX] {
+                for level in [1, 4, 9] {
+                    let strata: HashSet<u32> =
+                        (0..1 << level).map(|i| scramble(sobol_bits(i, 0), seed) >> (32 - level)).collect();
+                    assert_eq!(strata.len(), 1 << level);
+                }
+                // What lies in one stratum stays together.
+                assert_eq!(scramble(0x8000_0000, seed) >> 24, scramble(0x80ff_ffff, seed) >> 24);
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Halton's sequence: dimension d is the radical inverse in the base of prime number d, one sequence over a tile of the
+//! picture whose first two dimensions are the place on the film [Pharr 2023 §8.6].
+//!
+//! On a tile of 2^j × 3^k pixels every 2^j·3^k successive points have one in each pixel; which one follows from the Chinese
+//! remainder theorem. Tiles of 128 pixels repeat over larger pictures. Any number of samples is as good as any other, and
+//! beyond it the sequence goes on. [`Randomize::FastOwen`] is taken for [`Randomize::Owen`], as the short cut is for base 2.
+
+use super::Randomize;
+use crate::low_discrepancy::{
+    PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
+    scrambled_radical_inverse,
+};
+use crate::mix_bits;
+use math::Vec2;
+
+/// The largest side of the tile that the first two dimensions cover.
+const MAX_TILE: i32 = 128;
+
+/// See the [module's head](self).
+#[derive(Clone, Debug)]
+pub struct Halton {
+    samples_per_pixel: u32,
+    randomize: Randomize,
+    seed: u32,
+    /// 2^j and 3^k, the sides of the tile, and the exponents.
+    scales: [u64; 2],
+    exponents: [u32; 2],
+    /// For each axis, the index (modulo both sides) that is 1 modulo its own side and 0 modulo the other.
+    units: [u64; 2],
+    index: u64,
+    dimension: usize,
+}
+
+impl Halton {
+    /// A sampler for a picture of the given resolution.
+    pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Halton {
+        let mut scales = [1u64; 2];
+        let mut exponents = [0; 2];
+        for (axis, base) in [2, 3].into_iter().enumerate() {
+            while scales[axis] < resolution[axis].clamp(1, MAX_TILE) as u64 {
+                scales[axis] *= base;
+                exponents[axis] += 1;
+            }
+        }
+        let [width, height] = scales;
+        // The sides are small and have no common factor, so that a search finds the one solution.
+        let unit = |own: u64, other: u64| {
+            (0..own).map(|k| k * other).find(|index| index % own == 1 % own).unwrap_or_default()
+        };
+        Halton {
+            samples_per_pixel: samples_per_pixel.max(1),
+            randomize,
+            seed,
+            scales,
+            exponents,
+            units: [unit(width, height), unit(height, width)],
+            index: 0,
+            dimension: 2,
+        }
+    }
+
+    pub(super) fn samples_per_pixel(&self) -> u32 {
+        self.samples_per_pixel
+    }
+
+    pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
+        let stride = self.scales[0] * self.scales[1];
+        let mut first = 0;
+        for (axis, base) in [2, 3].into_iter().enumerate() {
+            let place = pixel[axis].rem_euclid(MAX_TILE) as u64;
+            first += inverse_radical_inverse(place, base, self.exponents[axis]) * self.units[axis];
+        }
+        self.index = first % stride + index as u64 * stride;
+        self.dimension = (dimension as usize).max(2);
+    }
+
+    pub(super) fn get_1d(&mut self) -> f32 {
+        let dimension = self.next_dimension(1);
+        self.coordinate(dimension)
+    }
+
+    pub(super) fn get_2d(&mut self) -> Vec2 {
+        let dimension = self.next_dimension(2);
+        Vec2::new(self.coordinate(dimension), self.coordinate(dimension + 1))
+    }
+
+    pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
+        Vec2::new(
+            radical_inverse(0, self.index >> self.exponents[0]),
+            radical_inverse(1, self.index / self.scales[1]),
+        )
+    }
+
+    /// Takes dimensions, from the third again when all are used.
+    fn next_dimension(&mut self, count: usize) -> usize {
+        if self.dimension + count > PRIME_COUNT {
+            self.dimension = 2;
+        }
+        let dimension = self.dimension;
+        self.dimension += count;
+        dimension
+    }
+
+    fn coordinate(&self, dimension: usize) -> f32 {
+        match self.randomize {
+            Randomize::None => radical_inverse(dimension, self.index),
+            Randomize::PermuteDigits => scrambled_radical_inverse(dimension, self.index, self.seed),
+            Randomize::FastOwen | Randomize::Owen => {
+                let hash = mix_bits((1 + ((dimension as u64) << 4)) ^ ((self.seed as u64) << 32));
+                owen_scrambled_radical_inverse(dimension, self.index, hash as u32)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_sample_lies_in_its_pixel() {
+        for resolution in [[1, 1], [10, 7], [128, 100], [1000, 2]] {
+            let mut sampler = Halton::new(4, resolution, Randomize::None, 0);
+            let [width, height] = sampler.scales;
+            for i in 0..100 {
+                let pixel = [(i * 37) % resolution[0].min(128), (i * 11) % resolution[1].min(128)];
+                for index in [0, 1, 12] {
+                    sampler.start_pixel_sample(pixel, index, 0);
+                    let place = |base, scale: u64| {
+                        (radical_inverse(base, sampler.index) * scale as f32 + 1e-3) as i32
+                    };
+                    assert_eq!([place(0, width), place(1, height)], pixel);
+                }
+            }
+        }
+    }
+}

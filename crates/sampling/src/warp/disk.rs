@@ -1,0 +1,64 @@
+//! The unit disk, sampled uniformly in polar form and by the concentric map, which keeps neighbours together
+//! [Shirley 1997].
+
+use math::Vec2;
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
+
+/// A point of the unit disk: radius √u₀ at the angle 2π·u₁.
+#[inline]
+pub fn sample_uniform_disk_polar(u: Vec2) -> Vec2 {
+    let (sin, cos) = (TAU * u.y).sin_cos();
+    u.x.sqrt() * Vec2::new(cos, sin)
+}
+
+/// Inverse of [`sample_uniform_disk_polar`].
+#[inline]
+pub fn invert_uniform_disk_polar(p: Vec2) -> Vec2 {
+    Vec2::new(p.length_squared(), turn(p.x, p.y))
+}
+
+/// A point of the unit disk: squares around the middle of the unit square go to circles.
+#[inline]
+pub fn sample_uniform_disk_concentric(u: Vec2) -> Vec2 {
+    let p = 2.0 * u - Vec2::ONE;
+    if p == Vec2::ZERO {
+        return Vec2::ZERO;
+    }
+    let (r, theta) = if p.x.abs() > p.y.abs() {
+        (p.x, FRAC_PI_4 * (p.y / p.x))
+    } else {
+        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
+    };
+    let (sin, cos) = theta.sin_cos();
+    r * Vec2::new(cos, sin)
+}
+
+/// Inverse of [`sample_uniform_disk_concentric`].
+#[inline]
+pub fn invert_uniform_disk_concentric(p: Vec2) -> Vec2 {
+    let r = p.length();
+    if r == 0.0 {
+        return Vec2::splat(0.5);
+    }
+    let q = if p.x.abs() > p.y.abs() {
+        let x = r.copysign(p.x);
+        Vec2::new(x, x * (p.y / p.x).atan() / FRAC_PI_4)
+    } else {
+        let y = r.copysign(p.y);
+        Vec2::new(y * (p.x / p.y).atan() / FRAC_PI_4, y)
+    };
+    0.5 * (q + Vec2::ONE)
+}
+
+/// Density of both disk warps, per area.
+#[inline]
+pub fn uniform_disk_pdf() -> f32 {
+    FRAC_1_PI
+}
+
+/// The angle of (x, y) in turns, in [0, 1).
+#[inline]
+pub(super) fn turn(x: f32, y: f32) -> f32 {
+    let t = y.atan2(x) / TAU;
+    if t < 0.0 { (t + 1.0).min(math::ONE_MINUS_EPSILON) } else { t }
+}

@@ -1,0 +1,86 @@
+//! Directions: the whole sphere, the upper hemisphere and a cone around +z.
+//!
+//! Uniform warps follow Archimedes: z is uniform, the angle around it too. A cosine-weighted direction is a uniform point
+//! of the disk lifted to the hemisphere [Malley 1988]. Densities are per solid angle.
+
+use super::disk::turn;
+use super::{invert_uniform_disk_concentric, sample_uniform_disk_concentric};
+use math::{Vec2, Vec3, Vector3, safe_sqrt, spherical_direction};
+use std::f32::consts::{FRAC_1_PI, PI, TAU};
+
+/// A direction of the sphere.
+#[inline]
+pub fn sample_uniform_sphere(u: Vec2) -> Vector3 {
+    let z = 1.0 - 2.0 * u.x;
+    // 1 − z² without cancellation at the poles.
+    spherical_direction(2.0 * safe_sqrt(u.x * (1.0 - u.x)), z, TAU * u.y)
+}
+
+/// Density of [`sample_uniform_sphere`].
+#[inline]
+pub fn uniform_sphere_pdf() -> f32 {
+    0.25 * FRAC_1_PI
+}
+
+/// Inverse of [`sample_uniform_sphere`].
+#[inline]
+pub fn invert_uniform_sphere(w: Vector3) -> Vec2 {
+    Vec2::new(0.5 * (1.0 - w.z), turn(w.x, w.y))
+}
+
+/// A direction of the hemisphere z ≥ 0.
+#[inline]
+pub fn sample_uniform_hemisphere(u: Vec2) -> Vector3 {
+    spherical_direction(safe_sqrt(1.0 - u.x * u.x), u.x, TAU * u.y)
+}
+
+/// Density of [`sample_uniform_hemisphere`] where z ≥ 0.
+#[inline]
+pub fn uniform_hemisphere_pdf() -> f32 {
+    0.5 * FRAC_1_PI
+}
+
+/// Inverse of [`sample_uniform_hemisphere`].
+#[inline]
+pub fn invert_uniform_hemisphere(w: Vector3) -> Vec2 {
+    Vec2::new(w.z, turn(w.x, w.y))
+}
+
+/// A direction of the hemisphere z ≥ 0 with density proportional to z.
+#[inline]
+pub fn sample_cosine_hemisphere(u: Vec2) -> Vector3 {
+    let d = sample_uniform_disk_concentric(u);
+    Vec3::new(d.x, d.y, safe_sqrt(1.0 - d.length_squared()))
+}
+
+/// Density of [`sample_cosine_hemisphere`] at a direction with this z; 0 below the horizon.
+#[inline]
+pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
+    cos_theta.max(0.0) * FRAC_1_PI
+}
+
+/// Inverse of [`sample_cosine_hemisphere`].
+#[inline]
+pub fn invert_cosine_hemisphere(w: Vector3) -> Vec2 {
+    invert_uniform_disk_concentric(Vec2::new(w.x, w.y))
+}
+
+/// A direction whose angle with +z has at least the cosine `cos_theta_max`.
+#[inline]
+pub fn sample_uniform_cone(u: Vec2, cos_theta_max: f32) -> Vector3 {
+    // The height lost, 1 − cos θ, keeps the digits of narrow cones.
+    let lost = u.x * (1.0 - cos_theta_max);
+    spherical_direction(safe_sqrt(lost * (2.0 - lost)), 1.0 - lost, TAU * u.y)
+}
+
+/// Density of [`sample_uniform_cone`] inside the cone.
+#[inline]
+pub fn uniform_cone_pdf(cos_theta_max: f32) -> f32 {
+    1.0 / (2.0 * PI * (1.0 - cos_theta_max))
+}
+
+/// Inverse of [`sample_uniform_cone`].
+#[inline]
+pub fn invert_uniform_cone(w: Vector3, cos_theta_max: f32) -> Vec2 {
+    Vec2::new((1.0 - w.z) / (1.0 - cos_theta_max), turn(w.x, w.y))
+}

@@ -1,0 +1,248 @@
+//! What every sampler promises: values in [0, 1), replay, right means, better than chance, independent dimensions.
+
+use math::Vec2;
+use sampling::Sampler;
+use sampling::sampler::*;
+use std::collections::HashSet;
+use testkit::{Chi2, Moments, t_test};
+
+const SPP: u32 = 16;
+const RESOLUTION: [i32; 2] = [20, 13];
+const EACH_RANDOMIZE: [Randomize; 3] = [Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen];
+
+/// Every sampler, in every arrangement in which it is random.
+fn random_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
+    let side = spp.isqrt();
+    let mut samplers = vec![
+        ("independent".into(), Sampler::Independent(Independent::new(spp, seed))),
+        ("stratified".into(), Sampler::Stratified(Stratified::new([side, spp / side], true, seed))),
+    ];
+    for randomize in EACH_RANDOMIZE {
+        let mut add = |name: &str, sampler| samplers.push((format!("{name} {randomize:?}"), sampler));
+        add("halton", Sampler::Halton(Halton::new(spp, RESOLUTION, randomize, seed)));
+        add("padded sobol", Sampler::PaddedSobol(PaddedSobol::new(spp, randomize, seed)));
+        add("sobol", Sampler::Sobol(Sobol::new(spp, RESOLUTION, randomize, seed)));
+        add("zsobol", Sampler::ZSobol(ZSobol::new(spp, RESOLUTION, randomize, seed)));
+    }
+    samplers
+}
+
+fn all_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
+    let mut samplers = random_samplers(spp, seed);
+    let mut add = |name: &str, sampler| samplers.push((name.into(), sampler));
+    add("stratified middles", Sampler::Stratified(Stratified::new([4, spp / 4], false, seed)));
+    add("halton None", Sampler::Halton(Halton::new(spp, RESOLUTION, Randomize::None, seed)));
+    add("padded sobol None", Sampler::PaddedSobol(PaddedSobol::new(spp, Randomize::None, seed)));
+    add("sobol None", Sampler::Sobol(Sobol::new(spp, RESOLUTION, Randomize::None, seed)));
+    add("zsobol None", Sampler::ZSobol(ZSobol::new(spp, RESOLUTION, Randomize::None, seed)));
+    samplers
+}
+
+/// The coordinates that a path might ask for.
+fn draw(sampler: &mut Sampler, pixel: [i32; 2], index: u32) -> Vec<f32> {
+    sampler.start_pixel_sample(pixel, index, 0);
+    let mut values = sampler.get_pixel_2d().to_array().to_vec();
+    for _ in 0..5 {
+        values.push(sampler.get_1d());
+        values.extend(sampler.get_2d().to_array());
+    }
+    values
+}
+
+#[test]
+fn values_are_in_the_unit_interval() {
+    for (name, mut sampler) in all_samplers(SPP, 3) {
+        let pixels = [[0, 0], [19, 12], [1919, 1079], [-3, -200], [i32::MAX, i32::MIN]];
+        for pixel in pixels {
+            for index in [0, 1, SPP - 1, SPP, 1000, u32::MAX] {
+                let values = draw(&mut sampler, pixel, index);
+                assert!(
+                    values.iter().all(|v| (0.0..1.0).contains(v)),
+                    "{name} {pixel:?} {index}: {values:?}"
+                );
+            }
+        }
+        sampler.start_pixel_sample([1, 1], 1, 0);
+        for _ in 0..3000 {
+            let p = sampler.get_2d();
+            assert!((0.0..1.0).contains(&p.x) && (0.0..1.0).contains(&p.y), "{name}: {p}");
+        }
+    }
+}
+
+#[test]
+fn samples_can_be_replayed_in_any_order() {
+    for ((name, mut a), (_, mut b)) in all_samplers(SPP, 5).into_iter().zip(all_samplers(SPP, 5)) {
+        let forward: Vec<_> = (0..40).map(|i| draw(&mut a, [i % 20, i / 20], i as u32)).collect();
+        let mut c = a.clone();
+        for i in (0..40).rev() {
+            let expected = &forward[i as usize];
+            assert_eq!(&draw(&mut b, [i % 20, i / 20], i as u32), expected, "{name}");
+            assert_eq!(&draw(&mut c, [i % 20, i / 20], i as u32), expected, "{name}");
+        }
+    }
+}
+
+#[test]
+fn seeds_and_pixels_differ() {
+    for ((name, mut a), (_, mut b)) in random_samplers(SPP, 1).into_iter().zip(random_samplers(SPP, 2)) {
+        let values = draw(&mut a, [4, 5], 3);
+        assert_ne!(values, draw(&mut b, [4, 5], 3), "{name}: seed");
+        assert_ne!(values, draw(&mut a, [5, 5], 3), "{name}: pixel");
+        assert_ne!(values, draw(&mut a, [4, 5], 4), "{name}: index");
+    }
+}
+
+#[test]
+fn counts_are_those_asked_for_or_rounded_up() {
+    for (name, sampler) in random_samplers(12, 0) {
+        let rounds_up = name.starts_with("sobol") || name.starts_with("zsobol");
+        assert_eq!(sampler.samples_per_pixel(), if rounds_up { 16 } else { 12 }, "{name}");
+    }
+}
+
+/// A smooth function of a 2-d, a 1-d and a 2-d coordinate, with integral 1.
+fn smooth(sampler: &mut Sampler) -> f64 {
+    let p = sampler.get_2d().as_dvec2();
+    let x = sampler.get_1d() as f64;
+    let q = sampler.get_2d().as_dvec2();
+    (4.0 * p.x * p.y) * (1.5 - x) * (1.0 + 0.5 * (6.283185307179586 * q.x).sin() * q.y)
+}
+
+/// Means of [`smooth`] over `count` samples from `first` on, one for each of many pixels and seeds.
+fn estimates(make: impl Fn(u32) -> Sampler, first: u32, count: u32) -> Moments {
+    let mut moments = Moments::default();
+    for seed in 0..60 {
+        let mut sampler = make(seed);
+        for pixel in [[0, 0], [3, 1], [19, 12], [7, 7], [200, 90]] {
+            let sum: f64 = (first..first + count)
+                .map(|index| {
+                    sampler.start_pixel_sample(pixel, index, 0);
+                    sampler.get_pixel_2d();
+                    smooth(&mut sampler)
+                })
+                .sum();
+            moments.push(sum / count as f64);
+        }
+    }
+    moments
+}
+
+#[test]
+fn means_are_right_within_and_beyond_the_count() {
+    let names: Vec<String> = random_samplers(SPP, 0).into_iter().map(|(name, _)| name).collect();
+    for (i, name) in names.iter().enumerate() {
+        for (first, count) in [(0, SPP), (0, 5), (SPP, SPP), (3 * SPP + 1, 20)] {
+            let moments = estimates(|seed| random_samplers(SPP, seed).swap_remove(i).1, first, count);
+            t_test(&moments, 1.0, 4 * names.len()).unwrap_or_else(|e| panic!("{name} {first} {count}: {e}"));
+        }
+    }
+}
+
+#[test]
+fn arranged_samples_beat_independent_ones() {
+    for spp in [16, 64] {
+        let make = |i: usize| move |seed| random_samplers(spp, seed).swap_remove(i).1;
+        let independent = estimates(make(0), 0, spp).variance();
+        for (i, (name, _)) in random_samplers(spp, 0).into_iter().enumerate().skip(1) {
+            let variance = estimates(make(i), 0, spp).variance();
+            assert!(variance < 0.5 * independent, "{name}, {spp} samples: {variance} and {independent}");
+        }
+    }
+}
+
+#[test]
+fn further_rounds_go_on_improving() {
+    for (i, (name, _)) in random_samplers(SPP, 0).into_iter().enumerate() {
+        let make = |seed| random_samplers(SPP, seed).swap_remove(i).1;
+        let (one, eight) = (estimates(make, 0, SPP).variance(), estimates(make, 0, 8 * SPP).variance());
+        assert!(eight < one / 4.0, "{name}: {one} and {eight}");
+    }
+}
+
+#[test]
+fn dimensions_are_independent() {
+    let names: Vec<String> = random_samplers(SPP, 0).into_iter().map(|(name, _)| name).collect();
+    for (i, name) in names.iter().enumerate() {
+        // Pairs across calls, each from another seed, so that the points are independent of one another.
+        let mut pairs = Vec::new();
+        for seed in 0..6000 {
+            let mut sampler = random_samplers(SPP, seed).swap_remove(i).1;
+            let values = draw(&mut sampler, [seed as i32 % 20, 3], seed % SPP);
+            pairs.push([values[2], values[5]]);
+        }
+        let test = Chi2 { bins: [8, 8], samples: pairs.len(), tests: names.len(), ..Chi2::default() };
+        test.rectangle([[0.0, 1.0]; 2], |_| pairs.pop(), |_| 1.0).unwrap_or_else(|e| panic!("{name}: {e}"));
+    }
+}
+
+/// Whether 2^bits points have one in each cell of every grid of 2^i × 2^(bits − i) cells.
+fn fill_elementary_intervals(points: &[Vec2]) -> bool {
+    let bits = points.len().ilog2();
+    (0..=bits).all(|i| {
+        let [columns, rows] = [1u32 << i, 1 << (bits - i)];
+        let cells: HashSet<[u32; 2]> =
+            points.iter().map(|p| [(p.x * columns as f32) as u32, (p.y * rows as f32) as u32]).collect();
+        cells.len() == points.len()
+    })
+}
+
+fn points(sampler: &mut Sampler, indices: std::ops::Range<u32>, skipped: usize) -> Vec<Vec2> {
+    let draw = |index| {
+        sampler.start_pixel_sample([7, 11], index, 0);
+        (0..skipped).for_each(|_| {
+            sampler.get_1d();
+        });
+        sampler.get_2d()
+    };
+    indices.map(draw).collect()
+}
+
+#[test]
+fn two_dimensional_sobol_points_fill_elementary_intervals() {
+    for (name, mut sampler) in all_samplers(64, 9) {
+        if name.starts_with("padded") || name.starts_with("zsobol") {
+            for skipped in [0, 1, 4] {
+                assert!(fill_elementary_intervals(&points(&mut sampler, 0..64, skipped)), "{name}");
+                assert!(
+                    fill_elementary_intervals(&points(&mut sampler, 64..128, skipped)),
+                    "{name}, second round"
+                );
+            }
+        }
+        if name == "independent" {
+            assert!(!fill_elementary_intervals(&points(&mut sampler, 0..64, 0)));
+        }
+    }
+}
+
+#[test]
+fn sobol_pixel_samples_fill_elementary_intervals() {
+    let mut sampler = Sampler::Sobol(Sobol::new(64, RESOLUTION, Randomize::None, 0));
+    let points: Vec<Vec2> = (0..64)
+        .map(|index| {
+            sampler.start_pixel_sample([7, 11], index, 0);
+            sampler.get_pixel_2d()
+        })
+        .collect();
+    assert!(fill_elementary_intervals(&points));
+}
+
+#[test]
+fn stratified_samples_take_every_cell_once() {
+    for jitter in [true, false] {
+        let mut sampler = Sampler::Stratified(Stratified::new([5, 3], jitter, 4));
+        for round in 0..3 {
+            let points = points(&mut sampler, 15 * round..15 * (round + 1), 2);
+            let cells: HashSet<[u32; 2]> =
+                points.iter().map(|p| [(p.x * 5.0) as u32, (p.y * 3.0) as u32]).collect();
+            assert_eq!(cells.len(), 15);
+        }
+        let mut line = HashSet::new();
+        for index in 0..15 {
+            sampler.start_pixel_sample([2, 2], index, 6);
+            line.insert((sampler.get_1d() * 15.0) as u32);
+        }
+        assert_eq!(line.len(), 15);
+    }
+}
