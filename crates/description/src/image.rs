@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use image::Image;
+
 /// A decoded image file.
 #[derive(Clone, Debug)]
 pub struct ImageDesc {
@@ -10,7 +12,3 @@ pub struct ImageDesc {
     /// The pixels.
     pub image: Arc<Image>,
 }
-
-/// Pixels.
-#[derive(Clone, Debug, Default)]
-pub struct Image;

@@ -8,7 +8,11 @@ use image::{ColorEncoding, Image, Pixels, ReadOptions};
 use crate::assets::AssetSource;
 
 /// Reads and decodes an image file; on failure, why.
-pub(crate) fn decode(assets: &dyn AssetSource, path: &Path, encoding: Option<EncodingDesc>) -> Result<Image, String> {
+pub(crate) fn decode(
+    assets: &dyn AssetSource,
+    path: &Path,
+    encoding: Option<EncodingDesc>,
+) -> Result<Image, String> {
     let encoding = encoding.map(|encoding| match encoding {
         EncodingDesc::Linear => ColorEncoding::Linear,
         EncodingDesc::Srgb => ColorEncoding::Srgb,
@@ -21,5 +25,6 @@ pub(crate) fn decode(assets: &dyn AssetSource, path: &Path, encoding: Option<Enc
 
 /// What stands for an image that cannot be read.
 pub(crate) fn black_pixel() -> Image {
-    Image::new(1, 1, ["R", "G", "B"], Pixels::F32(vec![0.0; 3])).expect("invariant: one pixel of three values")
+    Image::new(1, 1, ["R", "G", "B"], Pixels::F32(vec![0.0; 3]))
+        .expect("invariant: one pixel of three values")
 }

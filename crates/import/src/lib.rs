@@ -4,6 +4,7 @@
 //! everything there is to say about them. Files are reached through an [`AssetSource`] only.
 
 mod assets;
+mod images;
 mod mesh;
 mod number;
 mod pbrt;

@@ -122,7 +122,9 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_refused() {
-        for text in ["", "-", ".", "+.", "1x", "inf", "nan", "e5", "1e", "0x10", "--1", "1.2.3", "1e5.", "infinity"] {
+        for text in
+            ["", "-", ".", "+.", "1x", "inf", "nan", "e5", "1e", "0x10", "--1", "1.2.3", "1e5.", "infinity"]
+        {
             assert_eq!((double(text.as_bytes()), float(text.as_bytes())), (None, None), "{text}");
         }
         for text in ["", "-", "1.0", "1e3", "2147483648", "99999999999"] {

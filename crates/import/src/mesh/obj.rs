@@ -67,7 +67,7 @@ fn read(bytes: &[u8], by_material: bool) -> Result<Obj, MeshError> {
     let mut material = String::new();
     let mut corners: Vec<Corner> = Vec::new();
     for line in lines(bytes) {
-        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let mut words = words(line);
         match words.next() {
             Some(b"v") => positions.push(Vec3::from_array(floats(words)?)),
             Some(b"vn") => normals.push(Vec3::from_array(floats(words)?)),
@@ -111,7 +111,8 @@ impl Part {
         for &corner in corners {
             let (position, uv, normal) = corner;
             // A corner repeated at once adds nothing to the face.
-            let repeats = |&earlier: &u32| self.mesh.positions[earlier as usize] == positions[position as usize];
+            let repeats =
+                |&earlier: &u32| self.mesh.positions[earlier as usize] == positions[position as usize];
             if face.last().is_some_and(repeats) {
                 continue;
             }
@@ -160,8 +161,14 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
         }
         let line = &rest[..end];
         rest = &rest[(end + 1).min(rest.len())..];
-        Some(line.split(|&byte| byte == b'#').next().unwrap_or(&[]))
+        let is_comment = |at: &usize| line[*at] == b'#' && (*at == 0 || line[*at - 1].is_ascii_whitespace());
+        Some(&line[..(0..line.len()).find(is_comment).unwrap_or(line.len())])
     })
+}
+
+/// The words of a line; what joins lines is no part of them.
+fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+    line.split(|&byte| byte.is_ascii_whitespace() || byte == b'\\').filter(|word| !word.is_empty())
 }
 
 /// What stands after the keyword of a line.
@@ -172,7 +179,7 @@ fn rest_of_line(line: &[u8], keyword: usize) -> String {
 fn floats<'a, const N: usize>(mut words: impl Iterator<Item = &'a [u8]>) -> Result<[f32; N], MeshError> {
     let mut values = [0.0; N];
     for value in &mut values {
-        let word = words.next().filter(|&word| word != b"\\").unwrap_or(b"");
+        let word = words.next().unwrap_or(b"");
         match number::float(word).filter(|value| value.is_finite()) {
             Some(number) => *value = number,
             None => return invalid(format!("`{:.40}` is no number", String::from_utf8_lossy(word))),
@@ -183,9 +190,6 @@ fn floats<'a, const N: usize>(mut words: impl Iterator<Item = &'a [u8]>) -> Resu
 
 fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
     let mut indices = [None; 3];
-    if word == b"\\" {
-        return invalid("a line ends in the middle of a face");
-    }
     for (place, text) in word.split(|&byte| byte == b'/').enumerate() {
         if place == 3 {
             return invalid(format!("`{:.40}` is no corner", String::from_utf8_lossy(word)));
@@ -214,7 +218,7 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
 pub(crate) fn read_materials(bytes: &[u8]) -> Vec<ObjMaterial> {
     let mut materials: Vec<ObjMaterial> = Vec::new();
     for line in lines(bytes) {
-        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let mut words = words(line);
         let Some(keyword) = words.next() else { continue };
         if keyword == b"newmtl" {
             materials.push(ObjMaterial { name: rest_of_line(line, 6), ..ObjMaterial::default() });
@@ -269,7 +273,14 @@ mod tests {
 
     #[test]
     fn indices_must_be_defined_already() {
-        for text in ["v 0 0 0\nf 1 2 3", "v 0 0 0\nf 0 1 1", "v 0 0 0\nf -2 1 1", "v 0 0 0\nf 1/1 1 1", "v 0 0 0\np 2", "v 0 x 0"] {
+        for text in [
+            "v 0 0 0\nf 1 2 3",
+            "v 0 0 0\nf 0 1 1",
+            "v 0 0 0\nf -2 1 1",
+            "v 0 0 0\nf 1/1 1 1",
+            "v 0 0 0\np 2",
+            "v 0 x 0",
+        ] {
             assert!(matches!(read_obj(text.as_bytes()), Err(MeshError::Invalid(_))), "{text}");
         }
     }
@@ -278,7 +289,8 @@ mod tests {
     fn parts_are_told_apart_by_material() {
         let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red paint\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl red paint\nf 3 2 1";
         let obj = read_obj_parts(text).unwrap();
-        let sizes: Vec<_> = obj.parts.iter().map(|(name, mesh)| (name.as_str(), mesh.triangles.len())).collect();
+        let sizes: Vec<_> =
+            obj.parts.iter().map(|(name, mesh)| (name.as_str(), mesh.triangles.len())).collect();
         assert_eq!(sizes, [("red paint", 2), ("b", 1)]);
         assert_eq!(obj.libraries, ["a.mtl"]);
     }
@@ -289,7 +301,10 @@ mod tests {
         let materials = read_materials(text);
         assert_eq!(materials[0].name, "red paint");
         assert_eq!((materials[0].diffuse, materials[0].emission), (Some([1.0, 0.0, 0.0]), None));
-        assert_eq!((materials[0].opacity, materials[0].diffuse_map.as_deref()), (Some(0.75), Some("tex/a.png")));
+        assert_eq!(
+            (materials[0].opacity, materials[0].diffuse_map.as_deref()),
+            (Some(0.75), Some("tex/a.png"))
+        );
         assert_eq!(materials[1].diffuse, Some([0.5; 3]));
     }
 }

@@ -264,7 +264,10 @@ fn list_length<B: Body>(body: &mut B, count: Scalar, item: Scalar) -> Result<usi
         return invalid(format!("a list has {length} items"));
     }
     if length * B::least_size(item) as f64 > body.left() as f64 {
-        return Err(MeshError::Limits(format!("a list of {length} items cannot lie in {} bytes", body.left())));
+        return Err(MeshError::Limits(format!(
+            "a list of {length} items cannot lie in {} bytes",
+            body.left()
+        )));
     }
     Ok(length as usize)
 }
@@ -305,7 +308,8 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
         &["u", "s", "texture_u", "texture_s"],
         &["v", "t", "texture_v", "texture_t"],
     ];
-    let slot_of = |property: &Property| SLOTS.iter().position(|names| names.contains(&property.name.as_str()));
+    let slot_of =
+        |property: &Property| SLOTS.iter().position(|names| names.contains(&property.name.as_str()));
     let slots: Vec<Option<usize>> = element.properties.iter().map(slot_of).collect();
     let has = |slot: usize| slots.contains(&Some(slot));
     for (property, slot) in element.properties.iter().zip(&slots) {
@@ -358,7 +362,8 @@ struct Faces {
 fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
     let mut faces = Faces::default();
     faces.ends.reserve_exact(if element.properties.is_empty() { 0 } else { element.count });
-    let is_corners = |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
+    let is_corners =
+        |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
     if !element.properties.iter().any(is_corners) {
         return invalid("its faces have no list `vertex_indices`");
     }
@@ -366,7 +371,8 @@ fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshErr
         for property in &element.properties {
             match property.kind {
                 PropertyKind::List { count, item } if is_corners(property) => {
-                    if matches!(count, Scalar::F32 | Scalar::F64) || matches!(item, Scalar::F32 | Scalar::F64) {
+                    if matches!(count, Scalar::F32 | Scalar::F64) || matches!(item, Scalar::F32 | Scalar::F64)
+                    {
                         return invalid("the corners of its faces are not whole numbers");
                     }
                     for _ in 0..list_length(body, count, item)? {

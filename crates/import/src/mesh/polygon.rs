@@ -28,7 +28,8 @@ pub(super) fn triangulate(positions: &[Point3], corners: &[u32]) -> Vec<[u32; 3]
     while left.len() > 3 {
         let ear = find_ear(&points, &left);
         let n = left.len();
-        triangles.push([left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]].map(|corner| corners[corner]));
+        triangles
+            .push([left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]].map(|corner| corners[corner]));
         left.remove(ear);
     }
     triangles.push([left[0], left[1], left[2]].map(|corner| corners[corner]));
@@ -38,7 +39,8 @@ pub(super) fn triangulate(positions: &[Point3], corners: &[u32]) -> Vec<[u32; 3]
 /// The place of an ear among the corners that are left; without one, of the corner that turns most.
 fn find_ear(points: &[[f64; 2]], left: &[usize]) -> usize {
     let n = left.len();
-    let triangle = |i: usize| [left[(i + n - 1) % n], left[i], left[(i + 1) % n]].map(|corner| points[corner]);
+    let triangle =
+        |i: usize| [left[(i + n - 1) % n], left[i], left[(i + 1) % n]].map(|corner| points[corner]);
     let mut best = (f64::NEG_INFINITY, 0);
     for i in 0..n {
         let [a, b, c] = triangle(i);
@@ -48,7 +50,12 @@ fn find_ear(points: &[[f64; 2]], left: &[usize]) -> usize {
         }
         let holds = |&corner: &usize| {
             let p = points[corner];
-            p != a && p != b && p != c && cross(a, b, p) >= 0.0 && cross(b, c, p) >= 0.0 && cross(c, a, p) >= 0.0
+            p != a
+                && p != b
+                && p != c
+                && cross(a, b, p) >= 0.0
+                && cross(b, c, p) >= 0.0
+                && cross(c, a, p) >= 0.0
         };
         if turn > 0.0 && !left.iter().any(holds) {
             return i;
@@ -60,7 +67,8 @@ fn find_ear(points: &[[f64; 2]], left: &[usize]) -> usize {
 /// The corners in the plane in which the polygon has most area, counter-clockwise.
 fn project(positions: &[Point3], corners: &[u32]) -> Vec<[f64; 2]> {
     let origin = positions[corners[0] as usize].as_dvec3();
-    let points: Vec<DVec3> = corners.iter().map(|&corner| positions[corner as usize].as_dvec3() - origin).collect();
+    let points: Vec<DVec3> =
+        corners.iter().map(|&corner| positions[corner as usize].as_dvec3() - origin).collect();
     let next = |i: usize| points[(i + 1) % points.len()];
     let normal: DVec3 = points.iter().enumerate().map(|(i, point)| point.cross(next(i))).sum();
     let size = normal.abs();

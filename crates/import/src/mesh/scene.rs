@@ -5,10 +5,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use description::{
-    AreaLightDesc, CameraDesc, CameraKind, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
-    Handle, ImageTextureDesc, InfiniteRadiance, IntegratorDesc, LensDesc, LightDesc, LightKind, LightSamplerDesc,
-    MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind, SourceMap, Span,
-    SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
+    AreaLightDesc, CameraDesc, CameraKind, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance,
+    Diagnostic, Handle, ImageTextureDesc, InfiniteRadiance, IntegratorDesc, LensDesc, LightDesc, LightKind,
+    LightSamplerDesc, MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind,
+    SourceMap, Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
 };
 use math::{DMat4, DVec3};
 
@@ -24,16 +24,17 @@ pub(crate) fn read(path: &Path, format: Format, assets: &dyn AssetSource) -> Imp
     let name = path.to_string_lossy();
     let parts = read_unpacked(assets, path).map_err(|error| error.to_string()).and_then(|bytes| {
         let parts = match format {
-            Format::Ply => {
-                super::read_ply(&bytes).map(|mesh| Obj { libraries: Vec::new(), parts: vec![(String::new(), mesh)] })
-            }
+            Format::Ply => super::read_ply(&bytes)
+                .map(|mesh| Obj { libraries: Vec::new(), parts: vec![(String::new(), mesh)] }),
             Format::Obj => read_obj_parts(&bytes),
         };
         parts.map_err(|error| error.to_string())
     });
     match parts {
         Ok(obj) => fill(&mut desc, obj, path, assets, &mut report),
-        Err(message) => report.error("unreadable-mesh", format!("cannot read the mesh `{name}`: {message}"), Span::NONE),
+        Err(message) => {
+            report.error("unreadable-mesh", format!("cannot read the mesh `{name}`: {message}"), Span::NONE)
+        }
     }
     Imported { desc, sources: SourceMap::default(), diagnostics: report.finish() }
 }
@@ -44,7 +45,9 @@ fn fill(desc: &mut SceneDesc, obj: Obj, path: &Path, assets: &dyn AssetSource, r
         let path = resolve(assets, library, &path.to_string_lossy(), "");
         match read_unpacked(assets, &path) {
             Ok(bytes) => {
-                materials.extend(read_materials(&bytes).into_iter().map(|material| (material.name.clone(), material)));
+                materials.extend(
+                    read_materials(&bytes).into_iter().map(|material| (material.name.clone(), material)),
+                );
             }
             Err(error) => {
                 let message = format!("cannot read the materials `{}`: {error}", path.display());
@@ -60,9 +63,10 @@ fn fill(desc: &mut SceneDesc, obj: Obj, path: &Path, assets: &dyn AssetSource, r
         let mut shape = ShapeDesc::from(shape_kind(mesh));
         if let Some(material) = materials.get(&name) {
             shape.material = Some(add_material(desc, material, path, assets, report));
-            shape.area_light = material.emission.filter(|rgb| rgb.iter().any(|&value| value > 0.0)).map(|[r, g, b]| {
-                desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::rgb(r, g, b)))
-            });
+            shape.area_light = material
+                .emission
+                .filter(|rgb| rgb.iter().any(|&value| value > 0.0))
+                .map(|[r, g, b]| desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::rgb(r, g, b))));
         } else if !name.is_empty() {
             let message = format!("there is no material `{name}`; its faces are drawn grey");
             report.push(Diagnostic::warning("unknown-reference", message, Span::NONE));
@@ -112,7 +116,8 @@ fn add_material(
         let path = resolve(assets, map, &path.to_string_lossy(), "");
         match images::decode(assets, &path, None) {
             Ok(image) => {
-                let image = desc.images.push(description::ImageDesc { name: map.clone(), image: Arc::new(image) });
+                let image =
+                    desc.images.push(description::ImageDesc { name: map.clone(), image: Arc::new(image) });
                 let kind = TextureKind::Image(ImageTextureDesc::new(image));
                 reflectance = desc.spectrum_textures.push(TextureDesc::new(kind)).into();
             }
@@ -132,10 +137,15 @@ fn add_material(
         let eta = material.index_of_refraction.filter(|&eta| eta > 1.0).unwrap_or(1.5);
         MaterialKind::Dielectric { eta: eta.into(), roughness: RoughnessDesc::default() }
     } else if dark && shines && material.diffuse_map.is_none() {
-        let reflectance = ConductorReflectance::Reflectance(color(material.specular).unwrap_or(0.5.into()).into());
+        let reflectance =
+            ConductorReflectance::Reflectance(color(material.specular).unwrap_or(0.5.into()).into());
         MaterialKind::Conductor(ConductorDesc { reflectance, roughness })
     } else if shines {
-        MaterialKind::CoatedDiffuse(CoatedDiffuseDesc { reflectance, roughness, ..CoatedDiffuseDesc::default() })
+        MaterialKind::CoatedDiffuse(CoatedDiffuseDesc {
+            reflectance,
+            roughness,
+            ..CoatedDiffuseDesc::default()
+        })
     } else {
         MaterialKind::Diffuse { reflectance }
     };
@@ -152,14 +162,14 @@ fn look_at_all(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     let up = direction.cross(right);
     let eye = center - distance * direction;
     // Camera spaces are left-handed; without the mirror, the picture of a right-handed mesh would be its mirror image.
-    let world_from_camera = DMat4::from_cols(
-        (-right).extend(0.0),
-        up.extend(0.0),
-        direction.extend(0.0),
-        eye.extend(1.0),
-    );
+    let world_from_camera =
+        DMat4::from_cols((-right).extend(0.0), up.extend(0.0), direction.extend(0.0), eye.extend(1.0));
     desc.camera = CameraDesc {
-        kind: CameraKind::Perspective { fov: FOV as f32, screen: ScreenDesc::default(), lens: LensDesc::default() },
+        kind: CameraKind::Perspective {
+            fov: FOV as f32,
+            screen: ScreenDesc::default(),
+            lens: LensDesc::default(),
+        },
         camera_from_world: TransformDesc::fixed(world_from_camera.inverse()),
         ..CameraDesc::default()
     }

@@ -185,13 +185,19 @@ impl<'a> Interpreter<'a> {
         }
         match name {
             "Film" => self.statements.film = Some(self.only(name, span, tokens, |all| all.film.as_ref())?),
-            "Sampler" => self.statements.sampler = Some(self.only(name, span, tokens, |all| all.sampler.as_ref())?),
-            "PixelFilter" => self.statements.filter = Some(self.only(name, span, tokens, |all| all.filter.as_ref())?),
+            "Sampler" => {
+                self.statements.sampler = Some(self.only(name, span, tokens, |all| all.sampler.as_ref())?)
+            }
+            "PixelFilter" => {
+                self.statements.filter = Some(self.only(name, span, tokens, |all| all.filter.as_ref())?)
+            }
             "Integrator" => {
-                self.statements.integrator = Some(self.only(name, span, tokens, |all| all.integrator.as_ref())?);
+                self.statements.integrator =
+                    Some(self.only(name, span, tokens, |all| all.integrator.as_ref())?);
             }
             "Accelerator" => {
-                self.statements.accelerator = Some(self.only(name, span, tokens, |all| all.accelerator.as_ref())?);
+                self.statements.accelerator =
+                    Some(self.only(name, span, tokens, |all| all.accelerator.as_ref())?);
             }
             "Camera" => self.camera(span, tokens)?,
             "Option" => self.option(span, tokens)?,
@@ -213,7 +219,9 @@ impl<'a> Interpreter<'a> {
             "ObjectEnd" => self.object_end(span)?,
             "ObjectInstance" => self.object_instance(span, tokens)?,
             "MakeNamedMaterial" => self.make_named_material(span, tokens)?,
-            "NamedMaterial" => self.state.material = MaterialReference::Named(self.string(tokens, "the material")?),
+            "NamedMaterial" => {
+                self.state.material = MaterialReference::Named(self.string(tokens, "the material")?)
+            }
             "Material" => {
                 let defaults = self.state.attributes.material.clone();
                 let statement = self.statement(span, tokens, "the material's type", defaults)?;
@@ -251,7 +259,11 @@ impl<'a> Interpreter<'a> {
 
     fn unknown_directive(&mut self, name: &str, span: Span) -> Step {
         if name == "WorldEnd" {
-            self.report.warning("deprecated", "`WorldEnd` is not needed any more: the world ends with the file", span);
+            self.report.warning(
+                "deprecated",
+                "`WorldEnd` is not needed any more: the world ends with the file",
+                span,
+            );
             return Ok(());
         }
         let message = format!("there is no directive `{}`", shortened(name));
@@ -298,7 +310,8 @@ impl<'a> Interpreter<'a> {
     }
 
     fn camera(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let statement = self.only("Camera", span, tokens, |all| all.camera.as_ref().map(|camera| &camera.statement))?;
+        let statement =
+            self.only("Camera", span, tokens, |all| all.camera.as_ref().map(|camera| &camera.statement))?;
         let camera_from_world = self.state.ctm;
         self.coordinate_systems.insert("camera".into(), camera_from_world.inverse());
         let medium = self.state.outside();
@@ -312,7 +325,8 @@ impl<'a> Interpreter<'a> {
             self.report.error("unexpected-token", message, span);
             return Err(Abandoned);
         }
-        let option = parameter::parameter(tokens, self.state.color_space, &mut self.report).ok_or(Abandoned)?;
+        let option =
+            parameter::parameter(tokens, self.state.color_space, &mut self.report).ok_or(Abandoned)?;
         self.statements.options.retain(|earlier| earlier.name != option.name);
         self.statements.options.push(option);
         Ok(())
@@ -358,7 +372,8 @@ impl<'a> Interpreter<'a> {
             }
             Some(block) => {
                 let message = format!("`{}` stands where `{}` is due", kind.end(), block.kind.end());
-                let opened = Diagnostic::error("unbalanced-block", message, span).with_label(block.span, "opened here");
+                let opened = Diagnostic::error("unbalanced-block", message, span)
+                    .with_label(block.span, "opened here");
                 self.report.push(opened);
                 Err(Abandoned)
             }
@@ -492,7 +507,9 @@ impl<'a> Interpreter<'a> {
             other => {
                 let message = format!("a texture's values are of type `float` or `spectrum`, not `{other}`");
                 self.report.push(match names::replaced("texture-value", other) {
-                    Some(replacement) => Diagnostic::error("old-name", message, value.span).with_help(replacement),
+                    Some(replacement) => {
+                        Diagnostic::error("old-name", message, value.span).with_help(replacement)
+                    }
                     None => Diagnostic {
                         help: did_you_mean(other, ["float", "spectrum"]),
                         ..Diagnostic::error("unknown-type", message, value.span)

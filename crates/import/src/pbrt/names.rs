@@ -1,7 +1,5 @@
 //! Names of the format, and what became of names of its older versions.
 
-use crate::suggest::closest;
-
 /// The spectra that a scene may name.
 pub(crate) const SPECTRA: &str = include_str!("../../data/spectra.txt");
 
@@ -24,11 +22,6 @@ pub(crate) fn replaced(set: &str, name: &str) -> Option<&'static str> {
     })
 }
 
-/// The name of a spectrum that a mistyped one most likely means.
-pub(crate) fn closest_spectrum(name: &str) -> Option<&'static str> {
-    closest(name, lines(SPECTRA))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -40,7 +33,10 @@ mod tests {
             assert!(fields.len() == 3 && fields.iter().all(|field| !field.is_empty()), "{line}");
             assert!(replaced(fields[0], fields[1]).is_some());
         }
-        assert_eq!(replaced("material", "glass"), Some("write `dielectric`; for thin sheets `thindielectric`"));
+        assert_eq!(
+            replaced("material", "glass"),
+            Some("write `dielectric`; for thin sheets `thindielectric`")
+        );
         assert_eq!(replaced("material", "diffuse"), None);
     }
 }

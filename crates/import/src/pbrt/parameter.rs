@@ -97,7 +97,11 @@ pub(crate) struct RawParameter {
 }
 
 /// Reads parameters as long as there are any. Whatever is wrong with one is reported, and the next one is read.
-pub(crate) fn parameters(tokens: &mut Tokens, color_space: ColorSpaceDesc, report: &mut Report) -> Vec<RawParameter> {
+pub(crate) fn parameters(
+    tokens: &mut Tokens,
+    color_space: ColorSpaceDesc,
+    report: &mut Report,
+) -> Vec<RawParameter> {
     let mut parameters: Vec<RawParameter> = Vec::new();
     while matches!(tokens.peek().kind, TokenKind::Quoted | TokenKind::Unterminated) {
         let Some(parameter) = parameter(tokens, color_space, report) else { continue };
@@ -133,8 +137,12 @@ pub(crate) fn parameter(
     let mut words = text.split_ascii_whitespace();
     let (Some(type_name), Some(name), None) = (words.next(), words.next(), words.next()) else {
         report.push(
-            Diagnostic::error("parameter-declaration", format!("`{text}` does not declare a parameter"), span)
-                .with_help("a parameter is declared by its type and its name, as in `\"float radius\"`"),
+            Diagnostic::error(
+                "parameter-declaration",
+                format!("`{text}` does not declare a parameter"),
+                span,
+            )
+            .with_help("a parameter is declared by its type and its name, as in `\"float radius\"`"),
         );
         skip_values(tokens);
         return None;
@@ -144,7 +152,14 @@ pub(crate) fn parameter(
         return None;
     };
     let (values, end) = values(tokens, kind, name, span, report)?;
-    Some(RawParameter { kind, name: name.to_owned(), values, span: span.to(end), declaration: span, color_space })
+    Some(RawParameter {
+        kind,
+        name: name.to_owned(),
+        values,
+        span: span.to(end),
+        declaration: span,
+        color_space,
+    })
 }
 
 fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<ParameterType> {
@@ -183,7 +198,9 @@ fn values(
 ) -> Option<(Values, Span)> {
     let first = tokens.peek();
     let bracketed = first.kind == TokenKind::Open;
-    if !bracketed && !matches!(first.kind, TokenKind::Word | TokenKind::Quoted) || is_directive(tokens.bytes(first)) {
+    if !bracketed && !matches!(first.kind, TokenKind::Word | TokenKind::Quoted)
+        || is_directive(tokens.bytes(first))
+    {
         report.error("parameter-value", format!("the parameter `{name}` has no value"), declaration);
         return None;
     }
@@ -211,11 +228,19 @@ fn values(
                 }
             }
             TokenKind::End | TokenKind::Unterminated | TokenKind::Open | TokenKind::Close => {
-                report.error("unclosed-bracket", format!("the values of `{name}` have no closing `]`"), declaration);
+                report.error(
+                    "unclosed-bracket",
+                    format!("the values of `{name}` have no closing `]`"),
+                    declaration,
+                );
                 return None;
             }
             TokenKind::Word if is_directive(tokens.bytes(token)) => {
-                report.error("unclosed-bracket", format!("the values of `{name}` have no closing `]`"), declaration);
+                report.error(
+                    "unclosed-bracket",
+                    format!("the values of `{name}` have no closing `]`"),
+                    declaration,
+                );
                 return None;
             }
             TokenKind::Word | TokenKind::Quoted => {
@@ -226,7 +251,8 @@ fn values(
                     Values::Bools(_) => "`true` or `false`",
                     Values::Strings(_) => "a quoted string",
                 };
-                let message = format!("`{name}` is of type `{}` and takes {expected}, not {found}", kind.name());
+                let message =
+                    format!("`{name}` is of type `{}` and takes {expected}, not {found}", kind.name());
                 report.error("parameter-value", message, tokens.span(token));
                 if bracketed {
                     skip_to_close(tokens);
@@ -253,7 +279,11 @@ fn push_value(tokens: &Tokens, token: Token, values: &mut Values, report: &mut R
                 _ => return false,
             };
             if token.kind == TokenKind::Quoted {
-                report.warning("deprecated", "`true` and `false` are written without quotes", tokens.span(token));
+                report.warning(
+                    "deprecated",
+                    "`true` and `false` are written without quotes",
+                    tokens.span(token),
+                );
             }
             values.push(value);
             true

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use description::{
-    ColorSpaceDesc, Diagnostic, EncodingDesc, FloatParameter, Handle, ImageDesc, Origin, Parameter, Span, Spanned, SpectrumDesc,
-    SpectrumParameter,
+    ColorSpaceDesc, Diagnostic, EncodingDesc, FloatParameter, Handle, ImageDesc, Origin, Parameter, Span,
+    Spanned, SpectrumDesc, SpectrumParameter,
 };
 use math::{Vec2, Vec3};
 
@@ -37,9 +37,11 @@ struct Given {
 impl<'b, 'a> Reader<'b, 'a> {
     pub(crate) fn new(builder: &'b mut Builder<'a>, statement: Statement) -> Self {
         let mut given: Vec<Given> = Vec::with_capacity(statement.parameters.len());
-        given.extend(
-            statement.parameters.into_iter().map(|parameter| Given { parameter, used: false, default: false }),
-        );
+        given.extend(statement.parameters.into_iter().map(|parameter| Given {
+            parameter,
+            used: false,
+            default: false,
+        }));
         for parameter in statement.defaults.iter() {
             if given.iter().all(|earlier| earlier.parameter.name != parameter.name) {
                 given.push(Given { parameter: parameter.clone(), used: false, default: true });
@@ -112,7 +114,8 @@ impl<'b, 'a> Reader<'b, 'a> {
             let message =
                 format!("`{name}` is of type {}, not `{}`", expected.join(" or "), parameter.kind.name());
             let help = format!("write `\"{} {name}\"`", types[0].name());
-            let diagnostic = Diagnostic::error("parameter-type", message, parameter.declaration).with_help(help);
+            let diagnostic =
+                Diagnostic::error("parameter-type", message, parameter.declaration).with_help(help);
             self.builder.report.push(diagnostic);
             return None;
         }
@@ -121,7 +124,11 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// The values of a parameter, taken out of it, if there is any value.
-    fn take(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<(ParameterType, Values, Span)> {
+    fn take(
+        &mut self,
+        name: &'static str,
+        types: &'static [ParameterType],
+    ) -> Option<(ParameterType, Values, Span)> {
         let place = self.find(name, types)?;
         self.take_at(place, name)
     }
@@ -133,12 +140,15 @@ impl<'b, 'a> Reader<'b, 'a> {
         if let Values::Floats(floats) = &values
             && floats.iter().any(|value| !value.is_finite())
         {
-            self.builder.report.error("parameter-value", format!("`{name}` has a value beyond all bounds"), span);
+            self.builder.report.error(
+                "parameter-value",
+                format!("`{name}` has a value beyond all bounds"),
+                span,
+            );
             return None;
         }
         if kind != ParameterType::Spectrum && length % kind.arity() != 0 {
-            let message =
-                format!("`{name}` has {length} numbers, which is no multiple of {}", kind.arity());
+            let message = format!("`{name}` has {length} numbers, which is no multiple of {}", kind.arity());
             self.builder.report.error("parameter-count", message, span);
             return None;
         }
@@ -466,7 +476,11 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// An image file that may be absent.
-    pub(crate) fn image(&mut self, name: &'static str, encoding: Option<EncodingDesc>) -> Option<Handle<ImageDesc>> {
+    pub(crate) fn image(
+        &mut self,
+        name: &'static str,
+        encoding: Option<EncodingDesc>,
+    ) -> Option<Handle<ImageDesc>> {
         let file = self.string(name)?;
         Some(self.builder.image(&file, encoding))
     }

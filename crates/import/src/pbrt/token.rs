@@ -66,7 +66,8 @@ impl<'a> Tokens<'a> {
                 }
                 Some(b' ' | b'\t' | b'\n' | b'\r') => start += 1,
                 Some(b'#') => {
-                    start += text[start..].iter().position(|&byte| byte == b'\n').unwrap_or(text.len() - start);
+                    start +=
+                        text[start..].iter().position(|&byte| byte == b'\n').unwrap_or(text.len() - start);
                 }
                 Some(_) => break,
             }

@@ -35,12 +35,15 @@ impl Interpreter<'_> {
             "Rotate" => {
                 let [degrees, x, y, z] = self.numbers(tokens)?;
                 let axis = DVec3::new(x, y, z).try_normalize();
-                let Some(axis) = axis else { return self.singular("the axis of this rotation has no direction", span) };
+                let Some(axis) = axis else {
+                    return self.singular("the axis of this rotation has no direction", span);
+                };
                 self.state.change_ctm(|ctm| ctm * DMat4::from_axis_angle(axis, degrees.to_radians()));
             }
             "LookAt" => {
                 let [ex, ey, ez, lx, ly, lz, ux, uy, uz] = self.numbers(tokens)?;
-                let (eye, target, up) = (DVec3::new(ex, ey, ez), DVec3::new(lx, ly, lz), DVec3::new(ux, uy, uz));
+                let (eye, target, up) =
+                    (DVec3::new(ex, ey, ez), DVec3::new(lx, ly, lz), DVec3::new(ux, uy, uz));
                 let Some(matrix) = look_at(eye, target, up) else {
                     return self.singular("eye, target and up of this `LookAt` span no frame", span);
                 };

@@ -1,8 +1,8 @@
 //! Cameras.
 
 use description::{
-    ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc, SphericalMapping,
-    Stated,
+    ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc,
+    SphericalMapping, Stated,
 };
 
 use super::Builder;
@@ -18,7 +18,10 @@ impl Builder<'_> {
             let [mut shutter_open, mut shutter_close] =
                 [reader.float("shutteropen", 0.0), reader.float("shutterclose", 1.0)];
             if shutter_close < shutter_open {
-                reader.ignored("shutterclose", "the shutter closes before it opens: the two times are exchanged");
+                reader.ignored(
+                    "shutterclose",
+                    "the shutter closes before it opens: the two times are exchanged",
+                );
                 std::mem::swap(&mut shutter_open, &mut shutter_close);
             }
             Some(CameraDesc { kind, shutter_open, shutter_close, ..CameraDesc::default() })

@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use description::{Arena, Diagnostic, EncodingDesc, Handle, Image, ImageDesc, Origin, Span, Spanned, Stated};
+use description::{Arena, Diagnostic, EncodingDesc, Handle, ImageDesc, Origin, Span, Spanned, Stated};
 use rayon::prelude::*;
 
 use super::Builder;
-use crate::assets::{AssetSource, read_unpacked, resolve};
+use crate::assets::{read_unpacked, resolve};
+use crate::images;
 use crate::number;
 
 /// Images that were asked for, each path and encoding once. They are decoded together, in parallel.
@@ -27,7 +28,11 @@ impl Builder<'_> {
     }
 
     /// An image file, to be decoded later.
-    pub(crate) fn image(&mut self, file: &Spanned<String>, encoding: Option<EncodingDesc>) -> Handle<ImageDesc> {
+    pub(crate) fn image(
+        &mut self,
+        file: &Spanned<String>,
+        encoding: Option<EncodingDesc>,
+    ) -> Handle<ImageDesc> {
         let path = self.path(file);
         let key = (path, format!("{encoding:?}"));
         if let Some(&handle) = self.images.handles.get(&key) {
@@ -42,14 +47,20 @@ impl Builder<'_> {
     /// Decodes all images that were asked for. One that cannot be decoded is reported and stands as one black pixel.
     pub(super) fn decode_images(&mut self) -> Arena<ImageDesc> {
         let requests = std::mem::take(&mut self.images.requests);
-        let decoded: Vec<_> =
-            requests.par_iter().map(|(path, encoding, _)| decode_image(self.assets, path, *encoding)).collect();
+        let decoded: Vec<_> = requests
+            .par_iter()
+            .map(|(path, encoding, _)| images::decode(self.assets, path, *encoding))
+            .collect();
         let mut images = Arena::default();
         for ((path, _, span), decoded) in requests.into_iter().zip(decoded) {
             let name = path.to_string_lossy().into_owned();
             let image = decoded.unwrap_or_else(|message| {
-                self.report.error("unreadable-image", format!("cannot read the image `{name}`: {message}"), span);
-                black_pixel()
+                self.report.error(
+                    "unreadable-image",
+                    format!("cannot read the image `{name}`: {message}"),
+                    span,
+                );
+                images::black_pixel()
             });
             images.push_stated(Stated::new(ImageDesc { name, image: Arc::new(image) }, Origin::new(span)));
         }
@@ -68,11 +79,14 @@ impl Builder<'_> {
         let mut numbers = Vec::new();
         for (index, line) in text.split(|&byte| byte == b'\n').enumerate() {
             let line = line.split(|&byte| byte == b'#').next().unwrap_or(&[]);
-            let words = line.split(|byte| byte.is_ascii_whitespace() || *byte == b',').filter(|word| !word.is_empty());
+            let words = line
+                .split(|byte| byte.is_ascii_whitespace() || *byte == b',')
+                .filter(|word| !word.is_empty());
             for word in words {
                 let Some(value) = number::float(word).filter(|value| value.is_finite()) else {
                     let word = String::from_utf8_lossy(word);
-                    let message = format!("line {} of `{}` has `{word:.40}`, no number", index + 1, path.display());
+                    let message =
+                        format!("line {} of `{}` has `{word:.40}`, no number", index + 1, path.display());
                     self.report.error(code, message, span);
                     return None;
                 };
@@ -88,7 +102,8 @@ impl Builder<'_> {
         let (pairs, rest) = numbers.as_chunks::<2>();
         let increasing = pairs.windows(2).all(|pair| pair[0][0] < pair[1][0]);
         if pairs.is_empty() || !rest.is_empty() || !increasing {
-            let message = format!("`{}` does not hold pairs of increasing wavelength and value", path.display());
+            let message =
+                format!("`{}` does not hold pairs of increasing wavelength and value", path.display());
             self.report.error("unreadable-spectrum", message, span);
             return None;
         }
@@ -103,18 +118,11 @@ impl Builder<'_> {
         if elements.is_empty() || !rest.is_empty() {
             let message = format!("`{}` does not hold four numbers per lens element", path.display());
             let diagnostic = Diagnostic::error("unreadable-lens", message, file.span);
-            self.report.push(diagnostic.with_help("they are radius of curvature, thickness, index and aperture diameter"));
+            self.report.push(
+                diagnostic.with_help("they are radius of curvature, thickness, index and aperture diameter"),
+            );
             return None;
         }
         Some(elements.to_vec())
     }
-}
-
-fn decode_image(assets: &dyn AssetSource, path: &Path, _encoding: Option<EncodingDesc>) -> Result<Image, String> {
-    let _bytes = assets.read(path).map_err(|error| error.to_string())?;
-    Ok(Image)
-}
-
-fn black_pixel() -> Image {
-    Image
 }

@@ -36,8 +36,13 @@ impl Builder<'_> {
         let parameters = std::mem::take(&mut statements.options);
         let span = parameters.first().map_or(Span::NONE, |first| first.span);
         let kind = Spanned::new("Option".to_owned(), span);
-        let statement =
-            Statement { span, kind, parameters, defaults: Default::default(), color_space: Default::default() };
+        let statement = Statement {
+            span,
+            kind,
+            parameters,
+            defaults: Default::default(),
+            color_space: Default::default(),
+        };
         let string = |reader: &mut Reader, name| reader.string(name).map(|path| path.value);
         self.read_or_default(statement, |reader| {
             Some(OptionsDesc {
@@ -130,7 +135,9 @@ fn film(reader: &mut Reader) -> Option<FilmDesc> {
         diagonal: reader.positive("diagonal", default.diagonal),
         filename: reader.string("filename").unwrap_or(default.filename),
         save_fp16: reader.boolean("savefp16", default.save_fp16),
-        max_component_value: reader.optional_float("maxcomponentvalue").unwrap_or(default.max_component_value),
+        max_component_value: reader
+            .optional_float("maxcomponentvalue")
+            .unwrap_or(default.max_component_value),
         sensor: sensor(reader),
         color_space: reader.color_space,
     })
@@ -160,7 +167,9 @@ fn filter(reader: &mut Reader) -> Option<FilterDesc> {
     Some(match reader.kind.value.as_str() {
         "box" => FilterDesc::Box { radius: radius(reader, 0.5) },
         "triangle" => FilterDesc::Triangle { radius: radius(reader, 2.0) },
-        "gaussian" => FilterDesc::Gaussian { radius: radius(reader, 1.5), sigma: reader.positive("sigma", 0.5) },
+        "gaussian" => {
+            FilterDesc::Gaussian { radius: radius(reader, 1.5), sigma: reader.positive("sigma", 0.5) }
+        }
         "mitchell" => FilterDesc::Mitchell {
             radius: radius(reader, 2.0),
             b: reader.float("B", 1.0 / 3.0),
@@ -168,7 +177,11 @@ fn filter(reader: &mut Reader) -> Option<FilterDesc> {
         },
         "sinc" => FilterDesc::LanczosSinc { radius: radius(reader, 4.0), tau: reader.positive("tau", 3.0) },
         _ => {
-            reader.unknown_type("filter", "pixel filter", &["box", "triangle", "gaussian", "mitchell", "sinc"]);
+            reader.unknown_type(
+                "filter",
+                "pixel filter",
+                &["box", "triangle", "gaussian", "mitchell", "sinc"],
+            );
             return None;
         }
     })

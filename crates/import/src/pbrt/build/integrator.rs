@@ -64,7 +64,9 @@ fn integrator(reader: &mut Reader) -> Option<IntegratorDesc> {
         "mlt" => IntegratorDesc::Mlt(mlt(reader)),
         "sppm" => IntegratorDesc::Sppm(SppmDesc {
             max_depth: max_depth(reader),
-            photons_per_iteration: reader.optional_integer("photonsperiteration").filter(|&photons| photons > 0),
+            photons_per_iteration: reader
+                .optional_integer("photonsperiteration")
+                .filter(|&photons| photons > 0),
             radius: reader.positive("radius", SppmDesc::default().radius),
             seed: reader.optional_integer("seed"),
         }),

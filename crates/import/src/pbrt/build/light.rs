@@ -92,7 +92,10 @@ fn infinite(reader: &mut Reader) -> LightKind {
     let radiance = match (reader.image("filename", None), color) {
         (Some(image), color) => {
             if color.is_some() {
-                reader.refuse("L", "an infinite light takes its colour from `L` or from `filename`, not from both");
+                reader.refuse(
+                    "L",
+                    "an infinite light takes its colour from `L` or from `filename`, not from both",
+                );
             }
             InfiniteRadiance::Image(image)
         }

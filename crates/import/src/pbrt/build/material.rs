@@ -1,9 +1,9 @@
 //! Materials.
 
 use description::{
-    Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic, FloatParameter,
-    HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, RoughnessDesc, Spanned, SpectrumDesc,
-    SubsurfaceScattering,
+    Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
+    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, RoughnessDesc, Spanned,
+    SpectrumDesc, SubsurfaceScattering,
 };
 
 use super::Builder;
@@ -176,7 +176,10 @@ fn conductor_reflectance(reader: &mut Reader, [eta, k]: [&'static str; 2]) -> Co
     }
     let [eta, k] = index;
     let copper = |part: &str| SpectrumDesc::Named(format!("metal-Cu-{part}")).into();
-    ConductorReflectance::Index { eta: eta.unwrap_or_else(|| copper("eta")), k: k.unwrap_or_else(|| copper("k")) }
+    ConductorReflectance::Index {
+        eta: eta.unwrap_or_else(|| copper("eta")),
+        k: k.unwrap_or_else(|| copper("k")),
+    }
 }
 
 fn layers(reader: &mut Reader) -> LayersDesc {
@@ -201,8 +204,7 @@ fn hair(reader: &mut Reader) -> MaterialKind {
     let melanin = eumelanin.is_some() || pheomelanin.is_some();
     let given = [sigma_a.is_some(), reflectance.is_some(), melanin];
     if given.into_iter().filter(|&given| given).count() > 1 {
-        let message =
-            "the colour of hair is given more than once: `sigma_a` counts before `reflectance`, and that before melanin";
+        let message = "the colour of hair is given more than once: `sigma_a` counts before `reflectance`, and that before melanin";
         let span = reader.span;
         reader.builder.report.warning("ignored", message, span);
     }

@@ -22,13 +22,17 @@ impl Builder<'_> {
             Some((kind, reader.float("g", 0.0)))
         });
         let coefficients = CoefficientsDesc::default();
-        let (kind, g) = read.unwrap_or((MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 }, 0.0));
+        let (kind, g) =
+            read.unwrap_or((MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 }, 0.0));
         let (name, world_from_medium) = (medium.name.value, medium.world_from_medium);
         Stated::new(MediumDesc { name, kind, world_from_medium, g }, origin)
     }
 
     /// The media on the two sides of a surface.
-    pub(super) fn medium_interface(&mut self, names: Option<&[Spanned<String>; 2]>) -> Option<MediumInterface> {
+    pub(super) fn medium_interface(
+        &mut self,
+        names: Option<&[Spanned<String>; 2]>,
+    ) -> Option<MediumInterface> {
         let [inside, outside] = names?;
         Some(MediumInterface { inside: self.named_medium(inside), outside: self.named_medium(outside) })
     }
@@ -81,7 +85,11 @@ fn coefficients(reader: &mut Reader) -> CoefficientsDesc {
         }
         return CoefficientsDesc::Preset { name, scale };
     }
-    CoefficientsDesc::Given { sigma_a: sigma_a.unwrap_or(1.0.into()), sigma_s: sigma_s.unwrap_or(1.0.into()), scale }
+    CoefficientsDesc::Given {
+        sigma_a: sigma_a.unwrap_or(1.0.into()),
+        sigma_s: sigma_s.unwrap_or(1.0.into()),
+        scale,
+    }
 }
 
 fn bounds(reader: &mut Reader) -> [Vec3; 2] {
@@ -101,7 +109,12 @@ fn resolution(reader: &mut Reader) -> [i32; 3] {
 }
 
 /// A grid of the given values, if their number is right.
-fn grid<T>(reader: &mut Reader, name: &str, resolution: [i32; 3], values: Option<Vec<T>>) -> Option<GridDesc<T>> {
+fn grid<T>(
+    reader: &mut Reader,
+    name: &str,
+    resolution: [i32; 3],
+    values: Option<Vec<T>>,
+) -> Option<GridDesc<T>> {
     let values = values?;
     let expected = resolution.map(|count| count as u128).into_iter().product::<u128>();
     if values.len() as u128 != expected {

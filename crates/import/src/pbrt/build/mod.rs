@@ -87,7 +87,12 @@ pub(crate) struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(statements: &Statements, report: Report, sources: &'a SourceMap, assets: &'a dyn AssetSource) -> Self {
+    fn new(
+        statements: &Statements,
+        report: Report,
+        sources: &'a SourceMap,
+        assets: &'a dyn AssetSource,
+    ) -> Self {
         let mut builder = Self {
             report,
             assets,
@@ -100,10 +105,12 @@ impl<'a> Builder<'a> {
             images: ImageRequests::default(),
             meshes: HashMap::new(),
         };
-        builder.materials = builder.table("material", &statements.materials, |material: &MaterialStatement| {
-            material.name.as_ref()
-        });
-        builder.media = builder.table("medium", &statements.media, |medium: &MediumStatement| Some(&medium.name));
+        builder.materials =
+            builder.table("material", &statements.materials, |material: &MaterialStatement| {
+                material.name.as_ref()
+            });
+        builder.media =
+            builder.table("medium", &statements.media, |medium: &MediumStatement| Some(&medium.name));
         builder
     }
 
@@ -132,7 +139,11 @@ impl<'a> Builder<'a> {
     }
 
     /// Reads a statement by a function that asks for its parameters, and checks that it asked for all.
-    fn read<T>(&mut self, statement: Statement, read: impl FnOnce(&mut Reader<'_, 'a>) -> Option<T>) -> (Option<T>, Origin) {
+    fn read<T>(
+        &mut self,
+        statement: Statement,
+        read: impl FnOnce(&mut Reader<'_, 'a>) -> Option<T>,
+    ) -> (Option<T>, Origin) {
         let mut reader = Reader::new(self, statement);
         match read(&mut reader) {
             Some(value) => (Some(value), reader.finish()),
@@ -203,7 +214,13 @@ impl<'a> Builder<'a> {
         found
     }
 
-    fn unknown_reference(&mut self, what: &str, name: &Spanned<String>, other: Option<&str>, known: &[String]) {
+    fn unknown_reference(
+        &mut self,
+        what: &str,
+        name: &Spanned<String>,
+        other: Option<&str>,
+        known: &[String],
+    ) {
         let mut known: Vec<_> = known.iter().map(String::as_str).collect();
         known.sort_unstable();
         let message = match other {
@@ -225,7 +242,8 @@ impl<'a> Builder<'a> {
                 self.spectrum_file(&path, name.span)
             } else {
                 let message = format!("`{}` is neither the name of a spectrum nor a file", name.value);
-                let help = closest(&name.value, names::lines(names::SPECTRA)).map(|near| format!("did you mean `{near}`?"));
+                let help = closest(&name.value, names::lines(names::SPECTRA))
+                    .map(|near| format!("did you mean `{near}`?"));
                 let diagnostic = Diagnostic::error("unknown-spectrum", message, name.span);
                 self.report.push(Diagnostic { help, ..diagnostic });
                 None

@@ -18,7 +18,8 @@ fn sampler(reader: &mut Reader) -> Option<SamplerDesc> {
     let (kind, default_samples) = match reader.kind.value.as_str() {
         "independent" => (SamplerKind::Independent, 4),
         "stratified" => {
-            let strata = [reader.integer("xsamples", 4, 1..=30_000), reader.integer("ysamples", 4, 1..=30_000)];
+            let strata =
+                [reader.integer("xsamples", 4, 1..=30_000), reader.integer("ysamples", 4, 1..=30_000)];
             let kind = SamplerKind::Stratified { strata, jitter: reader.boolean("jitter", true) };
             let seed = reader.optional_integer("seed");
             return Some(SamplerDesc { kind, pixel_samples: strata[0] * strata[1], seed });

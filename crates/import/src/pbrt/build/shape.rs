@@ -18,17 +18,8 @@ use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
 use crate::suggest::did_you_mean;
 
-const TYPES: [&str; 9] = [
-    "sphere",
-    "cylinder",
-    "disk",
-    "plane",
-    "trianglemesh",
-    "bilinearmesh",
-    "plymesh",
-    "curve",
-    "loopsubdiv",
-];
+const TYPES: [&str; 9] =
+    ["sphere", "cylinder", "disk", "plane", "trianglemesh", "bilinearmesh", "plymesh", "curve", "loopsubdiv"];
 
 /// Mesh files by path, each read once; or why it could not be.
 pub(super) type Meshes = HashMap<PathBuf, Result<ShapeKind, String>>;
@@ -157,7 +148,11 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
 }
 
 /// The indices of a mesh, `N` per face; `default` are those of a mesh of one face, which needs none.
-fn indices<const N: usize>(reader: &mut Reader, vertices: usize, default: [u32; N]) -> Option<Arc<[[u32; N]]>> {
+fn indices<const N: usize>(
+    reader: &mut Reader,
+    vertices: usize,
+    default: [u32; N],
+) -> Option<Arc<[[u32; N]]>> {
     let Some(indices) = reader.integers("indices") else {
         if vertices == N {
             return Some(Arc::from([default]));
@@ -167,20 +162,30 @@ fn indices<const N: usize>(reader: &mut Reader, vertices: usize, default: [u32; 
         }
         return None;
     };
-    if let Some(bad) = indices.iter().find(|&&index| usize::try_from(index).map_or(true, |index| index >= vertices)) {
+    if let Some(bad) =
+        indices.iter().find(|&&index| usize::try_from(index).map_or(true, |index| index >= vertices))
+    {
         reader.refuse("indices", format!("`indices` has {bad}, but there are {vertices} points in `P`"));
         return None;
     }
     let (faces, rest) = indices.as_chunks::<N>();
     if !rest.is_empty() || faces.is_empty() {
-        reader.refuse("indices", format!("`indices` has {} numbers, which is no multiple of {N}", indices.len()));
+        reader.refuse(
+            "indices",
+            format!("`indices` has {} numbers, which is no multiple of {N}", indices.len()),
+        );
         return None;
     }
     Some(faces.iter().map(|face| face.map(|index| index as u32)).collect())
 }
 
 /// An array with one value per vertex, or empty.
-fn per_vertex<T>(reader: &mut Reader, name: &'static str, vertices: usize, values: Option<Arc<[T]>>) -> Arc<[T]> {
+fn per_vertex<T>(
+    reader: &mut Reader,
+    name: &'static str,
+    vertices: usize,
+    values: Option<Arc<[T]>>,
+) -> Arc<[T]> {
     let Some(values) = values else { return Arc::from([]) };
     if values.len() != vertices {
         reader.refuse(name, format!("`{name}` has {} values for {vertices} points in `P`", values.len()));
@@ -299,7 +304,11 @@ fn curve(reader: &mut Reader) -> Option<CurveDesc> {
     let mut profile = reader.choice(
         "type",
         CurveProfile::Flat,
-        &[("flat", CurveProfile::Flat), ("ribbon", CurveProfile::Ribbon), ("cylinder", CurveProfile::Cylinder)],
+        &[
+            ("flat", CurveProfile::Flat),
+            ("ribbon", CurveProfile::Ribbon),
+            ("cylinder", CurveProfile::Cylinder),
+        ],
     );
     let mut normals = reader.normals("N").unwrap_or_default();
     if profile != CurveProfile::Ribbon && !normals.is_empty() {

@@ -24,8 +24,18 @@ trait TextureValue: Clone {
 
 impl TextureValue for f32 {
     const TYPES: &'static [&'static str] = &[
-        "constant", "scale", "mix", "directionmix", "bilerp", "imagemap", "checkerboard", "dots", "ptex", "fbm",
-        "wrinkled", "windy",
+        "constant",
+        "scale",
+        "mix",
+        "directionmix",
+        "bilerp",
+        "imagemap",
+        "checkerboard",
+        "dots",
+        "ptex",
+        "fbm",
+        "wrinkled",
+        "windy",
     ];
 
     fn constant(value: f32) -> Self {
@@ -58,7 +68,16 @@ impl TextureValue for f32 {
 
 impl TextureValue for SpectrumDesc {
     const TYPES: &'static [&'static str] = &[
-        "constant", "scale", "mix", "directionmix", "bilerp", "imagemap", "checkerboard", "dots", "ptex", "marble",
+        "constant",
+        "scale",
+        "mix",
+        "directionmix",
+        "bilerp",
+        "imagemap",
+        "checkerboard",
+        "dots",
+        "ptex",
+        "marble",
     ];
 
     fn constant(value: f32) -> Self {
@@ -217,7 +236,10 @@ fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
             exponent.parse().ok().map(EncodingDesc::Gamma)
         }
         _ => {
-            let message = format!("`encoding` cannot be `{}`: it is `sRGB`, `linear` or `gamma` and a number", name.value);
+            let message = format!(
+                "`encoding` cannot be `{}`: it is `sRGB`, `linear` or `gamma` and a number",
+                name.value
+            );
             reader.builder.report.error("unknown-choice", message, name.span);
             None
         }
