@@ -1,8 +1,8 @@
 //! What every sampler promises: values in [0, 1), replay, right means, better than chance, independent dimensions.
 
+use alhazen_sampling::Sampler;
+use alhazen_sampling::sampler::*;
 use math::Vec2;
-use sampling::Sampler;
-use sampling::sampler::*;
 use std::collections::HashSet;
 use testkit::{Chi2, Moments, t_test};
 

@@ -1,7 +1,7 @@
 //! Every warp has the density it says and gives back what it was given.
 
+use alhazen_sampling::warp::*;
 use math::{Point3, Vec2, Vec3};
-use sampling::warp::*;
 use std::f32::consts::PI;
 use testkit::{Chi2, Random};
 

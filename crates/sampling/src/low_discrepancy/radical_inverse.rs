@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn scrambling_keeps_the_strata() {
-        for prime_index in [0, 1, 3, 10] {
+        for prime_index in [0, 1, 3] {
             let base = prime(prime_index) as usize;
             for seed in 0..10 {
                 for scrambled in [scrambled_radical_inverse, owen_scrambled_radical_inverse] {
@@ -137,7 +137,7 @@ mod tests {
                     for a in 0..count {
                         let x = scrambled(prime_index, a as u64, seed);
                         assert!((0.0..1.0).contains(&x));
-                        seen[(x as f64 * count as f64 + 1e-4) as usize] = true;
+                        seen[(x as f64 * count as f64) as usize] = true;
                     }
                     assert!(seen.iter().all(|&s| s), "base {base}, seed {seed}");
                 }

@@ -121,15 +121,16 @@ mod tests {
     fn every_sample_lies_in_its_pixel() {
         for resolution in [[1, 1], [10, 7], [128, 100], [1000, 2]] {
             let mut sampler = Halton::new(4, resolution, Randomize::None, 0);
-            let [width, height] = sampler.scales;
             for i in 0..100 {
                 let pixel = [(i * 37) % resolution[0].min(128), (i * 11) % resolution[1].min(128)];
                 for index in [0, 1, 12] {
                     sampler.start_pixel_sample(pixel, index, 0);
-                    let place = |base, scale: u64| {
-                        (radical_inverse(base, sampler.index) * scale as f32 + 1e-3) as i32
+                    // The place on the film has the low digits of the index as its high digits.
+                    let place = |axis: usize, base| {
+                        let low = sampler.index % sampler.scales[axis];
+                        inverse_radical_inverse(low, base, sampler.exponents[axis]) as i32
                     };
-                    assert_eq!([place(0, width), place(1, height)], pixel);
+                    assert_eq!([place(0, 2), place(1, 3)], pixel);
                 }
             }
         }
