@@ -4,6 +4,7 @@ use alhazen_sampling::Sampler;
 use alhazen_sampling::sampler::*;
 use math::Vec2;
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 use testkit::{Chi2, Moments, t_test};
 
 const SPP: u32 = 16;
@@ -106,7 +107,7 @@ fn smooth(sampler: &mut Sampler) -> f64 {
     let p = sampler.get_2d().as_dvec2();
     let x = sampler.get_1d() as f64;
     let q = sampler.get_2d().as_dvec2();
-    (4.0 * p.x * p.y) * (1.5 - x) * (1.0 + 0.5 * (6.283185307179586 * q.x).sin() * q.y)
+    (4.0 * p.x * p.y) * (1.5 - x) * (1.0 + 0.5 * (TAU * q.x).sin() * q.y)
 }
 
 /// Means of [`smooth`] over `count` samples from `first` on, one for each of many pixels and seeds.

@@ -16,7 +16,8 @@ use math::Vec2;
 /// The largest side of the tile that the first two dimensions cover.
 const MAX_TILE: i32 = 128;
 
-/// See the [module's head](self).
+/// Radical inverses in prime bases, one sequence over the picture. Any number of samples is as good as any other, and
+/// beyond it the sequence goes on.
 #[derive(Clone, Debug)]
 pub struct Halton {
     samples_per_pixel: u32,
@@ -32,7 +33,7 @@ pub struct Halton {
 }
 
 impl Halton {
-    /// A sampler for a picture of the given resolution.
+    /// A sampler for a picture of the given resolution. [`Randomize::FastOwen`] is taken for [`Randomize::Owen`].
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Halton {
         let mut scales = [1u64; 2];
         let mut exponents = [0; 2];
