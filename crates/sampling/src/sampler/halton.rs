@@ -7,11 +7,11 @@
 
 use super::Randomize;
 use crate::low_discrepancy::{
-    PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
-    scrambled_radical_inverse,
+    DigitPermutations, PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
 };
 use crate::mix_bits;
 use math::Vec2;
+use std::sync::{Arc, OnceLock};
 
 /// The largest side of the tile that the first two dimensions cover.
 const MAX_TILE: i32 = 128;
@@ -23,6 +23,8 @@ pub struct Halton {
     samples_per_pixel: u32,
     randomize: Randomize,
     seed: u32,
+    /// Those of each dimension, made when it is first asked for.
+    permutations: Arc<[OnceLock<DigitPermutations>]>,
     /// 2^j and 3^k, the sides of the tile, and the exponents.
     scales: [u64; 2],
     exponents: [u32; 2],
@@ -52,6 +54,7 @@ impl Halton {
             samples_per_pixel: samples_per_pixel.max(1),
             randomize,
             seed,
+            permutations: (0..PRIME_COUNT).map(|_| OnceLock::new()).collect(),
             scales,
             exponents,
             units: [unit(width, height), unit(height, width)],
@@ -105,7 +108,9 @@ impl Halton {
     fn coordinate(&self, dimension: usize) -> f32 {
         match self.randomize {
             Randomize::None => radical_inverse(dimension, self.index),
-            Randomize::PermuteDigits => scrambled_radical_inverse(dimension, self.index, self.seed),
+            Randomize::PermuteDigits => self.permutations[dimension]
+                .get_or_init(|| DigitPermutations::new(dimension, self.seed))
+                .radical_inverse(self.index),
             Randomize::FastOwen | Randomize::Owen => {
                 let hash = mix_bits((1 + ((dimension as u64) << 4)) ^ ((self.seed as u64) << 32));
                 owen_scrambled_radical_inverse(dimension, self.index, hash as u32)
