@@ -1,1 +1,61 @@
-//! What the author of a scene said: typed descriptions, source spans and diagnostics
+//! What the author of a scene said: plain typed data, nothing derived.
+//!
+//! A [`SceneDesc`] is what importers fill from files, and equally what tests and other programs build by hand:
+//! [`SceneDesc::default`] is a valid empty scene, and everything else is pushed into its arenas.
+//!
+//! One rule for all families: `XDesc` holds what all members share, and its field `kind`, an `XKind`, says which
+//! member it is and holds that member's own parameters. Defaults are those of the pbrt-v4 format.
+//!
+//! Everything the format can say is described here, whether or not a renderer can draw it yet.
+
+mod accelerator;
+mod arena;
+mod camera;
+mod color;
+mod diagnostic;
+mod film;
+mod filter;
+mod image;
+mod integrator;
+mod light;
+mod material;
+mod medium;
+mod options;
+mod sampler;
+mod scene;
+mod shape;
+mod source;
+mod texture;
+mod transform;
+
+pub use accelerator::{AcceleratorDesc, BvhSplit};
+pub use arena::{Arena, Handle, Origin, Stated};
+pub use camera::{
+    ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc,
+    SphericalMapping,
+};
+pub use color::{ColorSpaceDesc, SpectrumDesc};
+pub use diagnostic::{Diagnostic, Severity};
+pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
+pub use filter::FilterDesc;
+pub use image::ImageDesc;
+pub use integrator::{IntegratorDesc, LightSamplerDesc, MltDesc, SppmDesc};
+pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
+pub use material::{
+    CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, HairColor, LayersDesc,
+    MaterialDesc, MaterialKind, RoughnessDesc, SubsurfaceScattering,
+};
+pub use medium::{CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, TemperatureDesc};
+pub use options::{OptionsDesc, RenderSpace};
+pub use sampler::{Randomization, SamplerDesc, SamplerKind};
+pub use scene::SceneDesc;
+pub use shape::{
+    CurveBasis, CurveDesc, CurveProfile, InstanceDesc, MeshDesc, ObjectDesc, PatchMeshDesc, ShapeDesc,
+    ShapeKind,
+};
+pub use source::{FileId, Position, SourceMap, Span, Spanned};
+pub use texture::{
+    EncodingDesc, FloatParameter, FloatTextureDesc, ImageTextureDesc, MappingDesc, Parameter,
+    SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, WrapMode,
+};
+pub use transform::TransformDesc;

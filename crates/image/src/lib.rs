@@ -1,1 +1,27 @@
-//! Pixel arrays, pyramids, file formats and error metrics
+//! Pixel arrays, pyramids, file formats and error metrics.
+//!
+//! An [`Image`] is a rectangle of pixels with named channels, stored as 8-bit codes, half or single floats; what leaves it
+//! through [`Image::channel`] is always linear. Row 0 is the top row, x runs to the right. [`read`] decodes a file's bytes,
+//! [`write`](write()) encodes by extension; a [`Pyramid`] answers filtered lookups at texture coordinates; [`metrics`] and
+//! [`flip`] say how far two pictures are apart.
+
+pub mod codec;
+mod encoding;
+mod error;
+pub mod false_color;
+pub mod flip;
+mod image;
+mod metadata;
+pub mod metrics;
+mod pyramid;
+mod resample;
+mod wrap;
+
+pub use codec::{Format, ReadOptions, SampleDepth, WriteOptions, encode, read, write};
+pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
+pub use error::ImageError;
+pub use image::{Image, Pixels};
+pub use metadata::{Attribute, Chromaticities, ImageMetadata, Window};
+pub use pyramid::{Pyramid, TextureFilter};
+
+pub use wrap::WrapMode;

@@ -324,3 +324,71 @@ pub fn visible_wavelength_pdf(lambda: f32) -> f32 {
     }
     0.003_939_804 / (0.0072 * (lambda - 538.0)).cosh().powi(2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use testkit::Chi2;
+
+    #[test]
+    fn the_visible_density_ends_with_the_range() {
+        assert_eq!(visible_wavelength_pdf(359.9), 0.0);
+        assert_eq!(visible_wavelength_pdf(830.1), 0.0);
+        assert_eq!(SampledWavelengths::sample_visible(0.0)[0].round(), LAMBDA_MIN);
+    }
+
+    #[test]
+    fn each_wavelength_has_its_density() {
+        let chi2 = Chi2 { tests: 2 * N, ..Chi2::default() };
+        let range = [LAMBDA_MIN, LAMBDA_MAX];
+        for i in 0..N {
+            let visible = |u| Some(SampledWavelengths::sample_visible(u)[i]);
+            chi2.interval(range, visible, |lambda| visible_wavelength_pdf(lambda).into()).unwrap();
+            let uniform = |u| Some(SampledWavelengths::sample_uniform(u)[i]);
+            chi2.interval(range, uniform, |_| SampledWavelengths::sample_uniform(0.0).pdf()[i].into())
+                .unwrap();
+        }
+        let lambda = SampledWavelengths::sample_visible(0.7);
+        assert_eq!(lambda.pdf().0, lambda.lambda().map(visible_wavelength_pdf));
+    }
+
+    #[test]
+    fn wavelengths_are_one_number_rotated() {
+        let lambda = SampledWavelengths::sample_uniform(0.9);
+        for (ours, expected) in lambda.lambda().iter().zip([783.0, 430.5, 548.0, 665.5]) {
+            assert!((ours - expected).abs() < 1e-2);
+        }
+        for u in [0.0, 0.25, 0.75, 0.999_999_94] {
+            for l in *SampledWavelengths::sample_visible(u).lambda() {
+                assert!((LAMBDA_MIN..=LAMBDA_MAX).contains(&l) && visible_wavelength_pdf(l) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn termination_happens_once_and_leaves_a_quarter_of_the_density() {
+        let mut lambda = SampledWavelengths::sample_uniform(0.3);
+        assert!(!lambda.secondary_terminated());
+        let before = lambda.pdf()[0];
+        for _ in 0..2 {
+            lambda.terminate_secondary();
+            assert!(lambda.secondary_terminated());
+            assert_eq!(lambda.pdf().0, [before / 4.0, 0.0, 0.0, 0.0]);
+        }
+    }
+
+    #[test]
+    fn arithmetic_is_per_wavelength() {
+        let a = SampledSpectrum::new([1.0, 2.0, 3.0, 4.0]);
+        let b = SampledSpectrum::new([2.0, 0.0, 1.0, -4.0]);
+        assert_eq!((a + b).0, [3.0, 2.0, 4.0, 0.0]);
+        assert_eq!((2.0 - a * 0.5).0, [1.5, 1.0, 0.5, 0.0]);
+        assert_eq!(a.safe_div(b).0, [0.5, 0.0, 3.0, -1.0]);
+        assert_eq!(b.clamp_zero().0, [2.0, 0.0, 1.0, 0.0]);
+        assert_eq!((b.max_component(), b.min_component(), a.average()), (2.0, -4.0, 2.5));
+        assert_eq!(a.lerp(b, 0.5).0, [1.5, 1.0, 2.0, 0.0]);
+        assert!(SampledSpectrum::ZERO.is_black() && !b.is_black());
+        assert!(!SampledSpectrum::new([0.0, f32::NAN, 0.0, 0.0]).is_finite());
+        assert_eq!([a, b].into_iter().sum::<SampledSpectrum>(), a + b);
+    }
+}

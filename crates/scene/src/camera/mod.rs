@@ -1,1 +1,186 @@
 //! What the observer sees through.
+//!
+//! A [`Camera`] turns a position on the film into a ray of light that arrives there, followed backwards. It is a
+//! [`Projection`], which knows camera space alone, placed in the scene by a [`CameraTransform`] and opened for a while by
+//! a shutter.
+//!
+//! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in pbrt). Film positions are
+//! in pixels, x to the right and y down, (0, 0) at the top left corner of the picture, so that the centre of pixel (i, j)
+//! is (i + ½, j + ½). Rays are in render space, their directions have unit length, and their `time` is in the scene's
+//! time. Differentials are one pixel wide; bring them nearer by [`differential_scale`] when a pixel takes many samples.
+
+mod compile;
+mod footprint;
+mod orthographic;
+mod perspective;
+mod screen;
+mod spherical;
+mod transform;
+
+use math::{Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vector3, lerp};
+
+pub use compile::compile;
+pub use footprint::{Footprint, differential_scale};
+pub use orthographic::Orthographic;
+pub use perspective::Perspective;
+pub use screen::{Screen, ThinLens};
+pub use spherical::Spherical;
+pub use transform::CameraTransform;
+
+/// Where and when light arrives at a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraSample {
+    /// Position on the film, in pixels.
+    pub film: Point2,
+    /// Sample value in [0, 1)² for the position on the lens.
+    pub lens: Vec2,
+    /// Sample value in [0, 1) for the time within the shutter's.
+    pub time: f32,
+    /// Weight of the sample in its pixel, from the reconstruction filter.
+    pub filter_weight: f32,
+}
+
+/// A ray from a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraRay {
+    /// The ray, in render space.
+    pub ray: Ray,
+    /// How much of the light along the ray reaches the film.
+    pub weight: f32,
+}
+
+/// A ray from a camera, and the rays of the neighbouring pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraRayDifferential {
+    /// The ray with its neighbours, in render space.
+    pub ray: RayDifferential,
+    /// How much of the light along the ray reaches the film.
+    pub weight: f32,
+}
+
+/// How a point of the film sees camera space.
+#[derive(Clone, Debug)]
+pub enum Projection {
+    /// Through one point.
+    Perspective(Perspective),
+    /// In parallel.
+    Orthographic(Orthographic),
+    /// All around.
+    Spherical(Spherical),
+}
+
+impl Projection {
+    /// Origin and unit direction, in camera space, of the ray of a film position and a lens sample.
+    fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
+        match self {
+            Self::Perspective(p) => p.ray(film, lens),
+            Self::Orthographic(p) => p.ray(film, lens),
+            Self::Spherical(p) => p.ray(film),
+        }
+    }
+
+    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat film are compared with
+    /// those a whole pixel away, which is exact; on the sphere, where a pixel may span a large angle, with near ones.
+    fn differential_step(&self) -> f32 {
+        match self {
+            Self::Perspective(_) | Self::Orthographic(_) => 1.0,
+            Self::Spherical(_) => 0.05,
+        }
+    }
+
+    /// The ray of [`Self::ray`] and its differentials, in camera space.
+    fn ray_differential(&self, film: Point2, lens: Vec2) -> (Point3, Vector3, Differentials) {
+        let step = self.differential_step();
+        let (o, d) = self.ray(film, lens);
+        let neighbour = |offset| {
+            let (near_o, near_d) = self.ray(film + offset * step, lens);
+            if step == 1.0 { (near_o, near_d) } else { (o + (near_o - o) / step, d + (near_d - d) / step) }
+        };
+        let (rx_origin, rx_direction) = neighbour(Vec2::X);
+        let (ry_origin, ry_direction) = neighbour(Vec2::Y);
+        (o, d, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
+    }
+}
+
+/// A camera in a scene.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    projection: Projection,
+    transform: CameraTransform,
+    shutter: [f32; 2],
+    footprint: Footprint,
+}
+
+impl Camera {
+    /// A camera that takes a picture of `resolution` pixels (width, height) while the shutter is open, from
+    /// `shutter[0]` to `shutter[1]`.
+    pub fn new(
+        projection: Projection,
+        transform: CameraTransform,
+        shutter: [f32; 2],
+        resolution: [u32; 2],
+    ) -> Self {
+        let footprint = Footprint::new(&projection, resolution);
+        Self { projection, transform, shutter, footprint }
+    }
+
+    /// How the film sees camera space.
+    pub fn projection(&self) -> &Projection {
+        &self.projection
+    }
+
+    /// How camera, render and world space lie to each other.
+    pub fn transform(&self) -> &CameraTransform {
+        &self.transform
+    }
+
+    /// When the shutter opens and closes.
+    pub fn shutter(&self) -> [f32; 2] {
+        self.shutter
+    }
+
+    /// The moment of a sample value in [0, 1).
+    #[inline]
+    pub fn sample_time(&self, u: f32) -> f32 {
+        lerp(u, self.shutter[0], self.shutter[1])
+    }
+
+    /// The ray of a sample; `None` where no light reaches that point of the film.
+    #[doc(alias = "GenerateRay")]
+    pub fn generate_ray(&self, sample: &CameraSample) -> Option<CameraRay> {
+        let time = self.sample_time(sample.time);
+        let (o, d) = self.projection.ray(sample.film, sample.lens);
+        let ray = self.transform.render_from_camera(time).ray(&Ray::new(o, d, time));
+        Some(CameraRay { ray: Ray { d: ray.d.normalize(), ..ray }, weight: 1.0 })
+    }
+
+    /// The ray of a sample with the rays one pixel to the right and one pixel down, through the same point of the lens at the
+    /// same moment.
+    #[doc(alias = "GenerateRayDifferential")]
+    pub fn generate_ray_differential(&self, sample: &CameraSample) -> Option<CameraRayDifferential> {
+        let time = self.sample_time(sample.time);
+        let (o, d, differentials) = self.projection.ray_differential(sample.film, sample.lens);
+        let ray = RayDifferential { ray: Ray::new(o, d, time), differentials: Some(differentials) };
+        let mut ray = self.transform.render_from_camera(time).ray_differential(&ray);
+        // A transform that scales stretches directions: all three by the same factor, to keep their differences.
+        let factor = ray.ray.d.length_recip();
+        ray.ray.d *= factor;
+        if let Some(d) = &mut ray.differentials {
+            d.rx_direction *= factor;
+            d.ry_direction *= factor;
+        }
+        Some(CameraRayDifferential { ray, weight: 1.0 })
+    }
+
+    /// About how far apart, on the tangent plane of a surface at `p` with normal `n` (render space), the rays of neighbouring
+    /// pixels would be if they came straight from the camera: ∂p/∂x and ∂p/∂y, each times `scale` (see
+    /// [`differential_scale`]). For surfaces that a path reaches without ray differentials.
+    #[doc(alias = "Approximate_dp_dxy")]
+    pub fn approximate_dp_dxy(&self, p: Point3, n: Normal3, time: f32, scale: f32) -> [Vector3; 2] {
+        let render_from_camera = self.transform.render_from_camera(time);
+        let camera_from_render = render_from_camera.inverse();
+        self.footprint
+            .dp_dxy(camera_from_render.point(p), camera_from_render.normal(n))
+            .map(|dp| render_from_camera.vector(dp * scale))
+    }
+}

@@ -1,0 +1,46 @@
+//! Structures that find what a ray hits. They do not change the picture.
+
+/// How a bounding volume hierarchy is split.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BvhSplit {
+    /// By the surface area heuristic.
+    #[default]
+    Sah,
+    /// By Morton codes, with the heuristic above them.
+    Hlbvh,
+    /// At the middle of the longest axis.
+    Middle,
+    /// Into halves of equal count.
+    Equal,
+}
+
+/// An acceleration structure.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AcceleratorDesc {
+    /// A bounding volume hierarchy.
+    Bvh {
+        /// Most primitives in a leaf.
+        max_node_prims: i32,
+        /// How nodes are split.
+        split: BvhSplit,
+    },
+    /// A k-d tree.
+    KdTree {
+        /// Cost of a primitive test.
+        intersect_cost: i32,
+        /// Cost of a step down.
+        traversal_cost: i32,
+        /// Part of the cost saved where one side is empty, 0 to 1.
+        empty_bonus: f32,
+        /// Most primitives in a leaf.
+        max_prims: i32,
+        /// Greatest depth; −1 chooses it from the number of primitives.
+        max_depth: i32,
+    },
+}
+
+impl Default for AcceleratorDesc {
+    fn default() -> Self {
+        Self::Bvh { max_node_prims: 4, split: BvhSplit::Sah }
+    }
+}

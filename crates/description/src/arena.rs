@@ -1,0 +1,204 @@
+//! Typed tables, and the memory of where each thing in them was said.
+
+use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::marker::PhantomData;
+use std::ops::{Deref, DerefMut, Index, IndexMut};
+
+use crate::Span;
+
+/// Where a thing was said: the whole statement, and each of its parameters.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// The statement as a whole; [`Span::NONE`] for what was built by hand.
+    pub span: Span,
+    /// Spans of the parameters that the author gave, by the format's name for them.
+    pub parameters: Vec<(&'static str, Span)>,
+}
+
+impl Origin {
+    /// The origin of a statement whose parameters are not known one by one.
+    pub fn new(span: Span) -> Self {
+        Self { span, parameters: Vec::new() }
+    }
+
+    /// The place to blame for a parameter: where it was given, or the whole statement if it was left out.
+    pub fn parameter(&self, name: &str) -> Span {
+        self.parameters.iter().find(|(given, _)| *given == name).map_or(self.span, |&(_, span)| span)
+    }
+}
+
+/// A value together with where it was said. Reads and writes like the value itself.
+#[derive(Clone, Debug, Default)]
+pub struct Stated<T> {
+    /// What was said.
+    pub value: T,
+    /// Where it was said.
+    pub origin: Origin,
+}
+
+impl<T> Stated<T> {
+    /// A value with its origin.
+    pub fn new(value: T, origin: Origin) -> Self {
+        Self { value, origin }
+    }
+}
+
+impl<T> From<T> for Stated<T> {
+    fn from(value: T) -> Self {
+        Self { value, origin: Origin::default() }
+    }
+}
+
+impl<T> Deref for Stated<T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        &self.value
+    }
+}
+
+impl<T> DerefMut for Stated<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        &mut self.value
+    }
+}
+
+/// A table that only grows; its items are named by [`Handle`]s and remember their [`Origin`].
+#[derive(Clone, Debug)]
+pub struct Arena<T> {
+    items: Vec<Stated<T>>,
+}
+
+impl<T> Default for Arena<T> {
+    fn default() -> Self {
+        Self { items: Vec::new() }
+    }
+}
+
+impl<T> Arena<T> {
+    /// Adds an item that was said nowhere: one built by hand.
+    pub fn push(&mut self, item: T) -> Handle<T> {
+        self.push_stated(item.into())
+    }
+
+    /// Adds an item with its origin.
+    pub fn push_stated(&mut self, item: Stated<T>) -> Handle<T> {
+        let index = u32::try_from(self.items.len()).expect("invariant: an arena holds fewer than 2^32 items");
+        self.items.push(item);
+        Handle::new(index)
+    }
+
+    /// Where the item was said.
+    pub fn origin(&self, handle: Handle<T>) -> &Origin {
+        &self.items[handle.index()].origin
+    }
+
+    /// The number of items.
+    pub fn len(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Whether there is no item.
+    pub fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
+
+    /// All items in the order in which they were added.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (Handle<T>, &Stated<T>)> {
+        self.items.iter().enumerate().map(|(index, item)| (Handle::new(index as u32), item))
+    }
+
+    /// All items, to be changed in place.
+    pub fn iter_mut(&mut self) -> impl ExactSizeIterator<Item = (Handle<T>, &mut Stated<T>)> {
+        self.items.iter_mut().enumerate().map(|(index, item)| (Handle::new(index as u32), item))
+    }
+}
+
+impl<T> Index<Handle<T>> for Arena<T> {
+    type Output = T;
+    fn index(&self, handle: Handle<T>) -> &T {
+        &self.items[handle.index()].value
+    }
+}
+
+impl<T> IndexMut<Handle<T>> for Arena<T> {
+    fn index_mut(&mut self, handle: Handle<T>) -> &mut T {
+        &mut self.items[handle.index()].value
+    }
+}
+
+impl<T> FromIterator<Stated<T>> for Arena<T> {
+    fn from_iter<I: IntoIterator<Item = Stated<T>>>(items: I) -> Self {
+        Self { items: items.into_iter().collect() }
+    }
+}
+
+/// The name of an item in an [`Arena`] of the same type.
+pub struct Handle<T> {
+    index: u32,
+    item: PhantomData<fn() -> T>,
+}
+
+impl<T> Handle<T> {
+    /// The handle of the item at `index`, counted in order of addition.
+    pub fn new(index: u32) -> Self {
+        Self { index, item: PhantomData }
+    }
+
+    /// The place of the item in order of addition.
+    pub fn index(self) -> usize {
+        self.index as usize
+    }
+}
+
+impl<T> Copy for Handle<T> {}
+impl<T> Clone for Handle<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Eq for Handle<T> {}
+impl<T> PartialEq for Handle<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
+}
+impl<T> Hash for Handle<T> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.index.hash(state);
+    }
+}
+impl<T> fmt::Debug for Handle<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{}", self.index)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::FileId;
+
+    #[test]
+    fn handles_name_what_was_pushed() {
+        let mut arena = Arena::default();
+        let a = arena.push("a");
+        let b = arena.push_stated(Stated::new("b", Origin::new(Span::new(FileId(0), 3, 4))));
+        assert_eq!((arena[a], arena[b]), ("a", "b"));
+        assert_eq!(arena.origin(a).span, Span::NONE);
+        assert_eq!(arena.origin(b).span.start, 3);
+        assert_eq!(
+            arena.iter().map(|(handle, item)| (handle.index(), **item)).collect::<Vec<_>>(),
+            [(0, "a"), (1, "b")]
+        );
+    }
+
+    #[test]
+    fn a_parameter_left_out_blames_the_statement() {
+        let whole = Span::new(FileId(0), 0, 9);
+        let part = Span::new(FileId(0), 4, 6);
+        let origin = Origin { span: whole, parameters: vec![("radius", part)] };
+        assert_eq!(origin.parameter("radius"), part);
+        assert_eq!(origin.parameter("zmin"), whole);
+    }
+}

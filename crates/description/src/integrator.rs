@@ -1,0 +1,159 @@
+//! Light transport algorithms and their settings. `max_depth` counts the edges of a path after the camera's: 0 shows
+//! emission only, 1 adds direct light.
+
+/// How a light is chosen among many.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightSamplerDesc {
+    /// All alike.
+    Uniform,
+    /// By power.
+    Power,
+    /// By a tree of bounds on emission.
+    #[default]
+    Bvh,
+    /// Every light in turn.
+    Exhaustive,
+}
+
+/// An algorithm with its settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum IntegratorDesc {
+    /// Primary rays only; lights are added without shadows.
+    RayCasting,
+    /// Primary and shadow rays, mirror reflection and refraction.
+    Whitted {
+        /// Most reflections and refractions.
+        max_depth: i32,
+    },
+    /// How much of the sky each point sees.
+    AmbientOcclusion {
+        /// Sample directions by the cosine instead of uniformly.
+        cos_sample: bool,
+        /// Hits farther than this do not count.
+        max_distance: f32,
+    },
+    /// Paths that only find light by chance, directions uniform.
+    RandomWalk {
+        /// See above.
+        max_depth: i32,
+    },
+    /// Paths that can be told what to sample.
+    SimplePath {
+        /// See above.
+        max_depth: i32,
+        /// Sample lights at each vertex.
+        sample_lights: bool,
+        /// Sample directions from the BSDF instead of uniformly.
+        sample_bsdf: bool,
+    },
+    /// Paths with light sampling and multiple importance sampling.
+    Path {
+        /// See above.
+        max_depth: i32,
+        /// Roughen surfaces after the first non-specular bounce.
+        regularize: bool,
+        /// How lights are chosen.
+        light_sampler: LightSamplerDesc,
+    },
+    /// Paths through media that only find light by chance.
+    SimpleVolPath {
+        /// See above.
+        max_depth: i32,
+    },
+    /// `Path` with participating media: the format's default.
+    VolPath {
+        /// See above.
+        max_depth: i32,
+        /// Roughen surfaces after the first non-specular bounce.
+        regularize: bool,
+        /// How lights are chosen.
+        light_sampler: LightSamplerDesc,
+    },
+    /// Paths from lights only.
+    LightPath {
+        /// See above.
+        max_depth: i32,
+    },
+    /// Bidirectional path tracing.
+    Bdpt {
+        /// See above.
+        max_depth: i32,
+        /// Roughen surfaces after the first non-specular bounce.
+        regularize: bool,
+        /// Write one image per strategy.
+        visualize_strategies: bool,
+        /// Write one image per strategy, weighted.
+        visualize_weights: bool,
+    },
+    /// Metropolis light transport in primary sample space.
+    Mlt(MltDesc),
+    /// Stochastic progressive photon mapping.
+    Sppm(SppmDesc),
+    /// Integrates an analytic function over the unit square instead of a scene: for the study of samplers.
+    Function {
+        /// The function's name.
+        function: String,
+        /// Leave sample counts out for which the sampler is not made.
+        skip_bad: bool,
+        /// A picture to integrate instead.
+        image_filename: Option<String>,
+    },
+}
+
+/// Settings of Metropolis light transport.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MltDesc {
+    /// Greatest depth of a path.
+    pub max_depth: i32,
+    /// Samples that find where chains start.
+    pub bootstrap_samples: i32,
+    /// Chains.
+    pub chains: i32,
+    /// Mutations per pixel on average.
+    pub mutations_per_pixel: i32,
+    /// Probability of a large step.
+    pub large_step_probability: f32,
+    /// Standard deviation of a small step.
+    pub sigma: f32,
+    /// Roughen surfaces after the first non-specular bounce.
+    pub regularize: bool,
+}
+
+impl Default for MltDesc {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            bootstrap_samples: 100_000,
+            chains: 1000,
+            mutations_per_pixel: 100,
+            large_step_probability: 0.3,
+            sigma: 0.01,
+            regularize: false,
+        }
+    }
+}
+
+/// Settings of stochastic progressive photon mapping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SppmDesc {
+    /// Greatest depth of a path.
+    pub max_depth: i32,
+    /// Photons per pass; as many as pixels if absent.
+    pub photons_per_iteration: Option<i32>,
+    /// First search radius in world units.
+    pub radius: f32,
+    /// Seed of the photons; the scene's if absent.
+    pub seed: Option<i32>,
+}
+
+impl Default for SppmDesc {
+    fn default() -> Self {
+        Self { max_depth: 5, photons_per_iteration: None, radius: 1.0, seed: None }
+    }
+}
+
+impl Default for IntegratorDesc {
+    fn default() -> Self {
+        Self::VolPath { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh }
+    }
+}

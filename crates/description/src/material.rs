@@ -1,0 +1,267 @@
+//! Materials: how surfaces scatter light.
+
+use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
+
+/// A material.
+#[derive(Clone, Debug)]
+pub struct MaterialDesc {
+    /// The name it was given; empty for one without.
+    pub name: String,
+    /// Which one.
+    pub kind: MaterialKind,
+    /// A tangent-space normal map.
+    pub normal_map: Option<Handle<ImageDesc>>,
+    /// A height that bends normals (on meshes cut finely enough: that moves the surface).
+    pub displacement: Option<FloatParameter>,
+}
+
+impl From<MaterialKind> for MaterialDesc {
+    fn from(kind: MaterialKind) -> Self {
+        Self { name: String::new(), kind, normal_map: None, displacement: None }
+    }
+}
+
+impl Default for MaterialDesc {
+    fn default() -> Self {
+        MaterialKind::Diffuse { reflectance: 0.5.into() }.into()
+    }
+}
+
+/// Roughness of a microfacet surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoughnessDesc {
+    /// Along the surface's u direction.
+    pub u: FloatParameter,
+    /// Along v.
+    pub v: FloatParameter,
+    /// The values are perceptual: α is their square root.
+    pub remap: bool,
+}
+
+impl RoughnessDesc {
+    /// The same roughness both ways, remapped.
+    pub fn isotropic(roughness: f32) -> Self {
+        Self { u: roughness.into(), v: roughness.into(), remap: true }
+    }
+}
+
+impl Default for RoughnessDesc {
+    fn default() -> Self {
+        Self::isotropic(0.0)
+    }
+}
+
+/// What a conductor reflects.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ConductorReflectance {
+    /// By its complex index of refraction.
+    Index {
+        /// Real part.
+        eta: SpectrumParameter,
+        /// Imaginary part.
+        k: SpectrumParameter,
+    },
+    /// By its colour at normal incidence.
+    Reflectance(SpectrumParameter),
+}
+
+impl Default for ConductorReflectance {
+    fn default() -> Self {
+        Self::Index {
+            eta: SpectrumDesc::Named("metal-Cu-eta".into()).into(),
+            k: SpectrumDesc::Named("metal-Cu-k".into()).into(),
+        }
+    }
+}
+
+/// The materials of the format.
+#[derive(Clone, Debug)]
+pub enum MaterialKind {
+    /// Lambertian reflection.
+    Diffuse {
+        /// Albedo.
+        reflectance: SpectrumParameter,
+    },
+    /// Lambertian reflection and transmission.
+    DiffuseTransmission {
+        /// Part reflected.
+        reflectance: SpectrumParameter,
+        /// Part transmitted.
+        transmittance: SpectrumParameter,
+        /// Factor on both.
+        scale: f32,
+    },
+    /// Metal.
+    Conductor(ConductorDesc),
+    /// Glass, water.
+    Dielectric {
+        /// Index of refraction.
+        eta: SpectrumDesc,
+        /// Roughness of the interface.
+        roughness: RoughnessDesc,
+    },
+    /// A thin sheet of glass, both interfaces at once.
+    ThinDielectric {
+        /// Index of refraction.
+        eta: SpectrumDesc,
+    },
+    /// A diffuse surface under a dielectric coat.
+    CoatedDiffuse(CoatedDiffuseDesc),
+    /// A metal under a dielectric coat.
+    CoatedConductor(CoatedConductorDesc),
+    /// A fibre.
+    Hair {
+        /// Its absorption, said in one of three ways.
+        color: HairColor,
+        /// Index of refraction.
+        eta: FloatParameter,
+        /// Longitudinal roughness.
+        beta_m: FloatParameter,
+        /// Azimuthal roughness.
+        beta_n: FloatParameter,
+        /// Angle of the scales in degrees.
+        alpha: FloatParameter,
+    },
+    /// A dielectric surface over a scattering inside.
+    Subsurface {
+        /// What is inside, said in one of three ways.
+        scattering: SubsurfaceScattering,
+        /// Factor on the coefficients (1/scene unit for coefficients in 1/mm).
+        scale: f32,
+        /// Index of refraction.
+        eta: f32,
+        /// Henyey–Greenstein asymmetry.
+        g: f32,
+        /// Roughness of the interface.
+        roughness: RoughnessDesc,
+    },
+    /// A measured BSDF.
+    Measured {
+        /// Path of the measurement.
+        filename: String,
+    },
+    /// One of two materials, chosen at random.
+    Mix {
+        /// The two.
+        materials: [Handle<MaterialDesc>; 2],
+        /// Probability of the second.
+        amount: FloatParameter,
+    },
+    /// No surface at all: only a change of medium.
+    Interface,
+}
+
+/// A metal.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ConductorDesc {
+    /// What it reflects.
+    pub reflectance: ConductorReflectance,
+    /// Its roughness.
+    pub roughness: RoughnessDesc,
+}
+
+/// How the inside of a layered material is simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayersDesc {
+    /// Thickness of the coat.
+    pub thickness: FloatParameter,
+    /// Single-scattering albedo of the medium in it; 0 for no medium.
+    pub albedo: SpectrumParameter,
+    /// Henyey–Greenstein asymmetry of that medium.
+    pub g: FloatParameter,
+    /// Most events of a random walk.
+    pub max_depth: i32,
+    /// Random walks averaged per evaluation.
+    pub samples: i32,
+}
+
+impl Default for LayersDesc {
+    fn default() -> Self {
+        Self { thickness: 0.01.into(), albedo: 0.0.into(), g: 0.0.into(), max_depth: 10, samples: 1 }
+    }
+}
+
+/// A diffuse surface under a dielectric coat.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoatedDiffuseDesc {
+    /// Albedo of the surface.
+    pub reflectance: SpectrumParameter,
+    /// Index of refraction of the coat.
+    pub eta: SpectrumDesc,
+    /// Roughness of the coat.
+    pub roughness: RoughnessDesc,
+    /// The inside of the coat.
+    pub layers: LayersDesc,
+}
+
+impl Default for CoatedDiffuseDesc {
+    fn default() -> Self {
+        Self {
+            reflectance: 0.5.into(),
+            eta: SpectrumDesc::Constant(1.5),
+            roughness: RoughnessDesc::default(),
+            layers: LayersDesc::default(),
+        }
+    }
+}
+
+/// A metal under a dielectric coat.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoatedConductorDesc {
+    /// The metal.
+    pub conductor: ConductorDesc,
+    /// Index of refraction of the coat.
+    pub eta: SpectrumDesc,
+    /// Roughness of the coat.
+    pub roughness: RoughnessDesc,
+    /// The inside of the coat.
+    pub layers: LayersDesc,
+}
+
+impl Default for CoatedConductorDesc {
+    fn default() -> Self {
+        Self {
+            conductor: ConductorDesc::default(),
+            eta: SpectrumDesc::Constant(1.5),
+            roughness: RoughnessDesc::default(),
+            layers: LayersDesc::default(),
+        }
+    }
+}
+
+/// The absorption in a fibre.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HairColor {
+    /// Coefficient per fibre diameter.
+    SigmaA(SpectrumParameter),
+    /// The colour that a mass of such hair has.
+    Reflectance(SpectrumParameter),
+    /// Concentrations of pigment.
+    Melanin {
+        /// Brown.
+        eumelanin: FloatParameter,
+        /// Red.
+        pheomelanin: FloatParameter,
+    },
+}
+
+/// The scattering inside a subsurface material.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SubsurfaceScattering {
+    /// A measured substance of the format's table.
+    Named(String),
+    /// Coefficients in 1/mm.
+    Coefficients {
+        /// Absorption.
+        sigma_a: SpectrumParameter,
+        /// Scattering.
+        sigma_s: SpectrumParameter,
+    },
+    /// The colour it shall have.
+    Reflectance {
+        /// The colour.
+        reflectance: SpectrumParameter,
+        /// Mean free path in mm.
+        mfp: SpectrumParameter,
+    },
+}

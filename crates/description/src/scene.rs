@@ -1,0 +1,58 @@
+//! The scene as a whole.
+
+use crate::{
+    AcceleratorDesc, AreaLightDesc, Arena, CameraDesc, FilmDesc, FilterDesc, FloatTextureDesc, ImageDesc,
+    InstanceDesc, IntegratorDesc, LightDesc, MaterialDesc, MediumDesc, ObjectDesc, OptionsDesc, SamplerDesc,
+    ShapeDesc, SpectrumTextureDesc, Stated,
+};
+
+/// Everything that the author of a scene said. The default is a valid empty scene with the format's default camera,
+/// film and algorithm.
+///
+/// ```
+/// use alhazen_description::{LightKind, MaterialKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, InfiniteRadiance};
+///
+/// let mut desc = SceneDesc::default();
+/// let red = desc.materials.push(MaterialKind::Diffuse { reflectance: SpectrumDesc::rgb(0.6, 0.1, 0.1).into() }.into());
+/// let sphere = ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 360.0 };
+/// desc.shapes.push(ShapeDesc { material: Some(red), ..sphere.into() });
+/// let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(1.0));
+/// desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct SceneDesc {
+    /// Options of the renderer.
+    pub options: Stated<OptionsDesc>,
+    /// The film.
+    pub film: Stated<FilmDesc>,
+    /// The camera.
+    pub camera: Stated<CameraDesc>,
+    /// The pixel filter.
+    pub filter: Stated<FilterDesc>,
+    /// The sampler.
+    pub sampler: Stated<SamplerDesc>,
+    /// The light transport algorithm.
+    pub integrator: Stated<IntegratorDesc>,
+    /// The acceleration structure.
+    pub accelerator: Stated<AcceleratorDesc>,
+    /// Decoded images, each file once.
+    pub images: Arena<ImageDesc>,
+    /// Textures of numbers. A texture refers only to textures before it.
+    pub float_textures: Arena<FloatTextureDesc>,
+    /// Textures of spectra. A texture refers only to textures before it.
+    pub spectrum_textures: Arena<SpectrumTextureDesc>,
+    /// Materials. A `Mix` may refer to any other, but never to itself by any way.
+    pub materials: Arena<MaterialDesc>,
+    /// Participating media.
+    pub media: Arena<MediumDesc>,
+    /// Lights that are not surfaces.
+    pub lights: Arena<LightDesc>,
+    /// Emission of surfaces.
+    pub area_lights: Arena<AreaLightDesc>,
+    /// Shapes of the world.
+    pub shapes: Arena<ShapeDesc>,
+    /// Objects for instances.
+    pub objects: Arena<ObjectDesc>,
+    /// Instances of objects.
+    pub instances: Arena<InstanceDesc>,
+}

@@ -1,0 +1,199 @@
+//! Shapes, objects made of shapes, and instances of objects.
+
+use std::sync::Arc;
+
+use math::{Normal3, Point2, Point3, Vector3};
+
+use crate::{
+    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, TransformDesc,
+};
+
+/// A shape with everything that holds for it.
+#[derive(Clone, Debug)]
+pub struct ShapeDesc {
+    /// Which one.
+    pub kind: ShapeKind,
+    /// From the shape's space to the world (for a shape of an object: to the object's space).
+    pub world_from_object: TransformDesc,
+    /// Turn its normals round.
+    pub reverse_orientation: bool,
+    /// Its material; the format's default (grey, diffuse) if absent.
+    pub material: Option<Handle<MaterialDesc>>,
+    /// Its emission.
+    pub area_light: Option<Handle<AreaLightDesc>>,
+    /// Where it is there: 0 not, 1 entirely.
+    pub alpha: Option<FloatParameter>,
+    /// The media on its two sides; the camera's side if absent.
+    pub medium_interface: Option<MediumInterface>,
+}
+
+impl From<ShapeKind> for ShapeDesc {
+    fn from(kind: ShapeKind) -> Self {
+        Self {
+            kind,
+            world_from_object: TransformDesc::default(),
+            reverse_orientation: false,
+            material: None,
+            area_light: None,
+            alpha: None,
+            medium_interface: None,
+        }
+    }
+}
+
+/// The shapes of the format, and an infinite plane. Angles are in degrees.
+#[derive(Clone, Debug)]
+pub enum ShapeKind {
+    /// About the origin.
+    Sphere {
+        /// Radius.
+        radius: f32,
+        /// Lowest z.
+        z_min: f32,
+        /// Highest z.
+        z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// About the z axis.
+    Cylinder {
+        /// Radius.
+        radius: f32,
+        /// Lowest z.
+        z_min: f32,
+        /// Highest z.
+        z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// Across the z axis.
+    Disk {
+        /// Its z.
+        height: f32,
+        /// Radius.
+        radius: f32,
+        /// Radius of the hole.
+        inner_radius: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// The plane z = 0.
+    Plane,
+    /// Triangles.
+    Triangles(MeshDesc),
+    /// Bilinear patches.
+    Patches(PatchMeshDesc),
+    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches). Either may be empty, not both.
+    PlyMesh {
+        /// Its triangles (and larger polygons, cut).
+        triangles: MeshDesc,
+        /// Its quadrilaterals.
+        patches: PatchMeshDesc,
+        /// A height along the normal by which the surface is moved.
+        displacement: Option<FloatParameter>,
+        /// Longest edge of the moved surface in pixels.
+        edge_length: f32,
+    },
+    /// A curve.
+    Curve(CurveDesc),
+    /// The limit surface of a triangle mesh.
+    LoopSubdivision {
+        /// The coarse mesh.
+        mesh: MeshDesc,
+        /// Times that it is divided.
+        levels: i32,
+    },
+}
+
+/// Triangles that share vertices. Per-vertex arrays are empty or as long as `positions`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshDesc {
+    /// Three vertices each.
+    pub indices: Arc<[[u32; 3]]>,
+    /// Vertex positions.
+    pub positions: Arc<[Point3]>,
+    /// Vertex normals.
+    pub normals: Arc<[Normal3]>,
+    /// Vertex tangents.
+    pub tangents: Arc<[Vector3]>,
+    /// Vertex texture coordinates.
+    pub uvs: Arc<[Point2]>,
+    /// A number per triangle, as the file gave it; or empty.
+    pub face_indices: Arc<[i32]>,
+}
+
+/// Bilinear patches that share vertices. Per-vertex arrays are empty or as long as `positions`.
+#[derive(Clone, Debug, Default)]
+pub struct PatchMeshDesc {
+    /// Vertices at (u, v) = (0, 0), (1, 0), (0, 1), (1, 1).
+    pub indices: Arc<[[u32; 4]]>,
+    /// Vertex positions.
+    pub positions: Arc<[Point3]>,
+    /// Vertex normals.
+    pub normals: Arc<[Normal3]>,
+    /// Vertex texture coordinates.
+    pub uvs: Arc<[Point2]>,
+    /// A number per patch, as the file gave it; or empty.
+    pub face_indices: Arc<[i32]>,
+    /// An image that says where on the patch light is sampled.
+    pub emission_image: Option<Handle<ImageDesc>>,
+}
+
+/// A curve: cubic or quadratic segments swept by a profile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveDesc {
+    /// Control points.
+    pub control_points: Arc<[Point3]>,
+    /// 2 or 3.
+    pub degree: i32,
+    /// Basis of the control points.
+    pub basis: CurveBasis,
+    /// What is swept.
+    pub profile: CurveProfile,
+    /// Normals at the ends of segments, for ribbons; else empty.
+    pub normals: Arc<[Normal3]>,
+    /// Width at the start and at the end.
+    pub width: [f32; 2],
+    /// Each segment is cut into 2^depth parts.
+    pub split_depth: i32,
+}
+
+/// Basis of a curve's control points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CurveBasis {
+    /// Bézier.
+    #[default]
+    Bezier,
+    /// Uniform B-spline.
+    BSpline,
+}
+
+/// What a curve sweeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CurveProfile {
+    /// A line that always faces the ray.
+    #[default]
+    Flat,
+    /// A line shaded as a round fibre.
+    Cylinder,
+    /// A line turned by normals.
+    Ribbon,
+}
+
+/// Shapes under a name, drawn where instances say.
+#[derive(Clone, Debug, Default)]
+pub struct ObjectDesc {
+    /// Its name.
+    pub name: String,
+    /// Its shapes, in the object's space.
+    pub shapes: Arena<ShapeDesc>,
+}
+
+/// An object, drawn.
+#[derive(Clone, Debug)]
+pub struct InstanceDesc {
+    /// Which one.
+    pub object: Handle<ObjectDesc>,
+    /// From the object's space to the world.
+    pub world_from_object: TransformDesc,
+}

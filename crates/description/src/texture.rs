@@ -1,0 +1,271 @@
+//! Textures: values that vary over surfaces. Numbers and spectra have the same kinds of texture, so that one generic
+//! description serves both.
+
+use math::{DMat4, Vec3};
+
+use crate::{Handle, ImageDesc, SpectrumDesc};
+
+/// A value, or a texture that gives one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parameter<V> {
+    /// The same everywhere.
+    Value(V),
+    /// Looked up.
+    Texture(Handle<TextureDesc<V>>),
+}
+
+/// A number or a texture of numbers.
+pub type FloatParameter = Parameter<f32>;
+/// A spectrum or a texture of spectra.
+pub type SpectrumParameter = Parameter<SpectrumDesc>;
+/// A texture of numbers.
+pub type FloatTextureDesc = TextureDesc<f32>;
+/// A texture of spectra.
+pub type SpectrumTextureDesc = TextureDesc<SpectrumDesc>;
+
+impl<V> Parameter<V> {
+    /// The value, if it is the same everywhere.
+    pub fn value(&self) -> Option<&V> {
+        match self {
+            Self::Value(value) => Some(value),
+            Self::Texture(_) => None,
+        }
+    }
+}
+
+impl From<f32> for FloatParameter {
+    fn from(value: f32) -> Self {
+        Self::Value(value)
+    }
+}
+
+impl From<f32> for SpectrumParameter {
+    fn from(value: f32) -> Self {
+        Self::Value(SpectrumDesc::Constant(value))
+    }
+}
+
+impl From<SpectrumDesc> for SpectrumParameter {
+    fn from(value: SpectrumDesc) -> Self {
+        Self::Value(value)
+    }
+}
+
+impl<V> From<Handle<TextureDesc<V>>> for Parameter<V> {
+    fn from(texture: Handle<TextureDesc<V>>) -> Self {
+        Self::Texture(texture)
+    }
+}
+
+/// A texture.
+#[derive(Clone, Debug)]
+pub struct TextureDesc<V> {
+    /// The name it was given; may be empty.
+    pub name: String,
+    /// Which one.
+    pub kind: TextureKind<V>,
+    /// From texture space to the world: the transform in force where the texture was named. It places mappings and
+    /// patterns that are functions of position.
+    pub world_from_texture: DMat4,
+}
+
+impl<V> TextureDesc<V> {
+    /// A texture without a name, in world space.
+    pub fn new(kind: TextureKind<V>) -> Self {
+        Self { name: String::new(), kind, world_from_texture: DMat4::IDENTITY }
+    }
+}
+
+/// The textures of the format.
+#[derive(Clone, Debug)]
+pub enum TextureKind<V> {
+    /// The same everywhere.
+    Constant(V),
+    /// A product.
+    Scale {
+        /// What is scaled.
+        texture: Parameter<V>,
+        /// By how much.
+        scale: FloatParameter,
+    },
+    /// `(1 − amount)·textures[0] + amount·textures[1]`.
+    Mix {
+        /// What is mixed.
+        textures: [Parameter<V>; 2],
+        /// How much of the second.
+        amount: FloatParameter,
+    },
+    /// A mix by the angle between the normal and a direction: the first texture where they agree.
+    DirectionMix {
+        /// What is mixed.
+        textures: [Parameter<V>; 2],
+        /// The direction, in texture space.
+        direction: Vec3,
+    },
+    /// Bilinear between four corners.
+    Bilerp {
+        /// Values at (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
+        corners: [V; 4],
+        /// Where on the square a point lies.
+        mapping: MappingDesc,
+    },
+    /// An image.
+    Image(ImageTextureDesc),
+    /// Squares or cubes in alternation.
+    Checkerboard {
+        /// The two values.
+        textures: [Parameter<V>; 2],
+        /// Squares in two dimensions; absent for cubes in three, in texture space.
+        mapping: Option<MappingDesc>,
+    },
+    /// Random dots.
+    Dots {
+        /// In a dot.
+        inside: Parameter<V>,
+        /// Elsewhere.
+        outside: Parameter<V>,
+        /// Where on the plane a point lies.
+        mapping: MappingDesc,
+    },
+    /// Fractional Brownian motion. Numbers only.
+    Fbm {
+        /// Octaves.
+        octaves: i32,
+        /// Weight of an octave against the one before.
+        roughness: f32,
+    },
+    /// Turbulence. Numbers only.
+    Wrinkled {
+        /// Octaves.
+        octaves: i32,
+        /// Weight of an octave against the one before.
+        roughness: f32,
+    },
+    /// Waves in the wind. Numbers only.
+    Windy,
+    /// Marble. Spectra only.
+    Marble {
+        /// Octaves.
+        octaves: i32,
+        /// Weight of an octave against the one before.
+        roughness: f32,
+        /// Scale of the pattern.
+        scale: f32,
+        /// How far the noise moves the veins.
+        variation: f32,
+    },
+    /// A Ptex file: described, never decoded.
+    Ptex {
+        /// Its path.
+        filename: String,
+        /// How stored values become linear ones.
+        encoding: EncodingDesc,
+        /// Factor on the values.
+        scale: f32,
+    },
+}
+
+/// An image as a texture.
+#[derive(Clone, Debug)]
+pub struct ImageTextureDesc {
+    /// The image.
+    pub image: Handle<ImageDesc>,
+    /// Where on the image a point lies.
+    pub mapping: MappingDesc,
+    /// How pixels are joined.
+    pub filter: TextureFilter,
+    /// Most elongated footprint that `Ewa` follows.
+    pub max_anisotropy: f32,
+    /// What lies beyond the image.
+    pub wrap: WrapMode,
+    /// Factor on the values.
+    pub scale: f32,
+    /// One minus the value (after the factor).
+    pub invert: bool,
+    /// How stored values become linear ones; by the file's type if absent (sRGB for 8 bits).
+    pub encoding: Option<EncodingDesc>,
+}
+
+impl ImageTextureDesc {
+    /// An image with the defaults of the format.
+    pub fn new(image: Handle<ImageDesc>) -> Self {
+        Self {
+            image,
+            mapping: MappingDesc::default(),
+            filter: TextureFilter::Bilinear,
+            max_anisotropy: 8.0,
+            wrap: WrapMode::Repeat,
+            scale: 1.0,
+            invert: false,
+            encoding: None,
+        }
+    }
+}
+
+/// How pixels are joined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TextureFilter {
+    /// The nearest one.
+    Point,
+    /// Bilinear, finest level.
+    #[default]
+    Bilinear,
+    /// Bilinear in the two nearest levels.
+    Trilinear,
+    /// An elliptical Gaussian.
+    Ewa,
+}
+
+/// What lies beyond an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WrapMode {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// Zero.
+    Black,
+    /// Its edge.
+    Clamp,
+    /// The other side of an octahedral map.
+    OctahedralSphere,
+}
+
+/// How stored values become linear ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EncodingDesc {
+    /// They are.
+    Linear,
+    /// The sRGB curve.
+    Srgb,
+    /// A power.
+    Gamma(f32),
+}
+
+/// Where on the unit square of a texture a point lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MappingDesc {
+    /// `(scale · uv + delta)` of the surface's own parameters.
+    Uv {
+        /// Factors on u and v.
+        scale: [f32; 2],
+        /// Added to them.
+        delta: [f32; 2],
+    },
+    /// Polar angles about the origin of texture space.
+    Spherical,
+    /// Angle about, and height along, the z axis of texture space.
+    Cylindrical,
+    /// `(p · axes[0] + delta[0], p · axes[1] + delta[1])` in texture space.
+    Planar {
+        /// The two vectors.
+        axes: [Vec3; 2],
+        /// Added.
+        delta: [f32; 2],
+    },
+}
+
+impl Default for MappingDesc {
+    fn default() -> Self {
+        Self::Uv { scale: [1.0, 1.0], delta: [0.0, 0.0] }
+    }
+}

@@ -1,0 +1,219 @@
+//! File formats: bytes ↔ [`Image`].
+//!
+//! Each member of [`Format`] is known by its first bytes, then by the extension of its name (TGA has no signature).
+//! Decoders are fed with bytes of strangers: a size that a header claims is held against what its bytes could possibly hold
+//! before memory is taken for it, and a panic inside a third-party decoder becomes [`ImageError::Invalid`].
+
+mod exr;
+mod pfm;
+mod raster;
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{self, Write},
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::{Path, PathBuf},
+};
+
+use crate::{encoding::ColorEncoding, error::ImageError, image::Image};
+
+/// A file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// OpenEXR: half or single floats, any channels, metadata.
+    Exr,
+    /// Portable Network Graphics: 8 or 16 bits.
+    Png,
+    /// JPEG: 8 bits, lossy.
+    Jpeg,
+    /// Radiance RGBE: colours that share an exponent.
+    Hdr,
+    /// Truevision TGA: 8 bits.
+    Tga,
+    /// Portable float map: single floats, one or three channels.
+    Pfm,
+    /// Windows bitmap: 8 bits.
+    Bmp,
+    /// Quite OK Image: 8 bits.
+    Qoi,
+    /// Tagged Image File Format: 8 or 16 bits, or floats.
+    Tiff,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Self; 9] =
+        [Self::Exr, Self::Png, Self::Jpeg, Self::Hdr, Self::Tga, Self::Pfm, Self::Bmp, Self::Qoi, Self::Tiff];
+
+    /// The extensions of its file names; the first is the usual one.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Exr => &["exr"],
+            Self::Png => &["png"],
+            Self::Jpeg => &["jpg", "jpeg"],
+            Self::Hdr => &["hdr", "pic", "rgbe"],
+            Self::Tga => &["tga"],
+            Self::Pfm => &["pfm"],
+            Self::Bmp => &["bmp"],
+            Self::Qoi => &["qoi"],
+            Self::Tiff => &["tif", "tiff"],
+        }
+    }
+
+    /// The format of a name's extension, whatever its case.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let extension = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
+        Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()))
+    }
+
+    /// The format that these first bytes are the signature of; never [`Format::Tga`], which has none.
+    pub fn from_content(bytes: &[u8]) -> Option<Self> {
+        match bytes {
+            [0x76, 0x2f, 0x31, 0x01, ..] => Some(Self::Exr),
+            [0x89, b'P', b'N', b'G', ..] => Some(Self::Png),
+            [0xff, 0xd8, 0xff, ..] => Some(Self::Jpeg),
+            [b'#', b'?', ..] => Some(Self::Hdr),
+            [b'P', b'F' | b'f', space, ..] if space.is_ascii_whitespace() => Some(Self::Pfm),
+            [b'B', b'M', ..] => Some(Self::Bmp),
+            [b'q', b'o', b'i', b'f', ..] => Some(Self::Qoi),
+            [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Some(Self::Tiff),
+            _ => None,
+        }
+    }
+}
+
+/// How to read.
+#[derive(Clone, Debug)]
+pub struct ReadOptions {
+    /// What integer codes stand for; `None` means sRGB. Floating-point files are linear whatever this says.
+    pub encoding: Option<ColorEncoding>,
+    /// The most bytes that a decoded image may take; 16 GiB by default.
+    pub max_bytes: u64,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self { encoding: None, max_bytes: 16 << 30 }
+    }
+}
+
+impl ReadOptions {
+    fn encoding(&self) -> ColorEncoding {
+        self.encoding.unwrap_or_default()
+    }
+
+    /// The most bytes that a decoded image may take, given the length of its file. No format here packs more than some thousand
+    /// bytes into one, so a small file that claims a huge picture is lying.
+    fn byte_limit(&self, file_length: usize) -> u64 {
+        const GREATEST_RATIO: u64 = 4096;
+        const ALWAYS_ALLOWED: u64 = 64 << 20;
+        self.max_bytes.min((file_length as u64).saturating_mul(GREATEST_RATIO).max(ALWAYS_ALLOWED))
+    }
+
+    /// Refuses `width` × `height` pixels of `pixel_bytes` where they exceed the limit.
+    fn check_size(
+        &self,
+        width: usize,
+        height: usize,
+        pixel_bytes: usize,
+        file_length: usize,
+    ) -> Result<(), ImageError> {
+        let needed = width as u128 * height as u128 * pixel_bytes as u128;
+        let limit = self.byte_limit(file_length);
+        if needed > u128::from(limit) {
+            return Err(ImageError::Limits(format!(
+                "{width} × {height} pixels need {needed} bytes; for a file of {file_length} bytes at most {limit} are allowed"
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// How values are stored in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SampleDepth {
+    /// What suits the format: in EXR the depth of the image in memory (halves for 8-bit images), in TIFF single floats for
+    /// floating-point images, else 8 bits where the format has integers.
+    #[default]
+    Natural,
+    /// 8-bit codes.
+    U8,
+    /// 16-bit codes.
+    U16,
+    /// Half floats.
+    F16,
+    /// Single floats.
+    F32,
+}
+
+/// How to write.
+#[derive(Clone, Debug, Default)]
+pub struct WriteOptions {
+    /// How values are stored; a depth that the format does not have is refused.
+    pub depth: SampleDepth,
+}
+
+/// Decodes the bytes of a file. `name` is used where the content does not tell the format, and may be empty.
+pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, ImageError> {
+    let Some(format) = Format::from_content(bytes).or_else(|| Format::from_name(name)) else {
+        return Err(ImageError::Unsupported("neither content nor name tell a known image format".into()));
+    };
+    let decode = || match format {
+        Format::Exr => exr::decode(bytes, options),
+        Format::Pfm => pfm::decode(bytes, options),
+        _ => raster::decode(bytes, format, options),
+    };
+    // The decoders of other crates are not proof against every byte string; a damaged picture must not end a render.
+    catch_unwind(AssertUnwindSafe(decode))
+        .unwrap_or_else(|_| Err(ImageError::Invalid(format!("damaged {format:?} data"))))
+}
+
+/// Encodes an image as the bytes of a file. Integer formats hold sRGB codes of the colour clamped to [0, 1].
+pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
+    match format {
+        Format::Exr => exr::encode(image, options),
+        Format::Pfm => pfm::encode(image, options),
+        _ => raster::encode(image, format, options),
+    }
+}
+
+/// Writes an image to a file in the format of its extension. The file appears whole or not at all: it is written beside its
+/// final place and then moved there.
+pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    let Some(format) = Format::from_name(&path.to_string_lossy()) else {
+        let known = Format::ALL.map(|format| format.extensions()[0]).join(", ");
+        return Err(ImageError::Unsupported(format!(
+            "cannot tell the format of {}; known are {known}",
+            path.display()
+        )));
+    };
+    Ok(replace_file(path, &encode(image, format, options)?)?)
+}
+
+fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
+        return fs::write(path, bytes);
+    }
+    let (mut file, temporary) = create_beside(path)?;
+    let written =
+        file.write_all(bytes).and_then(|()| file.sync_all()).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The first error is the one to tell; a leftover that cannot be removed either changes nothing about it.
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+/// Creates a new file in the folder of `path`, so that it can be renamed to it.
+fn create_beside(path: &Path) -> io::Result<(File, PathBuf)> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut attempt = 0;
+    loop {
+        let temporary = path.with_file_name(format!(".{name}.{}-{attempt}.part", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => attempt += 1,
+            result => return result.map(|file| (file, temporary)),
+        }
+    }
+}

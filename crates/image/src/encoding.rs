@@ -1,0 +1,118 @@
+//! How the codes of an integer image stand for linear values.
+//!
+//! sRGB [IEC 61966-2-1]: linear = c / 12.92 for c ≤ 0.04045, else ((c + 0.055) / 1.055)^2.4. Gamma x: linear = c^x.
+//! Codes and linear values both run over [0, 1].
+
+use std::fmt;
+
+/// How integer codes stand for linear values; floating-point images are always linear.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum ColorEncoding {
+    /// The code is the value.
+    Linear,
+    /// The sRGB transfer function.
+    #[default]
+    Srgb,
+    /// linear = code^γ.
+    Gamma(f32),
+}
+
+impl ColorEncoding {
+    /// The encoding of a name as scene files write it: `sRGB`, `linear` or `gamma 2.2`; `None` if it is none of these.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name.split_whitespace().collect::<Vec<_>>()[..] {
+            ["sRGB"] => Some(Self::Srgb),
+            ["linear"] => Some(Self::Linear),
+            ["gamma", exponent] => {
+                exponent.parse().ok().filter(|gamma: &f32| gamma.is_finite() && *gamma > 0.0).map(Self::Gamma)
+            }
+            _ => None,
+        }
+    }
+
+    /// The linear value of a code in [0, 1].
+    pub fn to_linear(self, code: f32) -> f32 {
+        match self {
+            Self::Linear => code,
+            Self::Srgb => linear_from_srgb(code),
+            Self::Gamma(gamma) => code.max(0.0).powf(gamma),
+        }
+    }
+
+    /// The code in [0, 1] of a linear value, clamped; NaN becomes 0.
+    pub fn from_linear(self, linear: f32) -> f32 {
+        let value = at_most(linear, 1.0);
+        match self {
+            Self::Linear => value,
+            Self::Srgb => srgb_from_linear(value),
+            Self::Gamma(gamma) => value.powf(1.0 / gamma),
+        }
+    }
+
+    /// The nearest 8-bit code of a linear value.
+    pub fn quantize(self, linear: f32) -> u8 {
+        (self.from_linear(linear) * 255.0 + 0.5) as u8
+    }
+
+    /// The linear values of all 8-bit codes.
+    pub fn table(self) -> [f32; 256] {
+        std::array::from_fn(|code| self.to_linear(code as f32 / 255.0))
+    }
+}
+
+impl fmt::Display for ColorEncoding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Linear => f.write_str("linear"),
+            Self::Srgb => f.write_str("sRGB"),
+            Self::Gamma(gamma) => write!(f, "gamma {gamma}"),
+        }
+    }
+}
+
+/// The value clamped to [0, `max`]; NaN becomes 0.
+pub(crate) fn at_most(value: f32, max: f32) -> f32 {
+    if value > 0.0 { value.min(max) } else { 0.0 }
+}
+
+/// The linear value of an sRGB code; values outside [0, 1] follow the same curve.
+pub fn linear_from_srgb(code: f32) -> f32 {
+    if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The sRGB code of a linear value; values outside [0, 1] follow the same curve.
+pub fn srgb_from_linear(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_survives_decoding_and_quantizing() {
+        for encoding in [ColorEncoding::Linear, ColorEncoding::Srgb, ColorEncoding::Gamma(2.2)] {
+            for (code, linear) in encoding.table().into_iter().enumerate() {
+                assert_eq!(encoding.quantize(linear) as usize, code, "{encoding}");
+            }
+        }
+    }
+
+    #[test]
+    fn names_parse_as_they_print() {
+        for encoding in [ColorEncoding::Linear, ColorEncoding::Srgb, ColorEncoding::Gamma(1.8)] {
+            assert_eq!(ColorEncoding::from_name(&encoding.to_string()), Some(encoding));
+        }
+        for wrong in ["", "srgb2", "gamma", "gamma x", "gamma -1", "gamma inf"] {
+            assert_eq!(ColorEncoding::from_name(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn quantizing_clamps_and_survives_nan() {
+        assert_eq!(ColorEncoding::Srgb.quantize(-1.0), 0);
+        assert_eq!(ColorEncoding::Srgb.quantize(7.0), 255);
+        assert_eq!(ColorEncoding::Srgb.quantize(f32::NAN), 0);
+        assert_eq!(ColorEncoding::Srgb.quantize(f32::INFINITY), 255);
+    }
+}

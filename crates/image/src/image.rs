@@ -1,0 +1,378 @@
+//! The pixel array.
+
+use std::{path::Path, sync::Arc};
+
+use half::f16;
+use math::Point2;
+
+use crate::{
+    codec::{self, ReadOptions},
+    encoding::ColorEncoding,
+    error::ImageError,
+    metadata::{ImageMetadata, Window},
+    wrap::WrapMode,
+};
+
+/// The stored values of an image: rows from the top, pixels from the left, channels of a pixel side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Pixels {
+    /// 8-bit codes and what they stand for.
+    U8(Vec<u8>, ColorEncoding),
+    /// Half floats, linear.
+    F16(Vec<f16>),
+    /// Single floats, linear.
+    F32(Vec<f32>),
+}
+
+impl Pixels {
+    fn len(&self) -> usize {
+        match self {
+            Self::U8(values, _) => values.len(),
+            Self::F16(values) => values.len(),
+            Self::F32(values) => values.len(),
+        }
+    }
+
+    fn decoded(&self) -> Arc<[f32]> {
+        match self {
+            Self::U8(_, encoding) => encoding.table().into(),
+            _ => Arc::new([]),
+        }
+    }
+}
+
+/// A rectangle of pixels with named channels. Both sides are at least one pixel.
+#[derive(Clone, Debug)]
+pub struct Image {
+    width: u32,
+    height: u32,
+    channels: Vec<String>,
+    pixels: Pixels,
+    /// The linear values of 8-bit codes; empty where the pixels are floats.
+    decoded: Arc<[f32]>,
+    /// Which channels [`Image::rgb`] reads.
+    color: [usize; 3],
+    /// The channel of opacity, whose 8-bit codes are linear whatever the encoding of the others.
+    alpha: Option<usize>,
+    /// What the picture knows about itself.
+    pub metadata: ImageMetadata,
+}
+
+impl Image {
+    /// An image of the given pixels; refused where sizes contradict each other, or a side or the channel list is empty.
+    pub fn new(
+        width: u32,
+        height: u32,
+        channels: impl IntoIterator<Item = impl Into<String>>,
+        pixels: Pixels,
+    ) -> Result<Self, ImageError> {
+        let channels: Vec<String> = channels.into_iter().map(Into::into).collect();
+        let expected = u128::from(width) * u128::from(height) * channels.len() as u128;
+        if expected == 0 || i32::try_from(width.max(height)).is_err() {
+            return Err(ImageError::Invalid(format!(
+                "{width} × {height} pixels of {} channels",
+                channels.len()
+            )));
+        }
+        if expected != pixels.len() as u128 {
+            return Err(ImageError::Invalid(format!(
+                "{width} × {height} pixels of {} channels cannot have {} values",
+                channels.len(),
+                pixels.len()
+            )));
+        }
+        let (decoded, color, alpha) = (pixels.decoded(), color_channels(&channels), alpha_channel(&channels));
+        let metadata = ImageMetadata::default();
+        Ok(Self { width, height, channels, pixels, decoded, color, alpha, metadata })
+    }
+
+    /// An image of single floats, one pixel after another from a function of (x, y); `N` is the number of channels.
+    ///
+    /// # Panics
+    /// If a side is zero or `channels` is empty.
+    pub fn from_fn<const N: usize>(
+        width: u32,
+        height: u32,
+        channels: [&str; N],
+        mut pixel: impl FnMut(u32, u32) -> [f32; N],
+    ) -> Self {
+        let mut values = Vec::with_capacity(width as usize * height as usize * N);
+        for y in 0..height {
+            for x in 0..width {
+                values.extend_from_slice(&pixel(x, y));
+            }
+        }
+        Self::new(width, height, channels, Pixels::F32(values)).expect("a valid size was asked for")
+    }
+
+    /// Reads a file; the format is found from its content, then its extension.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ImageError> {
+        let path = path.as_ref();
+        codec::read(&std::fs::read(path)?, &path.to_string_lossy(), &ReadOptions::default())
+    }
+
+    /// Number of columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Number of rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The names of the channels, in the order of their values.
+    pub fn channels(&self) -> &[String] {
+        &self.channels
+    }
+
+    /// Number of channels.
+    pub fn channel_count(&self) -> usize {
+        self.channels.len()
+    }
+
+    /// The index of a channel of exactly this name.
+    pub fn channel_index(&self, name: &str) -> Option<usize> {
+        self.channels.iter().position(|channel| channel == name)
+    }
+
+    /// The stored values.
+    pub fn pixels(&self) -> &Pixels {
+        &self.pixels
+    }
+
+    /// Bytes that the pixels take.
+    pub fn byte_size(&self) -> usize {
+        match &self.pixels {
+            Pixels::U8(values, _) => values.len(),
+            Pixels::F16(values) => 2 * values.len(),
+            Pixels::F32(values) => 4 * values.len(),
+        }
+    }
+
+    /// Where the pixels lie in the full frame.
+    pub fn data_window(&self) -> Window {
+        self.metadata.data_window.unwrap_or(Window::of_size(self.width, self.height))
+    }
+
+    /// The full frame, of which the pixels may be a part.
+    pub fn display_window(&self) -> Window {
+        self.metadata.display_window.unwrap_or_else(|| self.data_window())
+    }
+
+    fn offset(&self, x: u32, y: u32) -> usize {
+        (y as usize * self.width as usize + x as usize) * self.channels.len()
+    }
+
+    fn value(&self, index: usize, c: usize) -> f32 {
+        match &self.pixels {
+            Pixels::U8(values, _) if self.alpha == Some(c) => f32::from(values[index]) / 255.0,
+            Pixels::U8(values, _) => self.decoded[values[index] as usize],
+            Pixels::F16(values) => values[index].to_f32(),
+            Pixels::F32(values) => values[index],
+        }
+    }
+
+    /// The linear value of channel `c` at pixel (x, y).
+    ///
+    /// # Panics
+    /// If the pixel or the channel is not in the image.
+    pub fn channel(&self, x: u32, y: u32, c: usize) -> f32 {
+        assert!(x < self.width && y < self.height && c < self.channels.len());
+        self.value(self.offset(x, y) + c, c)
+    }
+
+    /// The linear value of channel `c` at any (x, y).
+    pub fn channel_wrapped(&self, x: i32, y: i32, c: usize, wrap: WrapMode) -> f32 {
+        wrap.apply(x, y, self.width, self.height).map_or(0.0, |(x, y)| self.channel(x, y, c))
+    }
+
+    /// Sets channel `c` of pixel (x, y) to a linear value, as near as the storage can.
+    ///
+    /// # Panics
+    /// If the pixel or the channel is not in the image.
+    pub fn set_channel(&mut self, x: u32, y: u32, c: usize, value: f32) {
+        assert!(x < self.width && y < self.height && c < self.channels.len());
+        let index = self.offset(x, y) + c;
+        match &mut self.pixels {
+            Pixels::U8(values, _) if self.alpha == Some(c) => {
+                values[index] = ColorEncoding::Linear.quantize(value)
+            }
+            Pixels::U8(values, encoding) => values[index] = encoding.quantize(value),
+            Pixels::F16(values) => values[index] = f16::from_f32(value),
+            Pixels::F32(values) => values[index] = value,
+        }
+    }
+
+    /// The linear colour of pixel (x, y): the R, G and B channels (of the first layer that has them), else Y or the first
+    /// channel three times.
+    ///
+    /// # Panics
+    /// If the pixel is not in the image.
+    pub fn rgb(&self, x: u32, y: u32) -> [f32; 3] {
+        assert!(x < self.width && y < self.height);
+        let offset = self.offset(x, y);
+        let at = self.color.map(|c| offset + c);
+        match &self.pixels {
+            Pixels::U8(values, _) => at.map(|index| self.decoded[values[index] as usize]),
+            Pixels::F16(values) => at.map(|index| values[index].to_f32()),
+            Pixels::F32(values) => at.map(|index| values[index]),
+        }
+    }
+
+    /// [`Self::rgb`] at any (x, y).
+    pub fn rgb_wrapped(&self, x: i32, y: i32, wrap: WrapMode) -> [f32; 3] {
+        wrap.apply(x, y, self.width, self.height).map_or([0.0; 3], |(x, y)| self.rgb(x, y))
+    }
+
+    /// Whether the image has colour: R, G and B channels.
+    pub fn is_color(&self) -> bool {
+        self.color[0] != self.color[1]
+    }
+
+    /// The channel of opacity, A, if there is one; of several layers the first.
+    pub fn alpha_index(&self) -> Option<usize> {
+        self.alpha
+    }
+
+    /// The bilinearly interpolated value of a channel at `st`, where [0, 1]² covers the image and t runs down.
+    pub fn bilerp(&self, st: Point2, c: usize, wrap: WrapMode) -> f32 {
+        let [(x, dx), (y, dy)] = self.texel_position(st);
+        let at = |x, y| self.channel_wrapped(x, y, c, wrap);
+        (1.0 - dy) * ((1.0 - dx) * at(x, y) + dx * at(x + 1, y))
+            + dy * ((1.0 - dx) * at(x, y + 1) + dx * at(x + 1, y + 1))
+    }
+
+    /// [`Self::bilerp`] of the colour.
+    pub fn bilerp_rgb(&self, st: Point2, wrap: WrapMode) -> [f32; 3] {
+        let [(x, dx), (y, dy)] = self.texel_position(st);
+        let at = |x, y| self.rgb_wrapped(x, y, wrap);
+        let corners = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
+        std::array::from_fn(|c| {
+            (1.0 - dy) * ((1.0 - dx) * corners[0][c] + dx * corners[1][c])
+                + dy * ((1.0 - dx) * corners[2][c] + dx * corners[3][c])
+        })
+    }
+
+    /// The texel left of and above `st`, whose centre it is nearest to from below, and the distances from it, by axis.
+    fn texel_position(&self, st: Point2) -> [(i32, f32); 2] {
+        [(st.x, self.width), (st.y, self.height)].map(|(coordinate, size)| {
+            let position = coordinate * size as f32 - 0.5;
+            let texel = position.floor().clamp(-1e9, 1e9);
+            (texel as i32, position - texel)
+        })
+    }
+
+    /// The channels of these names, in this order; `None` if one is absent.
+    pub fn select(&self, names: &[&str]) -> Option<Self> {
+        let indices = names.iter().map(|name| self.channel_index(name)).collect::<Option<Vec<_>>>()?;
+        self.gather(self.width, self.height, &indices, names, |x, y| (x, y)).ok()
+    }
+
+    /// The pixels inside `window`, in pixel indices of this image; refused if it is empty or reaches outside.
+    pub fn crop(&self, window: Window) -> Result<Self, ImageError> {
+        let [x0, y0] = window.min;
+        let whole = Window::of_size(self.width, self.height);
+        if x0 < 0 || y0 < 0 || window.max[0] > whole.max[0] || window.max[1] > whole.max[1] {
+            return Err(ImageError::Invalid(format!("{window:?} reaches outside {whole:?}")));
+        }
+        let indices: Vec<usize> = (0..self.channels.len()).collect();
+        let mut image = self.gather(window.width(), window.height(), &indices, &self.channels, |x, y| {
+            (x + x0 as u32, y + y0 as u32)
+        })?;
+        let origin = self.data_window().min;
+        image.metadata.display_window = Some(self.display_window());
+        image.metadata.data_window = Some(Window {
+            min: [origin[0] + x0, origin[1] + y0],
+            max: [origin[0] + window.max[0], origin[1] + window.max[1]],
+        });
+        Ok(image)
+    }
+
+    /// The same image stored as single floats.
+    pub fn to_f32(&self) -> Self {
+        self.with_pixels(Pixels::F32(self.values().collect()))
+    }
+
+    /// The same image stored as half floats; what is too large for them becomes infinite.
+    pub fn to_f16(&self) -> Self {
+        self.with_pixels(Pixels::F16(self.values().map(f16::from_f32).collect()))
+    }
+
+    /// The same image stored as 8-bit codes; values are clamped to [0, 1].
+    pub fn to_u8(&self, encoding: ColorEncoding) -> Self {
+        let count = self.channels.len();
+        let encoding_of =
+            |index| if self.alpha == Some(index % count) { ColorEncoding::Linear } else { encoding };
+        let codes =
+            self.values().enumerate().map(|(index, value)| encoding_of(index).quantize(value)).collect();
+        self.with_pixels(Pixels::U8(codes, encoding))
+    }
+
+    /// The same image stored as `other` is.
+    pub(crate) fn stored_as(&self, other: &Pixels) -> Self {
+        match other {
+            Pixels::U8(_, encoding) => self.to_u8(*encoding),
+            Pixels::F16(_) => self.to_f16(),
+            Pixels::F32(_) => self.to_f32(),
+        }
+    }
+
+    /// All linear values, as stored: row by row, pixel by pixel, channel by channel.
+    pub fn values(&self) -> impl Iterator<Item = f32> + '_ {
+        let count = self.channels.len();
+        (0..self.pixels.len()).map(move |index| self.value(index, index % count))
+    }
+
+    fn with_pixels(&self, pixels: Pixels) -> Self {
+        let (channels, metadata) = (self.channels.clone(), self.metadata.clone());
+        Self { decoded: pixels.decoded(), pixels, channels, metadata, ..*self }
+    }
+
+    /// A new image of `indices` of the channels, whose pixel (x, y) is pixel `source(x, y)` of this one.
+    fn gather(
+        &self,
+        width: u32,
+        height: u32,
+        indices: &[usize],
+        names: &[impl AsRef<str>],
+        source: impl Fn(u32, u32) -> (u32, u32),
+    ) -> Result<Self, ImageError> {
+        let offsets = || {
+            (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).flat_map(|(x, y)| {
+                let (x, y) = source(x, y);
+                let offset = self.offset(x, y);
+                indices.iter().map(move |c| offset + c)
+            })
+        };
+        let pixels = match &self.pixels {
+            Pixels::U8(values, encoding) => Pixels::U8(offsets().map(|i| values[i]).collect(), *encoding),
+            Pixels::F16(values) => Pixels::F16(offsets().map(|i| values[i]).collect()),
+            Pixels::F32(values) => Pixels::F32(offsets().map(|i| values[i]).collect()),
+        };
+        let mut image = Self::new(width, height, names.iter().map(AsRef::as_ref), pixels)?;
+        image.metadata = self.metadata.clone();
+        Ok(image)
+    }
+}
+
+/// Which channels are red, green and blue: R, G, B by name, else those of the first layer that has them ("layer.R"), else Y,
+/// else the first channel.
+fn color_channels(channels: &[String]) -> [usize; 3] {
+    let find = |name: &str| channels.iter().position(|channel| channel == name);
+    let layers = std::iter::once("")
+        .chain(channels.iter().filter_map(|c| c.strip_suffix('R').filter(|l| l.ends_with('.'))));
+    for layer in layers {
+        if let [Some(r), Some(g), Some(b)] = ["R", "G", "B"].map(|c| find(&format!("{layer}{c}"))) {
+            return [r, g, b];
+        }
+    }
+    [find("Y").unwrap_or(0); 3]
+}
+
+fn alpha_channel(channels: &[String]) -> Option<usize> {
+    channels
+        .iter()
+        .position(|name| name == "A")
+        .or_else(|| channels.iter().position(|name| name.ends_with(".A")))
+}

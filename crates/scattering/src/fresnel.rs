@@ -1,0 +1,188 @@
+//! Mirror and refracted directions, and the share of light that a smooth interface reflects.
+//!
+//! With c = cos θ_i and s = sin θ_i, Snell's law η_i sin θ_i = η_t sin θ_t and the relative index η = η_t/η_i,
+//! unpolarised light is reflected by
+//!
+//! ```text
+//! F = (r_∥² + r_⊥²)/2     r_∥ = (η c − cos θ_t)/(η c + cos θ_t)     r_⊥ = (c − η cos θ_t)/(c + η cos θ_t)
+//! ```
+//!
+//! For a conductor η becomes η + i k, and each square a squared modulus. Where a + i b is the root of
+//! (η + i k)² − s²,
+//!
+//! ```text
+//! |r_⊥|² = ((a − c)² + b²)/((a + c)² + b²)     |r_∥|² = |r_⊥|² ((a − s²/c)² + b²)/((a + s²/c)² + b²)
+//! ```
+//!
+//! Sources: [Pharr 2023 §9.3.5, §9.3.6], [Born 1999 §1.5.2, §14.2].
+
+use math::{Normal3, Vector3, safe_sqrt, sqr};
+use spectrum::SampledSpectrum;
+
+/// The mirror image of `wo` about `n`; both point away from the surface.
+#[inline]
+pub fn reflect(wo: Vector3, n: Normal3) -> Vector3 {
+    2.0 * wo.dot(n) * n - wo
+}
+
+/// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i that it met:
+/// `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is reflected inside.
+#[inline]
+pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
+    let cos = n.dot(wi);
+    let (n, cos_i, eta) = if cos < 0.0 { (-n, -cos, 1.0 / eta) } else { (n, cos, eta) };
+    let sin2_t = (1.0 - sqr(cos_i)).max(0.0) / sqr(eta);
+    if sin2_t >= 1.0 {
+        return None;
+    }
+    let cos_t = safe_sqrt(1.0 - sin2_t);
+    Some((n * (cos_i / eta - cos_t) - wi / eta, eta))
+}
+
+/// The reflectance of an interface between dielectrics; `eta` is the relative index met by light with
+/// `cos_theta_i` > 0.
+#[inline]
+#[doc(alias = "FrDielectric")]
+pub fn fr_dielectric(cos_theta_i: f32, eta: f32) -> f32 {
+    let (cos_i, eta) = if cos_theta_i < 0.0 { (-cos_theta_i, 1.0 / eta) } else { (cos_theta_i, eta) };
+    let cos_i = cos_i.min(1.0);
+    let sin2_t = (1.0 - sqr(cos_i)) / sqr(eta);
+    if sin2_t >= 1.0 {
+        return 1.0;
+    }
+    let cos_t = safe_sqrt(1.0 - sin2_t);
+    let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+    let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+    0.5 * (sqr(parallel) + sqr(perpendicular))
+}
+
+/// The reflectance of an interface to a medium of complex index `eta` + i `k`, relative to the medium of the light;
+/// `cos_theta_i` in [0, 1].
+#[inline]
+#[doc(alias = "FrComplex")]
+pub fn fr_complex(cos_theta_i: f32, eta: f32, k: f32) -> f32 {
+    // A cosine whose square is no float any more would leave 0/0 for an index of 1.
+    let cos = cos_theta_i.clamp(1e-12, 1.0);
+    let cos2 = sqr(cos);
+    let sin2 = 1.0 - cos2;
+    let real = (eta - 1.0) * (eta + 1.0) - sqr(k) + cos2;
+    let imaginary = 2.0 * eta * k;
+    let modulus = (sqr(real) + sqr(imaginary)).sqrt();
+    // The larger part of a root comes from the half-angle formula, the smaller from the larger: no cancellation.
+    let larger = (0.5 * (modulus + real.abs())).sqrt();
+    let a = if real >= 0.0 || larger == 0.0 { larger } else { 0.5 * imaginary / larger };
+    let (sum, cross) = (modulus + cos2, 2.0 * cos * a);
+    let perpendicular = (sum - cross) / (sum + cross);
+    let (sum, cross) = (cos2 * modulus + sqr(sin2), cross * sin2);
+    let parallel = perpendicular * (sum - cross) / (sum + cross);
+    0.5 * (parallel + perpendicular)
+}
+
+/// [`fr_complex`] at each wavelength.
+#[inline]
+pub fn fr_conductor(cos_theta_i: f32, eta: SampledSpectrum, k: SampledSpectrum) -> SampledSpectrum {
+    eta.zip(k, |eta, k| fr_complex(cos_theta_i, eta, k))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use math::Vec3;
+    use proptest::prelude::*;
+
+    const INDICES: [f32; 6] = [0.4, 1.0 / 1.5, 1.1, 1.33, 1.5, 2.4];
+
+    #[test]
+    fn normal_incidence() {
+        for eta in INDICES {
+            let expected = sqr((eta - 1.0) / (eta + 1.0));
+            assert!((fr_dielectric(1.0, eta) - expected).abs() < 1e-6);
+            assert!((fr_dielectric(-1.0, eta) - expected).abs() < 1e-6, "the same from below");
+            for k in [0.0, 0.5, 3.0, 10.0] {
+                let expected = (sqr(eta - 1.0) + k * k) / (sqr(eta + 1.0) + k * k);
+                assert!((fr_complex(1.0, eta, k) - expected).abs() < 1e-6, "{eta} + {k} i");
+            }
+        }
+    }
+
+    #[test]
+    fn parallel_light_passes_at_the_angle_of_brewster() {
+        for eta in INDICES {
+            let cos = (1.0 / (1.0 + eta * eta)).sqrt();
+            let perpendicular = sqr((1.0 - eta * eta) / (1.0 + eta * eta));
+            assert!((fr_dielectric(cos, eta) - 0.5 * perpendicular).abs() < 2e-6, "{eta}");
+        }
+    }
+
+    #[test]
+    fn total_reflection_beyond_the_critical_angle() {
+        let critical = (1.0 - sqr(1.0 / 1.5f32)).sqrt();
+        assert_eq!(fr_dielectric(-(critical - 1e-3), 1.5), 1.0);
+        assert!(fr_dielectric(-(critical + 1e-3), 1.5) < 0.9);
+        assert!(refract(Vec3::new(0.8, 0.0, -0.6), Vec3::Z, 1.5).is_none());
+        assert_eq!(fr_dielectric(0.0, 1.5), 1.0, "grazing");
+    }
+
+    /// The same reflectance by complex arithmetic in double precision.
+    fn complex_oracle(cos: f64, eta: f64, k: f64) -> f64 {
+        type C = (f64, f64);
+        let mul = |a: C, b: C| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
+        let norm = |a: C| a.0 * a.0 + a.1 * a.1;
+        let index = (eta, k);
+        let square = mul(index, index);
+        let s = 1.0 - cos * cos;
+        // cos θ_t · index = root of index² − sin², so that both ratios need no division of complex numbers but one.
+        let (re, im) = (square.0 - s, square.1);
+        let modulus = re.hypot(im);
+        let root = (((modulus + re) / 2.0).max(0.0).sqrt(), ((modulus - re) / 2.0).max(0.0).sqrt());
+        let scaled = (square.0 * cos, square.1 * cos);
+        let ratio = |a: C, b: C| norm((a.0 - b.0, a.1 - b.1)) / norm((a.0 + b.0, a.1 + b.1));
+        0.5 * (ratio(scaled, root) + ratio((cos, 0.0), root))
+    }
+
+    proptest! {
+        #[test]
+        fn complex_reflectance_is_that_of_complex_arithmetic(cos in 1e-4f32..1.0, eta in 0.05f32..5.0, k in 0f32..12.0) {
+            let expected = complex_oracle(cos as f64, eta as f64, k as f64) as f32;
+            prop_assert!((fr_complex(cos, eta, k) - expected).abs() < 1e-5);
+        }
+
+        #[test]
+        fn without_absorption_a_conductor_is_a_dielectric(cos in 0.01f32..1.0, eta in 0.3f32..3.0) {
+            prop_assert!((fr_complex(cos, eta, 0.0) - fr_dielectric(cos, eta)).abs() < 2e-4);
+        }
+
+        #[test]
+        fn reflectances_stay_within_one(cos in -1f32..=1.0, eta in 0.2f32..4.0, k in 0f32..12.0) {
+            prop_assert!((0.0..=1.0).contains(&fr_dielectric(cos, eta)));
+            prop_assert!((0.0..=1.00001).contains(&fr_complex(cos, eta, k)));
+        }
+
+        #[test]
+        fn refraction_obeys_snell_and_reverses(x in -1f32..1.0, y in -1f32..1.0, z in -1f32..1.0, eta in 0.4f32..2.5) {
+            let Some(wi) = Vec3::new(x, y, z).try_normalize() else { return Ok(()) };
+            let Some((wt, met)) = refract(wi, Vec3::Z, eta) else { return Ok(()) };
+            prop_assert_eq!(met, if wi.z < 0.0 { 1.0 / eta } else { eta });
+            prop_assert!((wt.length() - 1.0).abs() < 1e-4);
+            prop_assert!(wt.z * wi.z <= 0.0);
+            prop_assert!((wt.x * met + wi.x).abs() < 1e-5 && (wt.y * met + wi.y).abs() < 1e-5);
+            if wt.z.abs() > 0.05 && wi.z.abs() > 0.05 {
+                let (back, _) = refract(wt, Vec3::Z, eta).expect("what came in goes out");
+                prop_assert!((back - wi).length() < 1e-4);
+                prop_assert!((fr_dielectric(wi.z, eta) - fr_dielectric(wt.z, eta)).abs() < 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn no_angle_gives_not_a_number() {
+        for cos in [0.0, 1e-45, 1e-30, 1e-12, 1e-6, 0.5, 1.0, 1.0000002] {
+            for eta in INDICES.into_iter().chain([1.0]) {
+                assert!(fr_dielectric(cos, eta).is_finite() && fr_dielectric(-cos, eta).is_finite());
+                for k in [0.0, 1e-3, 3.0] {
+                    assert!(fr_complex(cos, eta, k).is_finite(), "{cos} {eta} {k}");
+                }
+            }
+        }
+    }
+}

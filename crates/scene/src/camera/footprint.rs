@@ -1,0 +1,62 @@
+//! The footprint of a pixel where ray differentials are missing.
+//!
+//! After a bounce no neighbouring rays are left to say how densely the film samples a surface. The footprint is then taken as if the
+//! point were seen directly, by the smallest differences in origin and direction between the rays of neighbouring pixels anywhere on the
+//! film: textures may be filtered too little, never too much ([Pharr 2023 §10.1.1]). The differences are kept in
+//! the frame whose z is the ray, and meet the surface again in the frame whose z points from the camera to it.
+
+use super::Projection;
+use math::{Frame, Normal3, Point3, Vec2, Vec3, Vector3};
+
+/// How far apart rays of neighbouring pixels are kept to be, one pixel wide: 1/√n for n samples a pixel, but never below
+/// 1/8, as filters blur the picture over a pixel however many samples there are.
+pub fn differential_scale(samples_per_pixel: u32) -> f32 {
+    (samples_per_pixel.max(1) as f32).sqrt().recip().max(0.125)
+}
+
+/// The smallest differences between the rays of neighbouring pixels, in the frame of the ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Of origins, for the neighbours in x and y.
+    origin: [Vector3; 2],
+    /// Of unit directions, for the neighbours in x and y.
+    direction: [Vector3; 2],
+}
+
+impl Footprint {
+    /// Searches along the diagonal of a film of `resolution` pixels.
+    pub fn new(projection: &Projection, resolution: [u32; 2]) -> Self {
+        const STEPS: u32 = 512;
+        let film = Vec2::new(resolution[0] as f32, resolution[1] as f32);
+        let keep_shorter = |shortest: &mut Vector3, v: Vector3| {
+            if v.length_squared() < shortest.length_squared() {
+                *shortest = v;
+            }
+        };
+        let mut least = Self { origin: [Vec3::INFINITY; 2], direction: [Vec3::INFINITY; 2] };
+        for i in 0..STEPS {
+            let (o, d, near) =
+                projection.ray_differential(film * (i as f32 / (STEPS - 1) as f32), Vec2::splat(0.5));
+            let frame = Frame::from_z(d);
+            keep_shorter(&mut least.origin[0], frame.to_local(near.rx_origin - o));
+            keep_shorter(&mut least.origin[1], frame.to_local(near.ry_origin - o));
+            keep_shorter(&mut least.direction[0], frame.to_local(near.rx_direction.normalize()) - Vec3::Z);
+            keep_shorter(&mut least.direction[1], frame.to_local(near.ry_direction.normalize()) - Vec3::Z);
+        }
+        least
+    }
+
+    /// ∂p/∂x and ∂p/∂y in camera space, on the plane through `p` with normal `n`; zero where that plane is seen edge-on.
+    pub fn dp_dxy(&self, p: Point3, n: Normal3) -> [Vector3; 2] {
+        let Some(towards) = p.try_normalize() else { return [Vec3::ZERO; 2] };
+        let frame = Frame::from_z(towards);
+        let n = frame.to_local(n);
+        let p = Vec3::new(0.0, 0.0, p.length());
+        std::array::from_fn(|axis| {
+            let (o, d) = (self.origin[axis], Vec3::Z + self.direction[axis]);
+            let t = n.dot(p - o) / n.dot(d);
+            let dp = o + d * t - p;
+            if dp.is_finite() { frame.from_local(dp) } else { Vec3::ZERO }
+        })
+    }
+}

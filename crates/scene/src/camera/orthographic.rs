@@ -1,0 +1,29 @@
+//! The orthographic camera: all rays are parallel to the axis of view, so that things look the same size at any
+//! distance.
+//!
+//! The film position at screen point (x, y) sees along the ray (x, y, 0) + t·(0, 0, 1) of camera space; a thin lens sends
+//! the ray through another point of the lens towards (x, y, focal distance) ([Pharr 2023 §5.2.1]). A ray with a lens
+//! starts on the lens, not on the screen.
+
+use super::{Screen, ThinLens};
+use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
+
+/// Parallel rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orthographic {
+    screen: Screen,
+    lens: ThinLens,
+}
+
+impl Orthographic {
+    /// The view of the screen `window`, in units of camera space, on `resolution` pixels.
+    pub fn new(window: Bounds2, lens: ThinLens, resolution: [u32; 2]) -> Self {
+        Self { screen: Screen::new(window, resolution), lens }
+    }
+
+    /// Origin and unit direction, in camera space.
+    #[inline]
+    pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
+        self.lens.refract(self.screen.at(film).extend(0.0), Vec3::Z, lens)
+    }
+}

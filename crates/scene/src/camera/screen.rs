@@ -1,0 +1,72 @@
+//! The flat screen and the thin lens that perspective and orthographic cameras share.
+//!
+//! The screen is a rectangle of the plane z = 1 (perspective, scaled by the field of view) or z = 0 (orthographic), seen
+//! as [−1, 1] over its shorter side unless a window is given. A thin lens of radius r at the origin sends every ray that
+//! a pinhole would send through p_focus, its point on the plane z = focal distance, through that same point from another
+//! point of the lens: what lies on the plane is sharp ([Pharr 2023 §5.2.3]).
+
+use description::{LensDesc, ScreenDesc};
+use math::{Bounds2, Point2, Point3, Vec2, Vector3};
+use sampling::warp::sample_uniform_disk_concentric;
+
+/// From film positions to positions on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Screen {
+    top_left: Vec2,
+    per_pixel: Vec2,
+}
+
+impl Screen {
+    /// The screen `window` (y up), filled by `resolution` pixels (width, height).
+    pub fn new(window: Bounds2, resolution: [u32; 2]) -> Self {
+        let size = window.diagonal();
+        Self {
+            top_left: Vec2::new(window.min.x, window.max.y),
+            per_pixel: Vec2::new(size.x / resolution[0] as f32, -size.y / resolution[1] as f32),
+        }
+    }
+
+    /// The part of the screen plane that a picture of `resolution` pixels shows.
+    pub fn window(desc: &ScreenDesc, resolution: [u32; 2]) -> Bounds2 {
+        if let Some([x0, x1, y0, y1]) = desc.window {
+            return Bounds2 { min: Vec2::new(x0, y0), max: Vec2::new(x1, y1) };
+        }
+        let aspect = desc.frame_aspect_ratio.unwrap_or(resolution[0] as f32 / resolution[1] as f32);
+        let half = if aspect > 1.0 { Vec2::new(aspect, 1.0) } else { Vec2::new(1.0, 1.0 / aspect) };
+        Bounds2 { min: -half, max: half }
+    }
+
+    /// The point of the screen at a film position in pixels.
+    #[inline]
+    pub fn at(&self, film: Point2) -> Vec2 {
+        self.top_left + film * self.per_pixel
+    }
+}
+
+/// A lens without thickness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLens {
+    /// Radius; 0 is a pinhole.
+    pub radius: f32,
+    /// Distance along z to the plane of what is sharp.
+    pub focal_distance: f32,
+}
+
+impl From<LensDesc> for ThinLens {
+    fn from(desc: LensDesc) -> Self {
+        Self { radius: desc.radius, focal_distance: desc.focal_distance }
+    }
+}
+
+impl ThinLens {
+    /// Bends the pinhole ray (`o`, `d`) as if it passed through the point of the lens that `u` in [0, 1)² names.
+    #[inline]
+    pub fn refract(&self, o: Point3, d: Vector3, u: Vec2) -> (Point3, Vector3) {
+        if self.radius <= 0.0 {
+            return (o, d.normalize());
+        }
+        let focus = o + d * (self.focal_distance / d.z);
+        let on_lens = (sample_uniform_disk_concentric(u) * self.radius).extend(0.0);
+        (on_lens, (focus - on_lens).normalize())
+    }
+}

@@ -1,0 +1,81 @@
+//! What a spectrum stands for, and spectra as the author named them.
+
+use description::{ColorSpaceDesc, Diagnostic, Span, SpectrumDesc};
+use spectrum::{Rgb, RgbColorSpace, Spectrum};
+
+/// What a spectrum stands for. RGB values become different spectra for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SpectrumType {
+    /// A part of light that is kept, within [0, 1]: reflectance, transmittance.
+    Albedo,
+    /// Any other quantity that is not light, such as a coefficient of absorption.
+    Unbounded,
+    /// Light: (1, 1, 1) is the white of the colour space.
+    Illuminant,
+}
+
+impl SpectrumType {
+    /// All types.
+    pub const ALL: [Self; 3] = [Self::Albedo, Self::Unbounded, Self::Illuminant];
+
+    /// The spectrum of an RGB value.
+    pub fn from_rgb(self, space: &RgbColorSpace, rgb: Rgb) -> Spectrum {
+        match self {
+            Self::Albedo => Spectrum::rgb_albedo(space, rgb),
+            Self::Unbounded => Spectrum::rgb_unbounded(space, rgb),
+            Self::Illuminant => Spectrum::rgb_illuminant(space, rgb),
+        }
+    }
+}
+
+/// The colour space that the author named.
+pub fn color_space(desc: ColorSpaceDesc) -> &'static RgbColorSpace {
+    match desc {
+        ColorSpaceDesc::Srgb => RgbColorSpace::srgb(),
+        ColorSpaceDesc::DciP3 => RgbColorSpace::dci_p3(),
+        ColorSpaceDesc::Rec2020 => RgbColorSpace::rec2020(),
+        ColorSpaceDesc::Aces2065_1 => RgbColorSpace::aces2065_1(),
+    }
+}
+
+/// The spectrum that the author named at `span`. What makes no sense is added to `diagnostics`.
+pub fn compile_spectrum(
+    desc: &SpectrumDesc,
+    spectrum_type: SpectrumType,
+    span: Span,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Spectrum {
+    let mut wrong = |message: String| {
+        diagnostics.push(Diagnostic::error("invalid-value", message, span));
+        Spectrum::ZERO
+    };
+    match desc {
+        SpectrumDesc::Constant(value) if value.is_finite() => Spectrum::Constant(*value),
+        SpectrumDesc::Constant(value) => wrong(format!("{value} is no value for a spectrum")),
+        SpectrumDesc::Rgb { rgb, space } => {
+            let [r, g, b] = *rgb;
+            let rgb = Rgb::from(*rgb);
+            if !rgb.is_finite() {
+                return wrong(format!("({r}, {g}, {b}) is no colour"));
+            }
+            let largest = if spectrum_type == SpectrumType::Albedo { 1.0 } else { f32::INFINITY };
+            if rgb.min_component() < 0.0 || rgb.max_component() > largest {
+                let range = if largest == 1.0 { "between 0 and 1" } else { "at least 0" };
+                let message = format!("the components of ({r}, {g}, {b}) should be {range}; clamped");
+                diagnostics.push(Diagnostic::warning("color-out-of-range", message, span));
+            }
+            spectrum_type.from_rgb(color_space(*space), rgb)
+        }
+        SpectrumDesc::Named(name) => {
+            spectrum::named(name).unwrap_or_else(|| wrong(format!("there is no spectrum named `{name}`")))
+        }
+        SpectrumDesc::Samples(pairs) => {
+            Spectrum::from_pairs(pairs).unwrap_or_else(|error| wrong(error.to_string()))
+        }
+        SpectrumDesc::Blackbody(kelvin) if *kelvin > 0.0 && kelvin.is_finite() => {
+            Spectrum::blackbody(*kelvin)
+        }
+        SpectrumDesc::Blackbody(kelvin) => wrong(format!("a temperature must be above 0 K, not {kelvin}")),
+        SpectrumDesc::Illuminant(space) => color_space(*space).illuminant(),
+    }
+}

@@ -1,0 +1,108 @@
+//! Measured spectra by name: metals, glasses and illuminants, under pbrt-v4's names.
+//!
+//! `metal-X-eta` and `metal-X-k` are the real and imaginary part of an index of refraction, `glass-X` a real one,
+//! `stdillum-X` and `illum-X` light of unit luminance. Where the numbers come from is said in the files of `data/`.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use crate::cie::CIE_Y_INTEGRAL;
+use crate::piecewise::PiecewiseLinear;
+use crate::spectrum::Spectrum;
+
+/// The spectrum called `name`.
+pub fn named(name: &str) -> Option<Spectrum> {
+    TABLE.get(name).cloned()
+}
+
+/// All names, in alphabetical order.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    TABLE.keys().copied()
+}
+
+static TABLE: LazyLock<BTreeMap<&'static str, Spectrum>> = LazyLock::new(|| {
+    let measured = [include_str!("../data/metals.txt"), include_str!("../data/glasses.txt")];
+    let mut table: BTreeMap<&str, Spectrum> =
+        measured.into_iter().flat_map(sections).map(|(name, spectrum)| (name, spectrum.into())).collect();
+    for (name, light) in sections(include_str!("../data/illuminants.txt")) {
+        table.insert(name, with_unit_luminance(light));
+    }
+    table
+});
+
+/// The parts of a file of spectra: `[name]`, then pairs of wavelength and value.
+fn sections(text: &'static str) -> impl Iterator<Item = (&'static str, PiecewiseLinear)> {
+    text.split('[').skip(1).map(|section| {
+        let (name, pairs) = section.split_once(']').expect("invariant: a name ends with a bracket");
+        (name, PiecewiseLinear::parse(pairs).expect("invariant: the tables are well formed"))
+    })
+}
+
+/// The light scaled so that its Y is one.
+fn with_unit_luminance(light: PiecewiseLinear) -> Spectrum {
+    let luminance = Spectrum::from(light.clone()).to_photometric() / CIE_Y_INTEGRAL;
+    light.scaled(1.0 / luminance).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_has_a_spectrum() {
+        let metals = ["Ag", "Al", "Au", "Cu", "CuZn", "MgO", "TiO2"];
+        let glasses = ["BK7", "BAF10", "FK51A", "LASF9", "F5", "F10", "F11"];
+        let lights =
+            ["A", "D50", "D65", "F1", "F2", "F3", "F4", "F5", "F6", "F7", "F8", "F9", "F10", "F11", "F12"];
+        for metal in metals {
+            assert!(
+                named(&format!("metal-{metal}-eta")).is_some()
+                    && named(&format!("metal-{metal}-k")).is_some()
+            );
+        }
+        for glass in glasses {
+            let spectrum = named(&format!("glass-{glass}")).unwrap();
+            for lambda in [360.0, 550.0, 830.0] {
+                assert!((1.4..2.0).contains(&spectrum.at(lambda)), "{glass} at {lambda}");
+            }
+        }
+        for light in lights.iter().map(|l| format!("stdillum-{l}")).chain(["illum-acesD60".into()]) {
+            assert!((named(&light).unwrap().to_xyz().y - 1.0).abs() < 1e-5, "{light}");
+        }
+        assert_eq!(names().count(), 2 * metals.len() + glasses.len() + lights.len() + 1);
+        assert!(named("metal-Unobtainium-eta").is_none());
+    }
+
+    #[test]
+    fn indices_of_refraction_are_the_published_ones() {
+        for (name, lambda, value) in [
+            ("metal-Au-eta", 450.851_56, 1.502_125),
+            ("metal-Cu-k", 590.400_8, 2.809),
+            ("metal-Ag-k", 506.057_86, 2.973_75),
+            ("metal-Al-eta", 604.800_84, 1.22),
+            ("metal-CuZn-eta", 600.0, 0.450),
+            ("metal-TiO2-eta", 619.9, 2.88),
+            ("metal-MgO-eta", 589.259, 1.737_37),
+            // The helium d line of the catalogue.
+            ("glass-BK7", 587.56, 1.516_80),
+            ("glass-F11", 587.56, 1.784_72),
+        ] {
+            let ours = named(name).unwrap().at(lambda);
+            assert!((ours / value - 1.0).abs() < 3e-4, "{name} at {lambda}: {ours}");
+        }
+    }
+
+    #[test]
+    fn illuminants_have_their_known_chromaticities() {
+        for (name, xy) in [
+            ("stdillum-A", [0.447_58, 0.407_45]),
+            ("stdillum-D65", [0.312_72, 0.329_03]),
+            ("stdillum-F2", [0.372_08, 0.375_29]),
+            ("stdillum-F11", [0.380_52, 0.377_13]),
+            ("illum-acesD60", [0.321_68, 0.337_67]),
+        ] {
+            let ours = named(name).unwrap().to_xyz().xy();
+            assert!((0..2).all(|i| (ours[i] - xy[i]).abs() < 3e-4), "{name}: {ours:?}");
+        }
+    }
+}

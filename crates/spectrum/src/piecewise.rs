@@ -1,0 +1,245 @@
+//! Spectra given by values at some wavelengths, linear between them and zero outside, and the text form of them.
+//!
+//! Text: numbers divided by white space, wavelength and value in turn, wavelengths in nanometres and strictly
+//! increasing; `#` begins a comment that ends with the line.
+
+use std::fmt;
+
+use crate::dense::DenselySampled;
+
+/// Why pairs of wavelength and value are no spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SpectrumError {
+    /// There are no values at all.
+    Empty,
+    /// A word that is not a finite number.
+    NotANumber {
+        /// The word.
+        found: String,
+    },
+    /// The last wavelength has no value.
+    NoValue {
+        /// That wavelength.
+        lambda: f32,
+    },
+    /// A wavelength is not larger than the one before it.
+    NotIncreasing {
+        /// The wavelength before.
+        previous: f32,
+        /// The wavelength at fault.
+        lambda: f32,
+    },
+}
+
+impl fmt::Display for SpectrumError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "there are no values"),
+            Self::NotANumber { found } => write!(f, "`{found}` is not a finite number"),
+            Self::NoValue { lambda } => write!(f, "the wavelength {lambda} has no value"),
+            Self::NotIncreasing { previous, lambda } => {
+                write!(f, "wavelengths must increase: {lambda} follows {previous}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for SpectrumError {}
+
+/// A [`SpectrumError`] and where in a text it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParseError {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What is wrong there.
+    pub error: SpectrumError,
+}
+
+impl fmt::Display for ParseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.line, self.column, self.error)
+    }
+}
+
+impl std::error::Error for ParseError {}
+
+/// A spectrum that is linear between given wavelengths and zero outside them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PiecewiseLinear {
+    lambdas: Box<[f32]>,
+    values: Box<[f32]>,
+}
+
+impl PiecewiseLinear {
+    /// From pairs of wavelength in nanometres and value, wavelengths strictly increasing.
+    pub fn from_pairs(pairs: &[(f32, f32)]) -> Result<Self, SpectrumError> {
+        if pairs.is_empty() {
+            return Err(SpectrumError::Empty);
+        }
+        if let Some(bad) = pairs.iter().flat_map(|&(lambda, value)| [lambda, value]).find(|v| !v.is_finite())
+        {
+            return Err(SpectrumError::NotANumber { found: bad.to_string() });
+        }
+        if let Some(w) = pairs.windows(2).find(|w| w[1].0 <= w[0].0) {
+            return Err(SpectrumError::NotIncreasing { previous: w[0].0, lambda: w[1].0 });
+        }
+        let (lambdas, values): (Vec<f32>, Vec<f32>) = pairs.iter().copied().unzip();
+        Ok(Self { lambdas: lambdas.into(), values: values.into() })
+    }
+
+    /// From numbers, wavelength and value in turn.
+    pub fn from_interleaved(numbers: &[f32]) -> Result<Self, SpectrumError> {
+        if let [.., lambda] = numbers
+            && numbers.len() % 2 == 1
+        {
+            return Err(SpectrumError::NoValue { lambda: *lambda });
+        }
+        let pairs: Vec<(f32, f32)> = numbers.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
+        Self::from_pairs(&pairs)
+    }
+
+    /// From text.
+    pub fn parse(text: &str) -> Result<Self, ParseError> {
+        let mut pairs: Vec<(f32, f32)> = Vec::new();
+        let mut unpaired: Option<(f32, usize, usize)> = None;
+        for (index, line_text) in text.lines().enumerate() {
+            let line = index + 1;
+            let content = line_text.split('#').next().unwrap_or_default();
+            for word in content.split_whitespace() {
+                let column =
+                    content[..word.as_ptr() as usize - content.as_ptr() as usize].chars().count() + 1;
+                let number = parse_number(word).map_err(|error| ParseError { line, column, error })?;
+                unpaired = match unpaired {
+                    None => {
+                        if let Some(&(previous, _)) = pairs.last()
+                            && number <= previous
+                        {
+                            let error = SpectrumError::NotIncreasing { previous, lambda: number };
+                            return Err(ParseError { line, column, error });
+                        }
+                        Some((number, line, column))
+                    }
+                    Some((lambda, ..)) => {
+                        pairs.push((lambda, number));
+                        None
+                    }
+                };
+            }
+        }
+        if let Some((lambda, line, column)) = unpaired {
+            return Err(ParseError { line, column, error: SpectrumError::NoValue { lambda } });
+        }
+        Self::from_pairs(&pairs).map_err(|error| ParseError { line: 1, column: 1, error })
+    }
+
+    /// The value at `lambda` nanometres.
+    #[inline]
+    pub fn at(&self, lambda: f32) -> f32 {
+        let above = self.lambdas.partition_point(|&l| l <= lambda);
+        let Some(below) = above.checked_sub(1) else { return 0.0 };
+        let Some(&next) = self.lambdas.get(above) else {
+            return if lambda == self.lambdas[below] { self.values[below] } else { 0.0 };
+        };
+        let t = (lambda - self.lambdas[below]) / (next - self.lambdas[below]);
+        self.values[below] * (1.0 - t) + self.values[above] * t
+    }
+
+    /// The largest of the given values.
+    pub fn max_value(&self) -> f32 {
+        self.values.iter().copied().fold(f32::NEG_INFINITY, f32::max)
+    }
+
+    /// The pairs of wavelength and value.
+    pub fn pairs(&self) -> impl Iterator<Item = (f32, f32)> + '_ {
+        self.lambdas.iter().copied().zip(self.values.iter().copied())
+    }
+
+    /// The same spectrum times `factor`.
+    pub fn scaled(mut self, factor: f32) -> Self {
+        self.values.iter_mut().for_each(|v| *v *= factor);
+        self
+    }
+
+    /// The spectrum at each whole nanometre.
+    pub fn to_dense(&self) -> DenselySampled {
+        DenselySampled::from_fn(|lambda| self.at(lambda))
+    }
+}
+
+/// A word as a finite number.
+fn parse_number(word: &str) -> Result<f32, SpectrumError> {
+    match word.parse::<f32>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(SpectrumError::NotANumber { found: word.to_owned() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_linear_inside_and_zero_outside() {
+        let spectrum = PiecewiseLinear::from_pairs(&[(400.0, 1.0), (500.0, 3.0), (520.0, 0.0)]).unwrap();
+        for (lambda, value) in
+            [(399.9, 0.0), (400.0, 1.0), (450.0, 2.0), (500.0, 3.0), (510.0, 1.5), (520.0, 0.0), (520.1, 0.0)]
+        {
+            assert!((spectrum.at(lambda) - value).abs() < 1e-5, "{lambda}");
+        }
+        assert_eq!(spectrum.max_value(), 3.0);
+        assert_eq!(PiecewiseLinear::from_pairs(&[(500.0, 2.0)]).unwrap().at(500.0), 2.0);
+    }
+
+    #[test]
+    fn text_with_comments_is_read() {
+        let spectrum = PiecewiseLinear::parse("# a lamp\n400 1.5 # first\n\n 410\t2e0\r\n420 -1").unwrap();
+        assert_eq!(spectrum.pairs().collect::<Vec<_>>(), [(400.0, 1.5), (410.0, 2.0), (420.0, -1.0)]);
+    }
+
+    #[test]
+    fn bad_text_is_refused_with_its_place() {
+        for (text, message) in [
+            ("", "1:1: there are no values"),
+            ("# nothing", "1:1: there are no values"),
+            ("400 1\n  4x0 2", "2:3: `4x0` is not a finite number"),
+            ("400 nan", "1:5: `nan` is not a finite number"),
+            ("400 1e99", "1:5: `1e99` is not a finite number"),
+            ("400, 1", "1:1: `400,` is not a finite number"),
+            ("400 1 410", "1:7: the wavelength 410 has no value"),
+            ("400 1\n400 2", "2:1: wavelengths must increase: 400 follows 400"),
+            ("é 400 1", "1:1: `é` is not a finite number"),
+            ("400 é1", "1:5: `é1` is not a finite number"),
+        ] {
+            assert_eq!(PiecewiseLinear::parse(text).unwrap_err().to_string(), message, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn bad_pairs_are_refused() {
+        assert_eq!(PiecewiseLinear::from_pairs(&[]), Err(SpectrumError::Empty));
+        assert_eq!(
+            PiecewiseLinear::from_interleaved(&[400.0, 1.0, 500.0]),
+            Err(SpectrumError::NoValue { lambda: 500.0 })
+        );
+        assert!(PiecewiseLinear::from_interleaved(&[400.0, f32::NAN]).is_err());
+        assert!(PiecewiseLinear::from_interleaved(&[400.0, 1.0, 300.0, 1.0]).is_err());
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "([0-9a-z.#,é+-]{0,6}[ \n\t\r]{0,2}){0,12}") {
+            let _ = PiecewiseLinear::parse(&text);
+        }
+
+        #[test]
+        fn written_spectra_are_read_again(steps in proptest::collection::vec((0.01_f32..50.0, -10.0_f32..10.0), 1..20)) {
+            let mut lambda = 300.0;
+            let pairs: Vec<(f32, f32)> = steps.iter().map(|&(step, value)| { lambda += step; (lambda, value) }).collect();
+            let text: String = pairs.iter().map(|(lambda, value)| format!("{lambda} {value} # …\n")).collect();
+            let again = PiecewiseLinear::parse(&text).unwrap();
+            proptest::prop_assert_eq!(again.pairs().collect::<Vec<_>>(), pairs);
+        }
+    }
+}

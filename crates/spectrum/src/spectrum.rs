@@ -1,0 +1,179 @@
+//! Any function of wavelength that a scene may name: [`Spectrum`].
+
+use std::sync::Arc;
+
+use crate::blackbody::Blackbody;
+use crate::cie::{self, CIE_Y_INTEGRAL};
+use crate::color_space::RgbColorSpace;
+use crate::dense::{COUNT, DenselySampled};
+use crate::piecewise::{PiecewiseLinear, SpectrumError};
+use crate::rgb::{Rgb, Xyz};
+use crate::rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
+use crate::sampled::{LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
+
+/// A function of wavelength in nanometres. Cheap to clone: tables are shared.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Spectrum {
+    /// The same at all wavelengths.
+    Constant(f32),
+    /// Linear between given wavelengths.
+    PiecewiseLinear(Arc<PiecewiseLinear>),
+    /// A value each nanometre.
+    DenselySampled(Arc<DenselySampled>),
+    /// Light of a hot body, at most 1.
+    Blackbody(Blackbody),
+    /// A reflectance from RGB.
+    RgbAlbedo(RgbAlbedoSpectrum),
+    /// An unbounded quantity from RGB.
+    RgbUnbounded(RgbUnboundedSpectrum),
+    /// Light from RGB.
+    RgbIlluminant(RgbIlluminantSpectrum),
+}
+
+impl Spectrum {
+    /// Zero at all wavelengths.
+    pub const ZERO: Self = Self::Constant(0.0);
+
+    /// From pairs of wavelength and value, linear between; wavelengths strictly increasing.
+    pub fn from_pairs(pairs: &[(f32, f32)]) -> Result<Self, SpectrumError> {
+        Ok(PiecewiseLinear::from_pairs(pairs)?.into())
+    }
+
+    /// A blackbody of `temperature` kelvin whose largest value is 1.
+    pub fn blackbody(temperature: f32) -> Self {
+        Self::Blackbody(Blackbody::new(temperature))
+    }
+
+    /// A reflectance from RGB.
+    pub fn rgb_albedo(space: &RgbColorSpace, rgb: Rgb) -> Self {
+        Self::RgbAlbedo(RgbAlbedoSpectrum::new(space, rgb))
+    }
+
+    /// An unbounded quantity from RGB.
+    pub fn rgb_unbounded(space: &RgbColorSpace, rgb: Rgb) -> Self {
+        Self::RgbUnbounded(RgbUnboundedSpectrum::new(space, rgb))
+    }
+
+    /// Light from RGB.
+    pub fn rgb_illuminant(space: &RgbColorSpace, rgb: Rgb) -> Self {
+        Self::RgbIlluminant(RgbIlluminantSpectrum::new(space, rgb))
+    }
+
+    /// The value at `lambda` nanometres.
+    #[inline]
+    pub fn at(&self, lambda: f32) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::PiecewiseLinear(s) => s.at(lambda),
+            Self::DenselySampled(s) => s.at(lambda),
+            Self::Blackbody(s) => s.at(lambda),
+            Self::RgbAlbedo(s) => s.at(lambda),
+            Self::RgbUnbounded(s) => s.at(lambda),
+            Self::RgbIlluminant(s) => s.at(lambda),
+        }
+    }
+
+    /// The values at sampled wavelengths.
+    #[inline]
+    pub fn sample(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+        SampledSpectrum(lambda.lambda().map(|l| self.at(l)))
+    }
+
+    /// A bound on the values, attained by most kinds.
+    pub fn max_value(&self) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::PiecewiseLinear(s) => s.max_value(),
+            Self::DenselySampled(s) => s.max_value(),
+            Self::Blackbody(s) => s.max_value(),
+            Self::RgbAlbedo(s) => s.max_value(),
+            Self::RgbUnbounded(s) => s.max_value(),
+            Self::RgbIlluminant(s) => s.max_value(),
+        }
+    }
+
+    /// ∫ f g dλ in nanometres, as the sum over whole nanometres.
+    pub fn inner_product(&self, other: &Self) -> f32 {
+        integrate(|lambda| self.at(lambda) * other.at(lambda))
+    }
+
+    /// The colour of light with this spectrum.
+    pub fn to_xyz(&self) -> Xyz {
+        let functions = cie::matching_functions();
+        let component =
+            |f: &DenselySampled| integrate(|lambda| self.at(lambda) * f.at(lambda)) / CIE_Y_INTEGRAL;
+        Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
+    }
+
+    /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB the illuminant alone
+    /// counts, so that its RGB values remain factors.
+    pub fn to_photometric(&self) -> f32 {
+        let y_bar = &cie::matching_functions().y;
+        match self {
+            Self::RgbIlluminant(s) => integrate(|lambda| s.illuminant().at(lambda) * y_bar.at(lambda)),
+            _ => integrate(|lambda| self.at(lambda) * y_bar.at(lambda)),
+        }
+    }
+
+    /// The values at whole nanometres, for fast repeated use.
+    pub fn to_dense(&self) -> Self {
+        match self {
+            Self::Constant(_) | Self::DenselySampled(_) => self.clone(),
+            _ => DenselySampled::from_fn(|lambda| self.at(lambda)).into(),
+        }
+    }
+}
+
+impl From<f32> for Spectrum {
+    fn from(value: f32) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl From<PiecewiseLinear> for Spectrum {
+    fn from(spectrum: PiecewiseLinear) -> Self {
+        Self::PiecewiseLinear(Arc::new(spectrum))
+    }
+}
+
+impl From<DenselySampled> for Spectrum {
+    fn from(spectrum: DenselySampled) -> Self {
+        Self::DenselySampled(Arc::new(spectrum))
+    }
+}
+
+/// Sum of `f` over the whole nanometres of the range.
+fn integrate(f: impl Fn(f32) -> f32) -> f32 {
+    (0..COUNT).map(|i| f64::from(f(LAMBDA_MIN + i as f32))).sum::<f64>() as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_energy_has_luminance_one() {
+        let xyz = Spectrum::Constant(1.0).to_xyz();
+        assert!((xyz.y - 1.0).abs() < 1e-5);
+        assert!((Spectrum::Constant(2.0).to_photometric() - 2.0 * CIE_Y_INTEGRAL).abs() < 1e-3);
+        assert!((Spectrum::Constant(2.0).inner_product(&Spectrum::Constant(3.0)) - 6.0 * 471.0).abs() < 1e-2);
+    }
+
+    #[test]
+    fn photometry_of_light_from_rgb_sees_its_illuminant_alone() {
+        let space = RgbColorSpace::srgb();
+        let light = Spectrum::rgb_illuminant(space, Rgb::new(7.0, 0.5, 0.1));
+        assert!((light.to_photometric() - CIE_Y_INTEGRAL).abs() < 1e-3);
+    }
+
+    #[test]
+    fn dense_values_are_those_at_whole_nanometres() {
+        let spectrum = Spectrum::blackbody(3000.0);
+        let dense = spectrum.to_dense();
+        for lambda in [360.0, 500.0, 830.0] {
+            assert_eq!(dense.at(lambda), spectrum.at(lambda));
+        }
+        let lambda = SampledWavelengths::sample_uniform(0.3);
+        assert_eq!(spectrum.sample(&lambda)[2], spectrum.at(lambda[2]));
+    }
+}
