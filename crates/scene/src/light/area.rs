@@ -10,7 +10,7 @@ use geometry::Shape;
 use image::{Image, WrapMode};
 use math::{Normal3, Point2, Vec2, Vector3};
 use sampling::hash_float;
-use spectrum::{Rgb, RgbColorSpace, RgbIlluminantSpectrum, SampledSpectrum, SampledWavelengths};
+use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -81,7 +81,7 @@ impl AreaLight {
             Some(image) => {
                 let st = Vec2::new(uv.x, 1.0 - uv.y);
                 let rgb = Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)).clamp_zero();
-                RgbIlluminantSpectrum::new(image.color_space, rgb).sample(lambda) * emission.radiance.scale
+                Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda) * emission.radiance.scale
             }
         }
     }
@@ -93,7 +93,7 @@ impl AreaLight {
             Some(image) => {
                 let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
                 for rgb in image.pixels() {
-                    sum += RgbIlluminantSpectrum::new(image.color_space, rgb).sample(lambda);
+                    sum += Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda);
                     count += 1;
                 }
                 sum * (emission.radiance.scale / count.max(1) as f32)
@@ -142,7 +142,7 @@ impl AreaLight {
         };
         let normals = self.shape.normal_bounds();
         Some(LightBounds {
-            bounds: self.shape.bounds(),
+            bounds: self.shape.bounds()?,
             w: normals.w,
             phi: peak * self.area * PI,
             cos_theta_o: normals.cos_theta,

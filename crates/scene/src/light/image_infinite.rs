@@ -8,7 +8,7 @@ use super::{LightLiSample, LightSampleContext, SceneSphere};
 use image::{Image, WrapMode};
 use math::{Bounds2, Point2, Point3Error, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere};
 use sampling::PiecewiseConstant2d;
-use spectrum::{Rgb, RgbColorSpace, RgbIlluminantSpectrum, SampledSpectrum, SampledWavelengths};
+use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ impl ImageInfiniteLight {
     }
 
     fn spectrum(&self, rgb: Rgb, lambda: &SampledWavelengths) -> SampledSpectrum {
-        RgbIlluminantSpectrum::new(self.color_space, rgb).sample(lambda) * self.scale
+        Spectrum::rgb_illuminant(self.color_space, rgb).sample(lambda) * self.scale
     }
 
     fn lookup(&self, uv: Point2, lambda: &SampledWavelengths) -> SampledSpectrum {
