@@ -1,8 +1,8 @@
 //! The perspective camera: every ray passes through one point, the eye (or through a thin lens around it).
 //!
-//! The observer. An eye at Eye looks along w, with u to its right and v upwards, all three of unit length and at right
-//! angles. At the near distance N along w stands the film: n_c × n_r pixels that fill the rectangle −W ≤ u ≤ W,
-//! −H ≤ v ≤ H, where the vertical angle θ of the view and the aspect give
+//! The observer. An eye at Eye looks along w, with u to its right and v upwards, all three of unit length and
+//! at right angles. At the near distance N along w stands the film: n_c × n_r pixels that fill the rectangle
+//! −W ≤ u ≤ W, −H ≤ v ≤ H, where the vertical angle θ of the view and the aspect give
 //!
 //! ```text
 //! H = N·tan(θ/2)        W = H·aspect
@@ -14,15 +14,17 @@
 //! u_c = −W + W·2c/n_c        v_r = −H + H·2r/n_r        Dir = N·w + u_c·u + v_r·v
 //! ```
 //!
-//! and is seen along the ray Eye + t·Dir: points with t < 0 lie behind the observer, those with 0 < t < 1 in front of the near
-//! plane, and t = 1 is on it.
+//! and is seen along the ray Eye + t·Dir: points with t < 0 lie behind the observer, those with 0 < t < 1 in
+//! front of the near plane, and t = 1 is on it.
 //!
-//! What differs here: (u, v, w) are the axes (x, y, z) of camera space, which pbrt makes left-handed. Film rows are counted
-//! downwards, so that the corner above is the film position (c, n_r − r). Dir is normalized, so that t measures distance and N
-//! cancels. The field of view is given over the shorter side: it is θ where the picture is at least as wide as high,
-//! and tan(θ/2) = tan(fov/2)/aspect where it is not. A screen window other than the default cuts a part out of the same plane.
+//! What differs here: (u, v, w) are the axes (x, y, z) of camera space, which pbrt makes left-handed. Film
+//! rows are counted downwards, so that the corner above is the film position (c, n_r − r). Dir is normalized,
+//! so that t measures distance and N cancels. The field of view is given over the shorter side: it is θ where
+//! the picture is at least as wide as high, and tan(θ/2) = tan(fov/2)/aspect where it is not. A screen window
+//! other than the default cuts a part out of the same plane.
 //!
-//! Sources: [Hill & Kelley 2007 ch. 12] for the observer; [Pharr 2023 §5.2.2] for field of view and screen window.
+//! Sources: [Hill & Kelley 2007 ch. 12] for the observer; [Pharr 2023 §5.2.2] for field of view and screen
+//! window.
 
 use super::{Screen, ThinLens};
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
@@ -90,7 +92,8 @@ mod tests {
                 let ray = camera.generate_ray(&sample).unwrap().ray;
                 assert!((ray.o.as_dvec3() - eye).length() < 1e-6);
                 assert!((ray.d.as_dvec3() - dir.normalize()).length() < 1e-6, "{resolution:?} ({c}, {r})");
-                // t = 1 of the unnormalized ray is on the near plane, 0 < t < 1 in front of it, t < 0 behind the eye.
+                // t = 1 of the unnormalized ray is on the near plane, 0 < t < 1 in front of it, t < 0 behind
+                // the eye.
                 let t = dir.length();
                 for (t, depth) in [(t, near), (0.5 * t, 0.5 * near), (-t, -near)] {
                     let ahead = (ray.at(t as f32).as_dvec3() - eye).dot(w);

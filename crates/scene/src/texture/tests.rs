@@ -1,7 +1,7 @@
 //! What textures must do, by themselves and compiled from a scene.
 
 use super::*;
-use ::image::{ColorEncoding, Image, Pixels};
+use ::image::Image;
 use description::{
     ColorSpaceDesc, Diagnostic, EncodingDesc, FloatTextureDesc, Handle, ImageDesc, ImageTextureDesc,
     MappingDesc, Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc, TextureFilter, TextureKind,
@@ -281,21 +281,6 @@ fn numbers_come_from_opacity_or_the_mean_of_colours() {
     let rgba = |alpha: f32| Image::from_fn(1, 1, ["R", "G", "B", "A"], move |_, _| [0.3, 0.6, 0.9, alpha]);
     assert_eq!(float_image(rgba(0.25), |_| ()).float(FIRST, &at(0.5, 0.5)), 0.25);
     assert!((float_image(rgba(1.0), |_| ()).float(FIRST, &at(0.5, 0.5)) - 0.6).abs() < 1e-6);
-}
-
-#[test]
-fn encodings_say_what_codes_mean() {
-    let code = || Image::new(1, 1, ["Y"], Pixels::U8(vec![128], ColorEncoding::Srgb)).unwrap();
-    let x = 128.0f32 / 255.0;
-    for (encoding, value) in [
-        (None, ::image::linear_from_srgb(x)),
-        (Some(EncodingDesc::Srgb), ::image::linear_from_srgb(x)),
-        (Some(EncodingDesc::Linear), x),
-        (Some(EncodingDesc::Gamma(2.0)), x * x),
-    ] {
-        let t = float_image(code(), |desc| desc.encoding = encoding);
-        assert!((t.float(FIRST, &at(0.5, 0.5)) - value).abs() < 1e-5, "{encoding:?}");
-    }
 }
 
 #[test]
