@@ -38,7 +38,7 @@ pub use color::{ColorSpaceDesc, SpectrumDesc};
 pub use diagnostic::{Diagnostic, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
-pub use image::ImageDesc;
+pub use self::image::ImageDesc;
 pub use integrator::{IntegratorDesc, LightSamplerDesc, MltDesc, SppmDesc};
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
 pub use material::{

@@ -62,8 +62,7 @@ impl Sheared {
         }
         let inverse = 1.0 / determinant;
         let mut t = weighted(e, [a[2], b[2], c[2]]) * inverse;
-        // Written so that NaN fails.
-        if !(t < t_max) {
+        if t >= t_max || t.is_nan() {
             return None;
         }
         if t <= distance_error([a, b, c], e, inverse) {

@@ -267,8 +267,7 @@ fn solve_quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
         return (b != 0.0).then(|| [-c / b; 2]);
     }
     let discriminant = b * b - 4.0 * a * c;
-    // Written so that NaN fails.
-    if !(discriminant >= 0.0) {
+    if discriminant < 0.0 || discriminant.is_nan() {
         return None;
     }
     let q = -0.5 * (b + discriminant.sqrt().copysign(b));

@@ -117,8 +117,7 @@ pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     let middle = -o.dot(d) / a;
     let nearest = (o + d * middle).length();
     let discriminant = (radius + nearest) * (radius - nearest) / a;
-    // Written so that NaN fails.
-    if !(discriminant >= 0.0) {
+    if discriminant < 0.0 || discriminant.is_nan() {
         return None;
     }
     let larger = middle + discriminant.sqrt().copysign(middle);

@@ -1,0 +1,45 @@
+//! The messages of one import.
+
+use description::{Diagnostic, Severity, Span};
+
+/// Collects messages; past a limit it only counts, so that a file of noise does not fill memory.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    diagnostics: Vec<Diagnostic>,
+    left_out: usize,
+}
+
+impl Report {
+    const LIMIT: usize = 500;
+
+    pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
+        if self.diagnostics.len() < Self::LIMIT {
+            self.diagnostics.push(diagnostic);
+        } else {
+            self.left_out += 1;
+        }
+    }
+
+    pub(crate) fn error(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.push(Diagnostic::error(code, message, span));
+    }
+
+    pub(crate) fn warning(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.push(Diagnostic::warning(code, message, span));
+    }
+
+    /// All messages in the order of the text that they are about.
+    pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
+        self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span().file, diagnostic.span().start));
+        if self.left_out > 0 {
+            self.diagnostics.push(Diagnostic {
+                severity: Severity::Error,
+                code: "too-many",
+                message: format!("{} more messages are left out", self.left_out),
+                labels: Vec::new(),
+                help: None,
+            });
+        }
+        self.diagnostics
+    }
+}
