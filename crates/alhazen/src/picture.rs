@@ -19,7 +19,8 @@ pub fn write_picture(picture: &Image, path: impl AsRef<Path>) -> Result<(), Imag
 /// The colour space with these primaries, unless it is sRGB, or none that is known.
 fn color_space(chromaticities: Option<Chromaticities>) -> Option<&'static RgbColorSpace> {
     let Chromaticities { red, green, blue, white } = chromaticities?;
-    RgbColorSpace::from_chromaticities([red, green, blue], white).filter(|&space| space != RgbColorSpace::srgb())
+    RgbColorSpace::from_chromaticities([red, green, blue], white)
+        .filter(|&space| space != RgbColorSpace::srgb())
 }
 
 fn in_srgb(picture: &Image, space: &RgbColorSpace) -> Image {
