@@ -1,5 +1,7 @@
 //! The messages of one import.
 
+use std::collections::HashSet;
+
 use description::{Diagnostic, Severity, Span};
 
 /// Collects messages; past a limit it only counts, so that a file of noise does not fill memory.
@@ -7,6 +9,7 @@ use description::{Diagnostic, Severity, Span};
 pub(crate) struct Report {
     diagnostics: Vec<Diagnostic>,
     left_out: usize,
+    given_once: HashSet<String>,
 }
 
 impl Report {
@@ -26,6 +29,14 @@ impl Report {
 
     pub(crate) fn warning(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
         self.push(Diagnostic::warning(code, message, span));
+    }
+
+    /// A warning that is given for its first place only.
+    pub(crate) fn warning_once(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        let message = message.into();
+        if self.given_once.insert(message.clone()) {
+            self.warning(code, message, span);
+        }
     }
 
     /// All messages in the order of the text that they are about.

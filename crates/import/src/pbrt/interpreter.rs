@@ -221,11 +221,15 @@ impl<'a> Interpreter<'a> {
             "AttributeBegin" => self.begin_block(BlockKind::Attribute, span)?,
             "AttributeEnd" => self.end_block(BlockKind::Attribute, span)?,
             "TransformBegin" => {
-                self.report.warning("deprecated", "`TransformBegin` is now written `AttributeBegin`", span);
+                self.report.warning_once(
+                    "deprecated",
+                    "`TransformBegin` is now written `AttributeBegin`",
+                    span,
+                );
                 self.begin_block(BlockKind::Attribute, span)?;
             }
             "TransformEnd" => {
-                self.report.warning("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
+                self.report.warning_once("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
                 self.end_block(BlockKind::Attribute, span)?;
             }
             "Attribute" => self.attribute(tokens)?,
