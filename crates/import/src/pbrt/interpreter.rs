@@ -162,7 +162,7 @@ impl<'a> Interpreter<'a> {
     fn file(&mut self, file: FileId) {
         let text = self.sources.shared_text(file);
         let mut tokens = Tokens::new(&text, file);
-        loop {
+        while !self.report.is_full() {
             let token = tokens.next();
             match token.kind {
                 TokenKind::End => break,

@@ -220,6 +220,9 @@ impl<'a> Builder<'a> {
         other: Option<&str>,
         known: &[String],
     ) {
+        if self.report.is_full() {
+            return;
+        }
         let mut known: Vec<_> = known.iter().map(String::as_str).collect();
         known.sort_unstable();
         let message = match other {
