@@ -8,10 +8,8 @@ use std::time::{Duration, Instant};
 use alhazen_import::{Files, Imported, import, read_obj, read_ply};
 
 fn data(folder: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("ALHAZEN_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
+    let root = std::env::var_os("ALHAZEN_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     let path = root.join(folder);
     if path.is_dir() {
         return Some(path);
@@ -61,15 +59,23 @@ fn good_scenes_are_read_without_errors() {
         assert!(!scenes.is_empty());
         for path in scenes {
             // Parts of scenes, which their scenes include.
-            if matches!(path.file_name().and_then(|name| name.to_str()), Some("geometry.pbrt" | "killeroo.pbrt")) {
+            if matches!(
+                path.file_name().and_then(|name| name.to_str()),
+                Some("geometry.pbrt" | "killeroo.pbrt")
+            ) {
                 continue;
             }
             let imported = import(&path, &Files);
             assert!(!imported.has_errors(), "{}:\n{}", path.display(), shown(&imported));
             let desc = &imported.desc;
             assert!(desc.shapes.len() + desc.instances.len() > 0, "{} is empty", path.display());
-            assert!(desc.lights.len() + desc.area_lights.len() > 0 || path.ends_with("integrator-ao.pbrt")
-                || path.ends_with("integrator-ao-maxdistance.pbrt"), "{} is dark", path.display());
+            assert!(
+                desc.lights.len() + desc.area_lights.len() > 0
+                    || path.ends_with("integrator-ao.pbrt")
+                    || path.ends_with("integrator-ao-maxdistance.pbrt"),
+                "{} is dark",
+                path.display()
+            );
         }
     }
 }
@@ -106,7 +112,8 @@ fn damaged_meshes_end_in_a_message() {
         let Some(folder) = data(folder) else { continue };
         for path in files(&folder, extension) {
             let bytes = std::fs::read(&path).unwrap();
-            let mesh = in_time(&path, || if extension == "ply" { read_ply(&bytes) } else { read_obj(&bytes) });
+            let mesh =
+                in_time(&path, || if extension == "ply" { read_ply(&bytes) } else { read_obj(&bytes) });
             let scene = in_time(&path, || import(&path, &Files));
             assert_eq!(mesh.is_err(), scene.has_errors(), "{}", path.display());
             let name = path.file_name().unwrap().to_string_lossy().into_owned();

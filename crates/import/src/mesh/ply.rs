@@ -2,8 +2,8 @@
 //! as binary numbers of either byte order [Turk 1994].
 //!
 //! Vertices have `x y z`, perhaps `nx ny nz`, and texture coordinates as `u v`, `s t`, `texture_u texture_v` or
-//! `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`, and perhaps a number `face_indices`. All
-//! other properties and elements are skipped.
+//! `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`, and perhaps a number `face_indices`. Instead of
+//! faces there may be `tristrips`: strips of triangles, with −1 between them. All other properties and elements are skipped.
 
 use math::{Vec2, Vec3};
 
@@ -223,6 +223,7 @@ fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
         match element.name.as_str() {
             "vertex" if mesh.positions.is_empty() => read_vertices(element, &mut body, &mut mesh)?,
             "face" if faces.corners.is_empty() => faces = read_faces(element, &mut body)?,
+            "tristrips" if faces.corners.is_empty() => faces = read_strips(element, &mut body)?,
             _ => skip(element, &mut body)?,
         }
     }
@@ -393,6 +394,38 @@ fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshErr
             }
         }
         faces.ends.push(faces.corners.len());
+    }
+    Ok(faces)
+}
+
+fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
+    let mut faces = Faces::default();
+    let rows = if element.properties.is_empty() { 0 } else { element.count };
+    for property in std::iter::repeat_n(&element.properties, rows).flatten() {
+        let PropertyKind::List { count, item } = property.kind else {
+            skip_property(property, body)?;
+            continue;
+        };
+        let (mut last, mut length) = ([0_u32; 2], 0_usize);
+        for _ in 0..list_length(body, count, item)? {
+            let corner = body.read(item)?;
+            if corner == -1.0 {
+                length = 0;
+                continue;
+            }
+            if corner < 0.0 || corner.fract() != 0.0 || corner > f64::from(u32::MAX) {
+                return invalid(format!("a strip has vertex {corner}"));
+            }
+            let corner = corner as u32;
+            if length >= 2 {
+                // Every other triangle of a strip turns the other way.
+                let [a, b] = if length % 2 == 0 { last } else { [last[1], last[0]] };
+                faces.corners.extend([a, b, corner]);
+                faces.ends.push(faces.corners.len());
+            }
+            last = [last[1], corner];
+            length += 1;
+        }
     }
     Ok(faces)
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use description::{ColorSpaceDesc, Diagnostic, FileId, SourceMap, Span, Spanned};
 
 use super::names;
-use super::parameter::{self, RawParameter, is_directive};
+use super::parameter::{self, ParameterType, RawParameter, is_directive};
 use super::state::{Attributes, Block, BlockKind, GraphicsState, MaterialReference, TransformSet};
 use super::statement::{
     CameraStatement, InstanceStatement, LightStatement, MaterialStatement, MediumStatement, ObjectStatement,
@@ -80,6 +80,21 @@ const DIRECTIVES: [(&str, Place); 40] = [
     ("TransformTimes", Place::Options),
     ("Translate", Place::Anywhere),
     ("WorldBegin", Place::Options),
+];
+
+/// All options and the types of their values.
+const OPTIONS: [(&str, ParameterType); 11] = [
+    ("disablepixeljitter", ParameterType::Bool),
+    ("disabletexturefiltering", ParameterType::Bool),
+    ("disablewavelengthjitter", ParameterType::Bool),
+    ("displacementedgescale", ParameterType::Float),
+    ("forcediffuse", ParameterType::Bool),
+    ("msereferenceimage", ParameterType::String),
+    ("msereferenceout", ParameterType::String),
+    ("pixelstats", ParameterType::Bool),
+    ("rendercoordsys", ParameterType::String),
+    ("seed", ParameterType::Integer),
+    ("wavefront", ParameterType::Bool),
 ];
 
 const COLOR_SPACES: [(&str, ColorSpaceDesc); 4] = [
@@ -200,7 +215,7 @@ impl<'a> Interpreter<'a> {
                     Some(self.only(name, span, tokens, |all| all.accelerator.as_ref())?);
             }
             "Camera" => self.camera(span, tokens)?,
-            "Option" => self.option(span, tokens)?,
+            "Option" => self.option(tokens)?,
             "ColorSpace" => self.color_space(tokens)?,
             "WorldBegin" => self.world_begin(),
             "AttributeBegin" => self.begin_block(BlockKind::Attribute, span)?,
@@ -319,16 +334,30 @@ impl<'a> Interpreter<'a> {
         Ok(())
     }
 
-    fn option(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        if tokens.peek().kind != TokenKind::Quoted {
-            let message = "`Option` takes one parameter, as in `Option \"integer seed\" 1`";
-            self.report.error("unexpected-token", message, span);
+    /// `Option "name" value`: alone among parameters it is written without its type.
+    fn option(&mut self, tokens: &mut Tokens) -> Step {
+        let name = self.string(tokens, "the option's name")?;
+        let plain: String =
+            name.value.chars().filter(|c| !matches!(c, '-' | '_')).map(|c| c.to_ascii_lowercase()).collect();
+        let Some(&(known, kind)) = OPTIONS.iter().find(|(known, _)| *known == plain) else {
+            let message = format!("there is no option `{}`", name.value);
+            self.report.push(Diagnostic {
+                help: did_you_mean(&plain, OPTIONS.map(|(known, _)| known)),
+                ..Diagnostic::error("unknown-option", message, name.span)
+            });
             return Err(Abandoned);
-        }
-        let option =
-            parameter::parameter(tokens, self.state.color_space, &mut self.report).ok_or(Abandoned)?;
-        self.statements.options.retain(|earlier| earlier.name != option.name);
-        self.statements.options.push(option);
+        };
+        let (values, end) =
+            parameter::values(tokens, kind, known, name.span, &mut self.report).ok_or(Abandoned)?;
+        self.statements.options.retain(|earlier| earlier.name != known);
+        self.statements.options.push(RawParameter {
+            kind,
+            name: known.to_owned(),
+            values,
+            span: name.span.to(end),
+            declaration: name.span,
+            color_space: self.state.color_space,
+        });
         Ok(())
     }
 

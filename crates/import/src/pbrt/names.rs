@@ -1,8 +1,5 @@
 //! Names of the format, and what became of names of its older versions.
 
-/// The spectra that a scene may name.
-pub(crate) const SPECTRA: &str = include_str!("../../data/spectra.txt");
-
 /// Substances whose scattering was measured.
 pub(crate) const SUBSTANCES: &str = include_str!("../../data/substances.txt");
 

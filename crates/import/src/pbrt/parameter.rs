@@ -188,8 +188,9 @@ fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<Paramet
     None
 }
 
-/// The values after a declaration, and where they end.
-fn values(
+/// Reads the values after a declaration, and where they end; `None` if there are none of the right kind, which is then
+/// reported.
+pub(crate) fn values(
     tokens: &mut Tokens,
     kind: ParameterType,
     name: &str,

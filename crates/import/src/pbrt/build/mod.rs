@@ -21,7 +21,6 @@ use description::{
 };
 
 use self::files::ImageRequests;
-use super::names;
 use super::reader::Reader;
 use super::state::MaterialReference;
 use super::statement::{MaterialStatement, MediumStatement, Statement, Statements};
@@ -233,7 +232,7 @@ impl<'a> Builder<'a> {
 
     /// A spectrum by its name in the format or from a file of pairs of wavelength and value.
     pub(crate) fn named_spectrum(&mut self, name: &Spanned<String>) -> Option<SpectrumDesc> {
-        if names::lines(names::SPECTRA).any(|known| known == name.value) {
+        if spectrum::names().any(|known| known == name.value) {
             return Some(SpectrumDesc::Named(name.value.clone()));
         }
         let path = self.path(name);
@@ -242,8 +241,8 @@ impl<'a> Builder<'a> {
                 self.spectrum_file(&path, name.span)
             } else {
                 let message = format!("`{}` is neither the name of a spectrum nor a file", name.value);
-                let help = closest(&name.value, names::lines(names::SPECTRA))
-                    .map(|near| format!("did you mean `{near}`?"));
+                let help =
+                    closest(&name.value, spectrum::names()).map(|near| format!("did you mean `{near}`?"));
                 let diagnostic = Diagnostic::error("unknown-spectrum", message, name.span);
                 self.report.push(Diagnostic { help, ..diagnostic });
                 None
