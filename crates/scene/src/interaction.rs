@@ -85,9 +85,9 @@ impl SurfaceInteraction {
             let t = s.n.dot(s.p.p - o) / s.n.dot(d);
             t.is_finite().then(|| o + d * t - s.p.p)
         };
-        let seen = ray.differentials.and_then(|d| {
-            Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?])
-        });
+        let seen = ray
+            .differentials
+            .and_then(|d| Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?]));
         let [dpdx, dpdy] = seen.unwrap_or_else(|| {
             camera.approximate_dp_dxy(s.p.p, s.n, s.time, differential_scale(samples_per_pixel))
         });

@@ -94,7 +94,12 @@ impl Scene {
     }
 
     /// The nearest surface at 0 < t < `t_max`, and its t.
-    pub fn intersect(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> Option<(SurfaceInteraction, f32)> {
+    pub fn intersect(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        stats: &mut RayStats,
+    ) -> Option<(SurfaceInteraction, f32)> {
         let hit = self.world.intersect(ray, t_max, &|hit, ray| self.is_there(hit, ray), stats)?;
         let entry = &self.entries[hit.geometry.0 as usize];
         let interaction = SurfaceInteraction {
@@ -110,13 +115,19 @@ impl Scene {
     pub fn occluded(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> bool {
         let stops = |hit: &Hit, ray: &Ray| {
             let entry = &self.entries[hit.geometry.0 as usize];
-            !matches!(self.materials.get(entry.material).material, Material::Interface) && self.is_there(hit, ray)
+            !matches!(self.materials.get(entry.material).material, Material::Interface)
+                && self.is_there(hit, ray)
         };
         self.world.occluded(ray, t_max, &stops, stats)
     }
 
     /// Whether the light sample can be seen from a surface.
-    pub fn unoccluded(&self, from: &SurfaceInteraction, sample: &LightLiSample, stats: &mut RayStats) -> bool {
+    pub fn unoccluded(
+        &self,
+        from: &SurfaceInteraction,
+        sample: &LightLiSample,
+        stats: &mut RayStats,
+    ) -> bool {
         let s = &from.surface;
         let ray = Ray::between(s.p, s.n, sample.p, sample.n, s.time);
         !self.occluded(&ray, Ray::SHADOW_END, stats)
@@ -138,11 +149,18 @@ impl Scene {
 
     /// Radiance that arrives along a ray which leaves the scene.
     pub fn escaped(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.infinite_lights.iter().fold(SampledSpectrum::ZERO, |sum, &id| sum + self.light(id).le(ray, lambda))
+        self.infinite_lights
+            .iter()
+            .fold(SampledSpectrum::ZERO, |sum, &id| sum + self.light(id).le(ray, lambda))
     }
 
     /// Radiance that a surface itself sends along `w`.
-    pub fn emitted(&self, from: &SurfaceInteraction, w: Vector3, lambda: &SampledWavelengths) -> SampledSpectrum {
+    pub fn emitted(
+        &self,
+        from: &SurfaceInteraction,
+        w: Vector3,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
         from.area_light.map_or(SampledSpectrum::ZERO, |id| {
             self.light(id).radiance(from.surface.n, from.surface.uv, w, lambda)
         })

@@ -34,7 +34,11 @@ impl Compiler<'_> {
             return None;
         }
         if image.values().any(|value| !value.is_finite()) {
-            self.error("image-values", "the image of a light has values that are infinite or no numbers", span);
+            self.error(
+                "image-values",
+                "the image of a light has values that are infinite or no numbers",
+                span,
+            );
             return None;
         }
         let color_space = image_color_space(&image);

@@ -3,7 +3,8 @@
 use super::Compiler;
 use super::emission::upward_illuminance;
 use crate::light::{
-    DistantLight, Emission, ImageInfiniteLight, Light, PointLight, SceneSphere, SpotLight, UniformInfiniteLight,
+    DistantLight, Emission, ImageInfiniteLight, Light, PointLight, SceneSphere, SpotLight,
+    UniformInfiniteLight,
 };
 use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
 use math::{Point3, Transform, Vec3, Vector3};
@@ -36,11 +37,18 @@ impl Compiler<'_> {
             }
             LightKind::Spot { intensity, power, from, to, cone_angle, cone_delta_angle } => {
                 let cos_falloff_end = cone_angle.to_radians().cos();
-                let cos_falloff_start = (cone_angle - cone_delta_angle).to_radians().cos().max(cos_falloff_end);
+                let cos_falloff_start =
+                    (cone_angle - cone_delta_angle).to_radians().cos().max(cos_falloff_end);
                 let unit = SpotLight::effective_solid_angle(cos_falloff_start, cos_falloff_end);
                 let intensity = self.intensity(intensity, desc.scale, *power, unit, origin);
                 let axis = self.direction(&placement, *to - *from, origin)?;
-                Light::Spot(SpotLight { p: place(*from), axis, intensity, cos_falloff_start, cos_falloff_end })
+                Light::Spot(SpotLight {
+                    p: place(*from),
+                    axis,
+                    intensity,
+                    cos_falloff_start,
+                    cos_falloff_end,
+                })
             }
             LightKind::Distant { radiance, illuminance, from, to } => {
                 let mut radiance = self.emission(radiance, desc.scale, origin.parameter("L"));

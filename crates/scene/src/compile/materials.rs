@@ -2,13 +2,13 @@
 
 use super::Compiler;
 use crate::material::{
-    ConductorIndex, ConductorMaterial, DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, Material,
-    MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+    ConductorIndex, ConductorMaterial, DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial,
+    Material, MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use description::{
-    ConductorDesc, ConductorReflectance, HairColor, Handle, MaterialDesc, MaterialKind, Origin, RoughnessDesc,
-    SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+    ConductorDesc, ConductorReflectance, HairColor, Handle, MaterialDesc, MaterialKind, Origin,
+    RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
 };
 use spectrum::Spectrum;
 
@@ -87,9 +87,9 @@ impl Compiler<'_> {
                 eta: self.index_of_refraction(eta, origin),
                 roughness: self.roughness(roughness),
             }),
-            MaterialKind::ThinDielectric { eta } => {
-                Material::ThinDielectric(ThinDielectricMaterial { eta: self.index_of_refraction(eta, origin) })
-            }
+            MaterialKind::ThinDielectric { eta } => Material::ThinDielectric(ThinDielectricMaterial {
+                eta: self.index_of_refraction(eta, origin),
+            }),
             MaterialKind::Mix { materials, amount } => Material::Mix(MixMaterial {
                 materials: materials.map(|handle| MaterialId(handle.index() as u32)),
                 amount: self.float_texture(amount),
@@ -115,7 +115,9 @@ impl Compiler<'_> {
             MaterialKind::Subsurface { scattering, .. } => {
                 self.not_drawn("subsurface", "diffuse", origin);
                 match scattering {
-                    SubsurfaceScattering::Reflectance { reflectance, .. } => self.diffuse(reflectance, origin),
+                    SubsurfaceScattering::Reflectance { reflectance, .. } => {
+                        self.diffuse(reflectance, origin)
+                    }
                     SubsurfaceScattering::Named(_) | SubsurfaceScattering::Coefficients { .. } => {
                         self.diffuse(&0.5.into(), origin)
                     }

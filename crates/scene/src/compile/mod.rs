@@ -12,10 +12,8 @@ use crate::camera;
 use crate::light::{Light, LightId, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, Scene, SceneOptions};
-use crate::texture::{
-    self, FloatTexture, FloatTextureId, SpectrumTexture, SpectrumTextureId, SpectrumType, Textures, compile_spectrum,
-};
-use description::{Diagnostic, FloatParameter, Parameter, SceneDesc, Span, SpectrumParameter};
+use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
+use description::{Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter};
 use geometry::{World, WorldBuilder};
 use math::DMat4;
 
@@ -103,10 +101,7 @@ impl Compiler<'_> {
     }
 
     fn float_texture(&mut self, parameter: &FloatParameter) -> FloatTextureId {
-        match parameter {
-            Parameter::Value(value) => self.textures.push_float(FloatTexture::Constant(*value)),
-            Parameter::Texture(handle) => Textures::float_id(*handle),
-        }
+        self.textures.float_parameter(parameter)
     }
 
     fn spectrum_texture(
@@ -115,12 +110,6 @@ impl Compiler<'_> {
         spectrum_type: SpectrumType,
         span: Span,
     ) -> SpectrumTextureId {
-        match parameter {
-            Parameter::Value(value) => {
-                let spectrum = compile_spectrum(value, spectrum_type, span, &mut self.diagnostics);
-                self.textures.push_spectrum(SpectrumTexture::Constant(spectrum))
-            }
-            Parameter::Texture(handle) => Textures::spectrum_id(*handle, spectrum_type),
-        }
+        self.textures.spectrum_parameter(parameter, spectrum_type, span, &mut self.diagnostics)
     }
 }

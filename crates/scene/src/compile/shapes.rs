@@ -6,11 +6,12 @@ use crate::material::Material;
 use crate::scene::GeometryEntry;
 use crate::texture::FloatTextureId;
 use description::{
-    Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, Parameter, PatchMeshDesc, ShapeDesc, ShapeKind,
-    Stated, TransformDesc,
+    Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, Parameter, PatchMeshDesc, ShapeDesc,
+    ShapeKind, Stated, TransformDesc,
 };
 use geometry::{
-    BilinearPatch, Cylinder, Disk, Geometry, GroupId, Instance, MeshAttributes, Plane, Shape, Sphere, TriangleMesh,
+    BilinearPatch, Cylinder, Disk, Geometry, GroupId, Instance, MeshAttributes, Plane, Shape, Sphere,
+    TriangleMesh,
 };
 use math::{AnimatedTransform, Bounds2, Transform};
 use sampling::PiecewiseConstant2d;
@@ -152,7 +153,12 @@ impl Compiler<'_> {
         }
     }
 
-    fn mesh(&mut self, mesh: &MeshDesc, shape: &Stated<ShapeDesc>, transform: &Transform) -> Option<Geometry> {
+    fn mesh(
+        &mut self,
+        mesh: &MeshDesc,
+        shape: &Stated<ShapeDesc>,
+        transform: &Transform,
+    ) -> Option<Geometry> {
         if mesh.indices.is_empty() {
             return None;
         }
@@ -257,7 +263,11 @@ impl Compiler<'_> {
         for primitive in 0..geometry.len() as u32 {
             let part = geometry.shape(primitive);
             if part.bounds().is_none() {
-                self.error("infinite-light", "an infinite plane cannot emit: its power would be infinite", span);
+                self.error(
+                    "infinite-light",
+                    "an infinite plane cannot emit: its power would be infinite",
+                    span,
+                );
                 return None;
             }
             // Every part is a light of its own and has the power that is asked for.

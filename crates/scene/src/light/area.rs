@@ -71,7 +71,13 @@ impl AreaLight {
         self.emission.invisible
     }
 
-    pub(super) fn radiance(&self, n: Normal3, uv: Point2, w: Vector3, lambda: &SampledWavelengths) -> SampledSpectrum {
+    pub(super) fn radiance(
+        &self,
+        n: Normal3,
+        uv: Point2,
+        w: Vector3,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
         let emission = &*self.emission;
         if !emission.two_sided && n.dot(w) < 0.0 {
             return SampledSpectrum::ZERO;
@@ -116,7 +122,8 @@ impl AreaLight {
             return None;
         }
         if let Some(alpha) = self.emission.alpha.filter(|_| !self.emission.invisible) {
-            let there = textures.float(alpha, &TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() });
+            let there =
+                textures.float(alpha, &TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() });
             if there < 1.0 && hash_float(&s.p.p.to_array().map(f32::to_bits)) >= there {
                 return None;
             }
@@ -135,8 +142,9 @@ impl AreaLight {
         let peak = match &emission.image {
             None => emission.radiance.max_value(),
             Some(image) => {
-                let (sum, count) =
-                    image.pixels().fold((0f64, 0u32), |(s, n), p| (s + ((p.r + p.g + p.b) / 3.0) as f64, n + 1));
+                let (sum, count) = image
+                    .pixels()
+                    .fold((0f64, 0u32), |(s, n), p| (s + ((p.r + p.g + p.b) / 3.0) as f64, n + 1));
                 (sum / count.max(1) as f64) as f32 * emission.radiance.scale
             }
         };

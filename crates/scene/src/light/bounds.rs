@@ -53,8 +53,8 @@ impl LightBounds {
         if other.phi == 0.0 {
             return self;
         }
-        let cone =
-            DirectionCone::new(self.w, self.cos_theta_o).union(DirectionCone::new(other.w, other.cos_theta_o));
+        let cone = DirectionCone::new(self.w, self.cos_theta_o)
+            .union(DirectionCone::new(other.w, other.cos_theta_o));
         Self {
             bounds: self.bounds.union(other.bounds),
             w: cone.w,

@@ -23,7 +23,11 @@ impl DistantLight {
         self.radiance.sample(lambda) * (PI * self.scene.radius * self.scene.radius)
     }
 
-    pub(super) fn sample_li(&self, context: &LightSampleContext, lambda: &SampledWavelengths) -> Option<LightLiSample> {
+    pub(super) fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLiSample> {
         Some(LightLiSample {
             l: self.radiance.sample(lambda),
             wi: self.w,

@@ -6,7 +6,10 @@
 
 use super::{LightLiSample, LightSampleContext, SceneSphere};
 use image::{Image, WrapMode};
-use math::{Bounds2, Point2, Point3Error, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere};
+use math::{
+    Bounds2, Point2, Point3Error, Transform, Vec3, Vector3, equal_area_sphere_to_square,
+    equal_area_square_to_sphere,
+};
 use sampling::PiecewiseConstant2d;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
@@ -29,7 +32,7 @@ impl ImageInfiniteLight {
     pub fn new(
         render_from_light: Transform,
         image: Arc<Image>,
-            color_space: &'static RgbColorSpace,
+        color_space: &'static RgbColorSpace,
         scale: f32,
         scene: SceneSphere,
     ) -> Self {
@@ -61,7 +64,10 @@ impl ImageInfiniteLight {
     fn lookup(&self, uv: Point2, lambda: &SampledWavelengths) -> SampledSpectrum {
         let pixel = |x: f32, resolution: u32| (x * resolution as f32) as i32;
         let (x, y) = (pixel(uv.x, self.image.width()), pixel(uv.y, self.image.height()));
-        self.spectrum(Rgb::from(self.image.rgb_wrapped(x, y, WrapMode::OctahedralSphere)).clamp_zero(), lambda)
+        self.spectrum(
+            Rgb::from(self.image.rgb_wrapped(x, y, WrapMode::OctahedralSphere)).clamp_zero(),
+            lambda,
+        )
     }
 
     pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {

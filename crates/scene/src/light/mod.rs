@@ -148,7 +148,13 @@ impl Light {
 
     /// Radiance that an emitting surface sends along `w` from a point with normal `n` and coordinates `uv`.
     #[doc(alias = "L")]
-    pub fn radiance(&self, n: Normal3, uv: Point2, w: Vector3, lambda: &SampledWavelengths) -> SampledSpectrum {
+    pub fn radiance(
+        &self,
+        n: Normal3,
+        uv: Point2,
+        w: Vector3,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
         match self {
             Self::Area(light) => light.radiance(n, uv, w, lambda),
             _ => SampledSpectrum::ZERO,

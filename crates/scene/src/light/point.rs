@@ -21,7 +21,11 @@ impl PointLight {
         self.intensity.sample(lambda) * (4.0 * PI)
     }
 
-    pub(super) fn sample_li(&self, context: &LightSampleContext, lambda: &SampledWavelengths) -> Option<LightLiSample> {
+    pub(super) fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLiSample> {
         let to_light = self.p - context.p.p;
         let distance2 = to_light.length_squared();
         (distance2 > 0.0).then(|| LightLiSample {

@@ -30,10 +30,15 @@ impl SpotLight {
     }
 
     pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.intensity.sample(lambda) * Self::effective_solid_angle(self.cos_falloff_start, self.cos_falloff_end)
+        self.intensity.sample(lambda)
+            * Self::effective_solid_angle(self.cos_falloff_start, self.cos_falloff_end)
     }
 
-    pub(super) fn sample_li(&self, context: &LightSampleContext, lambda: &SampledWavelengths) -> Option<LightLiSample> {
+    pub(super) fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLiSample> {
         let to_light = self.p - context.p.p;
         let distance2 = to_light.length_squared();
         if distance2 == 0.0 {

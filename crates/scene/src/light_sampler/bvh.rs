@@ -118,11 +118,13 @@ impl BvhLightSampler {
                         (index, u, pmf) = (index + 1, (u / p).min(ONE_MINUS_EPSILON), pmf * p);
                     } else {
                         let q = b / (a + b);
-                        (index, u, pmf) = (right as usize, ((u - p) / q).clamp(0.0, ONE_MINUS_EPSILON), pmf * q);
+                        (index, u, pmf) =
+                            (right as usize, ((u - p) / q).clamp(0.0, ONE_MINUS_EPSILON), pmf * q);
                     }
                 }
                 NodeKind::Leaf(id) => {
-                    let matters = index > 0 || self.nodes[index].bounds.importance(context.p.p, context.ns) > 0.0;
+                    let matters =
+                        index > 0 || self.nodes[index].bounds.importance(context.p.p, context.ns) > 0.0;
                     return (matters && pmf > 0.0).then_some((id, pmf));
                 }
             }
@@ -205,7 +207,8 @@ fn cost(b: &LightBounds, parent: &Bounds3, axis: usize) -> f32 {
     let sin_o = safe_sqrt(1.0 - b.cos_theta_o * b.cos_theta_o);
     let solid_angle = 2.0 * PI * (1.0 - b.cos_theta_o)
         + PI / 2.0
-            * (2.0 * theta_w * sin_o - (theta_o - 2.0 * theta_w).cos() - 2.0 * theta_o * sin_o + b.cos_theta_o);
+            * (2.0 * theta_w * sin_o - (theta_o - 2.0 * theta_w).cos() - 2.0 * theta_o * sin_o
+                + b.cos_theta_o);
     let d = parent.diagonal();
     let regular = d.max_element() / d[axis];
     b.phi * solid_angle * regular * b.bounds.surface_area()

@@ -33,7 +33,12 @@ pub enum ConductorIndex {
 
 impl ConductorMaterial {
     #[inline]
-    pub(super) fn bxdf(&self, textures: &Textures, context: &TextureContext, lambda: &SampledWavelengths) -> Conductor {
+    pub(super) fn bxdf(
+        &self,
+        textures: &Textures,
+        context: &TextureContext,
+        lambda: &SampledWavelengths,
+    ) -> Conductor {
         let (eta, k) = match self.index {
             ConductorIndex::Complex { eta, k } => {
                 (textures.spectrum(eta, context, lambda), textures.spectrum(k, context, lambda))

@@ -15,7 +15,12 @@ pub struct DiffuseMaterial {
 
 impl DiffuseMaterial {
     #[inline]
-    pub(super) fn bxdf(&self, textures: &Textures, context: &TextureContext, lambda: &SampledWavelengths) -> Diffuse {
+    pub(super) fn bxdf(
+        &self,
+        textures: &Textures,
+        context: &TextureContext,
+        lambda: &SampledWavelengths,
+    ) -> Diffuse {
         Diffuse { reflectance: textures.spectrum(self.reflectance, context, lambda).clamp(0.0, 1.0) }
     }
 }

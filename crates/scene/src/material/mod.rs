@@ -53,7 +53,12 @@ impl Material {
     /// The BxDF at a point. Dispersive materials end all wavelengths but the first. `None`: rays pass as if nothing
     /// were there.
     #[inline]
-    pub fn bxdf(&self, textures: &Textures, context: &TextureContext, lambda: &mut SampledWavelengths) -> Option<Bxdf> {
+    pub fn bxdf(
+        &self,
+        textures: &Textures,
+        context: &TextureContext,
+        lambda: &mut SampledWavelengths,
+    ) -> Option<Bxdf> {
         match self {
             Self::Diffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::DiffuseTransmission(m) => Some(m.bxdf(textures, context, lambda).into()),
