@@ -188,7 +188,7 @@ fn mapped(rgb: [f32; 3]) -> (SurfaceInteraction, Bsdf) {
         MaterialDesc { normal_map: Some(image), ..MaterialDesc::default() }
     }));
     let (surface, bsdf) = bsdf_at(&scene, down(1.0, 0.0), &mut lambda());
-    (surface, bsdf.unwrap())
+    (surface, bsdf.expect("a diffuse surface"))
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn through(scene: &Scene, x: f32, y: f32) -> RayDifferential {
     let film = Vec2::new(x, y);
     let sample =
         alhazen_scene::camera::CameraSample { film, lens: Vec2::splat(0.5), time: 0.0, filter_weight: 1.0 };
-    scene.camera().generate_ray_differential(&sample).unwrap().ray
+    scene.camera().generate_ray_differential(&sample).expect("a ray").ray
 }
 
 fn met(scene: &Scene, ray: &RayDifferential) -> SurfaceInteraction {
