@@ -16,7 +16,7 @@ fn transform(rng: &mut Rng, i: usize) -> Transform {
     let scale = [1f32, 1e-4, 1e5, 30.0][i % 4];
     let away = AWAY[i % 3] * scale;
     let turn = Transform::rotate(between(rng, 0.0, 6.0), direction(rng));
-    let stretch = if i % 2 == 0 { Vec3::ONE } else { Vec3::new(1.0, 0.4, -1.7) };
+    let stretch = if i.is_multiple_of(2) { Vec3::ONE } else { Vec3::new(1.0, 0.4, -1.7) };
     let place = Transform::translate(direction(rng) * away);
     place.after(&turn).after(&Transform::scale(stretch * scale))
 }
@@ -84,7 +84,8 @@ fn axis_parallel_rays_along_shared_edges_do_not_leak() {
     }
 }
 
-/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside none ever comes.
+/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside none ever
+/// comes.
 #[test]
 fn walks_inside_do_not_leak() {
     let rng = &mut Rng::new(3, 0);
