@@ -68,7 +68,7 @@ struct Cells {
 
 impl Cells {
     const BINS: usize = 12;
-    const STEPS: usize = 40;
+    const STEPS: usize = 32;
 
     fn new(shape: &Shape, reference: &ShapeSampleContext) -> Self {
         let cone = bound_subtended_directions(&shape.bounds().expect("bounded"), reference.p.p);
