@@ -41,7 +41,7 @@ impl ColorEncoding {
 
     /// The code in [0, 1] of a linear value, clamped; NaN becomes 0.
     pub fn from_linear(self, linear: f32) -> f32 {
-        let value = linear.max(0.0).min(1.0);
+        let value = at_most(linear, 1.0);
         match self {
             Self::Linear => value,
             Self::Srgb => srgb_from_linear(value),
@@ -68,6 +68,11 @@ impl fmt::Display for ColorEncoding {
             Self::Gamma(gamma) => write!(f, "gamma {gamma}"),
         }
     }
+}
+
+/// The value clamped to [0, `max`]; NaN becomes 0.
+pub(crate) fn at_most(value: f32, max: f32) -> f32 {
+    if value > 0.0 { value.min(max) } else { 0.0 }
 }
 
 /// The linear value of an sRGB code; values outside [0, 1] follow the same curve.

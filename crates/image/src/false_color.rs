@@ -1,7 +1,7 @@
 //! Numbers as colours: the magma map from black through purple and orange to pale yellow, whose lightness grows evenly.
 
 use crate::{
-    encoding::ColorEncoding,
+    encoding::{ColorEncoding, at_most},
     error::ImageError,
     image::{Image, Pixels},
 };
@@ -10,7 +10,7 @@ static MAGMA: [[u8; 3]; 256] = include!("../data/magma.rs");
 
 /// The sRGB codes of a value in [0, 1]; others are clamped, NaN is black.
 pub fn magma(value: f32) -> [u8; 3] {
-    MAGMA[(value.max(0.0).min(1.0) * 255.0 + 0.5) as usize]
+    MAGMA[(at_most(value, 1.0) * 255.0 + 0.5) as usize]
 }
 
 /// A picture of an image's first channel, in which `white` is the brightest colour.

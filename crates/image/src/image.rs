@@ -212,7 +212,12 @@ impl Image {
     pub fn rgb(&self, x: u32, y: u32) -> [f32; 3] {
         assert!(x < self.width && y < self.height);
         let offset = self.offset(x, y);
-        self.color.map(|c| self.value(offset + c, c))
+        let at = self.color.map(|c| offset + c);
+        match &self.pixels {
+            Pixels::U8(values, _) => at.map(|index| self.decoded[values[index] as usize]),
+            Pixels::F16(values) => at.map(|index| values[index].to_f32()),
+            Pixels::F32(values) => at.map(|index| values[index]),
+        }
     }
 
     /// [`Self::rgb`] at any (x, y).

@@ -61,16 +61,19 @@ pub struct Pyramid {
 impl Pyramid {
     /// Builds all levels; an image whose sides are powers of two is shared, not copied.
     pub fn new(image: impl Into<Arc<Image>>, wrap: WrapMode) -> Result<Self, ImageError> {
-        let mut image: Arc<Image> = image.into();
+        let image: Arc<Image> = image.into();
         let (width, height) = (image.width().next_power_of_two(), image.height().next_power_of_two());
-        if (width, height) != (image.width(), image.height()) {
-            image = Arc::new(image.resize(width, height, wrap)?.stored_as(image.pixels()));
-        }
-        let mut finest = image.to_f32();
-        let mut levels = vec![image];
-        while finest.width() > 1 || finest.height() > 1 {
-            finest = halved(&finest)?;
-            levels.push(Arc::new(finest.stored_as(levels[0].pixels())));
+        // Averages are taken of unrounded values, whatever the levels are stored as.
+        let (first, mut exact) = if (width, height) == (image.width(), image.height()) {
+            (image.clone(), image.clone())
+        } else {
+            let resized = image.resize(width, height, wrap)?;
+            (Arc::new(resized.stored_as(image.pixels())), Arc::new(resized))
+        };
+        let mut levels = vec![first];
+        while exact.width() > 1 || exact.height() > 1 {
+            exact = Arc::new(halved(&exact)?);
+            levels.push(Arc::new(exact.stored_as(image.pixels())));
         }
         Ok(Self { levels, wrap })
     }
@@ -249,7 +252,7 @@ impl Texel for [f32; 3] {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::*;
+    use proptest::{prelude::*, test_runner::RngSeed};
 
     use super::*;
     use crate::encoding::ColorEncoding;
@@ -322,6 +325,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig { cases: 64, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
+
         #[test]
         fn a_constant_image_is_constant_everywhere(
             width in 1u32..20, height in 1u32..20, value in 0.0f32..10.0,

@@ -1,4 +1,6 @@
-//! FLIP against the values that the authors' evaluator (`flip-evaluator` 1.x of PyPI) gives for the same formulas.
+//! FLIP against the values that the authors' evaluator (`flip-evaluator`) gives for the same formulas.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
 
 use alhazen_image::{
     Image,

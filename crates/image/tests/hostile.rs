@@ -1,11 +1,13 @@
 //! Decoders fed with what is damaged, odd or made to hurt: an image or an error comes, soon and within bounds.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
+
 mod common;
 
 use std::time::{Duration, Instant};
 
 use alhazen_image::{Format, Image, ImageError, Pixels, ReadOptions, WriteOptions, encode, read};
-use proptest::prelude::*;
+use proptest::{prelude::*, test_runner::RngSeed};
 
 /// Reads a file within two seconds.
 fn read_in_time(path: &std::path::Path) -> Result<Image, ImageError> {
@@ -14,27 +16,6 @@ fn read_in_time(path: &std::path::Path) -> Result<Image, ImageError> {
     let result = read(&bytes, &path.to_string_lossy(), &ReadOptions::default());
     assert!(start.elapsed() < Duration::from_secs(2), "{} took {:?}", path.display(), start.elapsed());
     result
-}
-
-#[test]
-fn every_valid_picture_loads() {
-    let Some(data) = common::data_folder() else { return };
-    let mut count = 0;
-    for folder in ["images", "envmaps"] {
-        for path in common::files_below(&data.join(folder)) {
-            let bytes = std::fs::read(&path).unwrap();
-            if Format::from_content(&bytes).or_else(|| Format::from_name(&path.to_string_lossy())).is_none() {
-                continue;
-            }
-            count += 1;
-            match read_in_time(&path) {
-                Ok(image) => assert!(image.width() > 0),
-                Err(error @ ImageError::Unsupported(_)) => eprintln!("{}: {error}", path.display()),
-                Err(error) => panic!("{}: {error}", path.display()),
-            }
-        }
-    }
-    assert!(count > 130, "{count}");
 }
 
 #[test]
@@ -96,7 +77,7 @@ fn survives(bytes: &[u8], format: Format) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 48, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
 
     #[test]
     fn truncated_files_are_survived(part in 0.0f64..1.0) {

@@ -6,8 +6,8 @@ use spectrum::SampledSpectrum;
 
 /// All scattering at a point of a surface.
 ///
-/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) names the member once around a whole shading step,
-/// inside which `Bsdf { bxdf, frame }` is then dispatched no more.
+/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) names the member once around a
+/// whole shading step, inside which `Bsdf { bxdf, frame }` is then dispatched no more.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf<B = Bxdf> {
     /// What scatters, in the local frame.

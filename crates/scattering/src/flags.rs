@@ -134,8 +134,8 @@ impl Directions {
         self.reflection() && flags.is_reflective() || self.transmission() && flags.is_transmissive()
     }
 
-    /// The probability of reflection where reflection weighs `r` and transmission `t`, and what is not asked for weighs
-    /// nothing; `None` if nothing is left to choose from.
+    /// The probability of reflection where reflection weighs `r` and transmission `t`, and what is not asked
+    /// for weighs nothing; `None` if nothing is left to choose from.
     #[inline]
     pub fn probability_of_reflection(self, r: f32, t: f32) -> Option<f32> {
         let r = if self.reflection() { r } else { 0.0 };
@@ -146,7 +146,8 @@ impl Directions {
 
 /// What travels along the path that a BxDF continues.
 ///
-/// Radiance is scaled by (η_i/η_t)² where it is refracted, because the solid angle that holds it changes; importance is not.
+/// Radiance is scaled by (η_i/η_t)² where it is refracted, because the solid angle that holds it changes;
+/// importance is not.
 /// [Veach 1997 §5.2], [Pharr 2023 §9.5.2]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TransportMode {

@@ -1,13 +1,14 @@
 //! Mirror and refracted directions, and the share of light that a smooth interface reflects.
 //!
-//! With c = cos θ_i and s = sin θ_i, Snell's law η_i sin θ_i = η_t sin θ_t and the relative index η = η_t/η_i, unpolarised
-//! light is reflected by
+//! With c = cos θ_i and s = sin θ_i, Snell's law η_i sin θ_i = η_t sin θ_t and the relative index η = η_t/η_i,
+//! unpolarised light is reflected by
 //!
 //! ```text
 //! F = (r_∥² + r_⊥²)/2     r_∥ = (η c − cos θ_t)/(η c + cos θ_t)     r_⊥ = (c − η cos θ_t)/(c + η cos θ_t)
 //! ```
 //!
-//! For a conductor η becomes η + i k, and each square a squared modulus. Where a + i b is the root of (η + i k)² − s²,
+//! For a conductor η becomes η + i k, and each square a squared modulus. Where a + i b is the root of
+//! (η + i k)² − s²,
 //!
 //! ```text
 //! |r_⊥|² = ((a − c)² + b²)/((a + c)² + b²)     |r_∥|² = |r_⊥|² ((a − s²/c)² + b²)/((a + s²/c)² + b²)
@@ -24,8 +25,8 @@ pub fn reflect(wo: Vector3, n: Normal3) -> Vector3 {
     2.0 * wo.dot(n) * n - wo
 }
 
-/// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i that it met: `eta` if
-/// `wi` is on the side of `n`, else its inverse. `None` where all light is reflected inside.
+/// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i that it met:
+/// `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is reflected inside.
 #[inline]
 pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
     let cos = n.dot(wi);
@@ -38,7 +39,8 @@ pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
     Some((n * (cos_i / eta - cos_t) - wi / eta, eta))
 }
 
-/// The reflectance of an interface between dielectrics; `eta` is the relative index met by light with `cos_theta_i` > 0.
+/// The reflectance of an interface between dielectrics; `eta` is the relative index met by light with
+/// `cos_theta_i` > 0.
 #[inline]
 #[doc(alias = "FrDielectric")]
 pub fn fr_dielectric(cos_theta_i: f32, eta: f32) -> f32 {

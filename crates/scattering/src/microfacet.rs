@@ -7,13 +7,14 @@
 //! D_w(m)      = G₁(w) |w·m| D(m) / |cos θ|                                 the normals that w sees
 //! ```
 //!
-//! D_w is sampled exactly: stretched by α, the surface is a hemisphere, whose projection towards w is a disk next to half
-//! an ellipse.
+//! D_w is sampled exactly: stretched by α, the surface is a hemisphere, whose projection towards w is a disk
+//! next to half an ellipse.
 //!
 //! Sources: [Trowbridge 1975], [Walter 2007], [Heitz 2014], [Heitz 2018] for the sampling, [Pharr 2023 §9.6].
 
 use math::{Vec2, Vec3, Vector3, lerp, safe_sqrt, sqr};
-use std::f32::consts::{PI, TAU};
+use sampling::warp::sample_uniform_disk_polar;
+use std::f32::consts::PI;
 
 /// Normals of a rough surface, its slopes distributed after Trowbridge and Reitz.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,8 +24,8 @@ pub struct TrowbridgeReitz {
 }
 
 impl TrowbridgeReitz {
-    /// The roughnesses α along x and y of the local frame, each ≥ 0. Unless both are so small that the surface counts as
-    /// [smooth](Self::effectively_smooth), neither is let below 0.0001.
+    /// The roughnesses α along x and y of the local frame, each ≥ 0. Unless both are so small that the surface
+    /// counts as [smooth](Self::effectively_smooth), neither is let below 0.0001.
     #[inline]
     pub fn new(alpha_x: f32, alpha_y: f32) -> Self {
         let distribution = Self { alpha_x, alpha_y };
@@ -87,10 +88,8 @@ impl TrowbridgeReitz {
         let t1 = if wh.z < 0.99999 { Vec3::new(-wh.y, wh.x, 0.0).normalize() } else { Vec3::X };
         let t2 = wh.cross(t1);
 
-        let radius = u.x.sqrt();
-        let (sin, cos) = (TAU * u.y).sin_cos();
-        let x = radius * cos;
-        let y = lerp(0.5 * (1.0 + wh.z), safe_sqrt(1.0 - x * x), radius * sin);
+        let Vec2 { x, y } = sample_uniform_disk_polar(u);
+        let y = lerp(0.5 * (1.0 + wh.z), safe_sqrt(1.0 - x * x), y);
         let nh = x * t1 + y * t2 + safe_sqrt(1.0 - x * x - y * y) * wh;
         Vec3::new(self.alpha_x * nh.x, self.alpha_y * nh.y, nh.z.max(1e-6)).normalize()
     }
@@ -101,8 +100,8 @@ impl TrowbridgeReitz {
         self.d_visible(w, wm)
     }
 
-    /// Makes a nearly smooth surface rougher, so that paths that only luck would find are found: α below 0.3 is doubled,
-    /// but to 0.1 at least and 0.3 at most.
+    /// Makes a nearly smooth surface rougher, so that paths that only luck would find are found: α below 0.3
+    /// is doubled, but to 0.1 at least and 0.3 at most.
     #[inline]
     pub fn regularize(&mut self) {
         for alpha in [&mut self.alpha_x, &mut self.alpha_y] {

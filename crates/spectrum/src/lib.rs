@@ -7,6 +7,7 @@
 pub mod blackbody;
 pub mod cie;
 pub mod color_space;
+pub mod daylight;
 pub mod dense;
 pub mod matrix;
 pub mod named;
@@ -20,6 +21,7 @@ pub mod uplift;
 pub use blackbody::{Blackbody, blackbody};
 pub use cie::{CIE_Y_INTEGRAL, xyz_from, y_from};
 pub use color_space::{RgbColorSpace, white_balance};
+pub use daylight::daylight;
 pub use dense::DenselySampled;
 pub use matrix::Matrix3;
 pub use named::{named, names};

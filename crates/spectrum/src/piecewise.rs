@@ -226,4 +226,20 @@ mod tests {
         assert!(PiecewiseLinear::from_interleaved(&[400.0, f32::NAN]).is_err());
         assert!(PiecewiseLinear::from_interleaved(&[400.0, 1.0, 300.0, 1.0]).is_err());
     }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_read_or_refused(text in "([0-9a-z.#,é+-]{0,6}[ \n\t\r]{0,2}){0,12}") {
+            let _ = PiecewiseLinear::parse(&text);
+        }
+
+        #[test]
+        fn written_spectra_are_read_again(steps in proptest::collection::vec((0.01_f32..50.0, -10.0_f32..10.0), 1..20)) {
+            let mut lambda = 300.0;
+            let pairs: Vec<(f32, f32)> = steps.iter().map(|&(step, value)| { lambda += step; (lambda, value) }).collect();
+            let text: String = pairs.iter().map(|(lambda, value)| format!("{lambda} {value} # …\n")).collect();
+            let again = PiecewiseLinear::parse(&text).unwrap();
+            proptest::prop_assert_eq!(again.pairs().collect::<Vec<_>>(), pairs);
+        }
+    }
 }

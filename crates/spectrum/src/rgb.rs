@@ -104,7 +104,12 @@ macro_rules! triple {
         impl IndexMut<usize> for $name {
             #[inline]
             fn index_mut(&mut self, i: usize) -> &mut f32 {
-                [&mut self.$a, &mut self.$b, &mut self.$c].into_iter().nth(i).expect("invariant: a colour has three components")
+                match i {
+                    0 => &mut self.$a,
+                    1 => &mut self.$b,
+                    2 => &mut self.$c,
+                    _ => panic!("a colour has three components, not a component {i}"),
+                }
             }
         }
 

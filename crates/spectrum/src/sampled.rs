@@ -328,34 +328,28 @@ pub fn visible_wavelength_pdf(lambda: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// ∫ of the density over the range by the midpoint rule.
-    fn integral_of(pdf: impl Fn(f32) -> f32) -> f64 {
-        let steps = 47_000;
-        let width = f64::from(LAMBDA_MAX - LAMBDA_MIN) / f64::from(steps);
-        (0..steps).map(|i| f64::from(pdf((360.0 + (f64::from(i) + 0.5) * width) as f32)) * width).sum()
-    }
+    use testkit::Chi2;
 
     #[test]
-    fn the_visible_density_integrates_to_one() {
-        assert!((integral_of(visible_wavelength_pdf) - 1.0).abs() < 1e-4);
+    fn the_visible_density_ends_with_the_range() {
         assert_eq!(visible_wavelength_pdf(359.9), 0.0);
         assert_eq!(visible_wavelength_pdf(830.1), 0.0);
+        assert_eq!(SampledWavelengths::sample_visible(0.0)[0].round(), LAMBDA_MIN);
     }
 
     #[test]
-    fn visible_wavelengths_have_their_density() {
-        // u is the share of the density below the wavelength: its integral up to there gives u again.
-        let steps = 4700;
-        let width = 0.1;
-        let mut below = 0.0;
-        for i in 0..steps {
-            let lambda = 360.0 + (f64::from(i) + 0.5) * width;
-            let share = below + 0.5 * f64::from(visible_wavelength_pdf(lambda as f32)) * width;
-            assert!((f64::from(sample_visible_wavelength(share as f32)) - lambda).abs() < 0.35, "{lambda}");
-            below += f64::from(visible_wavelength_pdf(lambda as f32)) * width;
+    fn each_wavelength_has_its_density() {
+        let chi2 = Chi2 { tests: 2 * N, ..Chi2::default() };
+        let range = [LAMBDA_MIN, LAMBDA_MAX];
+        for i in 0..N {
+            let visible = |u| Some(SampledWavelengths::sample_visible(u)[i]);
+            chi2.interval(range, visible, |lambda| visible_wavelength_pdf(lambda).into()).unwrap();
+            let uniform = |u| Some(SampledWavelengths::sample_uniform(u)[i]);
+            chi2.interval(range, uniform, |_| SampledWavelengths::sample_uniform(0.0).pdf()[i].into())
+                .unwrap();
         }
-        assert_eq!(SampledWavelengths::sample_visible(0.0)[0].round(), LAMBDA_MIN);
+        let lambda = SampledWavelengths::sample_visible(0.7);
+        assert_eq!(lambda.pdf().0, lambda.lambda().map(visible_wavelength_pdf));
     }
 
     #[test]

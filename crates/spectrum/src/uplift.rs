@@ -3,8 +3,8 @@
 //! An RGB reflectance becomes s(c₀t² + c₁t + c₂) with t = (λ − 540) / 100 and the sigmoid s(x) = ½ + x / (2√(1 + x²)),
 //! which lies in [0, 1] whatever the coefficients. The coefficients come from a table over the RGB cube, made by
 //! `cargo xtask rgb-table`: for each position i of the largest component, over its value z and the ratios x, y of
-//! the two next components to it. Between nodes the coefficients are trilinear in x, y and 1/√z: reflectances that
-//! differ in scale alone have coefficients proportional to 1/√z where they are dark, so that dark colours come out right.
+//! the two next components to it. Between nodes the coefficients are trilinear in x, y and (z − ½) / √(z (1 − z)), in which
+//! those of grey are linear, so that dark and bright colours come out right.
 //!
 //! In the file a node is three 16-bit numbers, asinh of the polynomial at 440, 540 and 640 nm over ±10: what the eye
 //! sees of a spectrum depends on the polynomial there, and asinh makes the steps fine where the sigmoid is steep.
@@ -58,7 +58,7 @@ fn sigmoid(x: f32) -> f32 {
 pub const VALUES: usize = 48;
 
 /// Number of nodes over each ratio.
-pub const RATIOS: usize = 40;
+pub const RATIOS: usize = 42;
 
 /// Number of nodes in a table.
 pub const NODES: usize = 3 * VALUES * RATIOS * RATIOS;
@@ -66,15 +66,26 @@ pub const NODES: usize = 3 * VALUES * RATIOS * RATIOS;
 /// Half the range of asinh that the file can express.
 const ASINH_RANGE: f64 = 10.0;
 
-/// The largest component at node `i` of [`VALUES`]: dense towards 1, where coefficients change fast.
+/// The largest component at node `i` of [`VALUES`]: dense towards 0 and 1, where coefficients change fast.
 pub fn node_value(i: usize) -> f64 {
-    let t = 0.02 + 0.98 * i as f64 / (VALUES - 1) as f64;
+    let t = (0.015 + 0.985 * i as f64 / (VALUES - 1) as f64).powf(1.25);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The ratio at node `i` of [`RATIOS`].
+/// The ratio at node `i` of [`RATIOS`]: denser towards 0, where colours are saturated.
 pub fn node_ratio(i: usize) -> f64 {
-    i as f64 / (RATIOS - 1) as f64
+    let t = i as f64 / (RATIOS - 1) as f64;
+    t * (0.6 + 0.4 * t)
+}
+
+/// The position t in [0, 1] of a ratio among the nodes: the inverse of [`node_ratio`].
+fn ratio_position(ratio: f32) -> f32 {
+    ((0.36 + 1.6 * ratio).sqrt() - 0.6) / 0.8
+}
+
+/// What coefficients are about linear in over the largest component z: (z − ½) / √(z (1 − z)), kept finite at z = 1.
+fn value_coordinate(z: f32) -> f32 {
+    (z - 0.5) / (z * (1.05 - z)).sqrt()
 }
 
 /// Index of the node for largest component `largest`, its value node and the ratio nodes of the two components after
@@ -87,6 +98,7 @@ pub fn node_index(largest: usize, value: usize, ratios: [usize; 2]) -> usize {
 pub struct RgbToSpectrumTable {
     coefficients: Box<[[f32; 3]]>,
     values: [f32; VALUES],
+    ratios: [f32; RATIOS],
 }
 
 impl RgbToSpectrumTable {
@@ -96,7 +108,11 @@ impl RgbToSpectrumTable {
     /// If there are not [`NODES`] of them.
     pub fn new(coefficients: Box<[[f32; 3]]>) -> Self {
         assert_eq!(coefficients.len(), NODES, "invariant: a table has all its nodes");
-        Self { coefficients, values: std::array::from_fn(|i| node_value(i) as f32) }
+        Self {
+            coefficients,
+            values: std::array::from_fn(|i| node_value(i) as f32),
+            ratios: std::array::from_fn(|i| node_ratio(i) as f32),
+        }
     }
 
     /// From what [`encode`](Self::encode) made.
@@ -132,38 +148,39 @@ impl RgbToSpectrumTable {
             return RgbSigmoidPolynomial::constant(rgb[0]);
         }
         let largest = (1..3).fold(0, |best, i| if rgb[i] >= rgb[best] { i } else { best });
-        let z = rgb[largest];
-        let scale = (RATIOS - 1) as f32 / z;
-        let (x0, tx) = cell(rgb[(largest + 1) % 3] * scale);
-        let (y0, ty) = cell(rgb[(largest + 2) % 3] * scale);
+        let largest_value = rgb[largest];
+        let (x0, tx) = self.ratio_cell(rgb[(largest + 1) % 3] / largest_value);
+        let (y0, ty) = self.ratio_cell(rgb[(largest + 2) % 3] / largest_value);
 
-        // Darker than the darkest node, the coefficients go on as 1/√z.
-        let (z, darker) =
-            if z < self.values[0] { (self.values[0], (self.values[0] / z).sqrt()) } else { (z, 1.0) };
+        let (darkest, z) = (self.values[0], largest_value.max(self.values[0]));
         let z0 = self.values.partition_point(|&v| v <= z).clamp(1, VALUES - 1) - 1;
-        let [a, b, c] = [self.values[z0], z, self.values[z0 + 1]].map(|v| 1.0 / v.sqrt());
-        let tz = (a - b) / (a - c);
+        let [a, b, c] = [self.values[z0], z, self.values[z0 + 1]].map(value_coordinate);
+        let tz = (b - a) / (c - a);
 
         let mut coefficients = [0.0; 3];
         for (dz, wz) in [(0, 1.0 - tz), (1, tz)] {
             for (dy, wy) in [(0, 1.0 - ty), (1, ty)] {
                 for (dx, wx) in [(0, 1.0 - tx), (1, tx)] {
                     let node = self.coefficients[node_index(largest, z0 + dz, [x0 + dx, y0 + dy])];
-                    let weight = wz * wy * wx * darker;
+                    let weight = wz * wy * wx;
                     for (sum, c) in coefficients.iter_mut().zip(node) {
                         *sum += weight * c;
                     }
                 }
             }
         }
+        if largest_value < darkest {
+            // All wavelengths get darker together; scaling the whole polynomial would lighten where it is positive.
+            coefficients[2] *= (darkest / largest_value).sqrt();
+        }
         RgbSigmoidPolynomial { coefficients }
     }
-}
 
-/// The node below a ratio's position and the distance from it.
-fn cell(position: f32) -> (usize, f32) {
-    let below = (position as usize).min(RATIOS - 2);
-    (below, position - below as f32)
+    /// The node below a ratio, and how far the ratio is from it to the next.
+    fn ratio_cell(&self, ratio: f32) -> (usize, f32) {
+        let below = ((ratio_position(ratio) * (RATIOS - 1) as f32) as usize).min(RATIOS - 2);
+        (below, (ratio - self.ratios[below]) / (self.ratios[below + 1] - self.ratios[below]))
+    }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ fn seen(space: &RgbColorSpace, reflectance: &Spectrum) -> Rgb {
         .map(|lambda| lambda as f32)
         .map(|lambda| (lambda, light.at(lambda) * reflectance.at(lambda)))
         .collect();
-    space.to_rgb(Spectrum::from_pairs(&pairs).unwrap().to_xyz())
+    space.to_rgb(Spectrum::from_pairs(&pairs).expect("wavelengths increase").to_xyz())
 }
 
 fn largest_difference(a: Rgb, b: Rgb) -> f32 {
@@ -47,6 +47,21 @@ fn moderate_colours_of_every_space_come_back() {
 }
 
 #[test]
+fn saturated_colours_of_wide_spaces_come_back() {
+    for (space, rgb) in [
+        (RgbColorSpace::dci_p3(), Rgb::new(0.5, 0.05, 0.025)),
+        (RgbColorSpace::dci_p3(), Rgb::new(0.06, 0.5, 0.12)),
+        (RgbColorSpace::dci_p3(), Rgb::new(0.01, 0.01, 0.9)),
+        (RgbColorSpace::rec2020(), Rgb::new(0.08, 0.7, 0.12)),
+        (RgbColorSpace::rec2020(), Rgb::new(0.5, 0.075, 0.075)),
+        (RgbColorSpace::rec2020(), Rgb::new(0.035, 0.035, 0.5)),
+    ] {
+        let again = seen(space, &Spectrum::rgb_albedo(space, rgb));
+        assert!(largest_difference(again, rgb) < 2e-3, "{space:?}: {rgb:?} became {again:?}");
+    }
+}
+
+#[test]
 fn black_white_and_grey_are_exact() {
     for space in RgbColorSpace::all() {
         for grey in [0.0, 1e-4, 0.18, 0.5, 1.0] {
@@ -59,10 +74,10 @@ fn black_white_and_grey_are_exact() {
 #[test]
 fn dark_colours_keep_their_hue() {
     let space = RgbColorSpace::srgb();
-    for scale in [1e-2, 1e-3, 1e-4, 1e-5] {
+    for (scale, tolerance) in [(1e-1, 2e-3), (1e-2, 5e-3), (1e-3, 2e-2), (1e-4, 2e-2), (1e-6, 0.7)] {
         for rgb in [Rgb::new(1.0, 0.3, 0.2), Rgb::new(0.1, 0.5, 1.0), Rgb::new(0.2, 1.0, 0.1)] {
             let again = seen(space, &Spectrum::rgb_albedo(space, rgb * scale)) / scale;
-            assert!(largest_difference(again, rgb) < 1e-2, "{scale}: {rgb:?} became {again:?}");
+            assert!(largest_difference(again, rgb) < tolerance, "{scale}: {rgb:?} became {again:?}");
         }
     }
 }
@@ -72,9 +87,9 @@ fn light_and_unbounded_values_come_back_beyond_one() {
     for space in RgbColorSpace::all() {
         let rgb = Rgb::new(17.0, 12.0, 4.0);
         let light = space.to_rgb(Spectrum::rgb_illuminant(space, rgb).to_xyz());
-        assert!(largest_difference(light, rgb) < 2e-2, "{space:?}: {light:?}");
+        assert!(largest_difference(light, rgb) < 4e-2, "{space:?}: {light:?}");
         let unbounded = seen(space, &Spectrum::rgb_unbounded(space, rgb));
-        assert!(largest_difference(unbounded, rgb) < 2e-2, "{space:?}: {unbounded:?}");
+        assert!(largest_difference(unbounded, rgb) < 4e-2, "{space:?}: {unbounded:?}");
         assert_eq!(Spectrum::rgb_illuminant(space, Rgb::ZERO).to_xyz().y, 0.0);
     }
 }

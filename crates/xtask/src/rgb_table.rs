@@ -100,33 +100,44 @@ impl Observer {
         (std::array::from_fn(|i| lab[i] - target[i]), lab_derivatives * xyz_derivatives)
     }
 
-    /// The coefficients whose reflectance looks most like `rgb`, sought from `start`.
+    /// The coefficients c that make the squared difference from `rgb` plus R²·max(rgb)·|c|² least, sought from `start`.
+    ///
+    /// The second term changes nothing to speak of where a reflectance has the colour, and keeps the coefficients
+    /// bounded, and so the table smooth, where none has; dark colours need coefficients as 1/√max(rgb).
     fn fit(&self, rgb: [f64; 3], start: Coefficients) -> Coefficients {
-        const STEPS: usize = 60;
-        const CLOSE_ENOUGH: f64 = 1e-10;
-        /// Beyond this the sigmoid is flat and the reflectance does not change any more.
-        const LARGEST: f64 = 5e3;
-        let (target, _) = self.lab(self.xyz_from_rgb.apply(rgb));
+        const R: f64 = 4e-3;
+        const STEPS: usize = 100;
+        const CONVERGED: f64 = 1e-9;
         let squared = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>();
+        let (target, _) = self.lab(self.xyz_from_rgb.apply(rgb));
+        let ridge = R * R * rgb.into_iter().fold(0.0, f64::max);
+        let evaluate = |c: Coefficients| {
+            let (residual, jacobian) = self.difference(c, target);
+            (squared(residual) + ridge * squared(c), residual, jacobian)
+        };
         let mut best = start;
-        let (mut residual, mut jacobian) = self.difference(best, target);
+        let (mut cost, mut residual, mut jacobian) = evaluate(best);
         let mut damping = 1e-3;
         for _ in 0..STEPS {
-            if squared(residual) < CLOSE_ENOUGH || damping > 1e12 {
-                break;
-            }
             let transposed = Matrix3::from_columns(jacobian.0);
             let mut normal = transposed * jacobian;
             for i in 0..3 {
-                normal.0[i][i] *= 1.0 + damping;
+                normal.0[i][i] = normal.0[i][i] * (1.0 + damping) + ridge;
             }
             let Some(inverse) = normal.inverse() else { break };
-            let step = inverse.apply(transposed.apply(residual));
+            let gradient = transposed.apply(residual);
+            let step = inverse.apply(std::array::from_fn(|i| gradient[i] + ridge * best[i]));
             let next: Coefficients = std::array::from_fn(|i| best[i] - step[i]);
-            let (next_residual, next_jacobian) = self.difference(next, target);
-            if next.iter().all(|c| c.abs() < LARGEST) && squared(next_residual) < squared(residual) {
-                (best, residual, jacobian) = (next, next_residual, next_jacobian);
+            let (next_cost, next_residual, next_jacobian) = evaluate(next);
+            if next_cost < cost {
+                let converged = cost - next_cost < CONVERGED * cost;
+                (best, cost, residual, jacobian) = (next, next_cost, next_residual, next_jacobian);
                 damping *= 0.1;
+                if converged {
+                    break;
+                }
+            } else if damping > 1e9 {
+                break;
             } else {
                 damping = damping.max(1e-9) * 10.0;
             }

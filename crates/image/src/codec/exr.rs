@@ -48,9 +48,7 @@ pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> 
     let target = Target { width, channels: &slots };
     let pixels = if all_half {
         let mut values = vec![f16::ZERO; count];
-        read_blocks(chunks, bytes.len(), |block| {
-            target.scatter(block, &header, |v| f16::from_f32(v), &mut values)
-        })?;
+        read_blocks(chunks, bytes.len(), |block| target.scatter(block, &header, f16::from_f32, &mut values))?;
         Pixels::F16(values)
     } else {
         let mut values = vec![0.0; count];

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use image_rs::{
     DynamicImage, ImageBuffer, ImageError as RasterError, ImageFormat, ImageReader, Limits, Luma, LumaA, Rgb,
-    Rgba,
+    Rgba, codecs::jpeg::JpegEncoder,
 };
 
 use super::{Format, ReadOptions, SampleDepth, WriteOptions};
@@ -13,6 +13,9 @@ use crate::{
     error::ImageError,
     image::{Image, Pixels},
 };
+
+/// Of 100; at this one losses are hard to see.
+const JPEG_QUALITY: u8 = 95;
 
 /// 8-bit images stay so; 16-bit ones become linear single floats. Palettes are looked up.
 pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Image, ImageError> {
@@ -23,6 +26,9 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
     limits.max_image_height = Some(1 << 20);
     reader.limits(limits);
     let decoded = reader.decode().map_err(from_library)?;
+    if format == Format::Png {
+        check_palette(bytes)?;
+    }
     let (width, height) = (decoded.width(), decoded.height());
     let encoding = options.encoding();
     let codes = |values: Vec<u8>| Pixels::U8(values, encoding);
@@ -51,6 +57,30 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
         _ => return Err(ImageError::Unsupported(format!("{format:?} of an unknown pixel layout"))),
     };
     Image::new(width, height, channels.iter().copied(), pixels)
+}
+
+/// Refuses a PNG whose pixels name colours that its palette does not have, which the library takes for black.
+fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
+    let damaged = |error: png::DecodingError| ImageError::Invalid(error.to_string());
+    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(damaged)?;
+    let info = reader.info();
+    let (width, bits) = (info.width as usize, info.bit_depth as usize);
+    let Some(palette) = info.palette.as_ref().filter(|_| info.color_type == png::ColorType::Indexed) else {
+        return Ok(());
+    };
+    let color_count = palette.len() / 3;
+    if color_count >= 1 << bits {
+        return Ok(());
+    }
+    let size = reader.output_buffer_size().ok_or_else(|| ImageError::Limits("PNG".into()))?;
+    let mut packed = vec![0; size];
+    let frame = reader.next_frame(&mut packed).map_err(damaged)?;
+    let index = |row: &[u8], x: usize| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xff >> (8 - bits));
+    let known = |row: &[u8]| (0..width).all(|x| usize::from(index(row, x)) < color_count);
+    if packed[..frame.buffer_size()].chunks_exact(frame.line_size).all(known) {
+        return Ok(());
+    }
+    Err(ImageError::Invalid(format!("a PNG pixel names a colour beyond the palette of {color_count}")))
 }
 
 /// Integer formats hold sRGB codes of the colour clamped to [0, 1]; alpha is kept where the format has it.
@@ -85,7 +115,11 @@ pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<V
     let buffer = dynamic(image.width(), image.height(), &values, colored, alpha.is_some(), depth)
         .ok_or_else(|| ImageError::Limits(format!("{} × {} pixels", image.width(), image.height())))?;
     let mut bytes = Cursor::new(Vec::new());
-    buffer.write_to(&mut bytes, library_format(format)?).map_err(from_library)?;
+    match format {
+        Format::Jpeg => buffer.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)),
+        _ => buffer.write_to(&mut bytes, library_format(format)?),
+    }
+    .map_err(from_library)?;
     Ok(bytes.into_inner())
 }
 

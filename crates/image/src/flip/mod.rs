@@ -23,6 +23,7 @@ use self::{
     plane::Plane,
 };
 use crate::{
+    encoding::at_most,
     error::ImageError,
     image::{Image, Pixels},
     metrics::check_same_size,
@@ -46,7 +47,7 @@ pub struct Flip {
 /// FLIP of pictures for a screen: linear sRGB, of which only [0, 1] is seen. `pixels_per_degree` is usually [`PIXELS_PER_DEGREE`].
 pub fn ldr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Result<Flip, ImageError> {
     check_same_size(reference, test)?;
-    let shown = |c: f32| c.max(0.0).min(1.0);
+    let shown = |c: f32| at_most(c, 1.0);
     let map =
         difference(&colors(reference, shown), &colors(test, shown), reference.width(), pixels_per_degree)?;
     finish(reference, map)
@@ -56,7 +57,7 @@ pub fn ldr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Resu
 pub fn hdr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Result<Flip, ImageError> {
     check_same_size(reference, test)?;
     // The bound keeps squares in the tone curve finite.
-    let finite = |c: f32| c.max(0.0).min(1e15);
+    let finite = |c: f32| at_most(c, 1e15);
     let (reference_colors, test_colors) = (colors(reference, finite), colors(test, finite));
     let mut worst = vec![0.0f32; reference_colors.len()];
     for exposure in exposures(&reference_colors) {

@@ -5,8 +5,9 @@
 //! p = D_wo(wm) / (4 |wo·wm|)
 //! ```
 //!
-//! A smooth one has f = F(cos θ_o) δ(wi − mirrored wo)/|cos θ_i|. Light that bounces between microfacets is lost: rough
-//! metals come out a little dark. Sources: [Torrance 1967], [Walter 2007], [Pharr 2023 §9.4, §9.7].
+//! A smooth one has f = F(cos θ_o) δ(wi − mirrored wo)/|cos θ_i|. Light that bounces between microfacets is
+//! lost: rough metals come out a little dark. Sources: [Torrance 1967], [Walter 2007], [Pharr 2023 §9.4,
+//! §9.7].
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_conductor, reflect};
@@ -25,7 +26,8 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// The value where microfacets of normal `wm` turn `wo` into `wi`, on one side of the surface and off the horizon.
+    /// The value where microfacets of normal `wm` turn `wo` into `wi`, on one side of the surface and off the
+    /// horizon.
     #[inline]
     fn f_microfacet(&self, wo: Vector3, wi: Vector3, wm: Vector3) -> SampledSpectrum {
         let fresnel = fr_conductor(wo.dot(wm).abs(), self.eta, self.k);

@@ -1,4 +1,5 @@
-//! Glass, water and other dielectrics: light is reflected and refracted, by a smooth surface or by microfacets that are.
+//! Glass, water and other dielectrics: light is reflected and refracted, by a smooth surface or by microfacets
+//! that are.
 //!
 //! With F the Fresnel reflectance at the microfacet and η' the relative index that light from `wo` meets,
 //!
@@ -9,8 +10,8 @@
 //!                p = (1 − F) · D_wo(wm) |wi·wm| / (wi·wm + wo·wm/η')²
 //! ```
 //!
-//! and transmitted radiance is divided by η'². An index of 1 is no interface at all, whatever the roughness. Light that
-//! bounces between microfacets is lost. Sources: [Walter 2007], [Pharr 2023 §9.5, §9.7].
+//! and transmitted radiance is divided by η'². An index of 1 is no interface at all, whatever the roughness.
+//! Light that bounces between microfacets is lost. Sources: [Walter 2007], [Pharr 2023 §9.5, §9.7].
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_dielectric, reflect, refract};
@@ -86,7 +87,7 @@ impl Dielectric {
         mode: TransportMode,
         directions: Directions,
     ) -> Option<BsdfSample> {
-        let fresnel = fr_dielectric(wo.z, self.eta);
+        let fresnel = if self.eta == 1.0 { 0.0 } else { fr_dielectric(wo.z, self.eta) };
         let pr = directions.probability_of_reflection(fresnel, 1.0 - fresnel)?;
         if uc < pr {
             let wi = Vec3::new(-wo.x, -wo.y, wo.z);

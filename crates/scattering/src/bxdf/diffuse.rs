@@ -3,9 +3,9 @@
 //! Sampled by the cosine of `wi`, p = |cos θ_i|/π, so that every sample weighs R. Source: [Pharr 2023 §9.2].
 
 use super::{BsdfSample, Scatter};
-use crate::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use crate::{BxdfFlags, Directions, TransportMode};
 use math::{Vec2, Vector3, same_hemisphere};
+use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
 

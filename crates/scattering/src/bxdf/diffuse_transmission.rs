@@ -4,9 +4,9 @@
 //! Source: [Pharr 2023 §9.2].
 
 use super::{BsdfSample, Scatter};
-use crate::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use crate::{BxdfFlags, Directions, TransportMode};
 use math::{Vec2, Vector3, same_hemisphere};
+use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
 

@@ -1,7 +1,7 @@
 //! The BxDFs: what each does with light in the local frame, and the choice among them.
 //!
-//! Every member is [`Scatter`]; the conventions are those at the head of the crate. A member that is added gets a file, a
-//! variant and a line of [`each_bxdf!`](crate::each_bxdf).
+//! Every member is [`Scatter`]; the conventions are those at the head of the crate. A member that is added
+//! gets a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
 
 mod conductor;
 mod dielectric;
@@ -15,9 +15,9 @@ pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use thin_dielectric::ThinDielectric;
 
-use crate::warp::sample_uniform_hemisphere;
 use crate::{BxdfFlags, Directions, TransportMode};
 use math::{Vec2, Vector3};
+use sampling::warp::sample_uniform_hemisphere;
 use spectrum::SampledSpectrum;
 use std::f32::consts::{PI, TAU};
 
@@ -35,7 +35,8 @@ pub struct BsdfSample {
     pub flags: BxdfFlags,
     /// The relative index of refraction met along `wi`; 1 for reflection.
     pub eta: f32,
-    /// Whether `f` and `pdf` are stochastic and only their ratio is right; [`Scatter::pdf`] must then be asked for a density.
+    /// Whether `f` and `pdf` are stochastic and only their ratio is right; [`Scatter::pdf`] must then be asked
+    /// for a density.
     pub pdf_is_proportional: bool,
 }
 
@@ -74,8 +75,8 @@ pub trait Scatter {
     /// Widens narrow lobes, so that light they carry is found at the price of some bias.
     fn regularize(&mut self) {}
 
-    /// The hemispherical-directional reflectance: the share of even light from everywhere that leaves to `wo`, estimated by
-    /// one term for each (uc, u).
+    /// The hemispherical-directional reflectance: the share of even light from everywhere that leaves to `wo`,
+    /// estimated by one term for each (uc, u).
     fn rho_hd(&self, wo: Vector3, samples: impl IntoIterator<Item = (f32, Vec2)>) -> SampledSpectrum {
         if wo.z == 0.0 {
             return SampledSpectrum::ZERO;
@@ -83,8 +84,8 @@ pub trait Scatter {
         mean(samples.into_iter().map(|(uc, u)| scattered(self, wo, uc, u)))
     }
 
-    /// The hemispherical-hemispherical reflectance: the share of even light from everywhere that is scattered at all, estimated
-    /// by one term for each (u for wo, uc, u for wi).
+    /// The hemispherical-hemispherical reflectance: the share of even light from everywhere that is scattered
+    /// at all, estimated by one term for each (u for wo, uc, u for wi).
     fn rho_hh(&self, samples: impl IntoIterator<Item = (Vec2, f32, Vec2)>) -> SampledSpectrum {
         mean(samples.into_iter().map(|(uo, uc, ui)| {
             let wo = sample_uniform_hemisphere(uo);
@@ -125,7 +126,7 @@ pub enum Bxdf {
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a name.
 ///
 /// ```
-/// use scattering::{Bxdf, Scatter, each_bxdf};
+/// use alhazen_scattering::{Bxdf, Scatter, each_bxdf};
 /// fn scatters(bxdf: &Bxdf) -> bool {
 ///     each_bxdf!(bxdf, member => !member.flags().is_empty())
 /// }

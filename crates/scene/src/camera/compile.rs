@@ -6,7 +6,8 @@ use description::{
 };
 use math::Bounds2;
 
-/// The camera of a scene. What is wrong with it is added to `diagnostics`; `None` when some of that is an error.
+/// The camera of a scene. What is wrong with it is added to `diagnostics`; `None` when some of that is an
+/// error.
 pub fn compile(
     camera: &Stated<CameraDesc>,
     film: &Stated<FilmDesc>,
@@ -75,7 +76,8 @@ fn projection(
         }
         CameraKind::Spherical { mapping } => Projection::Spherical(Spherical::new(*mapping, resolution)),
         CameraKind::Realistic(_) => {
-            let message = "camera `realistic` is not drawn yet; drawn as a `perspective` pinhole of 90 degrees";
+            let message =
+                "camera `realistic` is not drawn yet; drawn as a `perspective` pinhole of 90 degrees";
             diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
             let window = Screen::window(&ScreenDesc::default(), resolution);
             Projection::Perspective(Perspective::new(90.0, window, LensDesc::default().into(), resolution))

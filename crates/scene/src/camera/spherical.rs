@@ -1,12 +1,15 @@
 //! The spherical camera: one point that looks in every direction, as is needed to record an environment map.
 //!
-//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt from +y and φ = 2πs from +x
-//! towards +z; the equal-area mapping unfolds the sphere into an octahedron ([Clarberg 2008]), so that all pixels see
-//! the same solid angle, 4π/n for n pixels. Film positions beyond the border, where wide reconstruction filters reach,
-//! continue on the sphere ([Pharr 2023 §5.3]).
+//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt from +y and
+//! φ = 2πs from +x towards +z; the equal-area mapping unfolds the sphere into an octahedron ([Clarberg
+//! 2008]), so that all pixels see the same solid angle, 4π/n for n pixels. Film positions beyond the border,
+//! where wide reconstruction filters reach, continue on the sphere ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
-use math::{Point2, Point3, Vec2, Vec3, Vector3, equal_area_square_to_sphere, spherical_direction, wrap_equal_area_square};
+use math::{
+    Point2, Point3, Vec2, Vec3, Vector3, equal_area_square_to_sphere, spherical_direction,
+    wrap_equal_area_square,
+};
 use std::f32::consts::{PI, TAU};
 
 /// All directions.

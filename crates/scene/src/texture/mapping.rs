@@ -13,13 +13,14 @@
 //!               t = p·v₂ + delta_v            ∇t = v₂
 //! ```
 //!
-//! On the axis of the spherical and cylindrical mappings derivatives are infinite or undefined; lookups take that as a very wide
-//! footprint. The spherical mapping exchanges the derivatives of s and t against pbrt-v4, where ∂s belongs to the formula of t.
+//! On the axis of the spherical and cylindrical mappings derivatives are infinite or undefined; lookups take
+//! that as a very wide footprint. The spherical mapping exchanges the derivatives of s and t against pbrt-v4,
+//! where ∂s belongs to the formula of t.
 //!
 //! Source: [Pharr 2023 §10.2].
 
 use super::TextureContext;
-use math::{Point2, Point3, Transform, Vec2, Vec3, Vector3, sqr, spherical_phi, spherical_theta};
+use math::{Point2, Point3, Transform, Vec2, Vec3, Vector3, spherical_phi, spherical_theta, sqr};
 use std::f32::consts::{PI, TAU};
 
 /// Texture coordinates in two dimensions.

@@ -1,0 +1,189 @@
+//! What a caller changes of a scene before it is rendered: the options of the command line.
+
+use std::fmt;
+
+use description::SceneDesc;
+
+use crate::names::{INTEGRATORS, integrator_called};
+use crate::settings::{SETTINGS, set_samples_per_pixel};
+
+/// Changes to a scene. `None` leaves what the scene says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// The name of the algorithm, as in [`INTEGRATORS`]. Settings that both algorithms have are kept.
+    pub integrator: Option<String>,
+    /// Settings by their names in [`SETTINGS`], with their values as text.
+    pub settings: Vec<(String, String)>,
+    /// Samples per pixel.
+    pub samples_per_pixel: Option<u32>,
+    /// Width and height of the whole image in pixels.
+    pub resolution: Option<[i32; 2]>,
+    /// The part to render as fractions `[x0, x1, y0, y1]` of the whole image, y down.
+    pub crop: Option<[f32; 4]>,
+    /// The one pixel to render, as column and row of the whole image.
+    pub pixel: Option<[i32; 2]>,
+    /// Seed of all random numbers.
+    pub seed: Option<i32>,
+}
+
+/// A change that makes no sense.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OverrideError(String);
+
+impl fmt::Display for OverrideError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for OverrideError {}
+
+impl Overrides {
+    /// Changes the scene; the first change that makes no sense is the error.
+    pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
+        if let Some(name) = &self.integrator {
+            let changed = integrator_called(name, &mut desc.integrator).ok_or_else(|| {
+                OverrideError(format!(
+                    "no integrator is called `{name}`; there are {}",
+                    INTEGRATORS.join(", ")
+                ))
+            })?;
+            desc.integrator.value = changed;
+        }
+        for (name, value) in &self.settings {
+            let setting = SETTINGS.iter().find(|setting| setting.name == name).ok_or_else(|| {
+                let names: Vec<_> = SETTINGS.iter().map(|setting| setting.name).collect();
+                OverrideError(format!("no setting is called `{name}`; there are {}", names.join(", ")))
+            })?;
+            (setting.apply)(desc, value)
+                .map_err(|reason| OverrideError(format!("cannot set {name} to `{value}`: {reason}")))?;
+        }
+        if let Some(samples) = self.samples_per_pixel {
+            let samples = i32::try_from(samples).ok().filter(|&samples| samples > 0);
+            let samples = samples
+                .ok_or_else(|| OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)))?;
+            set_samples_per_pixel(desc, samples);
+        }
+        if let Some(resolution) = self.resolution {
+            desc.film.resolution = resolution;
+        }
+        if let Some(crop) = self.crop {
+            desc.film.pixel_bounds = None;
+            desc.film.crop_window = Some(crop);
+        }
+        if let Some([x, y]) = self.pixel {
+            let [width, height] = desc.film.resolution;
+            if !((0..width).contains(&x) && (0..height).contains(&y)) {
+                return Err(OverrideError(format!(
+                    "pixel {x},{y} is not in the image of {width} × {height} pixels"
+                )));
+            }
+            desc.film.pixel_bounds = Some([x, x + 1, y, y + 1]);
+        }
+        if let Some(seed) = self.seed {
+            desc.options.seed = seed;
+            desc.sampler.seed = Some(seed);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::{max_depth, regularize};
+    use description::{FilterDesc, IntegratorDesc, LightSamplerDesc, SamplerKind};
+
+    fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {
+        let mut desc = SceneDesc::default();
+        overrides.apply(&mut desc).map(|()| desc)
+    }
+
+    fn with_settings(settings: &[(&str, &str)]) -> Result<SceneDesc, OverrideError> {
+        let settings = settings.iter().map(|&(name, value)| (name.into(), value.into())).collect();
+        changed(Overrides { settings, ..Overrides::default() })
+    }
+
+    #[test]
+    fn another_algorithm_keeps_the_settings_that_it_shares() {
+        let mut desc = SceneDesc::default();
+        desc.integrator.value =
+            IntegratorDesc::Path { max_depth: 9, regularize: true, light_sampler: LightSamplerDesc::Power };
+        for name in INTEGRATORS {
+            let mut copy = desc.clone();
+            let integrator = Some(name.to_owned());
+            Overrides { integrator, ..Overrides::default() }.apply(&mut copy).unwrap();
+            assert!(max_depth(&mut copy.integrator).is_none_or(|depth| *depth == 9), "{name}");
+            assert!(regularize(&mut copy.integrator).is_none_or(|regularize| *regularize), "{name}");
+        }
+        let integrator = Some("volpath".to_owned());
+        let desc = changed(Overrides { integrator, ..Overrides::default() }).unwrap();
+        assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath { max_depth: 5, .. }));
+    }
+
+    #[test]
+    fn every_setting_has_a_value_that_it_takes_and_one_that_it_refuses() {
+        for setting in &SETTINGS {
+            let mut scenes = [
+                IntegratorDesc::default(),
+                IntegratorDesc::SimplePath { max_depth: 1, sample_lights: true, sample_bsdf: true },
+                IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: 1.0 },
+            ]
+            .map(|integrator| SceneDesc { integrator: integrator.into(), ..SceneDesc::default() });
+            let mut takes = |value| scenes.iter_mut().any(|desc| (setting.apply)(desc, value).is_ok());
+            assert!(["7", "true", "power", "sobol", "box"].into_iter().any(&mut takes), "{}", setting.name);
+            assert!(!takes("nonsense"), "{}", setting.name);
+        }
+    }
+
+    #[test]
+    fn settings_reach_the_scene_in_order() {
+        let desc =
+            with_settings(&[("maxdepth", "3"), ("filter", "box"), ("filterradius", "2"), ("iso", "400")])
+                .unwrap();
+        assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath { max_depth: 3, .. }));
+        assert_eq!(desc.filter.value, FilterDesc::Box { radius: [2.0, 2.0] });
+        assert_eq!(desc.film.sensor.iso, 400.0);
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_told() {
+        let message = |settings| with_settings(settings).unwrap_err().to_string();
+        assert_eq!(message(&[("maxdepth", "deep")]), "cannot set maxdepth to `deep`: it is a whole number");
+        assert!(message(&[("depth", "5")]).starts_with("no setting is called `depth`; there are maxdepth, "));
+        assert_eq!(
+            message(&[("cossample", "true")]),
+            "cannot set cossample to `true`: the scene's algorithm has no such setting"
+        );
+        let pixel = Overrides { pixel: Some([2000, 0]), ..Overrides::default() };
+        assert_eq!(
+            changed(pixel).unwrap_err().to_string(),
+            "pixel 2000,0 is not in the image of 1280 × 720 pixels"
+        );
+    }
+
+    #[test]
+    fn strata_make_the_samples_asked_for() {
+        for (samples, strata) in [(1, [1, 1]), (12, [4, 3]), (16, [4, 4]), (17, [17, 1])] {
+            let mut desc = with_settings(&[("sampler", "stratified")]).unwrap();
+            Overrides { samples_per_pixel: Some(samples), ..Overrides::default() }.apply(&mut desc).unwrap();
+            assert!(
+                matches!(desc.sampler.kind, SamplerKind::Stratified { strata: found, .. } if found == strata)
+            );
+        }
+    }
+
+    #[test]
+    fn size_part_and_seed_replace_those_of_the_scene() {
+        let desc = changed(Overrides {
+            resolution: Some([100, 50]),
+            crop: Some([0.0, 0.5, 0.0, 1.0]),
+            pixel: Some([99, 49]),
+            seed: Some(7),
+            ..Overrides::default()
+        });
+        let desc = desc.unwrap();
+        assert_eq!((desc.film.resolution, desc.film.pixel_bounds), ([100, 50], Some([99, 100, 49, 50])));
+        assert_eq!((desc.options.seed, desc.sampler.seed), (7, Some(7)));
+    }
+}

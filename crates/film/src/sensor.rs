@@ -1,0 +1,108 @@
+//! Pixel sensors: from light at sampled wavelengths to three numbers, and from those to XYZ.
+//!
+//! A sensor's response is c = g ∫ L(λ) c̄(λ) dλ for each of its three sensitivities c̄, with the imaging ratio
+//! g = exposure time · ISO / 100 [Pharr 2023 §5.4.2]. There is no division by ∫ ȳ: lights are scaled so that one of unit
+//! strength has ∫ L ȳ dλ = 1, and thus gives the response 1 at g = 1.
+//!
+//! White balance turns the colour of the light at the scene, of chromaticity s, into the white of the film's colour space,
+//! by von Kries' scaling in Bradford's cone space.
+
+use spectrum::{
+    CIE_Y_INTEGRAL, Matrix3, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, daylight,
+    white_balance, xyz_from,
+};
+
+/// A sensor of XYZ: the eye of the CIE 1931 standard observer.
+#[derive(Clone, Debug)]
+pub struct PixelSensor {
+    scale: f32,
+    xyz_from_sensor_rgb: Matrix3,
+}
+
+impl PixelSensor {
+    /// The ideal XYZ sensor. `white_temperature`, in kelvin, is that of the daylight that shall look white in `color_space`;
+    /// `None` leaves colours as they are.
+    pub fn cie1931(color_space: &RgbColorSpace, white_temperature: Option<f32>, imaging_ratio: f32) -> Self {
+        let balance = |kelvin| white_balance(daylight(kelvin).to_xyz().xy(), color_space.white());
+        Self {
+            scale: imaging_ratio * CIE_Y_INTEGRAL,
+            xyz_from_sensor_rgb: white_temperature.map_or(Matrix3::IDENTITY, balance),
+        }
+    }
+
+    /// The three responses to light at `lambda`: an unbiased estimate.
+    #[inline]
+    pub fn to_sensor_rgb(&self, light: &SampledSpectrum, lambda: &SampledWavelengths) -> Rgb {
+        let xyz = xyz_from(light, lambda) * self.scale;
+        Rgb::new(xyz.x, xyz.y, xyz.z)
+    }
+
+    /// The matrix from responses to XYZ, white balance included.
+    pub fn xyz_from_sensor_rgb(&self) -> Matrix3 {
+        self.xyz_from_sensor_rgb
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectrum::Spectrum;
+
+    /// The mean response to a spectrum over stratified wavelengths.
+    fn response(sensor: &PixelSensor, light: &Spectrum) -> [f32; 3] {
+        const STEPS: u32 = 1 << 14;
+        let mut sum = [0.0_f64; 3];
+        for i in 0..STEPS {
+            let lambda = SampledWavelengths::sample_visible((i as f32 + 0.5) / STEPS as f32);
+            let rgb = sensor.to_sensor_rgb(&light.sample(&lambda), &lambda).to_array();
+            (0..3).for_each(|c| sum[c] += f64::from(rgb[c]) / f64::from(STEPS));
+        }
+        sum.map(|x| x as f32)
+    }
+
+    fn output(sensor: &PixelSensor, space: &RgbColorSpace, light: &Spectrum) -> [f32; 3] {
+        (space.rgb_from_xyz() * sensor.xyz_from_sensor_rgb()).apply_f32(response(sensor, light))
+    }
+
+    fn assert_close(a: [f32; 3], b: [f32; 3], tolerance: f32) {
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= tolerance), "{a:?} is not {b:?}");
+    }
+
+    /// Light of unit strength, as lights of a scene have it.
+    fn unit(light: Spectrum) -> Spectrum {
+        let scale = 1.0 / light.to_photometric();
+        let values: Vec<_> = (360..=830).map(|l| (l as f32, light.at(l as f32) * scale)).collect();
+        Spectrum::from_pairs(&values).unwrap()
+    }
+
+    #[test]
+    fn the_white_of_each_colour_space_is_one_in_it() {
+        for space in RgbColorSpace::all() {
+            let sensor = PixelSensor::cie1931(space, None, 1.0);
+            assert_close(output(&sensor, space, &unit(space.illuminant())), [1.0; 3], 2e-3);
+        }
+    }
+
+    #[test]
+    fn the_imaging_ratio_is_a_factor() {
+        let space = RgbColorSpace::srgb();
+        let sensor = PixelSensor::cie1931(space, None, 0.25);
+        assert_close(output(&sensor, space, &unit(space.illuminant())), [0.25; 3], 5e-4);
+    }
+
+    #[test]
+    fn white_balance_makes_the_named_light_white() {
+        // Illuminant A is a black body of 2855 K on the scale of temperatures on which D65 is daylight of 6500 K.
+        let lights = [
+            ("stdillum-D65", 6500.0, RgbColorSpace::aces2065_1()),
+            ("stdillum-A", 2855.0, RgbColorSpace::srgb()),
+        ];
+        for (name, kelvin, space) in lights {
+            let light = unit(spectrum::named(name).unwrap());
+            let plain = output(&PixelSensor::cie1931(space, None, 1.0), space, &light);
+            assert!((plain[0] - plain[2]).abs() > 0.05, "{name} is not white by itself: {plain:?}");
+            let balanced = output(&PixelSensor::cie1931(space, Some(kelvin), 1.0), space, &light);
+            assert_close(balanced, [1.0; 3], 0.005);
+        }
+    }
+}

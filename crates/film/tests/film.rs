@@ -1,0 +1,257 @@
+//! The film as a whole: order, merging, refusal, bounds and development.
+
+use alhazen_film::{Film, compile};
+use description::{ColorSpaceDesc, FilmKind, GBufferSpace, SceneDesc, Severity};
+use image::Pixels;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+use testkit::Random;
+
+/// A scene with a small film of single floats and a box filter.
+fn scene(resolution: [i32; 2]) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = resolution;
+    desc.film.save_fp16 = false;
+    desc
+}
+
+fn film_of(desc: &SceneDesc) -> Film {
+    compile(desc).expect("a film").film
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    pixel: [i32; 2],
+    l: SampledSpectrum,
+    u: f32,
+    weight: f32,
+}
+
+fn samples(count: usize, [width, height]: [i32; 2], seed: u64) -> Vec<Sample> {
+    let mut random = Random::new(seed);
+    let mut coordinate = |size: i32| (random.get_1d() * size as f32) as i32;
+    let pixels: Vec<_> = (0..count).map(|_| [coordinate(width), coordinate(height)]).collect();
+    pixels
+        .into_iter()
+        .map(|pixel| {
+            // Magnitudes over sixty powers of two, where sums of floats would depend on their order.
+            let magnitude = 2f32.powf(60.0 * random.get_1d() - 30.0);
+            let l = SampledSpectrum::new([(); 4].map(|()| magnitude * random.get_1d()));
+            Sample { pixel, l, u: random.get_1d(), weight: 2.0 * random.get_1d() - 0.5 }
+        })
+        .collect()
+}
+
+fn add(film: &mut Film, sample: &Sample) {
+    film.add_sample(sample.pixel, &sample.l, &SampledWavelengths::sample_visible(sample.u), sample.weight);
+}
+
+fn floats(film: &Film) -> Vec<u32> {
+    film.develop().values().map(f32::to_bits).collect()
+}
+
+#[test]
+fn order_and_merging_do_not_change_a_bit() {
+    let resolution = [19, 35];
+    let desc = scene(resolution);
+    let samples = samples(2000, resolution, 9);
+    let mut whole = film_of(&desc);
+    samples.iter().for_each(|sample| add(&mut whole, sample));
+    for seed in 0..10 {
+        let mut random = Random::new(seed);
+        let mut order: Vec<(u64, &Sample)> = samples.iter().map(|sample| (random.bits(), sample)).collect();
+        order.sort_by_key(|&(key, _)| key);
+        let split = (random.get_1d() * samples.len() as f32) as usize;
+        let mut parts = [film_of(&desc), film_of(&desc)];
+        for (place, (_, sample)) in order.into_iter().enumerate() {
+            add(&mut parts[usize::from(place < split)], sample);
+        }
+        let [mut merged, other] = parts;
+        merged.merge(&other);
+        assert_eq!(merged.sample_count(), 2000);
+        assert_eq!(floats(&merged), floats(&whole));
+    }
+}
+
+#[test]
+fn tiles_hold_every_pixel_once_and_fill_the_same_film() {
+    let resolution = [37, 50];
+    let mut desc = scene(resolution);
+    desc.film.pixel_bounds = Some([3, 36, 1, 50]);
+    let bounds = film_of(&desc).pixel_bounds();
+    let samples: Vec<_> =
+        samples(5000, resolution, 4).into_iter().filter(|sample| bounds.contains(sample.pixel)).collect();
+    let mut whole = film_of(&desc);
+    samples.iter().for_each(|sample| add(&mut whole, sample));
+    let mut tiled = film_of(&desc);
+    let mut seen = 0;
+    for mut tile in tiled.tiles_mut() {
+        let tile_bounds = tile.bounds();
+        seen += tile_bounds.area();
+        for sample in samples.iter().filter(|sample| tile_bounds.contains(sample.pixel)) {
+            let lambda = SampledWavelengths::sample_visible(sample.u);
+            tile.add_sample(sample.pixel, &sample.l, &lambda, sample.weight);
+        }
+    }
+    assert_eq!(seen, bounds.area());
+    assert_eq!(tiled.sample_count(), samples.len() as u64);
+    assert_eq!(floats(&tiled), floats(&whole));
+    let pixel = samples[0].pixel;
+    let count = samples.iter().filter(|sample| sample.pixel == pixel).count() as u64;
+    assert_eq!(tiled.pixel_sample_count(pixel), count);
+}
+
+#[test]
+fn samples_that_are_no_numbers_are_counted_and_left_out() {
+    let mut film = film_of(&scene([4, 4]));
+    let lambda = SampledWavelengths::sample_visible(0.5);
+    let good = SampledSpectrum::splat(0.5);
+    film.add_sample([1, 1], &good, &lambda, 1.0);
+    let before = floats(&film);
+    for (i, bad) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30].into_iter().enumerate() {
+        let mut l = good;
+        l[i] = bad;
+        film.add_sample([1, 1], &l, &lambda, 1.0);
+    }
+    film.add_sample([3, 0], &good, &lambda, f32::NAN);
+    assert_eq!(floats(&film), before);
+    assert_eq!(film.sample_count(), 1);
+    assert_eq!(film.rejected().count, 5);
+    assert_eq!(film.rejected().pixels().collect::<Vec<_>>(), [[3, 0], [1, 1]], "in reading order");
+}
+
+#[test]
+fn the_pixels_of_refused_samples_do_not_depend_on_order() {
+    let lambda = SampledWavelengths::sample_visible(0.5);
+    let bad = SampledSpectrum::splat(f32::NAN);
+    let pixels: Vec<_> = (0..100).map(|i| [i % 10, i / 10]).collect();
+    let (mut film, mut other) = (film_of(&scene([10, 10])), film_of(&scene([10, 10])));
+    pixels.iter().rev().for_each(|&pixel| film.add_sample(pixel, &bad, &lambda, 1.0));
+    pixels.iter().for_each(|&pixel| other.add_sample(pixel, &bad, &lambda, 1.0));
+    assert_eq!(film.rejected(), other.rejected());
+    film.merge(&other);
+    assert_eq!(film.rejected().count, 200);
+    assert_eq!(film.rejected().pixels().collect::<Vec<_>>(), pixels[..alhazen_film::MAX_REJECTED_PIXELS]);
+}
+
+#[test]
+fn small_values_next_to_large_ones_are_kept() {
+    let mut film = film_of(&scene([1, 1]));
+    let lambda = SampledWavelengths::sample_uniform(0.3);
+    let develop = |film: &Film| film.develop().rgb(0, 0);
+    film.add_sample([0, 0], &SampledSpectrum::splat(1e-9), &lambda, 1.0);
+    let small = develop(&film);
+    assert!(small.iter().any(|c| *c != 0.0));
+    film.add_sample([0, 0], &SampledSpectrum::splat(1e6), &lambda, 1.0);
+    film.add_sample([0, 0], &SampledSpectrum::splat(1e6), &lambda, -1.0);
+    assert_eq!(develop(&film), small);
+}
+
+#[test]
+fn half_floats_do_not_overflow() {
+    let mut desc = scene([1, 1]);
+    desc.film.save_fp16 = true;
+    let mut film = film_of(&desc);
+    film.add_sample([0, 0], &SampledSpectrum::splat(1e9), &SampledWavelengths::sample_uniform(0.3), 1.0);
+    let image = film.develop();
+    assert!(matches!(image.pixels(), Pixels::F16(_)));
+    assert!(image.values().all(|value| value.abs() <= 65504.0));
+}
+
+#[test]
+fn a_sample_is_scaled_down_to_the_largest_allowed_component() {
+    let mut desc = scene([1, 1]);
+    let lambda = SampledWavelengths::sample_uniform(0.3);
+    let l = SampledSpectrum::new([5.0, 3.0, 2.0, 9.0]);
+    let picture = |desc: &SceneDesc| {
+        let mut film = film_of(desc);
+        film.add_sample([0, 0], &l, &lambda, 1.0);
+        film.develop().rgb(0, 0)
+    };
+    let free = picture(&desc);
+    desc.film.max_component_value = 1.0;
+    let limited = picture(&desc);
+    let factor = limited[0] / free[0];
+    assert!(factor > 0.0 && factor < 0.1);
+    assert!(
+        (0..3).all(|c| (limited[c] / free[c] / factor - 1.0).abs() < 1e-5),
+        "one factor for all: {limited:?} {free:?}"
+    );
+}
+
+#[test]
+fn the_picture_knows_its_window_and_its_colour_space() {
+    let mut desc = scene([40, 30]);
+    desc.film.pixel_bounds = Some([10, 99, -5, 20]);
+    desc.film.color_space = ColorSpaceDesc::Rec2020;
+    let image = film_of(&desc).develop();
+    assert_eq!((image.width(), image.height()), (30, 20));
+    assert_eq!((image.data_window().min, image.data_window().max), ([10, 0], [40, 20]));
+    assert_eq!(image.display_window().max, [40, 30]);
+    assert_eq!(image.metadata.chromaticities.unwrap().green, [0.17, 0.797]);
+    assert!(image.values().all(|value| value == 0.0), "no light yet");
+}
+
+#[test]
+fn a_crop_window_is_rounded_up_on_both_sides() {
+    let mut desc = scene([10, 10]);
+    desc.film.crop_window = Some([0.25, 0.55, 0.0, 0.5]);
+    let bounds = film_of(&desc).pixel_bounds();
+    assert_eq!((bounds.min, bounds.max), ([3, 0], [6, 5]));
+}
+
+/// The codes and messages of what [`compile`] says about a scene.
+fn said(desc: &SceneDesc) -> Vec<(Severity, &'static str, String)> {
+    let diagnostics = match compile(desc) {
+        Ok(compiled) => compiled.warnings,
+        Err(errors) => errors,
+    };
+    diagnostics.into_iter().map(|d| (d.severity, d.code, d.message)).collect()
+}
+
+#[test]
+fn what_makes_no_film_is_an_error() {
+    let mut desc = scene([10, 10]);
+    desc.film.pixel_bounds = Some([20, 30, 0, 10]);
+    assert_eq!(said(&desc)[0].1, "invalid-film");
+    desc = scene([0, 10]);
+    assert_eq!(said(&desc)[0].1, "invalid-film");
+    desc = scene([i32::MAX, i32::MAX]);
+    let (_, code, message) = &said(&desc)[0];
+    assert_eq!(*code, "invalid-film");
+    assert!(message.contains("no memory"), "{message}");
+    desc = scene([10, 10]);
+    desc.film.sensor.iso = -100.0;
+    desc.film.sensor.white_balance = 20.0;
+    assert_eq!(said(&desc).iter().filter(|d| d.1 == "invalid-sensor").count(), 2);
+    desc = scene([10, 10]);
+    desc.camera.shutter_close = desc.camera.shutter_open;
+    assert_eq!(said(&desc)[0].1, "invalid-sensor");
+}
+
+#[test]
+fn what_is_not_drawn_is_a_warning() {
+    let mut desc = scene([10, 10]);
+    desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
+    desc.film.sensor.name.value = "canon_eos_100d".into();
+    let said = said(&desc);
+    assert_eq!(said.len(), 2);
+    assert!(said.iter().all(|(severity, code, _)| *severity == Severity::Warning && *code == "not-drawn"));
+    assert_eq!(said[0].2, "film `gbuffer` is not drawn yet; drawn as `rgb`");
+}
+
+#[test]
+fn the_imaging_ratio_is_exposure_time_times_iso_over_100() {
+    let lambda = SampledWavelengths::sample_uniform(0.3);
+    let mut desc = scene([1, 1]);
+    let picture = |desc: &SceneDesc| {
+        let mut film = film_of(desc);
+        film.add_sample([0, 0], &SampledSpectrum::splat(1.0), &lambda, 1.0);
+        film.develop().rgb(0, 0)
+    };
+    let plain = picture(&desc);
+    desc.camera.shutter_open = 1.0;
+    desc.camera.shutter_close = 1.5;
+    desc.film.sensor.iso = 800.0;
+    let brighter = picture(&desc);
+    assert!((0..3).all(|c| (brighter[c] / plain[c] - 4.0).abs() < 1e-5), "{brighter:?} {plain:?}");
+}

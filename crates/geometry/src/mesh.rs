@@ -1,0 +1,164 @@
+//! Triangles that share vertices.
+
+use crate::shape::Triangle;
+use math::{Bounds3, Normal3, Point3, Transform, Vec2, Vector3};
+use std::fmt;
+use std::sync::Arc;
+
+/// What vertices may carry beside a position, one value per vertex. Normals and tangents are in object space.
+#[derive(Clone, Debug, Default)]
+pub struct MeshAttributes {
+    /// Shading normals, of any length.
+    pub normals: Option<Arc<[Normal3]>>,
+    /// Shading tangents.
+    pub tangents: Option<Arc<[Vector3]>>,
+    /// Texture coordinates.
+    pub uvs: Option<Arc<[Vec2]>>,
+}
+
+/// Why arrays are no mesh.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum MeshError {
+    /// A triangle names a vertex that there is not.
+    Index {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex it names.
+        vertex: u32,
+    },
+    /// An attribute has not one value per vertex.
+    AttributeLength {
+        /// Which attribute.
+        attribute: &'static str,
+        /// How many values it has.
+        values: usize,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// There are more triangles than an index of 32 bits can tell apart.
+    TooLarge,
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Index { triangle, vertex } => {
+                write!(f, "triangle {triangle} names vertex {vertex}, which does not exist")
+            }
+            Self::AttributeLength { attribute, values, vertices } => {
+                write!(f, "{values} {attribute} for {vertices} vertices")
+            }
+            Self::TooLarge => write!(f, "too many triangles"),
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+/// A mesh in render space.
+#[derive(Clone, Debug)]
+pub struct TriangleMesh {
+    positions: Arc<[Point3]>,
+    indices: Arc<[[u32; 3]]>,
+    normals: Option<Arc<[Normal3]>>,
+    tangents: Option<Arc<[Vector3]>>,
+    uvs: Option<Arc<[Vec2]>>,
+    flips: bool,
+}
+
+impl TriangleMesh {
+    /// Brings an object's triangles into render space. Arrays that the transform leaves alone are shared, not copied.
+    ///
+    /// Given normals point to the outside; with `reverse_orientation`, to the inside.
+    pub fn new(
+        positions: Arc<[Point3]>,
+        indices: Arc<[[u32; 3]]>,
+        attributes: MeshAttributes,
+        render_from_object: &Transform,
+        reverse_orientation: bool,
+    ) -> Result<Self, MeshError> {
+        let vertices = positions.len();
+        if indices.len() >= u32::MAX as usize {
+            return Err(MeshError::TooLarge);
+        }
+        for (triangle, corners) in indices.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&i| i as usize >= vertices) {
+                return Err(MeshError::Index { triangle, vertex });
+            }
+        }
+        let MeshAttributes { normals, tangents, uvs } = attributes;
+        let lengths = [
+            ("normals", normals.as_ref().map(|a| a.len())),
+            ("tangents", tangents.as_ref().map(|a| a.len())),
+            ("texture coordinates", uvs.as_ref().map(|a| a.len())),
+        ];
+        for (attribute, length) in lengths {
+            if let Some(values) = length.filter(|&n| n != vertices) {
+                return Err(MeshError::AttributeLength { attribute, values, vertices });
+            }
+        }
+        let moved = !render_from_object.is_identity();
+        let turn = if reverse_orientation { -1.0 } else { 1.0 };
+        Ok(Self {
+            positions: if moved {
+                positions.iter().map(|&p| render_from_object.point(p)).collect()
+            } else {
+                positions
+            },
+            indices,
+            normals: normals.map(|normals| {
+                if moved || reverse_orientation {
+                    normals.iter().map(|&n| turn * render_from_object.normal(n).normalize_or_zero()).collect()
+                } else {
+                    normals
+                }
+            }),
+            tangents: tangents.map(|tangents| {
+                if moved {
+                    tangents.iter().map(|&s| render_from_object.vector(s)).collect()
+                } else {
+                    tangents
+                }
+            }),
+            uvs,
+            flips: reverse_orientation != render_from_object.swaps_handedness(),
+        })
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Whether there is no triangle.
+    pub fn is_empty(&self) -> bool {
+        self.indices.is_empty()
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub fn corners(&self, triangle: usize) -> [Point3; 3] {
+        self.indices[triangle].map(|i| self.positions[i as usize])
+    }
+
+    /// One triangle with all that its vertices carry.
+    pub fn triangle(&self, triangle: usize) -> Triangle {
+        let corners = self.indices[triangle];
+        let pick = |values: &Arc<[Vector3]>| corners.map(|i| values[i as usize]);
+        Triangle {
+            p: corners.map(|i| self.positions[i as usize]),
+            n: self.normals.as_ref().map(pick),
+            s: self.tangents.as_ref().map(pick),
+            uv: match &self.uvs {
+                Some(uvs) => corners.map(|i| uvs[i as usize]),
+                None => Triangle::DEFAULT_UV,
+            },
+            flips: self.flips,
+        }
+    }
+
+    /// The box around all vertices that a triangle uses.
+    pub fn bounds(&self) -> Bounds3 {
+        Bounds3::around((0..self.len()).flat_map(|i| self.corners(i)))
+    }
+}

@@ -1,0 +1,213 @@
+//! Shapes: what a single primitive can do.
+//!
+//! Each shape is met by rays, describes its surface at a hit, and samples itself: by area ([`Shape::sample`]), or as seen from a point
+//! ([`Shape::sample_from`], by solid angle). Every sample has its density.
+//!
+//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is solved; z is their axis.
+//! - Triangles and patches have their vertices in render space.
+//! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on other shapes; a
+//!   [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which vertices may assign at will.
+//! - Where a surface covers a direction twice, the density of the direction is that of its nearest point; the other is out of sight.
+
+mod bilinear_patch;
+mod cylinder;
+mod disk;
+mod plane;
+mod quadric;
+mod sphere;
+mod triangle;
+
+pub use bilinear_patch::BilinearPatch;
+pub use cylinder::Cylinder;
+pub use disk::Disk;
+pub use plane::Plane;
+pub use sphere::Sphere;
+pub use triangle::Triangle;
+
+use crate::surface::SurfacePoint;
+use math::{Bounds3, DirectionCone, Normal3, Point3Error, Ray, Vec2, Vec3, Vector3};
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeHit {
+    /// How far along the ray, in lengths of its direction.
+    pub t: f32,
+    /// The shape's parameters there.
+    pub uv: Vec2,
+}
+
+/// A point chosen on a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeSample {
+    /// Position, and how far it may be from the surface.
+    pub p: Point3Error,
+    /// Unit normal, on the side that the shape's orientation (or its shading normals) make the outside.
+    pub n: Normal3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Density: per area from [`Shape::sample`], per solid angle from [`Shape::sample_from`].
+    pub pdf: f32,
+}
+
+/// The point from which a shape is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeSampleContext {
+    /// Where, and how far that may be from the surface it lies on.
+    pub p: Point3Error,
+    /// Geometric normal there; zero where there is no surface.
+    pub n: Normal3,
+    /// Shading normal there; zero where there is no surface, or where light from all sides counts.
+    pub ns: Normal3,
+    /// Moment in the shutter's time.
+    pub time: f32,
+}
+
+impl ShapeSampleContext {
+    /// The ray that leaves along `w`.
+    #[inline]
+    pub fn spawn_ray(&self, w: Vector3) -> Ray {
+        Ray::spawn(self.p, self.n, w, self.time)
+    }
+
+    /// How many areas at `p` with normal `n` make one solid angle here: dA/dω = d²/|cos θ|.
+    fn area_per_solid_angle(&self, p: Vec3, n: Normal3) -> f32 {
+        let toward = p - self.p.p;
+        let distance2 = toward.length_squared();
+        distance2 * distance2.sqrt() / n.dot(toward).abs()
+    }
+
+    /// Turns a sample by area into one by solid angle; `None` when it is seen edge-on or from itself.
+    fn seen(&self, sample: ShapeSample) -> Option<ShapeSample> {
+        let pdf = sample.pdf * self.area_per_solid_angle(sample.p.p, sample.n);
+        (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
+    }
+
+    /// Weights of the corners of the unit square that make samples follow the cosine at this point, given directions to the corners; never quite zero.
+    fn cosine_weights(&self, corners: [Vector3; 4]) -> [f32; 4] {
+        corners.map(|w| w.normalize_or_zero().dot(self.ns).abs().max(0.01))
+    }
+}
+
+/// Any shape.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// Ball, or a part of it.
+    Sphere(Box<Sphere>),
+    /// Tube without ends.
+    Cylinder(Box<Cylinder>),
+    /// Flat disk or ring.
+    Disk(Box<Disk>),
+    /// Infinite plane.
+    Plane(Box<Plane>),
+    /// Bilinear patch.
+    BilinearPatch(Box<BilinearPatch>),
+    /// Triangle.
+    Triangle(Triangle),
+}
+
+macro_rules! each_shape {
+    ($self:expr, $shape:ident => $result:expr) => {
+        match $self {
+            Shape::Sphere($shape) => $result,
+            Shape::Cylinder($shape) => $result,
+            Shape::Disk($shape) => $result,
+            Shape::Plane($shape) => $result,
+            Shape::BilinearPatch($shape) => $result,
+            Shape::Triangle($shape) => $result,
+        }
+    };
+}
+
+macro_rules! from_shape {
+    ($($name:ident)*) => {$(
+        impl From<$name> for Shape {
+            fn from(shape: $name) -> Self {
+                Self::$name(shape.into())
+            }
+        }
+    )*};
+}
+from_shape!(Sphere Cylinder Disk Plane BilinearPatch Triangle);
+
+impl Shape {
+    /// A box around it; `None` when it has no end.
+    pub fn bounds(&self) -> Option<Bounds3> {
+        each_shape!(self, shape => shape.bounds())
+    }
+
+    /// The nearest point where the ray meets it at 0 < t < `t_max`.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+        each_shape!(self, shape => shape.intersect(ray, t_max))
+    }
+
+    /// What is known of the surface where `ray` met it.
+    pub fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
+        match self {
+            Self::Sphere(shape) => shape.surface(ray, hit),
+            Self::Cylinder(shape) => shape.surface(ray, hit),
+            Self::Disk(shape) => shape.surface(ray),
+            Self::Plane(shape) => shape.surface(ray),
+            Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
+            Self::Triangle(shape) => shape.surface(ray, hit.uv),
+        }
+    }
+
+    /// The area; infinite for the plane. Approximate where a quadric's transform is no similarity, and for bent patches.
+    pub fn area(&self) -> f32 {
+        each_shape!(self, shape => shape.area())
+    }
+
+    /// A point with its density per area; `None` where the shape has no area, or no finite one.
+    pub fn sample(&self, u: Vec2) -> Option<ShapeSample> {
+        each_shape!(self, shape => shape.sample(u)).filter(|s| s.pdf.is_finite() && s.pdf > 0.0)
+    }
+
+    /// The density per area with which [`Shape::sample`] chooses the point with the given parameters (those of a [`ShapeHit`]).
+    #[doc(alias = "pdf")]
+    pub fn pdf_area(&self, uv: Vec2) -> f32 {
+        each_shape!(self, shape => shape.pdf_area(uv))
+    }
+
+    /// A point with its density per solid angle around `reference`; `None` where no point can be chosen.
+    pub fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
+        let special = match self {
+            Self::Sphere(shape) => shape.sample_from(reference, u),
+            Self::BilinearPatch(shape) => shape.sample_from(reference, u),
+            Self::Triangle(shape) => shape.sample_from(reference, u),
+            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) => None,
+        };
+        match special {
+            Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
+            None => reference.seen(self.sample(u)?),
+        }
+    }
+
+    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met along `wi`; 0 where nothing is.
+    pub fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> f32 {
+        let ray = reference.spawn_ray(wi);
+        let Some(hit) = self.intersect(&ray, f32::INFINITY) else { return 0.0 };
+        let special = match self {
+            Self::Sphere(shape) => shape.pdf_from(reference),
+            Self::BilinearPatch(shape) => shape.pdf_from(reference, hit.uv),
+            Self::Triangle(shape) => shape.pdf_from(reference, wi),
+            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) => None,
+        };
+        let pdf = special.unwrap_or_else(|| {
+            let surface = self.surface(&ray, &hit);
+            self.pdf_area(hit.uv) * reference.area_per_solid_angle(surface.p.p, surface.n)
+        });
+        if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    /// A cone of all normals, on the side of [`ShapeSample::n`].
+    pub fn normal_bounds(&self) -> DirectionCone {
+        match self {
+            Self::Sphere(_) | Self::Cylinder(_) => DirectionCone::ENTIRE_SPHERE,
+            Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
+            Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
+            Self::BilinearPatch(shape) => shape.normal_bounds(),
+            Self::Triangle(shape) => DirectionCone::new(shape.outside(Vec2::splat(1.0 / 3.0)), 1.0),
+        }
+    }
+}

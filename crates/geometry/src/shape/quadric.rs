@@ -1,0 +1,177 @@
+//! What quadrics share.
+//!
+//! A ray is brought to object space and the equation solved in doubles; the point is then put back on the surface and rounded to floats in render space. All that is left of errors is that
+//! last rounding, which the point's bounds cover: neither the distance of the ray's origin nor the shape's transform makes them grow.
+
+use crate::placement::{Placement, ROUNDING};
+use crate::shape::ShapeSample;
+use crate::surface::SurfacePoint;
+use math::{Bounds3, DVec3, Normal3, Point3Error, Ray, Transform, Vec2};
+
+/// Where a quadric stands, and on which side its outside is.
+#[derive(Clone, Debug)]
+pub(super) struct Quadric {
+    pub placement: Placement,
+    flips: bool,
+}
+
+/// A point of a parametrised surface in object space.
+pub(super) struct Local {
+    pub p: DVec3,
+    /// Unit normal, along dpdu × dpdv.
+    pub n: DVec3,
+    pub uv: Vec2,
+    pub dpdu: DVec3,
+    pub dpdv: DVec3,
+    /// ∂²p/∂u², ∂²p/∂u∂v, ∂²p/∂v².
+    pub second: [DVec3; 3],
+}
+
+impl Quadric {
+    pub fn new(render_from_object: &Transform, reverse_orientation: bool) -> Self {
+        Self {
+            placement: Placement::new(render_from_object),
+            flips: reverse_orientation != render_from_object.swaps_handedness(),
+        }
+    }
+
+    pub fn surface(&self, local: &Local, ray: &Ray) -> SurfacePoint {
+        let vector = |v: DVec3| self.placement.vector(v);
+        let side = if self.flips { -1.0 } else { 1.0 };
+        let dn = weingarten(local).map(|dn| self.placement.normal_change(local.n, dn) * side);
+        SurfacePoint::new(
+            self.point(local.p),
+            self.normal(local.n),
+            local.uv,
+            [vector(local.dpdu), vector(local.dpdv)],
+            dn,
+            ray,
+        )
+    }
+
+    /// A point of the surface in render space.
+    pub fn point(&self, p: DVec3) -> Point3Error {
+        self.placement.point(p, p.abs() * ROUNDING)
+    }
+
+    /// The unit normal in render space, on the shape's outside.
+    pub fn normal(&self, n: DVec3) -> Normal3 {
+        let n = self.placement.unit_normal(n);
+        if self.flips { -n } else { n }
+    }
+
+    /// A sample at a point with unit normal `n` that has the density `pdf` per area of object space.
+    pub fn sample(&self, p: DVec3, n: DVec3, uv: Vec2, pdf: f64) -> ShapeSample {
+        ShapeSample { p: self.point(p), n: self.normal(n), uv, pdf: self.pdf_area(n, pdf) }
+    }
+
+    /// A density per area of object space at unit normal `n`, brought to render space.
+    pub fn pdf_area(&self, n: DVec3, pdf: f64) -> f32 {
+        (pdf / self.placement.area_factor(n)) as f32
+    }
+
+    /// The area in render space of what has `area` in object space, and the unit normal `normal(u, v)` at parameters spread evenly over that area.
+    pub fn area(&self, area: f64, normal: impl Fn(f64, f64) -> DVec3) -> f32 {
+        const STEPS: usize = 64;
+        let place = |i: usize| (i as f64 + 0.5) / STEPS as f64;
+        let mean = (0..STEPS * STEPS)
+            .map(|i| self.placement.area_factor(normal(place(i % STEPS), place(i / STEPS))))
+            .sum::<f64>()
+            / (STEPS * STEPS) as f64;
+        (area * mean) as f32
+    }
+
+    /// A box around the box of two corners in object space.
+    pub fn bounds(&self, min: DVec3, max: DVec3) -> Bounds3 {
+        let corner = |i: usize| {
+            let pick = |axis: usize| if i >> axis & 1 == 0 { min[axis] } else { max[axis] };
+            self.point(DVec3::new(pick(0), pick(1), pick(2)))
+        };
+        (0..8).map(corner).fold(Bounds3::EMPTY, |all, p| {
+            all.union(Bounds3 { min: p.p - p.error * 2.0, max: p.p + p.error * 2.0 })
+        })
+    }
+}
+
+/// ∂n/∂u and ∂n/∂v of n ∝ dpdu × dpdv, by the fundamental forms.
+fn weingarten(local: &Local) -> [DVec3; 2] {
+    let Local { n, dpdu, dpdv, second, .. } = local;
+    let (e1, f1, g1) = (dpdu.dot(*dpdu), dpdu.dot(*dpdv), dpdv.dot(*dpdv));
+    let [e2, f2, g2] = second.map(|d| n.dot(d));
+    let determinant = e1 * g1 - f1 * f1;
+    if determinant == 0.0 {
+        return [DVec3::ZERO; 2];
+    }
+    [
+        (*dpdu * (f2 * f1 - e2 * g1) + *dpdv * (e2 * f1 - f2 * e1)) / determinant,
+        (*dpdu * (g2 * f1 - f2 * g1) + *dpdv * (f2 * f1 - g2 * e1)) / determinant,
+    ]
+}
+
+/// The roots of |o + t·d|² = r² in ascending order, without cancellation.
+///
+/// The discriminant is (r + m)(r − m)/d² with m the least distance from the centre, and of the two roots the one of larger size is found
+/// first; the other is the quotient of their product ([Pharr 2023 §6.8.3]). A ray that only touches has the root twice.
+pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
+    let a = d.dot(d);
+    let middle = -o.dot(d) / a;
+    let nearest = (o + d * middle).length();
+    let discriminant = (radius + nearest) * (radius - nearest) / a;
+    if discriminant < 0.0 || discriminant.is_nan() {
+        return None;
+    }
+    let larger = middle + discriminant.sqrt().copysign(middle);
+    let other = if larger == 0.0 { 0.0 } else { (o.dot(o) - radius * radius) / a / larger };
+    Some(if larger < other { [larger, other] } else { [other, larger] })
+}
+
+/// The root that a hit at `t` was rounded from.
+pub(super) fn unrounded(roots: Option<[f64; 2]>, t: f32) -> f64 {
+    let t = t as f64;
+    roots.map_or(t, |[a, b]| if (a - t).abs() <= (b - t).abs() { a } else { b })
+}
+
+/// The angle of a point around the z axis, in [0, 2π).
+pub(super) fn phi(p: DVec3) -> f64 {
+    let phi = p.y.atan2(p.x);
+    if phi < 0.0 { phi + std::f64::consts::TAU } else { phi }
+}
+
+/// Degrees, kept between none and a full turn, in radians.
+pub(super) fn swept(degrees: f32) -> f64 {
+    (degrees.clamp(0.0, 360.0) as f64).to_radians()
+}
+
+/// The first of the ascending `roots` at 0 < t < `t_max` for which `parameters` are found.
+pub(super) fn first_hit(
+    roots: [f64; 2],
+    t_max: f32,
+    parameters: impl Fn(f64) -> Option<Vec2>,
+) -> Option<crate::shape::ShapeHit> {
+    roots.into_iter().filter(|&t| t > 0.0 && (t as f32) < t_max).find_map(|t| {
+        let uv = parameters(t)?;
+        Some(crate::shape::ShapeHit { t: t as f32, uv })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn none_one_and_two_roots() {
+        let o = DVec3::new(0.0, 0.0, -5.0);
+        assert_eq!(roots(o + DVec3::X * 1.5, DVec3::Z, 1.0), None);
+        assert_eq!(roots(o + DVec3::X, DVec3::Z, 1.0), Some([5.0, 5.0]));
+        assert_eq!(roots(o, DVec3::Z * 2.0, 1.0), Some([2.0, 3.0]));
+        assert_eq!(roots(o, -DVec3::Z, 1.0), Some([-6.0, -4.0]));
+        assert_eq!(roots(DVec3::ZERO, DVec3::X, 2.0), Some([-2.0, 2.0]));
+        assert_eq!(roots(o, DVec3::ZERO, 1.0), None);
+    }
+
+    #[test]
+    fn the_small_root_keeps_its_digits() {
+        let [near, far] = roots(DVec3::new(0.0, 0.0, -1.0 - 1e-12), DVec3::Z, 1.0).expect("two roots");
+        assert!((near - 1e-12).abs() < 1e-15 && (far - 2.0).abs() < 1e-11);
+    }
+}

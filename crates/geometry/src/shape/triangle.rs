@@ -1,0 +1,154 @@
+//! The triangle p(b₁, b₂) = p₀ + b₁(p₁ − p₀) + b₂(p₂ − p₀).
+//!
+//! Seen from a point, it is sampled by the solid angle of its projection on the unit sphere ([Arvo 1995]), warped so that the samples follow the cosine at that point; where that solid
+//! angle is too small or too near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
+
+use super::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::placement::{ROUNDING, rounded};
+use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
+use crate::watertight::Sheared;
+use math::{
+    Bounds3, DVec3, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, coordinate_system, face_forward,
+};
+use sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
+
+/// Solid angles in steradians between which a triangle is sampled by solid angle.
+const SPHERICAL: std::ops::RangeInclusive<f32> = 3e-4..=6.22;
+
+/// A triangle with all that its vertices carry, in render space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Corners.
+    pub p: [Point3; 3],
+    /// Shading normals.
+    pub n: Option<[Normal3; 3]>,
+    /// Shading tangents.
+    pub s: Option<[Vector3; 3]>,
+    /// Texture coordinates.
+    pub uv: [Vec2; 3],
+    /// Whether the outside is where the corners run clockwise.
+    pub flips: bool,
+}
+
+impl Triangle {
+    /// Texture coordinates of corners that are given none.
+    pub const DEFAULT_UV: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::ONE];
+
+    /// A triangle without shading normals.
+    pub fn new(p: [Point3; 3]) -> Self {
+        Self { p, n: None, s: None, uv: Self::DEFAULT_UV, flips: false }
+    }
+
+    pub(super) fn bounds(&self) -> Option<Bounds3> {
+        Some(Bounds3::around(self.p))
+    }
+
+    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+        Sheared::new(ray).triangle(&self.p, t_max).map(|(t, uv)| ShapeHit { t, uv })
+    }
+
+    pub(crate) fn surface(&self, ray: &Ray, b: Vec2) -> SurfacePoint {
+        let mut n = self.cross().normalize_or_zero().as_vec3();
+        if self.flips {
+            n = -n;
+        }
+        let [st_du, st_dv] = self.sides(&self.uv);
+        let [p_du, p_dv] = self.sides(&self.p).map(|e| e.as_dvec3());
+        let by_texture = |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| d.as_vec3()));
+        let tangents = by_texture([p_du, p_dv]).filter(|d| d[0].cross(d[1]).length_squared() > 0.0);
+        let [dpdu, dpdv] = tangents.unwrap_or_else(|| any_tangents(n));
+        let mut surface =
+            SurfacePoint::new(self.point(b), n, self.texture(b), [dpdu, dpdv], [Vec3::ZERO; 2], ray);
+        if self.n.is_some() || self.s.is_some() {
+            let mix = |v: &[Vec3; 3]| barycentric(v, b).as_vec3();
+            let ns = self.n.and_then(|n| mix(&n).try_normalize()).unwrap_or(n);
+            let ss = self.s.map(|s| mix(&s)).filter(|s| s.length_squared() > 0.0).unwrap_or(dpdu);
+            let ts = ns.cross(ss);
+            let (ss, ts) = if ts.length_squared() > 0.0 { (ts.cross(ns), ts) } else { coordinate_system(ns) };
+            let dn = self.n.and_then(|n| by_texture(self.sides(&n).map(|e| e.as_dvec3())));
+            let [dndu, dndv] = dn.unwrap_or([Vec3::ZERO; 2]);
+            surface.set_shading(Shading { n: ns, dpdu: ss, dpdv: ts, dndu, dndv });
+        }
+        surface
+    }
+
+    pub(super) fn area(&self) -> f32 {
+        (0.5 * self.cross().length()) as f32
+    }
+
+    pub(super) fn sample(&self, u: Vec2) -> Option<ShapeSample> {
+        let [_, b1, b2] = sample_uniform_triangle(u);
+        Some(self.sample_at(Vec2::new(b1, b2), 1.0 / self.area()))
+    }
+
+    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
+        1.0 / self.area()
+    }
+
+    /// By solid angle, where that is neither too small nor too large.
+    pub(super) fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
+        let seen = self.seen_from(reference)?;
+        let (u, pdf) = match self.weights(reference) {
+            Some(w) => {
+                let warped = sample_bilinear(u, w);
+                (warped, bilinear_pdf(warped, w))
+            }
+            None => (u, 1.0),
+        };
+        let (_, [_, b1, b2]) = seen.sample(u);
+        Some(self.sample_at(Vec2::new(b1, b2), pdf * seen.pdf()))
+    }
+
+    /// The density by solid angle towards a point of the triangle.
+    pub(super) fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> Option<f32> {
+        let seen = self.seen_from(reference)?;
+        let warp = self.weights(reference).map_or(1.0, |w| bilinear_pdf(seen.invert(wi), w));
+        Some(seen.pdf() * warp)
+    }
+
+    fn seen_from(&self, reference: &ShapeSampleContext) -> Option<SphericalTriangle> {
+        SphericalTriangle::new(self.p, reference.p.p).filter(|s| SPHERICAL.contains(&s.solid_angle()))
+    }
+
+    /// Weights at the corners of the unit square: u₁ = 0 becomes corner 1, and u₁ = 1 the side from corner 0 to corner 2.
+    fn weights(&self, reference: &ShapeSampleContext) -> Option<[f32; 4]> {
+        (reference.ns != Vec3::ZERO).then(|| {
+            let [w0, w1, w2] = self.p.map(|p| p - reference.p.p);
+            reference.cosine_weights([w1, w1, w0, w2])
+        })
+    }
+
+    fn sample_at(&self, b: Vec2, pdf: f32) -> ShapeSample {
+        ShapeSample { p: self.point(b), n: self.outside(b), uv: self.texture(b), pdf }
+    }
+
+    fn point(&self, b: Vec2) -> Point3Error {
+        let size = self.p.iter().fold(DVec3::ZERO, |sum, p| sum + p.as_dvec3().abs());
+        rounded(barycentric(&self.p, b), size * ROUNDING)
+    }
+
+    fn texture(&self, b: Vec2) -> Vec2 {
+        self.uv[0] * (1.0 - b.x - b.y) + self.uv[1] * b.x + self.uv[2] * b.y
+    }
+
+    /// The unit normal on the side of the shading normals, where there are any.
+    pub(super) fn outside(&self, b: Vec2) -> Normal3 {
+        let n = self.cross().normalize_or_zero().as_vec3();
+        match &self.n {
+            Some(normals) => face_forward(n, barycentric(normals, b).as_vec3()),
+            None if self.flips => -n,
+            None => n,
+        }
+    }
+
+    /// (p₁ − p₀) × (p₂ − p₀), without overflow.
+    fn cross(&self) -> DVec3 {
+        let [a, b, c] = self.p.map(|p| p.as_dvec3());
+        (b - a).cross(c - a)
+    }
+
+    /// From corner 0 to corners 1 and 2.
+    fn sides<V: Copy + std::ops::Sub<Output = V>>(&self, v: &[V; 3]) -> [V; 2] {
+        [v[1] - v[0], v[2] - v[0]]
+    }
+}

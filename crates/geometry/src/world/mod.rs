@@ -1,0 +1,231 @@
+//! Everything that a ray can hit.
+//!
+//! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`] places another group in it, at rest or moving. A shape that
+//! moves is an instance of a group with that shape alone.
+
+mod builder;
+mod group;
+mod packet;
+mod stats;
+
+use crate::mesh::TriangleMesh;
+use crate::placement::Placement;
+use crate::shape::{Shape, ShapeHit};
+use crate::surface::SurfacePoint;
+use group::{Group, Trace, Verdict};
+use math::{AnimatedTransform, Bounds3, Ray, Transform, Vec2};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+pub use builder::WorldBuilder;
+pub use stats::RayStats;
+
+/// A geometry, counted over the whole world in the order of [`WorldBuilder::add_geometry`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GeometryId(pub u32);
+
+/// An instance, in the order of [`WorldBuilder::add_instance`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct InstanceId(pub u32);
+
+/// A group, in the order of [`WorldBuilder::add_group`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GroupId(pub u32);
+
+impl GroupId {
+    /// The group that rays enter.
+    pub const TOP: Self = Self(0);
+}
+
+/// What one description of an object becomes: one or more primitives that share whatever a scene ties to a [`GeometryId`].
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// The triangles of a mesh.
+    Mesh(Arc<TriangleMesh>),
+    /// Any other shapes: one quadric, the patches of a bilinear mesh.
+    Shapes(Arc<[Shape]>),
+}
+
+impl From<TriangleMesh> for Geometry {
+    fn from(mesh: TriangleMesh) -> Self {
+        Self::Mesh(Arc::new(mesh))
+    }
+}
+
+impl From<Shape> for Geometry {
+    fn from(shape: Shape) -> Self {
+        Self::Shapes(Arc::new([shape]))
+    }
+}
+
+impl Geometry {
+    /// How many primitives there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.len(),
+            Self::Shapes(shapes) => shapes.len(),
+        }
+    }
+
+    /// Whether there is nothing to hit.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One primitive as a shape of its own, as a light wants it.
+    pub fn shape(&self, primitive: u32) -> Shape {
+        match self {
+            Self::Mesh(mesh) => Shape::Triangle(mesh.triangle(primitive as usize)),
+            Self::Shapes(shapes) => shapes[primitive as usize].clone(),
+        }
+    }
+}
+
+/// A group placed in the top group.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// What is placed.
+    pub group: GroupId,
+    /// Where.
+    pub render_from_instance: AnimatedTransform,
+}
+
+/// Where a ray meets something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// How far along the ray, in lengths of its direction.
+    pub t: f32,
+    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, the parameters (u, v) on other shapes.
+    pub uv: Vec2,
+    /// Which geometry.
+    pub geometry: GeometryId,
+    /// Which triangle or patch of it.
+    pub primitive: u32,
+    /// Through which instance.
+    pub instance: Option<InstanceId>,
+}
+
+/// An instance made ready for rays.
+#[derive(Clone, Debug)]
+struct Placed {
+    group: u32,
+    motion: AnimatedTransform,
+    at_rest: Option<Placement>,
+}
+
+impl Placed {
+    fn new(instance: Instance) -> Self {
+        let motion = instance.render_from_instance;
+        let at_rest = (!motion.is_moving()).then(|| Placement::new(motion.start()));
+        Self { group: instance.group.0, motion, at_rest }
+    }
+
+    /// Calls `f` with the placement at a moment.
+    #[inline]
+    fn with_placement<T>(&self, time: f32, f: impl FnOnce(&Placement) -> T) -> T {
+        match &self.at_rest {
+            Some(placement) => f(placement),
+            None => f(&Placement::new(&self.motion.at(time))),
+        }
+    }
+}
+
+/// Everything that a ray can hit; never changes once built.
+#[derive(Clone, Debug)]
+pub struct World {
+    groups: Vec<Group>,
+    geometries: Vec<Geometry>,
+    instances: Vec<Placed>,
+}
+
+impl World {
+    /// Starts an empty world.
+    pub fn builder() -> WorldBuilder {
+        WorldBuilder::default()
+    }
+
+    /// A box around everything but infinite planes; empty when there is nothing.
+    pub fn bounds(&self) -> Bounds3 {
+        self.groups[0].bounds()
+    }
+
+    /// A geometry by its id.
+    pub fn geometry(&self, id: GeometryId) -> &Geometry {
+        &self.geometries[id.0 as usize]
+    }
+
+    /// Where an instance stands.
+    pub fn render_from_instance(&self, id: InstanceId) -> &AnimatedTransform {
+        &self.instances[id.0 as usize].motion
+    }
+
+    /// The nearest hit at 0 < t < `t_max` that `filter` keeps. The filter sees candidates in no promised order, and must answer alike for the same candidate.
+    pub fn intersect(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        filter: &impl Fn(&Hit, &Ray) -> bool,
+        stats: &mut RayStats,
+    ) -> Option<Hit> {
+        let mut nearest = None;
+        let _ = self.trace(ray, t_max, stats, &mut |hit: Hit| {
+            if !filter(&hit, ray) {
+                return Verdict::Refuse;
+            }
+            nearest = Some(hit);
+            Verdict::Keep
+        });
+        nearest
+    }
+
+    /// Whether anything that `filter` keeps is hit at 0 < t < `t_max`.
+    pub fn occluded(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        filter: &impl Fn(&Hit, &Ray) -> bool,
+        stats: &mut RayStats,
+    ) -> bool {
+        let verdict = |hit: Hit| if filter(&hit, ray) { Verdict::Stop } else { Verdict::Refuse };
+        self.trace(ray, t_max, stats, &mut { verdict }).is_break()
+    }
+
+    #[inline]
+    fn trace(
+        &self,
+        ray: &Ray,
+        mut t_max: f32,
+        stats: &mut RayStats,
+        accept: &mut impl FnMut(Hit) -> Verdict,
+    ) -> ControlFlow<()> {
+        stats.rays += 1;
+        if !(ray.o.is_finite() && ray.d.is_finite()) {
+            return ControlFlow::Continue(());
+        }
+        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, &mut t_max, accept)
+    }
+
+    /// What is known of the surface where `ray` met it.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match hit.instance {
+            None => self.surface_in_group(ray, hit),
+            Some(id) => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
+                self.surface_in_group(&placement.ray(ray), hit).placed(placement, ray)
+            }),
+        }
+    }
+
+    fn surface_in_group(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match &self.geometries[hit.geometry.0 as usize] {
+            Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).surface(ray, hit.uv),
+            Geometry::Shapes(shapes) => {
+                shapes[hit.primitive as usize].surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
+            }
+        }
+    }
+
+    /// The transform from the space of a hit's shape to render space at a moment: the identity for what stands in the top group.
+    pub fn render_from_hit(&self, hit: &Hit, time: f32) -> Transform {
+        hit.instance.map_or(Transform::IDENTITY, |id| self.render_from_instance(id).at(time))
+    }
+}

@@ -1,0 +1,76 @@
+//! How brightly lights shine: the format's photometric scale.
+//!
+//! A spectrum is divided by its photometric integral, so that a scale of 1 means a luminance (for points, a luminous intensity)
+//! of 1; `power` and `illuminance` then set the scale so that the light's total is met.
+
+use super::Compiler;
+use crate::light::{Emission, EmissionImage};
+use crate::texture::{SpectrumType, compile_spectrum};
+use description::{Handle, ImageDesc, Span, SpectrumDesc};
+use image::Image;
+use math::{Vec2, equal_area_square_to_sphere};
+use spectrum::RgbColorSpace;
+use std::f32::consts::PI;
+
+impl Compiler<'_> {
+    /// A light's spectrum, scaled to one unit of luminance times `scale`.
+    pub(super) fn emission(&mut self, spectrum: &SpectrumDesc, scale: f32, span: Span) -> Emission {
+        let spectrum = compile_spectrum(spectrum, SpectrumType::Illuminant, span, &mut self.diagnostics);
+        let photometric = spectrum.to_photometric();
+        let scale = if photometric > 0.0 { scale / photometric } else { 0.0 };
+        Emission { spectrum: spectrum.to_dense(), scale }
+    }
+
+    /// A light's image, and the factor that makes its 1 one unit of luminance times `scale`.
+    pub(super) fn emission_image(
+        &mut self,
+        handle: Handle<ImageDesc>,
+        scale: f32,
+        span: Span,
+    ) -> Option<(EmissionImage, f32)> {
+        let image = self.desc.images[handle].image.clone();
+        if !image.is_color() {
+            self.error("image-channels", "the image of a light needs red, green and blue", span);
+            return None;
+        }
+        if image.values().any(|value| !value.is_finite()) {
+            self.error(
+                "image-values",
+                "the image of a light has values that are infinite or no numbers",
+                span,
+            );
+            return None;
+        }
+        let color_space = image_color_space(&image);
+        let photometric = color_space.illuminant().to_photometric();
+        Some((EmissionImage { image, color_space }, scale / photometric))
+    }
+}
+
+/// The colour space that an image says it is in; sRGB if it says none, or one without a name.
+fn image_color_space(image: &Image) -> &'static RgbColorSpace {
+    image
+        .metadata
+        .chromaticities
+        .and_then(|c| RgbColorSpace::from_chromaticities([c.red, c.green, c.blue], c.white))
+        .unwrap_or(RgbColorSpace::srgb())
+}
+
+/// Illuminance of an equal-area octahedral sky on a surface that faces +z, as the pbrt-v4 format counts it: with 2π/n for the
+/// solid angle of a pixel, half of what it is. Scenes made for the format rely on that.
+pub(super) fn upward_illuminance(image: &EmissionImage) -> f32 {
+    let (width, height) = (image.image.width(), image.image.height());
+    let weights = image.color_space.luminance_weights();
+    let mut sum = 0f64;
+    for y in 0..height {
+        for x in 0..width {
+            let uv = Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
+            let cos_theta = equal_area_square_to_sphere(uv).z;
+            if cos_theta > 0.0 {
+                let [r, g, b] = image.image.rgb(x, y);
+                sum += f64::from((r * weights.r + g * weights.g + b * weights.b) * cos_theta);
+            }
+        }
+    }
+    sum as f32 * 2.0 * PI / (width as f32 * height as f32)
+}

@@ -1,0 +1,135 @@
+//! Lights that are not surfaces.
+
+use super::Compiler;
+use super::emission::upward_illuminance;
+use crate::light::{
+    DistantLight, Emission, ImageInfiniteLight, Light, PointLight, SceneSphere, SpotLight,
+    UniformInfiniteLight,
+};
+use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
+use math::{Point3, Transform, Vec3, Vector3};
+use std::f32::consts::PI;
+
+impl Compiler<'_> {
+    /// All of them, after the emitting surfaces. `scene` is the extent of what can be hit.
+    pub(super) fn lights(&mut self, scene: SceneSphere) {
+        let desc = self.desc;
+        for (_, light) in desc.lights.iter() {
+            let compiled = self.light(&light.value, &light.origin, scene);
+            self.lights.extend(compiled);
+        }
+    }
+
+    fn light(&mut self, desc: &LightDesc, origin: &Origin, scene: SceneSphere) -> Option<Light> {
+        if desc.world_from_light.is_animated() {
+            self.warn("not-drawn", "lights do not move yet; drawn where it starts", origin.span);
+        }
+        let render_from_light = self.render_from_world * desc.world_from_light.start;
+        let Some(placement) = Transform::from_f64(render_from_light) else {
+            self.error("singular-transform", "the transform of the light has no inverse", origin.span);
+            return None;
+        };
+        let place = |p: Point3| render_from_light.transform_point3(p.as_dvec3()).as_vec3();
+        Some(match &desc.kind {
+            LightKind::Point { intensity, power, from } => {
+                let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
+                Light::Point(PointLight { p: place(*from), intensity })
+            }
+            LightKind::Spot { intensity, power, from, to, cone_angle, cone_delta_angle } => {
+                let cos_falloff_end = cone_angle.to_radians().cos();
+                let cos_falloff_start =
+                    (cone_angle - cone_delta_angle).to_radians().cos().max(cos_falloff_end);
+                let unit = SpotLight::effective_solid_angle(cos_falloff_start, cos_falloff_end);
+                let intensity = self.intensity(intensity, desc.scale, *power, unit, origin);
+                let axis = self.direction(&placement, *to - *from, origin)?;
+                Light::Spot(SpotLight {
+                    p: place(*from),
+                    axis,
+                    intensity,
+                    cos_falloff_start,
+                    cos_falloff_end,
+                })
+            }
+            LightKind::Distant { radiance, illuminance, from, to } => {
+                let mut radiance = self.emission(radiance, desc.scale, origin.parameter("L"));
+                radiance.scale *= illuminance.unwrap_or(1.0);
+                let w = self.direction(&placement, *from - *to, origin)?;
+                Light::Distant(DistantLight { w, radiance, scene })
+            }
+            LightKind::Infinite { radiance, illuminance, portal } => {
+                if portal.is_some() {
+                    let message = "portals are not drawn yet; light comes from everywhere";
+                    self.warn("not-drawn", message, origin.parameter("portal"));
+                }
+                match radiance {
+                    InfiniteRadiance::Constant(spectrum) => {
+                        let mut radiance = self.emission(spectrum, desc.scale, origin.parameter("L"));
+                        radiance.scale *= illuminance.map_or(1.0, |target| target / PI);
+                        Light::UniformInfinite(UniformInfiniteLight { radiance, scene })
+                    }
+                    InfiniteRadiance::Image(handle) => {
+                        self.sky(*handle, desc.scale, *illuminance, &placement, scene, origin)?
+                    }
+                }
+            }
+            LightKind::Goniometric { intensity, power, .. } => {
+                self.warn("not-drawn", "light `goniometric` is not drawn yet; drawn as `point`", origin.span);
+                let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
+                Light::Point(PointLight { p: place(Vec3::ZERO), intensity })
+            }
+            LightKind::Projection { .. } => {
+                self.warn("not-drawn", "light `projection` is not drawn yet; left out", origin.span);
+                return None;
+            }
+        })
+    }
+
+    fn sky(
+        &mut self,
+        handle: Handle<ImageDesc>,
+        scale: f32,
+        illuminance: Option<f32>,
+        placement: &Transform,
+        scene: SceneSphere,
+        origin: &Origin,
+    ) -> Option<Light> {
+        let span = origin.parameter("filename");
+        let (image, mut scale) = self.emission_image(handle, scale, span)?;
+        let (width, height) = (image.image.width(), image.image.height());
+        if width != height {
+            let message = format!(
+                "an infinite light wants a square image in the equal-area octahedral mapping, not {width} × {height}"
+            );
+            self.error("image-shape", message, span);
+            return None;
+        }
+        if let Some(target) = illuminance {
+            scale *= target / upward_illuminance(&image);
+        }
+        let light = ImageInfiniteLight::new(*placement, image.image, image.color_space, scale, scene);
+        Some(Light::ImageInfinite(Box::new(light)))
+    }
+
+    /// Radiant intensity; `power`, if given, is that over `unit` steradians.
+    fn intensity(
+        &mut self,
+        spectrum: &SpectrumDesc,
+        scale: f32,
+        power: Option<f32>,
+        unit: f32,
+        origin: &Origin,
+    ) -> Emission {
+        let mut intensity = self.emission(spectrum, scale, origin.parameter("I"));
+        intensity.scale *= power.map_or(1.0, |power| power / unit);
+        intensity
+    }
+
+    fn direction(&mut self, placement: &Transform, v: Vector3, origin: &Origin) -> Option<Vector3> {
+        let direction = placement.vector(v).try_normalize();
+        if direction.is_none() {
+            let message = "`from` and `to` must differ: they give the direction";
+            self.error("invalid-value", message, origin.parameter("to"));
+        }
+        direction
+    }
+}

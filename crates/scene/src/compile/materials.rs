@@ -1,0 +1,170 @@
+//! Materials, and what stands in for those that are not drawn yet.
+
+use super::Compiler;
+use crate::material::{
+    ConductorIndex, ConductorMaterial, DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial,
+    Material, MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+};
+use crate::texture::{SpectrumType, compile_spectrum};
+use description::{
+    ConductorDesc, ConductorReflectance, HairColor, Handle, MaterialDesc, MaterialKind, Origin,
+    RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+};
+use spectrum::Spectrum;
+
+impl Compiler<'_> {
+    /// All of them, in the author's order, and the default one last.
+    pub(super) fn materials(&mut self) {
+        let desc = self.desc;
+        for (_, material) in desc.materials.iter() {
+            let entry = self.material(&material.value, &material.origin);
+            self.materials.push(entry);
+        }
+        let default = self.material(&MaterialDesc::default(), &Origin::default());
+        self.materials.push(default);
+        for (handle, material) in desc.materials.iter() {
+            if self.leads_back(handle) {
+                let message = format!("material `{}` is a mix of itself", material.name);
+                self.error("material-cycle", message, material.origin.span);
+                self.materials[handle.index()].material = Material::Interface;
+            }
+        }
+    }
+
+    /// The id of a shape's material.
+    pub(super) fn material_id(&self, handle: Option<Handle<MaterialDesc>>) -> MaterialId {
+        MaterialId(handle.map_or(self.materials.len() - 1, Handle::index) as u32)
+    }
+
+    /// Whether a mix reaches itself.
+    fn leads_back(&self, start: Handle<MaterialDesc>) -> bool {
+        let mut seen = vec![false; self.materials.len()];
+        let mut open = vec![start.index()];
+        while let Some(index) = open.pop() {
+            let Material::Mix(mix) = &self.materials[index].material else { continue };
+            for next in mix.materials.map(|id| id.0 as usize) {
+                if next == start.index() {
+                    return true;
+                }
+                if !std::mem::replace(&mut seen[next], true) {
+                    open.push(next);
+                }
+            }
+        }
+        false
+    }
+
+    fn material(&mut self, desc: &MaterialDesc, origin: &Origin) -> MaterialEntry {
+        let material = self.material_kind(&desc.kind, origin);
+        if desc.displacement.is_some() {
+            let message = "displacement is not drawn yet; the surface stays as it is";
+            self.warn("not-drawn", message, origin.parameter("displacement"));
+        }
+        let normal_map = desc.normal_map.and_then(|handle| {
+            let image = self.desc.images[handle].image.clone();
+            if !image.is_color() {
+                let message = "a normal map needs red, green and blue";
+                self.error("image-channels", message, origin.parameter("normalmap"));
+                return None;
+            }
+            Some(NormalMap { image })
+        });
+        MaterialEntry { material, normal_map }
+    }
+
+    fn material_kind(&mut self, kind: &MaterialKind, origin: &Origin) -> Material {
+        match kind {
+            MaterialKind::Diffuse { reflectance } => self.diffuse(reflectance, origin),
+            MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
+                Material::DiffuseTransmission(DiffuseTransmissionMaterial {
+                    reflectance: self.albedo(reflectance, "reflectance", origin),
+                    transmittance: self.albedo(transmittance, "transmittance", origin),
+                    scale: *scale,
+                })
+            }
+            MaterialKind::Conductor(conductor) => self.conductor(conductor, origin),
+            MaterialKind::Dielectric { eta, roughness } => Material::Dielectric(DielectricMaterial {
+                eta: self.index_of_refraction(eta, origin),
+                roughness: self.roughness(roughness),
+            }),
+            MaterialKind::ThinDielectric { eta } => Material::ThinDielectric(ThinDielectricMaterial {
+                eta: self.index_of_refraction(eta, origin),
+            }),
+            MaterialKind::Mix { materials, amount } => Material::Mix(MixMaterial {
+                materials: materials.map(|handle| MaterialId(handle.index() as u32)),
+                amount: self.float_texture(amount),
+            }),
+            MaterialKind::Interface => Material::Interface,
+            MaterialKind::CoatedDiffuse(coated) => {
+                self.not_drawn("coateddiffuse", "`diffuse`, without its coat", origin);
+                self.diffuse(&coated.reflectance, origin)
+            }
+            MaterialKind::CoatedConductor(coated) => {
+                self.not_drawn("coatedconductor", "`conductor`, without its coat", origin);
+                self.conductor(&coated.conductor, origin)
+            }
+            MaterialKind::Hair { color, .. } => {
+                self.not_drawn("hair", "diffuse", origin);
+                match color {
+                    HairColor::Reflectance(reflectance) => self.diffuse(reflectance, origin),
+                    HairColor::SigmaA(_) | HairColor::Melanin { .. } => {
+                        self.diffuse(&SpectrumDesc::rgb(0.25, 0.15, 0.1).into(), origin)
+                    }
+                }
+            }
+            MaterialKind::Subsurface { scattering, .. } => {
+                self.not_drawn("subsurface", "diffuse", origin);
+                match scattering {
+                    SubsurfaceScattering::Reflectance { reflectance, .. } => {
+                        self.diffuse(reflectance, origin)
+                    }
+                    SubsurfaceScattering::Named(_) | SubsurfaceScattering::Coefficients { .. } => {
+                        self.diffuse(&0.5.into(), origin)
+                    }
+                }
+            }
+            MaterialKind::Measured { .. } => {
+                self.not_drawn("measured", "diffuse", origin);
+                self.diffuse(&0.5.into(), origin)
+            }
+        }
+    }
+
+    fn not_drawn(&mut self, name: &str, instead: &str, origin: &Origin) {
+        self.warn("not-drawn", format!("`{name}` is not drawn yet; drawn as {instead}"), origin.span);
+    }
+
+    fn albedo(
+        &mut self,
+        parameter: &SpectrumParameter,
+        name: &str,
+        origin: &Origin,
+    ) -> crate::texture::SpectrumTextureId {
+        self.spectrum_texture(parameter, SpectrumType::Albedo, origin.parameter(name))
+    }
+
+    fn index_of_refraction(&mut self, eta: &SpectrumDesc, origin: &Origin) -> Spectrum {
+        compile_spectrum(eta, SpectrumType::Unbounded, origin.parameter("eta"), &mut self.diagnostics)
+    }
+
+    fn diffuse(&mut self, reflectance: &SpectrumParameter, origin: &Origin) -> Material {
+        Material::Diffuse(DiffuseMaterial { reflectance: self.albedo(reflectance, "reflectance", origin) })
+    }
+
+    fn conductor(&mut self, desc: &ConductorDesc, origin: &Origin) -> Material {
+        let index = match &desc.reflectance {
+            ConductorReflectance::Index { eta, k } => ConductorIndex::Complex {
+                eta: self.spectrum_texture(eta, SpectrumType::Unbounded, origin.parameter("eta")),
+                k: self.spectrum_texture(k, SpectrumType::Unbounded, origin.parameter("k")),
+            },
+            ConductorReflectance::Reflectance(reflectance) => {
+                ConductorIndex::Reflectance(self.albedo(reflectance, "reflectance", origin))
+            }
+        };
+        Material::Conductor(ConductorMaterial { index, roughness: self.roughness(&desc.roughness) })
+    }
+
+    fn roughness(&mut self, desc: &RoughnessDesc) -> Roughness {
+        Roughness { u: self.float_texture(&desc.u), v: self.float_texture(&desc.v), remap: desc.remap }
+    }
+}

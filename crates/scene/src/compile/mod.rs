@@ -1,0 +1,115 @@
+//! From what the author said to what the renderer sees: the only place that assembles a [`Scene`].
+//!
+//! All mistakes come out at once, with the spans of what is to blame; what can be described but not yet drawn is a warning that says
+//! what is drawn instead.
+
+mod emission;
+mod lights;
+mod materials;
+mod shapes;
+
+use crate::camera;
+use crate::light::{Light, LightId, SceneSphere};
+use crate::material::{MaterialEntry, Materials};
+use crate::scene::{GeometryEntry, Scene, SceneOptions};
+use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
+use description::{Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter};
+use geometry::{World, WorldBuilder};
+use math::DMat4;
+
+/// A scene, and what had to be left out of it.
+#[derive(Debug)]
+pub struct Compiled {
+    /// The scene.
+    pub scene: Scene,
+    /// What is drawn otherwise than described.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Compiles a description, or says everything that is wrong with it (warnings included).
+pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
+    let mut diagnostics = Vec::new();
+    let Some(camera) = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics) else {
+        return Err(diagnostics);
+    };
+    let render_from_world = camera.transform().render_from_world();
+    let textures = texture::compile(desc, &render_from_world, &mut diagnostics);
+    let mut compiler = Compiler {
+        desc,
+        render_from_world,
+        diagnostics,
+        textures,
+        world: World::builder(),
+        entries: Vec::new(),
+        materials: Vec::new(),
+        lights: Vec::new(),
+    };
+    compiler.materials();
+    compiler.shapes();
+    if compiler.diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(compiler.diagnostics);
+    }
+    let world = std::mem::take(&mut compiler.world).build();
+    let (center, radius) = world.bounds().bounding_sphere();
+    compiler.lights(SceneSphere { center, radius });
+    let Compiler { diagnostics, textures, entries, materials, lights, .. } = compiler;
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(diagnostics);
+    }
+    let infinite_lights =
+        (0..).map(LightId).zip(&lights).filter(|(_, light)| light.is_infinite()).map(|(id, _)| id).collect();
+    let options = SceneOptions {
+        disable_pixel_jitter: desc.options.disable_pixel_jitter,
+        disable_wavelength_jitter: desc.options.disable_wavelength_jitter,
+        disable_texture_filtering: desc.options.disable_texture_filtering,
+        force_diffuse: desc.options.force_diffuse,
+    };
+    let scene = Scene {
+        camera,
+        world,
+        sphere: SceneSphere { center, radius },
+        entries,
+        materials: Materials::new(materials),
+        textures,
+        lights,
+        infinite_lights,
+        samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
+        options,
+    };
+    Ok(Compiled { scene, warnings: diagnostics })
+}
+
+/// A scene under construction.
+struct Compiler<'a> {
+    desc: &'a SceneDesc,
+    render_from_world: DMat4,
+    diagnostics: Vec<Diagnostic>,
+    textures: Textures,
+    world: WorldBuilder,
+    entries: Vec<GeometryEntry>,
+    materials: Vec<MaterialEntry>,
+    lights: Vec<Light>,
+}
+
+impl Compiler<'_> {
+    fn error(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.diagnostics.push(Diagnostic::error(code, message, span));
+    }
+
+    fn warn(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.diagnostics.push(Diagnostic::warning(code, message, span));
+    }
+
+    fn float_texture(&mut self, parameter: &FloatParameter) -> FloatTextureId {
+        self.textures.float_parameter(parameter)
+    }
+
+    fn spectrum_texture(
+        &mut self,
+        parameter: &SpectrumParameter,
+        spectrum_type: SpectrumType,
+        span: Span,
+    ) -> SpectrumTextureId {
+        self.textures.spectrum_parameter(parameter, spectrum_type, span, &mut self.diagnostics)
+    }
+}

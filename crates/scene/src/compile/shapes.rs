@@ -1,0 +1,295 @@
+//! Shapes, objects and instances, and the lights that emitting shapes are.
+
+use super::Compiler;
+use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
+use crate::material::Material;
+use crate::scene::GeometryEntry;
+use crate::texture::FloatTextureId;
+use description::{
+    Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, Parameter, PatchMeshDesc, ShapeDesc,
+    ShapeKind, Stated, TransformDesc,
+};
+use geometry::{
+    BilinearPatch, Cylinder, Disk, Geometry, GroupId, Instance, MeshAttributes, Plane, Shape, Sphere,
+    TriangleMesh,
+};
+use math::{AnimatedTransform, Bounds2, Transform};
+use sampling::PiecewiseConstant2d;
+use spectrum::Rgb;
+use std::collections::HashMap;
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+impl Compiler<'_> {
+    /// Everything that can be hit.
+    pub(super) fn shapes(&mut self) {
+        let desc = self.desc;
+        for (_, shape) in desc.shapes.iter() {
+            self.shape(shape);
+        }
+        let mut groups = HashMap::new();
+        for (_, instance) in desc.instances.iter() {
+            let object = instance.object;
+            let group = *groups.entry(object.index()).or_insert_with(|| self.object(object));
+            self.instance(instance, group);
+        }
+    }
+
+    fn instance(&mut self, instance: &Stated<InstanceDesc>, group: GroupId) {
+        match self.motion(&instance.world_from_object) {
+            Some(render_from_instance) => {
+                self.world.add_instance(Instance { group, render_from_instance });
+            }
+            None => self.singular("instance", &instance.origin),
+        }
+    }
+
+    /// The group of an object's shapes, in the object's space.
+    fn object(&mut self, handle: Handle<ObjectDesc>) -> GroupId {
+        let group = self.world.add_group();
+        let object = &self.desc.objects[handle];
+        for (_, shape) in object.shapes.iter() {
+            if shape.area_light.is_some() {
+                let message = "shapes of objects do not emit; drawn without light";
+                self.warn("not-drawn", message, shape.origin.span);
+            }
+            if shape.world_from_object.is_animated() {
+                let message = "shapes do not move within objects yet; drawn where it starts";
+                self.warn("not-drawn", message, shape.origin.span);
+            }
+            match Transform::from_f64(shape.world_from_object.start) {
+                Some(transform) => self.unlit(shape, group, &transform),
+                None => self.singular("shape", &shape.origin),
+            }
+        }
+        group
+    }
+
+    /// A shape of the world: in render space where it rests, in a group of its own where it moves.
+    fn shape(&mut self, shape: &Stated<ShapeDesc>) {
+        if !shape.world_from_object.is_animated() {
+            return match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
+                Some(transform) => self.resting(shape, &transform),
+                None => self.singular("shape", &shape.origin),
+            };
+        }
+        let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
+            return self.singular("shape", &shape.origin);
+        };
+        if shape.area_light.is_some() {
+            self.warn("not-drawn", "moving shapes do not emit yet; drawn without light", shape.origin.span);
+        }
+        let group = self.world.add_group();
+        self.unlit(shape, group, &Transform::IDENTITY);
+        self.world.add_instance(Instance { group, render_from_instance });
+    }
+
+    /// Adds a shape to a group of instances, where nothing emits.
+    fn unlit(&mut self, shape: &Stated<ShapeDesc>, group: GroupId, transform: &Transform) {
+        let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
+        for geometry in self.geometries(shape, transform) {
+            self.world.add_geometry(group, geometry);
+            self.entries.push(GeometryEntry { material, alpha, first_light: None });
+        }
+    }
+
+    fn resting(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) {
+        let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
+        for geometry in self.geometries(shape, transform) {
+            let first_light = self.area_lights(shape, &geometry, alpha);
+            self.world.add_geometry(GroupId::TOP, geometry);
+            self.entries.push(GeometryEntry { material, alpha, first_light });
+        }
+    }
+
+    fn singular(&mut self, what: &str, origin: &Origin) {
+        self.error("singular-transform", format!("the transform of the {what} has no inverse"), origin.span);
+    }
+
+    fn motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
+        AnimatedTransform::new(self.render_from_world * t.start, self.render_from_world * t.end, t.times)
+    }
+
+    fn alpha(&mut self, shape: &ShapeDesc) -> Option<FloatTextureId> {
+        match shape.alpha.as_ref()? {
+            Parameter::Value(value) if *value >= 1.0 => None,
+            parameter => Some(self.float_texture(parameter)),
+        }
+    }
+
+    fn geometries(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) -> Vec<Geometry> {
+        let reverse = shape.reverse_orientation;
+        let one = |shape: Shape| vec![Geometry::from(shape)];
+        match &shape.kind {
+            ShapeKind::Sphere { radius, z_min, z_max, phi_max } => {
+                one(Sphere::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
+            }
+            ShapeKind::Cylinder { radius, z_min, z_max, phi_max } => {
+                one(Cylinder::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
+            }
+            ShapeKind::Disk { height, radius, inner_radius, phi_max } => {
+                one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
+            }
+            ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
+            ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
+            ShapeKind::PlyMesh { triangles, patches, displacement, .. } => {
+                if displacement.is_some() {
+                    let message = "displacement is not drawn yet; the surface stays as it is";
+                    self.warn("not-drawn", message, shape.origin.parameter("displacement"));
+                }
+                let triangles = self.mesh(triangles, shape, transform);
+                triangles.into_iter().chain(self.patches(patches, shape, transform)).collect()
+            }
+            ShapeKind::Curve(_) => {
+                self.warn("not-drawn", "shape `curve` is not drawn yet; left out", shape.origin.span);
+                Vec::new()
+            }
+            ShapeKind::LoopSubdivision { mesh, .. } => {
+                let message = "shape `loopsubdiv` is not drawn yet; drawn as its coarse mesh";
+                self.warn("not-drawn", message, shape.origin.span);
+                self.mesh(mesh, shape, transform).into_iter().collect()
+            }
+        }
+    }
+
+    fn mesh(
+        &mut self,
+        mesh: &MeshDesc,
+        shape: &Stated<ShapeDesc>,
+        transform: &Transform,
+    ) -> Option<Geometry> {
+        if mesh.indices.is_empty() {
+            return None;
+        }
+        let attributes = MeshAttributes {
+            normals: given(&mesh.normals),
+            tangents: given(&mesh.tangents),
+            uvs: given(&mesh.uvs),
+        };
+        let (positions, indices) = (mesh.positions.clone(), mesh.indices.clone());
+        match TriangleMesh::new(positions, indices, attributes, transform, shape.reverse_orientation) {
+            Ok(mesh) => Some(mesh.into()),
+            Err(error) => {
+                self.error("invalid-mesh", error.to_string(), shape.origin.span);
+                None
+            }
+        }
+    }
+
+    fn patches(
+        &mut self,
+        mesh: &PatchMeshDesc,
+        shape: &Stated<ShapeDesc>,
+        transform: &Transform,
+    ) -> Option<Geometry> {
+        if mesh.indices.is_empty() {
+            return None;
+        }
+        let vertices = mesh.positions.len();
+        let missing = mesh.indices.iter().flatten().any(|&i| i as usize >= vertices);
+        let uneven = [mesh.normals.len(), mesh.uvs.len()].iter().any(|&n| n != 0 && n != vertices);
+        if missing || uneven {
+            let message = if missing {
+                "a patch names a vertex that does not exist"
+            } else {
+                "a patch mesh needs as many normals and texture coordinates as vertices, or none"
+            };
+            self.error("invalid-mesh", message, shape.origin.span);
+            return None;
+        }
+        let image = mesh.emission_image.map(|handle| self.emission_distribution(handle));
+        let patches = mesh.indices.iter().map(|corners| {
+            let at = corners.map(|i| i as usize);
+            let patch = BilinearPatch::new(
+                at.map(|i| mesh.positions[i]),
+                (!mesh.normals.is_empty()).then(|| at.map(|i| mesh.normals[i])),
+                (!mesh.uvs.is_empty()).then(|| at.map(|i| mesh.uvs[i])),
+                transform,
+                shape.reverse_orientation,
+            );
+            Shape::from(match &image {
+                Some(image) => patch.with_image(image.clone()),
+                None => patch,
+            })
+        });
+        Some(Geometry::Shapes(patches.collect()))
+    }
+
+    /// How much light leaves from where on a patch, over its (u, v).
+    fn emission_distribution(&self, handle: Handle<ImageDesc>) -> Arc<PiecewiseConstant2d> {
+        let image = &self.desc.images[handle].image;
+        let (width, height) = (image.width(), image.height());
+        let rows = (0..height).rev();
+        let values: Vec<f32> = rows
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| Rgb::from(image.rgb(x, y)).clamp_zero().average())
+            .collect();
+        Arc::new(PiecewiseConstant2d::new(&values, width as usize, Bounds2::UNIT))
+    }
+
+    /// The lights that the primitives of an emitting shape are, one each; the id of the first.
+    fn area_lights(
+        &mut self,
+        shape: &Stated<ShapeDesc>,
+        geometry: &Geometry,
+        alpha: Option<FloatTextureId>,
+    ) -> Option<LightId> {
+        let handle = shape.area_light?;
+        let span = shape.origin.span;
+        let material = self.material_id(shape.material);
+        if matches!(self.materials[material.0 as usize].material, Material::Interface) {
+            self.warn("light-ignored", "a shape of material `interface` does not emit", span);
+            return None;
+        }
+        let desc = &self.desc.area_lights[handle];
+        let origin = self.desc.area_lights.origin(handle);
+        let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
+        let mut image = None;
+        if let Some(handle) = desc.image {
+            let (pixels, scale) = self.emission_image(handle, desc.scale, origin.parameter("filename"))?;
+            radiance.scale = scale;
+            image = Some(pixels);
+        }
+        let emission = AreaEmission {
+            radiance,
+            image,
+            two_sided: desc.two_sided,
+            alpha,
+            invisible: matches!(shape.alpha, Some(Parameter::Value(value)) if value <= 0.0),
+        };
+        let shared = Arc::new(emission.clone());
+        let first = LightId(self.lights.len() as u32);
+        for primitive in 0..geometry.len() as u32 {
+            let part = geometry.shape(primitive);
+            if part.bounds().is_none() {
+                self.error(
+                    "infinite-light",
+                    "an infinite plane cannot emit: its power would be infinite",
+                    span,
+                );
+                return None;
+            }
+            // Every part is a light of its own and has the power that is asked for.
+            let emission = match desc.power {
+                None => shared.clone(),
+                Some(power) => Arc::new(scaled_to_power(&emission, power, part.area())),
+            };
+            self.lights.push(Light::Area(AreaLight::new(part, emission)));
+        }
+        Some(first)
+    }
+}
+
+/// The emission whose total over `area` is `power`.
+fn scaled_to_power(emission: &AreaEmission, power: f32, area: f32) -> AreaEmission {
+    let sides = if emission.two_sided { 2.0 } else { 1.0 };
+    let mean = emission.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
+    let mut scaled = emission.clone();
+    scaled.radiance.scale *= power / (mean * sides * area * PI);
+    scaled
+}
+
+fn given<T>(values: &Arc<[T]>) -> Option<Arc<[T]>> {
+    (!values.is_empty()).then(|| values.clone())
+}

@@ -1,0 +1,174 @@
+//! A hit as shading sees it: the point on the surface, what the surface is made of, and how large a pixel is there.
+//!
+//! The footprint of a pixel on the surface comes from ray differentials where the ray still has them — the neighbouring rays meet the
+//! tangent plane at p + ∂p/∂x — and from the camera's mean otherwise; ∂(u,v)/∂(x,y) then follow by least squares from
+//! ∂p/∂(u,v). Reflections and refractions off smooth surfaces carry the differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
+
+use crate::camera::{Camera, differential_scale};
+use crate::light::{LightId, LightSampleContext};
+use crate::material::MaterialId;
+use crate::texture::TextureContext;
+use geometry::SurfacePoint;
+use math::{Differentials, Point3, Ray, RayDifferential, Vec3, Vector3, difference_of_products};
+use scattering::BsdfSample;
+
+/// How far the surface point moves when the film position moves by a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Footprint {
+    /// ∂p/∂x.
+    pub dpdx: Vector3,
+    /// ∂p/∂y.
+    pub dpdy: Vector3,
+    /// ∂u/∂x.
+    pub dudx: f32,
+    /// ∂u/∂y.
+    pub dudy: f32,
+    /// ∂v/∂x.
+    pub dvdx: f32,
+    /// ∂v/∂y.
+    pub dvdy: f32,
+}
+
+/// A point on a surface of the scene.
+#[derive(Clone, Debug)]
+pub struct SurfaceInteraction {
+    /// Geometry's answer.
+    pub surface: SurfacePoint,
+    /// What it is made of.
+    pub material: MaterialId,
+    /// The light that its surface is, if any.
+    pub area_light: Option<LightId>,
+    /// The size of a pixel there; zero until [`SurfaceInteraction::compute_footprint`].
+    pub footprint: Footprint,
+}
+
+impl SurfaceInteraction {
+    /// The position.
+    #[inline]
+    pub fn p(&self) -> Point3 {
+        self.surface.p.p
+    }
+
+    /// What light sampling needs to know.
+    #[inline]
+    pub fn light_context(&self) -> LightSampleContext {
+        LightSampleContext {
+            p: self.surface.p,
+            n: self.surface.n,
+            ns: self.surface.shading.n,
+            time: self.surface.time,
+        }
+    }
+
+    /// What textures need to know.
+    #[inline]
+    pub fn texture_context(&self) -> TextureContext {
+        let f = &self.footprint;
+        TextureContext {
+            p: self.surface.p.p,
+            n: self.surface.n,
+            uv: self.surface.uv,
+            dpdx: f.dpdx,
+            dpdy: f.dpdy,
+            dudx: f.dudx,
+            dudy: f.dudy,
+            dvdx: f.dvdx,
+            dvdy: f.dvdy,
+            face_index: 0,
+        }
+    }
+
+    /// Finds the footprint of the pixel that `ray` came from.
+    pub fn compute_footprint(&mut self, ray: &RayDifferential, camera: &Camera, samples_per_pixel: u32) {
+        let s = &self.surface;
+        let plane = |o: Point3, d: Vector3| {
+            let t = s.n.dot(s.p.p - o) / s.n.dot(d);
+            t.is_finite().then(|| o + d * t - s.p.p)
+        };
+        let seen = ray
+            .differentials
+            .and_then(|d| Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?]));
+        let [dpdx, dpdy] = seen.unwrap_or_else(|| {
+            camera.approximate_dp_dxy(s.p.p, s.n, s.time, differential_scale(samples_per_pixel))
+        });
+        // Normal equations of [∂p/∂u ∂p/∂v]·[du dv]ᵀ = dp.
+        let (a, b, c) = (s.dpdu.dot(s.dpdu), s.dpdu.dot(s.dpdv), s.dpdv.dot(s.dpdv));
+        let inverse = difference_of_products(a, c, b, b).recip();
+        let inverse = if inverse.is_finite() { inverse } else { 0.0 };
+        let solve = |dp: Vector3| {
+            let (x, y) = (s.dpdu.dot(dp), s.dpdv.dot(dp));
+            let clean = |v: f32| if v.is_finite() { v.clamp(-1e8, 1e8) } else { 0.0 };
+            (
+                clean(difference_of_products(c, x, b, y) * inverse),
+                clean(difference_of_products(a, y, b, x) * inverse),
+            )
+        };
+        let ((dudx, dvdx), (dudy, dvdy)) = (solve(dpdx), solve(dpdy));
+        self.footprint = Footprint { dpdx, dpdy, dudx, dudy, dvdx, dvdy };
+    }
+
+    /// The ray that leaves along `d`.
+    #[inline]
+    pub fn spawn_ray(&self, d: Vector3) -> Ray {
+        self.surface.spawn_ray(d)
+    }
+
+    /// The ray that leaves along a BSDF sample; off a smooth surface with differentials, if `from` has them.
+    pub fn spawn_scattered(&self, from: &RayDifferential, sample: &BsdfSample) -> RayDifferential {
+        let ray = self.spawn_ray(sample.wi);
+        let differentials = from
+            .differentials
+            .filter(|_| sample.flags.is_specular())
+            .and_then(|d| self.scattered_differentials(from, &d, sample))
+            .filter(|d| {
+                // Differentials that have grown beyond any use are dropped.
+                d.rx_direction.length_squared() < 1e16
+                    && d.ry_direction.length_squared() < 1e16
+                    && d.rx_origin.length_squared() < 1e16
+                    && d.ry_origin.length_squared() < 1e16
+            });
+        RayDifferential { ray, differentials }
+    }
+
+    fn scattered_differentials(
+        &self,
+        from: &RayDifferential,
+        d: &Differentials,
+        sample: &BsdfSample,
+    ) -> Option<Differentials> {
+        let (s, f) = (&self.surface, &self.footprint);
+        let (wo, wi) = (s.wo, sample.wi);
+        let mut n = s.shading.n;
+        let mut dndx = s.shading.dndu * f.dudx + s.shading.dndv * f.dvdx;
+        let mut dndy = s.shading.dndu * f.dudy + s.shading.dndv * f.dvdy;
+        let unit = from.ray.d.length_recip();
+        let dwodx = -d.rx_direction * unit - wo;
+        let dwody = -d.ry_direction * unit - wo;
+        let (rx_direction, ry_direction) = if sample.flags.is_reflective() {
+            let turned = |dwo: Vector3, dn: Vec3| {
+                let dwo_dot_n = dwo.dot(n) + wo.dot(dn);
+                wi - dwo + 2.0 * (dn * wo.dot(n) + n * dwo_dot_n)
+            };
+            (turned(dwodx, dndx), turned(dwody, dndy))
+        } else {
+            if wo.dot(n) < 0.0 {
+                (n, dndx, dndy) = (-n, -dndx, -dndy);
+            }
+            let eta = sample.eta.recip();
+            let mu = eta * wo.dot(n) - wi.dot(n).abs();
+            let bent = |dwo: Vector3, dn: Vec3| {
+                let dwo_dot_n = dwo.dot(n) + wo.dot(dn);
+                let dmu = dwo_dot_n * (eta + eta * eta * wo.dot(n) / wi.dot(n));
+                wi - dwo * eta + n * dmu + dn * mu
+            };
+            (bent(dwodx, dndx), bent(dwody, dndy))
+        };
+        let (rx_origin, ry_origin) = (s.p.p + f.dpdx, s.p.p + f.dpdy);
+        (rx_direction.is_finite() && ry_direction.is_finite()).then_some(Differentials {
+            rx_origin,
+            rx_direction,
+            ry_origin,
+            ry_direction,
+        })
+    }
+}

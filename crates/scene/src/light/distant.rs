@@ -1,0 +1,39 @@
+//! Light from one direction, as from the sun without its disk; the same everywhere in the scene.
+//!
+//! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Sources: [Pharr 2023 §12.3].
+
+use super::{Emission, LightLiSample, LightSampleContext, SceneSphere};
+use math::{Point3Error, Vec3, Vector3};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+use std::f32::consts::PI;
+
+/// A directional light.
+#[derive(Clone, Debug)]
+pub struct DistantLight {
+    /// Unit direction towards the light in render space.
+    pub w: Vector3,
+    /// Radiance (of a delta distribution in direction: irradiance on a facing surface).
+    pub radiance: Emission,
+    /// The extent of the scene.
+    pub scene: SceneSphere,
+}
+
+impl DistantLight {
+    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+        self.radiance.sample(lambda) * (PI * self.scene.radius * self.scene.radius)
+    }
+
+    pub(super) fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLiSample> {
+        Some(LightLiSample {
+            l: self.radiance.sample(lambda),
+            wi: self.w,
+            pdf: 1.0,
+            p: Point3Error::exact(context.p.p + self.w * (2.0 * self.scene.radius)),
+            n: Vec3::ZERO,
+        })
+    }
+}

@@ -1,0 +1,70 @@
+//! A light at a point that shines into a cone, with a soft edge: L = I · s(cos θ) / r², where the smooth step s falls from 1 at
+//! the start of the falloff to 0 at the cone's end.
+//!
+//! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Sources: [Pharr 2023 §12.2.1].
+
+use super::{Emission, LightBounds, LightLiSample, LightSampleContext};
+use math::{Bounds3, Point3, Point3Error, Vec3, Vector3, safe_acos, smooth_step};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+use std::f32::consts::PI;
+
+/// A spot light.
+#[derive(Clone, Debug)]
+pub struct SpotLight {
+    /// Position in render space.
+    pub p: Point3,
+    /// Unit axis of the cone in render space.
+    pub axis: Vector3,
+    /// Radiant intensity on the axis.
+    pub intensity: Emission,
+    /// Cosine of the angle where the falloff starts.
+    pub cos_falloff_start: f32,
+    /// Cosine of the angle where no light is left; at most `cos_falloff_start`.
+    pub cos_falloff_end: f32,
+}
+
+impl SpotLight {
+    /// The solid angle that shines at full intensity with the same power.
+    pub fn effective_solid_angle(cos_falloff_start: f32, cos_falloff_end: f32) -> f32 {
+        2.0 * PI * ((1.0 - cos_falloff_start) + (cos_falloff_start - cos_falloff_end) / 2.0)
+    }
+
+    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+        self.intensity.sample(lambda)
+            * Self::effective_solid_angle(self.cos_falloff_start, self.cos_falloff_end)
+    }
+
+    pub(super) fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLiSample> {
+        let to_light = self.p - context.p.p;
+        let distance2 = to_light.length_squared();
+        if distance2 == 0.0 {
+            return None;
+        }
+        let wi = to_light / distance2.sqrt();
+        let falloff = smooth_step((-wi).dot(self.axis), self.cos_falloff_end, self.cos_falloff_start);
+        (falloff > 0.0).then(|| LightLiSample {
+            l: self.intensity.sample(lambda) * (falloff / distance2),
+            wi,
+            pdf: 1.0,
+            p: Point3Error::exact(self.p),
+            n: Vec3::ZERO,
+        })
+    }
+
+    pub(super) fn bounds(&self) -> Option<LightBounds> {
+        let edge = safe_acos(self.cos_falloff_end) - safe_acos(self.cos_falloff_start);
+        Some(LightBounds {
+            bounds: Bounds3::new(self.p, self.p),
+            w: self.axis,
+            phi: 4.0 * PI * self.intensity.max_value(),
+            cos_theta_o: self.cos_falloff_start,
+            // Room for rounding, so that points just inside of the edge keep some importance.
+            cos_theta_e: if edge > 0.0 { edge.cos().min(0.999) } else { edge.cos() },
+            two_sided: false,
+        })
+    }
+}

@@ -1,0 +1,53 @@
+//! A sky of one radiance in all directions.
+//!
+//! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling allowed it is left wholly to
+//! BSDF sampling, which covers a constant sky better than uniform directions do. Sources: [Pharr 2023 §12.5.1].
+
+use super::{Emission, LightLiSample, LightSampleContext, SceneSphere};
+use math::{Point2, Point3Error, Vec3};
+use sampling::warp;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+use std::f32::consts::PI;
+
+/// A constant environment.
+#[derive(Clone, Debug)]
+pub struct UniformInfiniteLight {
+    /// Radiance from every direction.
+    pub radiance: Emission,
+    /// The extent of the scene.
+    pub scene: SceneSphere,
+}
+
+impl UniformInfiniteLight {
+    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+        self.radiance.sample(lambda) * (4.0 * PI * PI * self.scene.radius * self.scene.radius)
+    }
+
+    pub(super) fn le(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+        self.radiance.sample(lambda)
+    }
+
+    pub(super) fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        u: Point2,
+        lambda: &SampledWavelengths,
+        allow_incomplete: bool,
+    ) -> Option<LightLiSample> {
+        if allow_incomplete {
+            return None;
+        }
+        let wi = warp::sample_uniform_sphere(u);
+        Some(LightLiSample {
+            l: self.radiance.sample(lambda),
+            wi,
+            pdf: self.pdf_li(false),
+            p: Point3Error::exact(context.p.p + wi * (2.0 * self.scene.radius)),
+            n: Vec3::ZERO,
+        })
+    }
+
+    pub(super) fn pdf_li(&self, allow_incomplete: bool) -> f32 {
+        if allow_incomplete { 0.0 } else { 1.0 / (4.0 * PI) }
+    }
+}

@@ -1,0 +1,68 @@
+//! Choosing one light among many, in proportion to what it may contribute.
+//!
+//! [`LightSampler::sample`] returns a light with the probability of its choice; [`LightSampler::pmf`] is that probability for a
+//! given light, which multiple importance sampling needs when a BSDF sample happens to meet it.
+
+mod bvh;
+mod power;
+mod uniform;
+
+pub use bvh::BvhLightSampler;
+pub use power::PowerLightSampler;
+pub use uniform::UniformLightSampler;
+
+use crate::light::{Light, LightId, LightSampleContext};
+
+/// A way of choosing.
+#[derive(Clone, Debug)]
+pub enum LightSampler {
+    /// See [`UniformLightSampler`].
+    Uniform(UniformLightSampler),
+    /// See [`PowerLightSampler`].
+    Power(PowerLightSampler),
+    /// See [`BvhLightSampler`].
+    Bvh(BvhLightSampler),
+}
+
+/// The names of the ways of choosing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightSamplerKind {
+    /// All alike.
+    Uniform,
+    /// By power.
+    Power,
+    /// By position, orientation and power.
+    #[default]
+    Bvh,
+}
+
+impl LightSampler {
+    /// A sampler of the given kind for these lights, whose ids are their indices.
+    pub fn new(kind: LightSamplerKind, lights: &[Light]) -> Self {
+        match kind {
+            LightSamplerKind::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
+            LightSamplerKind::Power => Self::Power(PowerLightSampler::new(lights)),
+            LightSamplerKind::Bvh => Self::Bvh(BvhLightSampler::new(lights)),
+        }
+    }
+
+    /// A light for the point `context`, with the probability of its choice (> 0).
+    #[inline]
+    pub fn sample(&self, context: &LightSampleContext, u: f32) -> Option<(LightId, f32)> {
+        match self {
+            Self::Uniform(s) => s.sample(u),
+            Self::Power(s) => s.sample(u),
+            Self::Bvh(s) => s.sample(context, u),
+        }
+    }
+
+    /// The probability with which `light` is chosen for the point `context`.
+    #[inline]
+    pub fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
+        match self {
+            Self::Uniform(s) => s.pmf(),
+            Self::Power(s) => s.pmf(light),
+            Self::Bvh(s) => s.pmf(context, light),
+        }
+    }
+}

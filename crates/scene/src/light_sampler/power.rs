@@ -1,0 +1,33 @@
+//! Lights in proportion to their power, wherever the point is.
+
+use crate::light::{Light, LightId};
+use sampling::AliasTable;
+use spectrum::SampledWavelengths;
+
+/// Lights by power.
+#[derive(Clone, Debug)]
+pub struct PowerLightSampler {
+    table: Option<AliasTable>,
+}
+
+impl PowerLightSampler {
+    /// For these lights. When none has any power, all are alike.
+    pub fn new(lights: &[Light]) -> Self {
+        let lambda = SampledWavelengths::sample_visible(0.5);
+        let mut powers: Vec<f32> =
+            lights.iter().map(|light| light.phi(&lambda).safe_div(lambda.pdf()).average().max(0.0)).collect();
+        if powers.iter().all(|&p| p == 0.0) {
+            powers.fill(1.0);
+        }
+        Self { table: AliasTable::new(&powers) }
+    }
+
+    pub(super) fn sample(&self, u: f32) -> Option<(LightId, f32)> {
+        let choice = self.table.as_ref()?.sample(u);
+        (choice.pmf > 0.0).then_some((LightId(choice.index as u32), choice.pmf))
+    }
+
+    pub(super) fn pmf(&self, light: LightId) -> f32 {
+        self.table.as_ref().map_or(0.0, |table| table.pmf(light.0 as usize))
+    }
+}

@@ -1,0 +1,24 @@
+//! All lights alike.
+
+use crate::light::{Light, LightId};
+
+/// Every light with the same probability.
+#[derive(Clone, Debug)]
+pub struct UniformLightSampler {
+    count: u32,
+}
+
+impl UniformLightSampler {
+    /// For these lights.
+    pub fn new(lights: &[Light]) -> Self {
+        Self { count: lights.len() as u32 }
+    }
+
+    pub(super) fn sample(&self, u: f32) -> Option<(LightId, f32)> {
+        (self.count > 0).then(|| (LightId(((u * self.count as f32) as u32).min(self.count - 1)), self.pmf()))
+    }
+
+    pub(super) fn pmf(&self) -> f32 {
+        if self.count == 0 { 0.0 } else { 1.0 / self.count as f32 }
+    }
+}

@@ -1,0 +1,31 @@
+//! Glass, water, plastics' clear surface: reflection and refraction, smooth or rough.
+//!
+//! Parameters: index of refraction over wavelength, default 1.5; roughness, default 0. An index that varies with wavelength
+//! disperses: from here on the path goes on with one wavelength.
+
+use super::{Roughness, dispersed_index};
+use crate::texture::{TextureContext, Textures};
+use scattering::Dielectric;
+use spectrum::{SampledWavelengths, Spectrum};
+
+/// A transparent body's surface.
+#[derive(Clone, Debug)]
+pub struct DielectricMaterial {
+    /// Index of refraction inside over that outside.
+    pub eta: Spectrum,
+    /// How rough it is.
+    pub roughness: Roughness,
+}
+
+impl DielectricMaterial {
+    #[inline]
+    pub(super) fn bxdf(
+        &self,
+        textures: &Textures,
+        context: &TextureContext,
+        lambda: &mut SampledWavelengths,
+    ) -> Dielectric {
+        let eta = dispersed_index(&self.eta, lambda);
+        Dielectric { eta, distribution: self.roughness.distribution(textures, context) }
+    }
+}

@@ -1,0 +1,119 @@
+//! Materials: what a surface is made of becomes, at one point and four wavelengths, a BxDF by value.
+//!
+//! A material holds textures and spectra; [`Material::bxdf`] evaluates them at a point. `Mix` chooses one of two materials at
+//! each point by a hash, so it is resolved before ([`Materials::resolve`]); `Interface` has no BxDF at all: rays pass.
+
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod diffuse_transmission;
+mod mix;
+mod normal_map;
+mod roughness;
+mod thin_dielectric;
+
+pub use conductor::{ConductorIndex, ConductorMaterial};
+pub use dielectric::DielectricMaterial;
+pub use diffuse::DiffuseMaterial;
+pub use diffuse_transmission::DiffuseTransmissionMaterial;
+pub use mix::MixMaterial;
+pub use normal_map::NormalMap;
+pub use roughness::Roughness;
+pub use thin_dielectric::ThinDielectricMaterial;
+
+use crate::interaction::SurfaceInteraction;
+use crate::texture::{TextureContext, Textures};
+use scattering::Bxdf;
+use spectrum::{SampledWavelengths, Spectrum};
+
+/// Index of a material in its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+
+/// One material.
+#[derive(Clone, Debug)]
+pub enum Material {
+    /// See [`DiffuseMaterial`].
+    Diffuse(DiffuseMaterial),
+    /// See [`DiffuseTransmissionMaterial`].
+    DiffuseTransmission(DiffuseTransmissionMaterial),
+    /// See [`ConductorMaterial`].
+    Conductor(ConductorMaterial),
+    /// See [`DielectricMaterial`].
+    Dielectric(DielectricMaterial),
+    /// See [`ThinDielectricMaterial`].
+    ThinDielectric(ThinDielectricMaterial),
+    /// See [`MixMaterial`].
+    Mix(MixMaterial),
+    /// Rays pass; only the medium changes.
+    Interface,
+}
+
+impl Material {
+    /// The BxDF at a point. Dispersive materials end all wavelengths but the first. `None`: rays pass as if nothing
+    /// were there.
+    #[inline]
+    pub fn bxdf(
+        &self,
+        textures: &Textures,
+        context: &TextureContext,
+        lambda: &mut SampledWavelengths,
+    ) -> Option<Bxdf> {
+        match self {
+            Self::Diffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::DiffuseTransmission(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::Conductor(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::Dielectric(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::ThinDielectric(m) => Some(m.bxdf(lambda).into()),
+            Self::Mix(_) | Self::Interface => None,
+        }
+    }
+}
+
+/// A material with what bends its normals.
+#[derive(Clone, Debug)]
+pub struct MaterialEntry {
+    /// How it scatters.
+    pub material: Material,
+    /// What bends its normals.
+    pub normal_map: Option<NormalMap>,
+}
+
+/// The materials of a scene by id.
+#[derive(Clone, Debug, Default)]
+pub struct Materials {
+    entries: Vec<MaterialEntry>,
+}
+
+impl Materials {
+    /// A table of these; a `Mix` among them must not lead back to itself.
+    pub fn new(entries: Vec<MaterialEntry>) -> Self {
+        Self { entries }
+    }
+
+    /// The entry of an id of this table.
+    #[inline]
+    pub fn get(&self, id: MaterialId) -> &MaterialEntry {
+        &self.entries[id.0 as usize]
+    }
+
+    /// The material that a point really has: mixes are decided.
+    #[inline]
+    pub fn resolve(&self, interaction: &SurfaceInteraction, textures: &Textures) -> &MaterialEntry {
+        let mut entry = self.get(interaction.material);
+        while let Material::Mix(mix) = &entry.material {
+            entry = self.get(mix.choose(interaction, textures));
+        }
+        entry
+    }
+}
+
+/// An index of refraction at the first wavelength; where it varies, the other wavelengths end, for they would part here.
+fn dispersed_index(eta: &Spectrum, lambda: &mut SampledWavelengths) -> f32 {
+    let index = eta.at(lambda.lambda()[0]);
+    if !matches!(eta, Spectrum::Constant(_)) {
+        lambda.terminate_secondary();
+    }
+    // A spectrum is zero outside of its table: no glass there.
+    if index == 0.0 { 1.0 } else { index }
+}

@@ -1,0 +1,26 @@
+//! Roughness of a microfacet surface: two textures and what their values mean.
+
+use crate::texture::{FloatTextureId, TextureContext, Textures};
+use scattering::TrowbridgeReitz;
+
+/// How rough a surface is along its two tangents.
+#[derive(Clone, Copy, Debug)]
+pub struct Roughness {
+    /// Along ∂p/∂u.
+    pub u: FloatTextureId,
+    /// Along ∂p/∂v.
+    pub v: FloatTextureId,
+    /// The values are perceptual: α is their square root. Else they are α itself.
+    pub remap: bool,
+}
+
+impl Roughness {
+    #[inline]
+    pub(super) fn distribution(&self, textures: &Textures, context: &TextureContext) -> TrowbridgeReitz {
+        let alpha = |texture| {
+            let roughness = textures.float(texture, context);
+            if self.remap { TrowbridgeReitz::roughness_to_alpha(roughness) } else { roughness }
+        };
+        TrowbridgeReitz::new(alpha(self.u), alpha(self.v))
+    }
+}

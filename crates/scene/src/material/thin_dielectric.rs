@@ -1,0 +1,21 @@
+//! A thin pane: both interfaces at once, light passes straight.
+//!
+//! Parameter: index of refraction over wavelength, default 1.5.
+
+use super::dispersed_index;
+use scattering::ThinDielectric;
+use spectrum::{SampledWavelengths, Spectrum};
+
+/// A pane of glass without thickness.
+#[derive(Clone, Debug)]
+pub struct ThinDielectricMaterial {
+    /// Index of refraction.
+    pub eta: Spectrum,
+}
+
+impl ThinDielectricMaterial {
+    #[inline]
+    pub(super) fn bxdf(&self, lambda: &mut SampledWavelengths) -> ThinDielectric {
+        ThinDielectric { eta: dispersed_index(&self.eta, lambda) }
+    }
+}

@@ -1,0 +1,209 @@
+//! The compiled world: what rays meet, what it is made of, and what shines.
+
+use crate::camera::Camera;
+use crate::interaction::{Footprint, SurfaceInteraction};
+use crate::light::{Light, LightId, LightLiSample, LightSampleContext, SceneSphere};
+use crate::light_sampler::{LightSampler, LightSamplerKind};
+use crate::material::{Material, MaterialId, Materials};
+use crate::texture::{FloatTextureId, TextureContext, Textures};
+use geometry::{Hit, RayStats, World};
+use math::{Point2, Ray, RayDifferential, Vector3};
+use sampling::{Sampler, hash_float};
+use scattering::{Bsdf, Diffuse};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// What belongs to one geometry of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct GeometryEntry {
+    /// What it is made of.
+    pub material: MaterialId,
+    /// Where it is there, unless everywhere.
+    pub alpha: Option<FloatTextureId>,
+    /// The light of its first primitive, if it emits; those of the others follow.
+    pub first_light: Option<LightId>,
+}
+
+/// Switches of the format that concern all algorithms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneOptions {
+    /// All samples of a pixel go through its centre.
+    pub disable_pixel_jitter: bool,
+    /// All samples take the same wavelengths.
+    pub disable_wavelength_jitter: bool,
+    /// Textures are evaluated at points.
+    pub disable_texture_filtering: bool,
+    /// Every BSDF is replaced by a diffuse one of its albedo.
+    pub force_diffuse: bool,
+}
+
+/// Everything that is rendered. Never changes once compiled.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    pub(crate) camera: Camera,
+    pub(crate) world: World,
+    pub(crate) sphere: SceneSphere,
+    pub(crate) entries: Vec<GeometryEntry>,
+    pub(crate) materials: Materials,
+    pub(crate) textures: Textures,
+    pub(crate) lights: Vec<Light>,
+    pub(crate) infinite_lights: Vec<LightId>,
+    pub(crate) samples_per_pixel: u32,
+    pub(crate) options: SceneOptions,
+}
+
+impl Scene {
+    /// The observer.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Switches that concern all algorithms.
+    pub fn options(&self) -> SceneOptions {
+        self.options
+    }
+
+    /// The lights; their ids are their indices.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// The light of an id.
+    #[inline]
+    pub fn light(&self, id: LightId) -> &Light {
+        &self.lights[id.0 as usize]
+    }
+
+    /// The lights that rays leaving the scene meet.
+    pub fn infinite_lights(&self) -> &[LightId] {
+        &self.infinite_lights
+    }
+
+    /// A way of choosing among the lights.
+    pub fn light_sampler(&self, kind: LightSamplerKind) -> LightSampler {
+        LightSampler::new(kind, &self.lights)
+    }
+
+    /// The geometry, for what wants to look at it without materials.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The sphere around everything that has an end.
+    pub fn sphere(&self) -> SceneSphere {
+        self.sphere
+    }
+
+    /// The nearest surface at 0 < t < `t_max`, and its t.
+    pub fn intersect(
+        &self,
+        ray: &Ray,
+        t_max: f32,
+        stats: &mut RayStats,
+    ) -> Option<(SurfaceInteraction, f32)> {
+        let hit = self.world.intersect(ray, t_max, &|hit, ray| self.is_there(hit, ray), stats)?;
+        let entry = &self.entries[hit.geometry.0 as usize];
+        let interaction = SurfaceInteraction {
+            surface: self.world.surface(ray, &hit),
+            material: entry.material,
+            area_light: entry.first_light.map(|first| LightId(first.0 + hit.primitive)),
+            footprint: Footprint::default(),
+        };
+        Some((interaction, hit.t))
+    }
+
+    /// Whether a surface that stops light lies at 0 < t < `t_max`. Interfaces of media let it pass.
+    pub fn occluded(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> bool {
+        let stops = |hit: &Hit, ray: &Ray| {
+            let entry = &self.entries[hit.geometry.0 as usize];
+            !matches!(self.materials.get(entry.material).material, Material::Interface)
+                && self.is_there(hit, ray)
+        };
+        self.world.occluded(ray, t_max, &stops, stats)
+    }
+
+    /// Whether the light sample can be seen from a surface.
+    pub fn unoccluded(
+        &self,
+        from: &SurfaceInteraction,
+        sample: &LightLiSample,
+        stats: &mut RayStats,
+    ) -> bool {
+        let s = &from.surface;
+        let ray = Ray::between(s.p, s.n, sample.p, sample.n, s.time);
+        !self.occluded(&ray, Ray::SHADOW_END, stats)
+    }
+
+    /// Whether a surface is there, where its alpha makes it come and go: it is with the probability alpha, decided by a hash
+    /// of the ray and the place.
+    fn is_there(&self, hit: &Hit, ray: &Ray) -> bool {
+        let Some(alpha) = self.entries[hit.geometry.0 as usize].alpha else { return true };
+        let s = self.world.surface(ray, hit);
+        let context = TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() };
+        let alpha = self.textures.float(alpha, &context);
+        if alpha >= 1.0 {
+            return true;
+        }
+        let words = [ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, hit.t].map(f32::to_bits);
+        alpha > 0.0 && hash_float(&words) < alpha
+    }
+
+    /// Radiance that arrives along a ray which leaves the scene.
+    pub fn escaped(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
+        self.infinite_lights
+            .iter()
+            .fold(SampledSpectrum::ZERO, |sum, &id| sum + self.light(id).le(ray, lambda))
+    }
+
+    /// Radiance that a surface itself sends along `w`.
+    pub fn emitted(
+        &self,
+        from: &SurfaceInteraction,
+        w: Vector3,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        from.area_light.map_or(SampledSpectrum::ZERO, |id| {
+            self.light(id).radiance(from.surface.n, from.surface.uv, w, lambda)
+        })
+    }
+
+    /// [`Light::sample_li`] of one of this scene's lights.
+    pub fn sample_light(
+        &self,
+        light: LightId,
+        context: &LightSampleContext,
+        u: Point2,
+        lambda: &SampledWavelengths,
+        allow_incomplete: bool,
+    ) -> Option<LightLiSample> {
+        self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
+    }
+
+    /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the shading normal on the way.
+    /// `None`: nothing is there but a change of medium; the ray goes on.
+    pub fn bsdf(
+        &self,
+        interaction: &mut SurfaceInteraction,
+        ray: &RayDifferential,
+        lambda: &mut SampledWavelengths,
+        sampler: &mut Sampler,
+    ) -> Option<Bsdf> {
+        if !self.options.disable_texture_filtering {
+            interaction.compute_footprint(ray, &self.camera, self.samples_per_pixel);
+        }
+        let entry = self.materials.resolve(interaction, &self.textures);
+        if matches!(entry.material, Material::Interface) {
+            return None;
+        }
+        if let Some(map) = &entry.normal_map {
+            interaction.surface.shading = map.bend(&interaction.surface);
+        }
+        let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
+        let s = &interaction.surface;
+        let bsdf = Bsdf::new(s.shading.n, s.shading.dpdu, bxdf);
+        if !self.options.force_diffuse {
+            return Some(bsdf);
+        }
+        let reflectance = bsdf.rho(s.wo, [(sampler.get_1d(), sampler.get_2d())]);
+        Some(Bsdf::new(s.shading.n, s.shading.dpdu, Diffuse { reflectance }.into()))
+    }
+}
