@@ -11,8 +11,10 @@ const HEADER: &str = "comment made by hand\nelement vertex 5\nproperty uchar red
     property list uchar float weights\nproperty float texture_u\nproperty float texture_v\nelement face 2\n\
     property int material\nproperty list uint ushort vertex_index\nelement edge 1\nproperty int a\nend_header\n";
 
-/// Vertices: x, y, z, weights, u, v.
-const VERTICES: [(f32, f64, i16, &[f32], [f32; 2]); 5] = [
+/// x, y, z, weights, and u and v.
+type Vertex = (f32, f64, i16, &'static [f32], [f32; 2]);
+
+const VERTICES: [Vertex; 5] = [
     (0.0, 0.0, 0, &[], [0.0, 0.0]),
     (1.0, 0.0, 0, &[0.5], [1.0, 0.0]),
     (1.0, 1.0, 0, &[0.25, 0.75], [1.0, 1.0]),
