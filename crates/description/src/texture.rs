@@ -165,7 +165,7 @@ pub enum TextureKind<V> {
     },
 }
 
-/// An image as a texture.
+/// An image as a texture. The importer has decoded it with the encoding that the author named.
 #[derive(Clone, Debug)]
 pub struct ImageTextureDesc {
     /// The image.
@@ -182,8 +182,6 @@ pub struct ImageTextureDesc {
     pub scale: f32,
     /// One minus the value (after the factor).
     pub invert: bool,
-    /// How stored values become linear ones; by the file's type if absent (sRGB for 8 bits).
-    pub encoding: Option<EncodingDesc>,
 }
 
 impl ImageTextureDesc {
@@ -197,7 +195,6 @@ impl ImageTextureDesc {
             wrap: WrapMode::Repeat,
             scale: 1.0,
             invert: false,
-            encoding: None,
         }
     }
 }

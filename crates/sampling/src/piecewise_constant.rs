@@ -15,6 +15,8 @@ pub struct PiecewiseConstant1d {
     min: f32,
     max: f32,
     integral: f32,
+    /// Densities per value.
+    scale: f64,
 }
 
 impl PiecewiseConstant1d {
@@ -33,14 +35,15 @@ impl PiecewiseConstant1d {
             sum += value as f64;
             sums.push(sum);
         }
-        let integral = (sum * (max as f64 - min as f64) / values.len() as f64) as f32;
+        let cell_width = (max as f64 - min as f64) / values.len() as f64;
+        let integral = (sum * cell_width) as f32;
         if sum == 0.0 {
             values.fill(1.0);
             sums = (0..=values.len()).map(|i| i as f64).collect();
             sum = values.len() as f64;
         }
         let cdf = sums.into_iter().map(|s| (s / sum) as f32).collect();
-        PiecewiseConstant1d { values, cdf, min, max, integral }
+        PiecewiseConstant1d { values, cdf, min, max, integral, scale: 1.0 / (sum * cell_width) }
     }
 
     /// The number of cells.
@@ -81,9 +84,8 @@ impl PiecewiseConstant1d {
         Some(math::lerp(within.clamp(0.0, 1.0), self.cdf[cell], self.cdf[cell + 1]))
     }
 
-    /// The mean density in a cell per length, which the rounded cumulative sums define too.
     fn cell_pdf(&self, cell: usize) -> f32 {
-        if self.integral > 0.0 { self.values[cell] / self.integral } else { 1.0 / (self.max - self.min) }
+        (self.values[cell] as f64 * self.scale) as f32
     }
 
     fn cell(&self, x: f32) -> usize {
@@ -213,6 +215,13 @@ mod tests {
         let (p, pdf, cell) = density.sample(Vec2::new(0.25, 0.75));
         assert!((p - Vec2::new(0.25, 0.75)).length() < 1e-6);
         assert_eq!((pdf, density.pdf(p), cell), (1.0, 1.0, [0, 1]));
+    }
+
+    #[test]
+    fn values_too_small_for_their_integral_keep_their_density() {
+        let density = PiecewiseConstant1d::new(&[1e-40, 3e-40], [0.0, 1e-9]);
+        assert!((density.pdf(0.9e-9) / 1.5e9 - 1.0).abs() < 1e-3);
+        assert!((density.sample(0.125).0 - 0.25e-9).abs() < 1e-12);
     }
 
     #[test]

@@ -1,30 +1,43 @@
 //! What every sampler promises: values in [0, 1), replay, right means, better than chance, independent dimensions.
 
+use alhazen_sampling::Sampler;
+use alhazen_sampling::sampler::*;
 use math::Vec2;
-use sampling::Sampler;
-use sampling::sampler::*;
 use std::collections::HashSet;
+use std::f64::consts::TAU;
 use testkit::{Chi2, Moments, t_test};
 
 const SPP: u32 = 16;
 const RESOLUTION: [i32; 2] = [20, 13];
 const EACH_RANDOMIZE: [Randomize; 3] = [Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen];
 
+/// Makes a sampler of a number of samples per pixel and a seed.
+type Make = Box<dyn Fn(u32, u32) -> Sampler>;
+
 /// Every sampler, in every arrangement in which it is random.
-fn random_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
-    let side = spp.isqrt();
-    let mut samplers = vec![
-        ("independent".into(), Sampler::Independent(Independent::new(spp, seed))),
-        ("stratified".into(), Sampler::Stratified(Stratified::new([side, spp / side], true, seed))),
+fn makers() -> Vec<(String, Make)> {
+    let mut makers: Vec<(String, Make)> = vec![
+        ("independent".into(), Box::new(|spp, seed| Sampler::Independent(Independent::new(spp, seed)))),
+        (
+            "stratified".into(),
+            Box::new(|spp, seed| {
+                let side = spp.isqrt();
+                Sampler::Stratified(Stratified::new([side, spp / side], true, seed))
+            }),
+        ),
     ];
-    for randomize in EACH_RANDOMIZE {
-        let mut add = |name: &str, sampler| samplers.push((format!("{name} {randomize:?}"), sampler));
-        add("halton", Sampler::Halton(Halton::new(spp, RESOLUTION, randomize, seed)));
-        add("padded sobol", Sampler::PaddedSobol(PaddedSobol::new(spp, randomize, seed)));
-        add("sobol", Sampler::Sobol(Sobol::new(spp, RESOLUTION, randomize, seed)));
-        add("zsobol", Sampler::ZSobol(ZSobol::new(spp, RESOLUTION, randomize, seed)));
+    for r in EACH_RANDOMIZE {
+        let mut add = |name: &str, make: Make| makers.push((format!("{name} {r:?}"), make));
+        add("halton", Box::new(move |n, seed| Sampler::Halton(Halton::new(n, RESOLUTION, r, seed))));
+        add("padded sobol", Box::new(move |n, seed| Sampler::PaddedSobol(PaddedSobol::new(n, r, seed))));
+        add("sobol", Box::new(move |n, seed| Sampler::Sobol(Sobol::new(n, RESOLUTION, r, seed))));
+        add("zsobol", Box::new(move |n, seed| Sampler::ZSobol(ZSobol::new(n, RESOLUTION, r, seed))));
     }
-    samplers
+    makers
+}
+
+fn random_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
+    makers().into_iter().map(|(name, make)| (name, make(spp, seed))).collect()
 }
 
 fn all_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
@@ -106,14 +119,14 @@ fn smooth(sampler: &mut Sampler) -> f64 {
     let p = sampler.get_2d().as_dvec2();
     let x = sampler.get_1d() as f64;
     let q = sampler.get_2d().as_dvec2();
-    (4.0 * p.x * p.y) * (1.5 - x) * (1.0 + 0.5 * (6.283185307179586 * q.x).sin() * q.y)
+    (4.0 * p.x * p.y) * (1.5 - x) * (1.0 + 0.5 * (TAU * q.x).sin() * q.y)
 }
 
 /// Means of [`smooth`] over `count` samples from `first` on, one for each of many pixels and seeds.
-fn estimates(make: impl Fn(u32) -> Sampler, first: u32, count: u32) -> Moments {
+fn estimates(make: &Make, spp: u32, first: u32, count: u32) -> Moments {
     let mut moments = Moments::default();
     for seed in 0..60 {
-        let mut sampler = make(seed);
+        let mut sampler = make(spp, seed);
         for pixel in [[0, 0], [3, 1], [19, 12], [7, 7], [200, 90]] {
             let sum: f64 = (first..first + count)
                 .map(|index| {
@@ -130,22 +143,22 @@ fn estimates(make: impl Fn(u32) -> Sampler, first: u32, count: u32) -> Moments {
 
 #[test]
 fn means_are_right_within_and_beyond_the_count() {
-    let names: Vec<String> = random_samplers(SPP, 0).into_iter().map(|(name, _)| name).collect();
-    for (i, name) in names.iter().enumerate() {
+    let makers = makers();
+    for (name, make) in &makers {
         for (first, count) in [(0, SPP), (0, 5), (SPP, SPP), (3 * SPP + 1, 20)] {
-            let moments = estimates(|seed| random_samplers(SPP, seed).swap_remove(i).1, first, count);
-            t_test(&moments, 1.0, 4 * names.len()).unwrap_or_else(|e| panic!("{name} {first} {count}: {e}"));
+            let moments = estimates(make, SPP, first, count);
+            t_test(&moments, 1.0, 4 * makers.len()).unwrap_or_else(|e| panic!("{name} {first} {count}: {e}"));
         }
     }
 }
 
 #[test]
 fn arranged_samples_beat_independent_ones() {
+    let makers = makers();
     for spp in [16, 64] {
-        let make = |i: usize| move |seed| random_samplers(spp, seed).swap_remove(i).1;
-        let independent = estimates(make(0), 0, spp).variance();
-        for (i, (name, _)) in random_samplers(spp, 0).into_iter().enumerate().skip(1) {
-            let variance = estimates(make(i), 0, spp).variance();
+        let independent = estimates(&makers[0].1, spp, 0, spp).variance();
+        for (name, make) in &makers[1..] {
+            let variance = estimates(make, spp, 0, spp).variance();
             assert!(variance < 0.5 * independent, "{name}, {spp} samples: {variance} and {independent}");
         }
     }
@@ -153,25 +166,25 @@ fn arranged_samples_beat_independent_ones() {
 
 #[test]
 fn further_rounds_go_on_improving() {
-    for (i, (name, _)) in random_samplers(SPP, 0).into_iter().enumerate() {
-        let make = |seed| random_samplers(SPP, seed).swap_remove(i).1;
-        let (one, eight) = (estimates(make, 0, SPP).variance(), estimates(make, 0, 8 * SPP).variance());
+    for (name, make) in makers() {
+        let one = estimates(&make, SPP, 0, SPP).variance();
+        let eight = estimates(&make, SPP, 0, 8 * SPP).variance();
         assert!(eight < one / 4.0, "{name}: {one} and {eight}");
     }
 }
 
 #[test]
 fn dimensions_are_independent() {
-    let names: Vec<String> = random_samplers(SPP, 0).into_iter().map(|(name, _)| name).collect();
-    for (i, name) in names.iter().enumerate() {
+    let makers = makers();
+    for (name, make) in &makers {
         // Pairs across calls, each from another seed, so that the points are independent of one another.
         let mut pairs = Vec::new();
         for seed in 0..6000 {
-            let mut sampler = random_samplers(SPP, seed).swap_remove(i).1;
+            let mut sampler = make(SPP, seed);
             let values = draw(&mut sampler, [seed as i32 % 20, 3], seed % SPP);
             pairs.push([values[2], values[5]]);
         }
-        let test = Chi2 { bins: [8, 8], samples: pairs.len(), tests: names.len(), ..Chi2::default() };
+        let test = Chi2 { bins: [8, 8], samples: pairs.len(), tests: makers.len(), ..Chi2::default() };
         test.rectangle([[0.0, 1.0]; 2], |_| pairs.pop(), |_| 1.0).unwrap_or_else(|e| panic!("{name}: {e}"));
     }
 }

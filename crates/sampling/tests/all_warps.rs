@@ -1,7 +1,7 @@
 //! Every warp has the density it says and gives back what it was given.
 
+use alhazen_sampling::warp::*;
 use math::{Point3, Vec2, Vec3};
-use sampling::warp::*;
 use std::f32::consts::PI;
 use testkit::{Chi2, Random};
 
@@ -24,8 +24,8 @@ fn interval(
     pdf: impl Fn(f32) -> f32,
     invert: impl Fn(f32) -> f32,
 ) {
-    CHI2.interval(range, |u| Some(sample(u)).filter(|x| *x <= range[1]), |x| pdf(x) as f64).unwrap();
-    round_trip(|u| sample(u.x), |x| Vec2::new(invert(x), 0.0), 2.0);
+    CHI2.interval(range, |u| Some(sample(u)).filter(|x| *x <= range[1]), |x| pdf(x) as f64)
+        .unwrap_or_else(|table| panic!("{table}"));
     let mut random = Random::new(2);
     for _ in 0..5000 {
         let u = random.get_1d();
@@ -35,7 +35,7 @@ fn interval(
 
 fn sphere(sample: impl Fn(Vec2) -> Vec3, pdf: impl Fn(Vec3) -> f32, invert: impl Fn(Vec3) -> Vec2) {
     let direction = |u| Some(sample(Vec2::from(u)).to_array());
-    CHI2.sphere(direction, |w| pdf(Vec3::from(w)) as f64).unwrap();
+    CHI2.sphere(direction, |w| pdf(Vec3::from(w)) as f64).unwrap_or_else(|table| panic!("{table}"));
     round_trip(sample, invert, 1e-3);
 }
 
@@ -184,6 +184,22 @@ fn a_tiny_spherical_triangle_is_covered_evenly() {
         Some([b[0], b[1]])
     };
     Chi2 { bins: [20, 20], ..CHI2 }.rectangle([[0.0, 1.0]; 2], sample, pdf).unwrap();
+}
+
+#[test]
+fn thin_and_near_triangles_are_met() {
+    let mut random = Random::new(5);
+    for _ in 0..50_000 {
+        let squeeze = Vec3::new(1.0, 1.0, random.get_1d().powi(12));
+        let mut coordinate = || 2.0 * random.get_1d() - 1.0;
+        let vertices = [(); 3].map(|_| Vec3::new(coordinate(), coordinate(), coordinate()) * squeeze);
+        let Some(triangle) = SphericalTriangle::new(vertices, Vec3::ZERO) else { continue };
+        let (w, b) = triangle.sample(Vec2::from(random.get_2d()));
+        assert!((w.length() - 1.0).abs() < 1e-5, "{w} to {vertices:?}");
+        assert!(b.iter().all(|b| (0.0..=1.0).contains(b)), "{b:?} of {vertices:?}");
+        assert!((b.iter().sum::<f32>() - 1.0).abs() < 1e-6, "{b:?} of {vertices:?}");
+        assert!(triangle.pdf() > 0.0 && triangle.invert(w).is_finite(), "{vertices:?}");
+    }
 }
 
 #[test]

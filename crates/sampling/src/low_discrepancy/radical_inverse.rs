@@ -1,7 +1,7 @@
 //! The radical inverse: the digits of an index mirrored at the radix point, Φ_b(Σ dᵢ bⁱ) = Σ dᵢ b^(−i−1), plain or with
 //! its digits permuted at random.
 //!
-//! Digits are permuted alike wherever they stand in the sequence ([`scrambled_radical_inverse`], [Faure 1982]), or by the
+//! Digits are permuted alike wherever they stand in the sequence ([`DigitPermutations`], [Faure 1982]), or by the
 //! digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]). See [Pharr 2023 §8.6].
 
 use crate::{hash, mix_bits, permutation_element};
@@ -38,7 +38,7 @@ pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
     if base == 2 {
         return to_unit(a.reverse_bits() as f64 * 0.5f64.powi(64));
     }
-    mirror(base, a, |a, _| a > 0, |_, _, digit| digit)
+    mirror(base, a, |a, _| a > 0, |_, digit| digit)
 }
 
 /// The number below baseⁿ whose radical inverse in `base` has the integer `inverse` as its n digits.
@@ -52,15 +52,41 @@ pub fn inverse_radical_inverse(mut inverse: u64, base: u64, digits: u32) -> u64 
     index
 }
 
-/// As [`radical_inverse`], each digit permuted at random by its place and `seed`.
-#[inline]
-pub fn scrambled_radical_inverse(prime_index: usize, a: u64, seed: u32) -> f32 {
-    let base = prime(prime_index);
-    // Leading zeros are permuted too, as far down as a digit still shows in the sum.
-    let shows = |_, scale: f64| (base - 1) as f64 * scale > VISIBLE;
-    let permute =
-        |place, _, digit| permutation_element(digit as u32, base, hash(&[base, place, seed]) as u32) as u64;
-    mirror(base as u64, a, shows, permute)
+/// A random permutation of the digits of one base for each place of a number, as far down as a digit still shows.
+#[derive(Clone, Debug)]
+pub struct DigitPermutations {
+    base: u32,
+    /// A row of `base` digits for each place.
+    rows: Box<[u16]>,
+}
+
+impl DigitPermutations {
+    /// The permutations for the base of prime number `prime_index` that belong to `seed`.
+    pub fn new(prime_index: usize, seed: u32) -> DigitPermutations {
+        let base = prime(prime_index);
+        let scales = std::iter::successors(Some(1.0), |scale| Some(scale / base as f64));
+        let places = scales.take_while(|scale| (base - 1) as f64 * scale > VISIBLE).count() as u32;
+        let row = |place| {
+            let seed = hash(&[base, place, seed]) as u32;
+            (0..base).map(move |digit| permutation_element(digit, base, seed) as u16)
+        };
+        DigitPermutations { base, rows: (0..places).flat_map(row).collect() }
+    }
+
+    /// As [`radical_inverse`], each digit permuted by its place; leading zeros are permuted too.
+    #[inline]
+    pub fn radical_inverse(&self, mut a: u64) -> f32 {
+        let base = self.base as u64;
+        let inverse_base = 1.0 / base as f64;
+        let (mut mirrored, mut scale) = (0, 1.0);
+        for row in self.rows.chunks_exact(self.base as usize) {
+            let next = a / base;
+            mirrored = mirrored * base + row[(a - next * base) as usize] as u64;
+            scale *= inverse_base;
+            a = next;
+        }
+        to_unit(mirrored as f64 * scale)
+    }
 }
 
 /// As [`radical_inverse`], with Owen's scrambling: each digit permuted by those before it and `hash`.
@@ -68,7 +94,7 @@ pub fn scrambled_radical_inverse(prime_index: usize, a: u64, seed: u32) -> f32 {
 pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> f32 {
     let base = prime(prime_index);
     let shows = |_, scale: f64| scale > VISIBLE;
-    let permute = |_, before: u64, digit| {
+    let permute = |before: u64, digit| {
         permutation_element(digit as u32, base, mix_bits(hash as u64 ^ before) as u32) as u64
     };
     mirror(base as u64, a, shows, permute)
@@ -78,23 +104,17 @@ pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> 
 const VISIBLE: f64 = 0.5 * f32::EPSILON as f64;
 
 /// Mirrors the digits of `a`, while `more(rest, scale of the last digit)`, each replaced by
-/// `permute(place, mirrored digits before it, digit)`.
+/// `permute(mirrored digits before it, digit)`.
 #[inline]
-fn mirror(
-    base: u64,
-    mut a: u64,
-    more: impl Fn(u64, f64) -> bool,
-    permute: impl Fn(u32, u64, u64) -> u64,
-) -> f32 {
+fn mirror(base: u64, mut a: u64, more: impl Fn(u64, f64) -> bool, permute: impl Fn(u64, u64) -> u64) -> f32 {
     // Beyond this the mirrored integer might overflow.
     let limit = u64::MAX / base - base;
     let inverse_base = 1.0 / base as f64;
-    let (mut mirrored, mut scale, mut place) = (0u64, 1.0f64, 0);
+    let (mut mirrored, mut scale) = (0u64, 1.0f64);
     while more(a, scale) && mirrored < limit {
         let next = a / base;
-        mirrored = mirrored * base + permute(place, mirrored, a - next * base);
+        mirrored = mirrored * base + permute(mirrored, a - next * base);
         scale *= inverse_base;
-        place += 1;
         a = next;
     }
     to_unit(mirrored as f64 * scale)
@@ -128,16 +148,19 @@ mod tests {
 
     #[test]
     fn scrambling_keeps_the_strata() {
-        for prime_index in [0, 1, 3, 10] {
+        for prime_index in [0, 1, 3] {
             let base = prime(prime_index) as usize;
             for seed in 0..10 {
-                for scrambled in [scrambled_radical_inverse, owen_scrambled_radical_inverse] {
+                let permutations = DigitPermutations::new(prime_index, seed);
+                let permuted = |a| permutations.radical_inverse(a);
+                let owen = |a| owen_scrambled_radical_inverse(prime_index, a, seed);
+                for scrambled in [&permuted as &dyn Fn(u64) -> f32, &owen] {
                     let count = base * base;
                     let mut seen = vec![false; count];
                     for a in 0..count {
-                        let x = scrambled(prime_index, a as u64, seed);
+                        let x = scrambled(a as u64);
                         assert!((0.0..1.0).contains(&x));
-                        seen[(x as f64 * count as f64 + 1e-4) as usize] = true;
+                        seen[(x as f64 * count as f64) as usize] = true;
                     }
                     assert!(seen.iter().all(|&s| s), "base {base}, seed {seed}");
                 }

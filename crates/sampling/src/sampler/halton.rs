@@ -7,21 +7,24 @@
 
 use super::Randomize;
 use crate::low_discrepancy::{
-    PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
-    scrambled_radical_inverse,
+    DigitPermutations, PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
 };
 use crate::mix_bits;
 use math::Vec2;
+use std::sync::{Arc, OnceLock};
 
 /// The largest side of the tile that the first two dimensions cover.
 const MAX_TILE: i32 = 128;
 
-/// See the [module's head](self).
+/// Radical inverses in prime bases, one sequence over the picture. Any number of samples is as good as any other, and
+/// beyond it the sequence goes on.
 #[derive(Clone, Debug)]
 pub struct Halton {
     samples_per_pixel: u32,
     randomize: Randomize,
     seed: u32,
+    /// Those of each dimension, made when it is first asked for.
+    permutations: Arc<[OnceLock<DigitPermutations>]>,
     /// 2^j and 3^k, the sides of the tile, and the exponents.
     scales: [u64; 2],
     exponents: [u32; 2],
@@ -32,7 +35,7 @@ pub struct Halton {
 }
 
 impl Halton {
-    /// A sampler for a picture of the given resolution.
+    /// A sampler for a picture of the given resolution. [`Randomize::FastOwen`] is taken for [`Randomize::Owen`].
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Halton {
         let mut scales = [1u64; 2];
         let mut exponents = [0; 2];
@@ -51,6 +54,7 @@ impl Halton {
             samples_per_pixel: samples_per_pixel.max(1),
             randomize,
             seed,
+            permutations: (0..PRIME_COUNT).map(|_| OnceLock::new()).collect(),
             scales,
             exponents,
             units: [unit(width, height), unit(height, width)],
@@ -104,7 +108,9 @@ impl Halton {
     fn coordinate(&self, dimension: usize) -> f32 {
         match self.randomize {
             Randomize::None => radical_inverse(dimension, self.index),
-            Randomize::PermuteDigits => scrambled_radical_inverse(dimension, self.index, self.seed),
+            Randomize::PermuteDigits => self.permutations[dimension]
+                .get_or_init(|| DigitPermutations::new(dimension, self.seed))
+                .radical_inverse(self.index),
             Randomize::FastOwen | Randomize::Owen => {
                 let hash = mix_bits((1 + ((dimension as u64) << 4)) ^ ((self.seed as u64) << 32));
                 owen_scrambled_radical_inverse(dimension, self.index, hash as u32)
@@ -121,15 +127,16 @@ mod tests {
     fn every_sample_lies_in_its_pixel() {
         for resolution in [[1, 1], [10, 7], [128, 100], [1000, 2]] {
             let mut sampler = Halton::new(4, resolution, Randomize::None, 0);
-            let [width, height] = sampler.scales;
             for i in 0..100 {
                 let pixel = [(i * 37) % resolution[0].min(128), (i * 11) % resolution[1].min(128)];
                 for index in [0, 1, 12] {
                     sampler.start_pixel_sample(pixel, index, 0);
-                    let place = |base, scale: u64| {
-                        (radical_inverse(base, sampler.index) * scale as f32 + 1e-3) as i32
+                    // The place on the film has the low digits of the index as its high digits.
+                    let place = |axis: usize, base| {
+                        let low = sampler.index % sampler.scales[axis];
+                        inverse_radical_inverse(low, base, sampler.exponents[axis]) as i32
                     };
-                    assert_eq!([place(0, width), place(1, height)], pixel);
+                    assert_eq!([place(0, 2), place(1, 3)], pixel);
                 }
             }
         }

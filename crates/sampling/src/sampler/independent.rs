@@ -4,7 +4,7 @@ use super::hash;
 use crate::Rng;
 use math::Vec2;
 
-/// See the [module's head](self).
+/// Uniform random numbers, any number of them.
 #[derive(Clone, Debug)]
 pub struct Independent {
     samples_per_pixel: u32,

@@ -7,7 +7,8 @@
 use super::{Randomize, pixel_hash, shuffled};
 use math::Vec2;
 
-/// See the [module's head](self).
+/// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel. A number of samples that is no
+/// power of two is taken as it is; beyond it the sequence goes on.
 #[derive(Clone, Debug)]
 pub struct PaddedSobol {
     samples_per_pixel: u32,

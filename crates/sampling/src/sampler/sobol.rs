@@ -11,7 +11,8 @@ use crate::{hash, unit_interval};
 use math::Vec2;
 use std::sync::Arc;
 
-/// See the [module's head](self).
+/// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded up to a power of two;
+/// beyond it the sequence goes on.
 #[derive(Clone, Debug)]
 pub struct Sobol {
     samples_per_pixel: u32,

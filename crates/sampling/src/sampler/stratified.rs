@@ -6,7 +6,7 @@ use super::{pixel_hash, shuffled};
 use crate::Rng;
 use math::{ONE_MINUS_EPSILON, Vec2};
 
-/// See the [module's head](self).
+/// One sample in each cell of a grid over each pixel; beyond the number of cells each round fills another grid.
 #[derive(Clone, Debug)]
 pub struct Stratified {
     grid: [u32; 2],

@@ -9,7 +9,8 @@ use super::Randomize;
 use crate::{hash, mix_bits};
 use math::Vec2;
 
-/// See the [module's head](self).
+/// Two-dimensional Sobol' points spread over the picture along a curve. The number of samples is rounded up to a power of
+/// two; beyond it each round has scrambles of its own.
 #[derive(Clone, Debug)]
 pub struct ZSobol {
     log2_samples: u32,

@@ -1,26 +1,30 @@
 //! What the observer sees through.
 //!
-//! A [`Camera`] turns a position on the film into a ray of light that arrives there, followed backwards. It is a
-//! [`Projection`], which knows camera space alone, placed in the scene by a [`CameraTransform`] and opened for a while by
-//! a shutter.
+//! A [`Camera`] turns a position on the film into a ray of light that arrives there, followed backwards. It
+//! is a [`Projection`], which knows camera space alone, placed in the scene by a [`CameraTransform`] and
+//! opened for a while by a shutter.
 //!
-//! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in pbrt). Film positions are
-//! in pixels, x to the right and y down, (0, 0) at the top left corner of the picture, so that the centre of pixel (i, j)
-//! is (i + ½, j + ½). Rays are in render space, their directions have unit length, and their `time` is in the scene's
-//! time. Differentials are one pixel wide; bring them nearer by [`differential_scale`] when a pixel takes many samples.
+//! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in pbrt). Film
+//! positions are in pixels, x to the right and y down, (0, 0) at the top left corner of the picture, so that
+//! the centre of pixel (i, j) is (i + ½, j + ½). Rays are in render space, their directions have unit length,
+//! and their `time` is in the scene's time. Differentials are one pixel wide; bring them nearer by
+//! [`differential_scale`] when a pixel takes many samples.
 
 mod compile;
-mod footprint;
+mod minimum_differentials;
 mod orthographic;
 mod perspective;
 mod screen;
 mod spherical;
+#[cfg(test)]
+mod tests;
 mod transform;
 
-use math::{Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vector3, lerp};
+use math::{Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vec3, Vector3, lerp};
+use minimum_differentials::MinimumDifferentials;
 
 pub use compile::compile;
-pub use footprint::{Footprint, differential_scale};
+pub use minimum_differentials::differential_scale;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use screen::{Screen, ThinLens};
@@ -79,8 +83,18 @@ impl Projection {
         }
     }
 
-    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat film are compared with
-    /// those a whole pixel away, which is exact; on the sphere, where a pixel may span a large angle, with near ones.
+    /// Unit direction and length of the way from the camera to `p`, in camera space, through the centre of a
+    /// lens.
+    fn way_to(&self, p: Point3) -> (Vector3, f32) {
+        match self {
+            Self::Orthographic(o) if o.is_parallel() => (Vec3::Z, p.z),
+            _ => (p.try_normalize().unwrap_or(Vec3::Z), p.length()),
+        }
+    }
+
+    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat film are
+    /// compared with those a whole pixel away, which is exact; on the sphere, where a pixel may span a large
+    /// angle, with near ones.
     fn differential_step(&self) -> f32 {
         match self {
             Self::Perspective(_) | Self::Orthographic(_) => 1.0,
@@ -108,7 +122,7 @@ pub struct Camera {
     projection: Projection,
     transform: CameraTransform,
     shutter: [f32; 2],
-    footprint: Footprint,
+    minimum_differentials: MinimumDifferentials,
 }
 
 impl Camera {
@@ -120,8 +134,8 @@ impl Camera {
         shutter: [f32; 2],
         resolution: [u32; 2],
     ) -> Self {
-        let footprint = Footprint::new(&projection, resolution);
-        Self { projection, transform, shutter, footprint }
+        let minimum_differentials = MinimumDifferentials::new(&projection, resolution);
+        Self { projection, transform, shutter, minimum_differentials }
     }
 
     /// How the film sees camera space.
@@ -154,15 +168,16 @@ impl Camera {
         Some(CameraRay { ray: Ray { d: ray.d.normalize(), ..ray }, weight: 1.0 })
     }
 
-    /// The ray of a sample with the rays one pixel to the right and one pixel down, through the same point of the lens at the
-    /// same moment.
+    /// The ray of a sample with the rays one pixel to the right and one pixel down, through the same point of
+    /// the lens at the same moment.
     #[doc(alias = "GenerateRayDifferential")]
     pub fn generate_ray_differential(&self, sample: &CameraSample) -> Option<CameraRayDifferential> {
         let time = self.sample_time(sample.time);
         let (o, d, differentials) = self.projection.ray_differential(sample.film, sample.lens);
         let ray = RayDifferential { ray: Ray::new(o, d, time), differentials: Some(differentials) };
         let mut ray = self.transform.render_from_camera(time).ray_differential(&ray);
-        // A transform that scales stretches directions: all three by the same factor, to keep their differences.
+        // A transform that scales stretches directions: all three by the same factor, to keep their
+        // differences.
         let factor = ray.ray.d.length_recip();
         ray.ray.d *= factor;
         if let Some(d) = &mut ray.differentials {
@@ -172,15 +187,15 @@ impl Camera {
         Some(CameraRayDifferential { ray, weight: 1.0 })
     }
 
-    /// About how far apart, on the tangent plane of a surface at `p` with normal `n` (render space), the rays of neighbouring
-    /// pixels would be if they came straight from the camera: ∂p/∂x and ∂p/∂y, each times `scale` (see
-    /// [`differential_scale`]). For surfaces that a path reaches without ray differentials.
+    /// About how far apart, on the tangent plane of a surface at `p` with normal `n` (render space), the rays
+    /// of neighbouring pixels would be if they came straight from the camera: ∂p/∂x and ∂p/∂y, each times
+    /// `scale` (see [`differential_scale`]). For surfaces that a path reaches without ray differentials.
     #[doc(alias = "Approximate_dp_dxy")]
     pub fn approximate_dp_dxy(&self, p: Point3, n: Normal3, time: f32, scale: f32) -> [Vector3; 2] {
         let render_from_camera = self.transform.render_from_camera(time);
         let camera_from_render = render_from_camera.inverse();
-        self.footprint
-            .dp_dxy(camera_from_render.point(p), camera_from_render.normal(n))
-            .map(|dp| render_from_camera.vector(dp * scale))
+        let (d, distance) = self.projection.way_to(camera_from_render.point(p));
+        let n = camera_from_render.normal(n);
+        self.minimum_differentials.dp_dxy(d, distance, n).map(|dp| render_from_camera.vector(dp * scale))
     }
 }

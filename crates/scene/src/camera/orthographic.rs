@@ -1,9 +1,10 @@
 //! The orthographic camera: all rays are parallel to the axis of view, so that things look the same size at any
 //! distance.
 //!
-//! The film position at screen point (x, y) sees along the ray (x, y, 0) + t·(0, 0, 1) of camera space; a thin lens sends
-//! the ray through another point of the lens towards (x, y, focal distance) ([Pharr 2023 §5.2.1]). A ray with a lens
-//! starts on the lens, not on the screen.
+//! The film position at screen point (x, y) sees along the ray (x, y, 0) + t·(0, 0, 1) of camera space. With
+//! a thin lens, all rays leave the lens about the origin towards (x, y, focal distance), as in pbrt-v4: such
+//! a picture is a perspective one, and the screen window lies on the focal plane ([Pharr 2023 §5.2.1,
+//! §5.2.3]).
 
 use super::{Screen, ThinLens};
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
@@ -19,6 +20,11 @@ impl Orthographic {
     /// The view of the screen `window`, in units of camera space, on `resolution` pixels.
     pub fn new(window: Bounds2, lens: ThinLens, resolution: [u32; 2]) -> Self {
         Self { screen: Screen::new(window, resolution), lens }
+    }
+
+    /// Whether there is no lens to bend the rays.
+    pub(super) fn is_parallel(&self) -> bool {
+        self.lens.radius <= 0.0
     }
 
     /// Origin and unit direction, in camera space.

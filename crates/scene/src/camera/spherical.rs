@@ -1,9 +1,9 @@
 //! The spherical camera: one point that looks in every direction, as is needed to record an environment map.
 //!
-//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt from +y and φ = 2πs from +x
-//! towards +z; the equal-area mapping unfolds the sphere into an octahedron ([Clarberg 2008]), so that all pixels see
-//! the same solid angle, 4π/n for n pixels. Film positions beyond the border, where wide reconstruction filters reach,
-//! continue on the sphere ([Pharr 2023 §5.3]).
+//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt from +y and
+//! φ = 2πs from +x towards +z; the equal-area mapping unfolds the sphere into an octahedron ([Clarberg
+//! 2008]), so that all pixels see the same solid angle, 4π/n for n pixels. Film positions beyond the border,
+//! where wide reconstruction filters reach, continue on the sphere ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
 use math::{

@@ -1,11 +1,11 @@
 //! The pyramids of a scene's images, each made once.
 
-use description::{Arena, EncodingDesc, ImageDesc, ImageTextureDesc};
-use image::{ColorEncoding, Image, ImageError, Pixels, Pyramid, WrapMode};
+use description::{Arena, ImageDesc, ImageTextureDesc};
+use image::{Image, ImageError, Pyramid, WrapMode};
 use std::sync::Arc;
 
-/// What a pyramid depends on: the image, what lies beyond it, how it is encoded and whether it keeps its colours.
-type Key = (usize, description::WrapMode, Option<EncodingDesc>, bool);
+/// What a pyramid depends on: the image, what lies beyond it and whether it keeps its colours.
+type Key = (usize, description::WrapMode, bool);
 
 /// Makes pyramids of images, and remembers them.
 pub(super) struct Pyramids<'a> {
@@ -20,17 +20,12 @@ impl<'a> Pyramids<'a> {
 
     /// The pyramid for a texture, of colours or of numbers.
     pub fn get(&mut self, texture: &ImageTextureDesc, in_color: bool) -> Result<Arc<Pyramid>, ImageError> {
-        let key = (texture.image.index(), texture.wrap, texture.encoding, in_color);
+        let key = (texture.image.index(), texture.wrap, in_color);
         if let Some((_, pyramid)) = self.made.iter().find(|(made, _)| *made == key) {
             return Ok(pyramid.clone());
         }
-        let mut image = self.images[texture.image].image.clone();
-        if let Some(encoding) = texture.encoding {
-            image = encoded(image, encoding)?;
-        }
-        if !in_color {
-            image = numbers(image);
-        }
+        let image = self.images[texture.image].image.clone();
+        let image = if in_color { image } else { numbers(image) };
         let wrap = match texture.wrap {
             description::WrapMode::Repeat => WrapMode::Repeat,
             description::WrapMode::Black => WrapMode::Black,
@@ -43,25 +38,8 @@ impl<'a> Pyramids<'a> {
     }
 }
 
-/// The image with its 8-bit codes read by another encoding; other pixels are linear already.
-fn encoded(image: Arc<Image>, encoding: EncodingDesc) -> Result<Arc<Image>, ImageError> {
-    let encoding = match encoding {
-        EncodingDesc::Linear => ColorEncoding::Linear,
-        EncodingDesc::Srgb => ColorEncoding::Srgb,
-        EncodingDesc::Gamma(gamma) => ColorEncoding::Gamma(gamma),
-    };
-    match image.pixels() {
-        Pixels::U8(codes, old) if *old != encoding => {
-            let pixels = Pixels::U8(codes.clone(), encoding);
-            let mut other = Image::new(image.width(), image.height(), image.channels(), pixels)?;
-            other.metadata = image.metadata.clone();
-            Ok(Arc::new(other))
-        }
-        _ => Ok(image),
-    }
-}
-
-/// The one channel that stands for an image as numbers: its opacity where that is not one everywhere, else the mean of red, green and blue.
+/// The one channel that stands for an image as numbers: its opacity where that is not one everywhere, else
+/// the mean of red, green and blue.
 fn numbers(image: Arc<Image>) -> Arc<Image> {
     if image.channel_count() == 1 {
         return image;

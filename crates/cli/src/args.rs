@@ -1,0 +1,315 @@
+//! The command line as clap sees it: every command, option, unit and default.
+
+use std::path::PathBuf;
+
+use alhazen::Overrides;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Renders scenes by following light.
+#[derive(Debug, Parser)]
+#[command(name = "alhazen", version, about, long_about = None, subcommand_required = true, after_help = EXIT_CODES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str =
+    "Exit codes: 0 done, 1 the input is wrong, 2 the command line is wrong, 130 interrupted.";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene file to pictures.
+    Render(Box<Render>),
+    /// Look at scene files.
+    #[command(subcommand)]
+    Scene(Scene),
+    /// Compare and convert pictures.
+    #[command(subcommand)]
+    Image(Image),
+}
+
+impl Command {
+    /// Whether the result, and errors too, are to be one JSON object on standard output.
+    pub fn json(&self) -> bool {
+        match self {
+            Self::Render(render) => render.json,
+            Self::Scene(Scene::Check(check)) => check.json,
+            Self::Image(Image::Diff(diff)) => diff.json,
+            Self::Image(Image::Convert(convert)) => convert.json,
+        }
+    }
+}
+
+/// Render a scene file to pictures.
+///
+/// Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second Ctrl-C ends the
+/// program at once.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
+pub struct Render {
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard input.
+    pub scene: PathBuf,
+    /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png, .jpg, .hdr, .tga, .pfm,
+    /// .bmp, .qoi, .tif. Can be given several times. [default: the name in the scene's film, else the scene's with .exr, in the
+    /// current folder]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// The algorithm; see the list below. [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub integrator: Option<String>,
+    /// Change a setting; see the list below. Can be given several times.
+    #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
+    pub set: Vec<(String, String)>,
+    /// Samples per pixel. [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub spp: Option<u32>,
+    /// Width and height of the whole image in pixels. [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = resolution)]
+    pub resolution: Option<[i32; 2]>,
+    /// Render a part of the image only, given in fractions of its width and height, from the upper left: 0,0.5,0,1 is the left
+    /// half. [default: the scene's]
+    #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = crop, conflicts_with = "pixel")]
+    pub crop: Option<[f32; 4]>,
+    /// Render one pixel only: its column and row, counted from 0 at the upper left.
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: Option<[i32; 2]>,
+    /// Seed of all random numbers: the same seed gives the same picture, bit for bit. [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(0..))]
+    pub seed: Option<i32>,
+    /// Threads to render with; their number never changes the picture. [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Say nothing but errors.
+    #[arg(long, conflicts_with = "json")]
+    pub quiet: bool,
+    /// Write one JSON object to standard output instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Render {
+    /// The changes to the scene that the options ask for.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            integrator: self.integrator.clone(),
+            settings: self.set.clone(),
+            samples_per_pixel: self.spp,
+            resolution: self.resolution,
+            crop: self.crop,
+            pixel: self.pixel,
+            seed: self.seed,
+        }
+    }
+}
+
+/// Commands about scene files.
+#[derive(Debug, Subcommand)]
+pub enum Scene {
+    /// Tell everything that is wrong with a scene, or not drawn as it says, without rendering it.
+    Check(Check),
+}
+
+/// Tell everything that is wrong with a scene, or not drawn as it says, without rendering it.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Check {
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard input.
+    pub scene: PathBuf,
+    /// Write one JSON object to standard output instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Commands about pictures.
+#[derive(Debug, Subcommand)]
+pub enum Image {
+    /// Tell how far a picture is from a reference: MSE, relative MSE, FLIP.
+    Diff(Diff),
+    /// Write a picture in another format.
+    Convert(Convert),
+}
+
+/// Tell how far a picture is from a reference.
+///
+/// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² + 0.01); FLIP the mean of the
+/// visible difference, from 0 to 1, over the exposures that show the reference's range. The exit code is 0 however large the
+/// difference is.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Diff {
+    /// The reference.
+    pub a: PathBuf,
+    /// The picture to judge; of the same size.
+    pub b: PathBuf,
+    /// Write a picture of the error here, from black (none) to pale yellow.
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Which error the picture shows.
+    #[arg(long, value_enum, default_value_t = Metric::Flip)]
+    pub metric: Metric,
+    /// Write one JSON object to standard output instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What an error picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Metric {
+    /// Squared error; the brightest colour is the largest.
+    Mse,
+    /// Relative squared error; the brightest colour is the largest.
+    Relmse,
+    /// FLIP; the brightest colour is 1.
+    Flip,
+}
+
+/// Write a picture in another format: that of the new name's extension.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Convert {
+    /// The picture to read: EXR, PNG, JPEG, HDR, TGA, PFM, BMP, QOI or TIFF.
+    pub input: PathBuf,
+    /// The picture to write.
+    pub output: PathBuf,
+    /// How values are stored: `natural` keeps what the picture has where the format can.
+    #[arg(long, value_enum, default_value_t = Depth::Natural)]
+    pub depth: Depth,
+    /// Write one JSON object to standard output instead of text.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How values are stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Depth {
+    /// What suits the format.
+    Natural,
+    /// 8-bit integers.
+    U8,
+    /// 16-bit integers.
+    U16,
+    /// Half floats.
+    F16,
+    /// Single floats.
+    F32,
+}
+
+fn render_long_help() -> String {
+    let mut text = String::from("Algorithms:\n");
+    for name in alhazen::INTEGRATORS {
+        text += &format!("  {name}\n");
+    }
+    text += "\nSettings:\n";
+    for setting in &alhazen::SETTINGS {
+        text += &format!("  {:<18} {}\n", setting.name, setting.help);
+    }
+    text + "\n" + EXIT_CODES
+}
+
+fn key_value(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("it is written KEY=VALUE")?;
+    Ok((key.trim().to_owned(), value.trim().to_owned()))
+}
+
+fn resolution(text: &str) -> Result<[i32; 2], String> {
+    let numbers =
+        text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    numbers.filter(|sides| sides.iter().all(|&side| side > 0)).ok_or_else(|| "it is written 640x480".into())
+}
+
+fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let numbers: Option<Vec<T>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
+fn crop(text: &str) -> Result<[f32; 4], String> {
+    numbers(text)
+        .filter(|&[x0, x1, y0, y1]: &[f32; 4]| {
+            0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0
+        })
+        .ok_or_else(|| "it is four fractions from 0 to 1: 0.25,0.75,0,1".into())
+}
+
+fn pixel(text: &str) -> Result<[i32; 2], String> {
+    numbers(text)
+        .filter(|pixel: &[i32; 2]| pixel.iter().all(|&coordinate| coordinate >= 0))
+        .ok_or_else(|| "it is a column and a row: 120,45".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn render(arguments: &[&str]) -> Result<Render, String> {
+        let cli = Cli::try_parse_from(["alhazen", "render", "a.pbrt"].iter().chain(arguments));
+        match cli.map_err(|error| error.to_string())?.command {
+            Command::Render(render) => Ok(*render),
+            other => Err(format!("{other:?}")),
+        }
+    }
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn options_become_overrides() {
+        let arguments = [
+            "--integrator",
+            "path",
+            "--set",
+            "maxdepth=3",
+            "--set",
+            "filter=box",
+            "--spp",
+            "4",
+            "--resolution",
+            "64x32",
+            "--crop",
+            "0,0.5,0.25,1",
+            "--seed",
+            "9",
+            "-o",
+            "a.exr",
+            "-o",
+            "b.png",
+        ];
+        let render = render(&arguments).unwrap();
+        let expected = Overrides {
+            integrator: Some("path".into()),
+            settings: vec![("maxdepth".into(), "3".into()), ("filter".into(), "box".into())],
+            samples_per_pixel: Some(4),
+            resolution: Some([64, 32]),
+            crop: Some([0.0, 0.5, 0.25, 1.0]),
+            pixel: None,
+            seed: Some(9),
+        };
+        assert_eq!(render.overrides(), expected);
+        assert_eq!(render.output, [PathBuf::from("a.exr"), PathBuf::from("b.png")]);
+    }
+
+    #[test]
+    fn values_that_make_no_sense_are_refused() {
+        for arguments in [
+            ["--resolution", "640"],
+            ["--resolution", "0x480"],
+            ["--resolution", "640x-1"],
+            ["--crop", "0,1,0"],
+            ["--crop", "0,2,0,1"],
+            ["--crop", "0.5,0.5,0,1"],
+            ["--crop", "nan,1,0,1"],
+            ["--pixel", "1"],
+            ["--pixel", "-1,2"],
+            ["--set", "maxdepth"],
+            ["--spp", "0"],
+            ["--threads", "0"],
+            ["--seed", "-1"],
+        ] {
+            assert!(render(&arguments).is_err(), "{arguments:?}");
+        }
+    }
+}

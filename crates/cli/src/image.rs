@@ -1,0 +1,97 @@
+//! `alhazen image`: pictures compared and converted.
+
+use std::path::Path;
+
+use alhazen::image::flip::{PIXELS_PER_DEGREE, hdr_flip};
+use alhazen::image::{
+    Image, ImageError, SampleDepth, WriteOptions, false_color::false_color, metrics, read, write,
+};
+use serde_json::json;
+
+use crate::args::{Convert, Depth, Diff, Metric};
+use crate::console::say;
+use crate::failure::{Failure, about_file};
+use crate::output;
+
+fn open(path: &Path) -> Result<Image, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| about_file(path, error))?;
+    read(&bytes, &path.to_string_lossy(), &Default::default()).map_err(|error| about_file(path, error))
+}
+
+/// Tells how far one picture is from another.
+pub fn diff(arguments: &Diff) -> Result<(), Failure> {
+    if let Some(path) = &arguments.output {
+        output::check(path).map_err(Failure::Usage)?;
+    }
+    let (a, b) = (open(&arguments.a)?, open(&arguments.b)?);
+    let wrong = |error: ImageError| Failure::Input(error.to_string());
+    let difference = metrics::compare(&a, &b).map_err(wrong)?;
+    let flip = hdr_flip(&a, &b, PIXELS_PER_DEGREE).map_err(wrong)?;
+    if let Some(path) = &arguments.output {
+        let picture = match arguments.metric {
+            Metric::Flip => false_color(&flip.map, 1.0),
+            Metric::Mse | Metric::Relmse => {
+                let relative = arguments.metric == Metric::Relmse;
+                let map = metrics::squared_error_map(&a, &b, relative).map_err(wrong)?;
+                let largest =
+                    map.values().filter(|value| value.is_finite()).fold(f32::MIN_POSITIVE, f32::max);
+                false_color(&map, largest)
+            }
+        };
+        let picture = picture.map_err(wrong)?;
+        write(&picture, path, &WriteOptions::default()).map_err(|error| about_file(path, error))?;
+    }
+    if arguments.json {
+        say(json!({
+                "status": "done",
+                "mse": difference.mse,
+                "relmse": difference.rel_mse,
+                "flip": flip.mean,
+                "max_error": difference.max_error,
+                "mean_a": difference.reference_mean,
+                "mean_b": difference.test_mean,
+                "non_finite": difference.non_finite,
+                "output": arguments.output.as_ref().map(|path| path.display().to_string()),
+        }));
+        return Ok(());
+    }
+    let means = |mean: [f64; 3]| mean.map(|channel| format!("{channel:.6}")).join("  ");
+    say(format_args!("MSE        {:.6e}", difference.mse));
+    say(format_args!("relMSE     {:.6e}", difference.rel_mse));
+    say(format_args!("FLIP       {:.6}", flip.mean));
+    say(format_args!("max error  {:.6}", difference.max_error));
+    say(format_args!("mean of A  {}", means(difference.reference_mean)));
+    say(format_args!("mean of B  {}", means(difference.test_mean)));
+    if difference.non_finite > 0 {
+        say(format_args!("{} values are not finite and left out", difference.non_finite));
+    }
+    if let Some(path) = &arguments.output {
+        say(format_args!("error picture in {}", path.display()));
+    }
+    Ok(())
+}
+
+/// Writes a picture in another format.
+pub fn convert(arguments: &Convert) -> Result<(), Failure> {
+    output::check(&arguments.output).map_err(Failure::Usage)?;
+    let image = open(&arguments.input)?;
+    let depth = match arguments.depth {
+        Depth::Natural => SampleDepth::Natural,
+        Depth::U8 => SampleDepth::U8,
+        Depth::U16 => SampleDepth::U16,
+        Depth::F16 => SampleDepth::F16,
+        Depth::F32 => SampleDepth::F32,
+    };
+    write(&image, &arguments.output, &WriteOptions { depth })
+        .map_err(|error| about_file(&arguments.output, error))?;
+    if arguments.json {
+        say(json!({
+                "status": "done",
+                "output": arguments.output.display().to_string(),
+                "width": image.width(),
+                "height": image.height(),
+                "channels": image.channels(),
+        }));
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! Where pictures go: names and folders are checked before anything long begins.
+
+use std::fs::{self, OpenOptions};
+use std::path::Path;
+
+use alhazen::image::Format;
+
+/// Whether a picture can be written to `path`: its extension names a format, its folder is there and takes files, and what
+/// stands in its place can be replaced. The error says which of these fails.
+pub fn check(path: &Path) -> Result<(), String> {
+    let shown = path.display();
+    if Format::from_name(&path.to_string_lossy()).is_none() {
+        let known = Format::ALL.map(|format| format!(".{}", format.extensions()[0])).join(", ");
+        return Err(format!(
+            "cannot tell the format of the output {shown} by its extension; there are {known}"
+        ));
+    }
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    if !folder.is_dir() {
+        let problem = if folder.exists() { "is not a folder" } else { "does not exist" };
+        return Err(format!("cannot write {shown}: {} {problem}", folder.display()));
+    }
+    if path.is_dir() {
+        return Err(format!("cannot write {shown}: it is a folder"));
+    }
+    // Only an attempt tells whether the folder takes files: permissions, read-only and full file systems.
+    let probe = folder.join(format!(".alhazen-{}.part", std::process::id()));
+    let attempt = OpenOptions::new().write(true).create_new(true).open(&probe);
+    attempt.map_err(|error| format!("cannot write to the folder {}: {error}", folder.display()))?;
+    fs::remove_file(&probe).map_err(|error| format!("cannot remove {}: {error}", probe.display()))?;
+    match OpenOptions::new().append(true).open(path) {
+        Err(error) if path.exists() => Err(format!("cannot replace {shown}: {error}")),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_obstacle_is_named() {
+        let folder = std::env::temp_dir().join(format!("alhazen-output-{}", std::process::id()));
+        fs::create_dir_all(folder.join("folder.exr")).unwrap();
+        fs::write(folder.join("file"), "").unwrap();
+        let problem = |name: &str| check(&folder.join(name)).unwrap_err();
+        assert!(problem("a.xyz").contains("cannot tell the format"));
+        assert!(problem("a").contains("there are .exr, .png"));
+        assert!(problem("missing/a.exr").ends_with("missing does not exist"));
+        assert!(problem("file/a.exr").ends_with("file is not a folder"));
+        assert!(problem("folder.exr").ends_with("it is a folder"));
+        check(&folder.join("a.EXR")).unwrap();
+        let left: Vec<_> = fs::read_dir(&folder).unwrap().collect();
+        assert_eq!(left.len(), 2, "the check leaves nothing behind");
+        fs::remove_dir_all(folder).unwrap();
+    }
+}

@@ -1,0 +1,30 @@
+//! Images named by scenes, decoded by the `image` crate.
+
+use std::path::Path;
+
+use description::EncodingDesc;
+use image::{ColorEncoding, Image, Pixels, ReadOptions};
+
+use crate::assets::AssetSource;
+
+/// Reads and decodes an image file; on failure, why.
+pub(crate) fn decode(
+    assets: &dyn AssetSource,
+    path: &Path,
+    encoding: Option<EncodingDesc>,
+) -> Result<Image, String> {
+    let encoding = encoding.map(|encoding| match encoding {
+        EncodingDesc::Linear => ColorEncoding::Linear,
+        EncodingDesc::Srgb => ColorEncoding::Srgb,
+        EncodingDesc::Gamma(exponent) => ColorEncoding::Gamma(exponent),
+    });
+    let bytes = assets.read(path).map_err(|error| error.to_string())?;
+    let options = ReadOptions { encoding, ..ReadOptions::default() };
+    image::read(&bytes, &path.to_string_lossy(), &options).map_err(|error| error.to_string())
+}
+
+/// What stands for an image that cannot be read.
+pub(crate) fn black_pixel() -> Image {
+    Image::new(1, 1, ["R", "G", "B"], Pixels::F32(vec![0.0; 3]))
+        .expect("invariant: one pixel of three values")
+}

@@ -1,0 +1,114 @@
+//! Mesh files: polygons with shared vertices.
+
+mod obj;
+mod ply;
+mod polygon;
+pub(crate) mod scene;
+
+use std::fmt;
+use std::path::Path;
+
+use math::{Normal3, Point2, Point3};
+
+pub use obj::read_obj;
+pub(crate) use obj::{Obj, ObjMaterial, read_materials, read_obj_parts};
+pub use ply::read_ply;
+
+/// The mesh formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Ply,
+    Obj,
+}
+
+impl Format {
+    /// The format that a path's extension names, before a `.gz`.
+    pub(crate) fn from_path(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_string_lossy().to_ascii_lowercase();
+        let name = name.strip_suffix(".gz").unwrap_or(&name);
+        match name.rsplit_once('.')?.1 {
+            "ply" => Some(Self::Ply),
+            "obj" => Some(Self::Obj),
+            _ => None,
+        }
+    }
+
+    /// Reads a mesh.
+    pub(crate) fn read(self, bytes: &[u8]) -> Result<Mesh, MeshError> {
+        match self {
+            Self::Ply => read_ply(bytes),
+            Self::Obj => read_obj(bytes),
+        }
+    }
+}
+
+/// Triangles and convex quadrilaterals over shared vertices. All indices are valid; per-vertex arrays are empty or as long
+/// as `positions`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertex positions.
+    pub positions: Vec<Point3>,
+    /// Vertex normals.
+    pub normals: Vec<Normal3>,
+    /// Vertex texture coordinates.
+    pub uvs: Vec<Point2>,
+    /// Triangles: those of the file, and what polygons and concave quadrilaterals were cut into.
+    pub triangles: Vec<[u32; 3]>,
+    /// Convex quadrilaterals, corners in order around the face.
+    pub quads: Vec<[u32; 4]>,
+    /// The file's own number for each triangle; or empty.
+    pub triangle_faces: Vec<i32>,
+    /// The file's own number for each quadrilateral; or empty.
+    pub quad_faces: Vec<i32>,
+}
+
+impl Mesh {
+    /// Adds a face of any number of corners; fewer than three mean nothing.
+    pub(crate) fn push_face(&mut self, corners: &[u32], number: Option<i32>) {
+        match *corners {
+            [] | [_] | [_, _] => (),
+            [a, b, c] => self.push_triangle([a, b, c], number),
+            [a, b, c, d] if polygon::is_convex(&self.positions, corners) => {
+                self.quads.push([a, b, c, d]);
+                self.quad_faces.extend(number);
+            }
+            _ => {
+                for triangle in polygon::triangulate(&self.positions, corners) {
+                    self.push_triangle(triangle, number);
+                }
+            }
+        }
+    }
+
+    fn push_triangle(&mut self, triangle: [u32; 3], number: Option<i32>) {
+        self.triangles.push(triangle);
+        self.triangle_faces.extend(number);
+    }
+}
+
+/// Why a mesh could not be read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshError {
+    /// The bytes contradict their format.
+    Invalid(String),
+    /// The bytes may be right, but nothing here can be drawn.
+    Unsupported(String),
+    /// The file claims more than its bytes can hold.
+    Limits(String),
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Invalid(text) => write!(f, "invalid mesh: {text}"),
+            Self::Unsupported(text) => write!(f, "unsupported mesh: {text}"),
+            Self::Limits(text) => write!(f, "mesh too large: {text}"),
+        }
+    }
+}
+
+impl std::error::Error for MeshError {}
+
+fn invalid<T>(text: impl Into<String>) -> Result<T, MeshError> {
+    Err(MeshError::Invalid(text.into()))
+}

@@ -1,0 +1,431 @@
+//! The Stanford polygon format PLY: a text header that names elements and their properties, then their values as text or
+//! as binary numbers of either byte order [Turk 1994].
+//!
+//! Vertices have `x y z`, perhaps `nx ny nz`, and texture coordinates as `u v`, `s t`, `texture_u texture_v` or
+//! `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`, and perhaps a number `face_indices`. Instead of
+//! faces there may be `tristrips`: strips of triangles, with −1 between them. All other properties and elements are skipped.
+
+use math::{Vec2, Vec3};
+
+use super::{Mesh, MeshError, invalid};
+use crate::number;
+
+/// Reads a PLY file.
+pub fn read_ply(bytes: &[u8]) -> Result<Mesh, MeshError> {
+    let (header, body) = header(bytes)?;
+    match header.format {
+        Encoding::Ascii => read_body(&header, Ascii { text: body }),
+        Encoding::LittleEndian => read_body(&header, Binary::<false> { bytes: body }),
+        Encoding::BigEndian => read_body(&header, Binary::<true> { bytes: body }),
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn from_name(name: &str) -> Result<Self, MeshError> {
+        Ok(match name {
+            "char" | "int8" => Self::I8,
+            "uchar" | "uint8" => Self::U8,
+            "short" | "int16" => Self::I16,
+            "ushort" | "uint16" => Self::U16,
+            "int" | "int32" => Self::I32,
+            "uint" | "uint32" => Self::U32,
+            "float" | "float32" => Self::F32,
+            "double" | "float64" => Self::F64,
+            _ => return invalid(format!("there is no property type `{name:.40}`")),
+        })
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+enum PropertyKind {
+    Scalar(Scalar),
+    List { count: Scalar, item: Scalar },
+}
+
+struct Property {
+    name: String,
+    kind: PropertyKind,
+}
+
+struct Element {
+    name: String,
+    count: usize,
+    properties: Vec<Property>,
+}
+
+struct Header {
+    format: Encoding,
+    elements: Vec<Element>,
+}
+
+/// The header of a file, and the bytes after it.
+fn header(bytes: &[u8]) -> Result<(Header, &[u8]), MeshError> {
+    let mut rest = bytes;
+    let mut line = || -> Result<&str, MeshError> {
+        let Some(end) = rest.iter().position(|&byte| byte == b'\n') else {
+            return invalid("the header has no end");
+        };
+        let (line, after) = (&rest[..end], &rest[end + 1..]);
+        rest = after;
+        std::str::from_utf8(line).map(str::trim).or_else(|_| invalid("the header is not text"))
+    };
+    if line()? != "ply" {
+        return invalid("the first line is not `ply`");
+    }
+    let (mut format, mut elements) = (None, Vec::<Element>::new());
+    loop {
+        let line = line()?;
+        let words: Vec<&str> = line.split_ascii_whitespace().collect();
+        match (words.as_slice(), elements.last_mut()) {
+            ([] | ["comment" | "obj_info", ..], _) => (),
+            (["end_header"], _) => break,
+            (["format", name, "1.0"], _) => {
+                format = Some(match *name {
+                    "ascii" => Encoding::Ascii,
+                    "binary_little_endian" => Encoding::LittleEndian,
+                    "binary_big_endian" => Encoding::BigEndian,
+                    _ => return invalid(format!("there is no format `{name:.40}`")),
+                });
+            }
+            (["element", name, count], _) => {
+                let Ok(count) = count.parse() else { return invalid(format!("`{count:.40}` is no count")) };
+                elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
+            }
+            (["property", "list", count, item, name], Some(element)) => {
+                let kind =
+                    PropertyKind::List { count: Scalar::from_name(count)?, item: Scalar::from_name(item)? };
+                element.properties.push(Property { name: (*name).into(), kind });
+            }
+            (["property", kind, name], Some(element)) => {
+                let kind = PropertyKind::Scalar(Scalar::from_name(kind)?);
+                element.properties.push(Property { name: (*name).into(), kind });
+            }
+            _ => return invalid(format!("the header has the line `{line:.60}`")),
+        }
+    }
+    match format {
+        Some(format) => Ok((Header { format, elements }, rest)),
+        None => invalid("the header names no format"),
+    }
+}
+
+/// Where values come from.
+trait Body {
+    /// The least number of bytes that a value of a type takes.
+    fn least_size(scalar: Scalar) -> usize;
+
+    /// The bytes that are left.
+    fn left(&self) -> usize;
+
+    /// The next value.
+    fn read(&mut self, scalar: Scalar) -> Result<f64, MeshError>;
+}
+
+struct Binary<'a, const BIG: bool> {
+    bytes: &'a [u8],
+}
+
+impl<const BIG: bool> Body for Binary<'_, BIG> {
+    fn least_size(scalar: Scalar) -> usize {
+        scalar.size()
+    }
+
+    fn left(&self) -> usize {
+        self.bytes.len()
+    }
+
+    #[inline]
+    fn read(&mut self, scalar: Scalar) -> Result<f64, MeshError> {
+        macro_rules! number {
+            ($type:ty) => {{
+                let Some((bytes, rest)) = self.bytes.split_first_chunk() else { return too_short() };
+                self.bytes = rest;
+                f64::from(if BIG { <$type>::from_be_bytes(*bytes) } else { <$type>::from_le_bytes(*bytes) })
+            }};
+        }
+        Ok(match scalar {
+            Scalar::I8 => number!(i8),
+            Scalar::U8 => number!(u8),
+            Scalar::I16 => number!(i16),
+            Scalar::U16 => number!(u16),
+            Scalar::I32 => number!(i32),
+            Scalar::U32 => number!(u32),
+            Scalar::F32 => number!(f32),
+            Scalar::F64 => number!(f64),
+        })
+    }
+}
+
+struct Ascii<'a> {
+    text: &'a [u8],
+}
+
+impl Body for Ascii<'_> {
+    fn least_size(_: Scalar) -> usize {
+        1
+    }
+
+    fn left(&self) -> usize {
+        self.text.len()
+    }
+
+    fn read(&mut self, _: Scalar) -> Result<f64, MeshError> {
+        let start = self.text.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(self.text.len());
+        let text = &self.text[start..];
+        let end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
+        if end == 0 {
+            return too_short();
+        }
+        self.text = &text[end..];
+        match number::double(&text[..end]) {
+            Some(value) => Ok(value),
+            None => invalid(format!("`{:.40}` is no number", String::from_utf8_lossy(&text[..end]))),
+        }
+    }
+}
+
+fn too_short<T>() -> Result<T, MeshError> {
+    invalid("the file ends before its last value")
+}
+
+fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
+    let mut mesh = Mesh::default();
+    let mut faces = Faces::default();
+    for element in &header.elements {
+        check_size::<B>(element, body.left())?;
+        match element.name.as_str() {
+            "vertex" if mesh.positions.is_empty() => read_vertices(element, &mut body, &mut mesh)?,
+            "face" if faces.corners.is_empty() => faces = read_faces(element, &mut body)?,
+            "tristrips" if faces.corners.is_empty() => faces = read_strips(element, &mut body)?,
+            _ => skip(element, &mut body)?,
+        }
+    }
+    let vertices = mesh.positions.len();
+    if let Some(bad) = faces.corners.iter().find(|&&corner| corner as usize >= vertices) {
+        return invalid(format!("a face has vertex {bad} of {vertices}"));
+    }
+    let mut start = 0;
+    for (face, &end) in faces.ends.iter().enumerate() {
+        mesh.push_face(&faces.corners[start..end], faces.numbers.get(face).copied());
+        start = end;
+    }
+    if mesh.triangles.is_empty() && mesh.quads.is_empty() {
+        return Err(MeshError::Unsupported("it has no faces".into()));
+    }
+    Ok(mesh)
+}
+
+/// Refuses an element that cannot lie in the bytes that are left.
+fn check_size<B: Body>(element: &Element, left: usize) -> Result<(), MeshError> {
+    let row: usize = element
+        .properties
+        .iter()
+        .map(|property| match property.kind {
+            PropertyKind::Scalar(scalar) | PropertyKind::List { count: scalar, .. } => B::least_size(scalar),
+        })
+        .sum();
+    if element.count as u128 * row as u128 > left as u128 {
+        let text = format!("{} of `{:.40}` cannot lie in {left} bytes", element.count, element.name);
+        return Err(MeshError::Limits(text));
+    }
+    Ok(())
+}
+
+/// The number of items of a list, checked against the bytes that are left.
+fn list_length<B: Body>(body: &mut B, count: Scalar, item: Scalar) -> Result<usize, MeshError> {
+    let length = body.read(count)?;
+    if length < 0.0 || length.fract() != 0.0 {
+        return invalid(format!("a list has {length} items"));
+    }
+    if length * B::least_size(item) as f64 > body.left() as f64 {
+        return Err(MeshError::Limits(format!(
+            "a list of {length} items cannot lie in {} bytes",
+            body.left()
+        )));
+    }
+    Ok(length as usize)
+}
+
+fn skip_property<B: Body>(property: &Property, body: &mut B) -> Result<(), MeshError> {
+    match property.kind {
+        PropertyKind::Scalar(scalar) => _ = body.read(scalar)?,
+        PropertyKind::List { count, item } => {
+            for _ in 0..list_length(body, count, item)? {
+                body.read(item)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn skip<B: Body>(element: &Element, body: &mut B) -> Result<(), MeshError> {
+    if element.properties.is_empty() {
+        return Ok(());
+    }
+    for _ in 0..element.count {
+        for property in &element.properties {
+            skip_property(property, body)?;
+        }
+    }
+    Ok(())
+}
+
+fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Result<(), MeshError> {
+    /// Where a vertex property goes: position, normal, texture coordinates.
+    const SLOTS: [&[&str]; 8] = [
+        &["x"],
+        &["y"],
+        &["z"],
+        &["nx"],
+        &["ny"],
+        &["nz"],
+        &["u", "s", "texture_u", "texture_s"],
+        &["v", "t", "texture_v", "texture_t"],
+    ];
+    let slot_of =
+        |property: &Property| SLOTS.iter().position(|names| names.contains(&property.name.as_str()));
+    let slots: Vec<Option<usize>> = element.properties.iter().map(slot_of).collect();
+    let has = |slot: usize| slots.contains(&Some(slot));
+    for (property, slot) in element.properties.iter().zip(&slots) {
+        if slot.is_some() && matches!(property.kind, PropertyKind::List { .. }) {
+            return invalid(format!("the vertex property `{}` is a list", property.name));
+        }
+    }
+    if !(has(0) && has(1) && has(2)) {
+        return invalid("its vertices have no `x`, `y` and `z`");
+    }
+    let (has_normals, has_uvs) = (has(3) && has(4) && has(5), has(6) && has(7));
+    mesh.positions.reserve_exact(element.count);
+    mesh.normals.reserve_exact(if has_normals { element.count } else { 0 });
+    mesh.uvs.reserve_exact(if has_uvs { element.count } else { 0 });
+    for _ in 0..element.count {
+        let mut values = [0.0_f32; 8];
+        for (property, slot) in element.properties.iter().zip(&slots) {
+            match (slot, &property.kind) {
+                (Some(slot), &PropertyKind::Scalar(scalar)) => values[*slot] = body.read(scalar)? as f32,
+                _ => skip_property(property, body)?,
+            }
+        }
+        let [x, y, z, nx, ny, nz, u, v] = values;
+        let position = Vec3::new(x, y, z);
+        if !position.is_finite() {
+            return invalid("a vertex lies at no finite place");
+        }
+        mesh.positions.push(position);
+        if has_normals {
+            mesh.normals.push(Vec3::new(nx, ny, nz));
+        }
+        if has_uvs {
+            mesh.uvs.push(Vec2::new(u, v));
+        }
+    }
+    Ok(())
+}
+
+/// Faces as they lie in the file.
+#[derive(Default)]
+struct Faces {
+    /// The corners of all faces.
+    corners: Vec<u32>,
+    /// Where in `corners` each face ends.
+    ends: Vec<usize>,
+    /// Their numbers, if the file has any.
+    numbers: Vec<i32>,
+}
+
+fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
+    let mut faces = Faces::default();
+    faces.ends.reserve_exact(if element.properties.is_empty() { 0 } else { element.count });
+    let is_corners =
+        |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
+    if !element.properties.iter().any(is_corners) {
+        return invalid("its faces have no list `vertex_indices`");
+    }
+    for _ in 0..element.count {
+        for property in &element.properties {
+            match property.kind {
+                PropertyKind::List { count, item } if is_corners(property) => {
+                    if matches!(count, Scalar::F32 | Scalar::F64) || matches!(item, Scalar::F32 | Scalar::F64)
+                    {
+                        return invalid("the corners of its faces are not whole numbers");
+                    }
+                    for _ in 0..list_length(body, count, item)? {
+                        let corner = body.read(item)?;
+                        if corner < 0.0 || corner.fract() != 0.0 || corner > f64::from(u32::MAX) {
+                            return invalid(format!("a face has vertex {corner}"));
+                        }
+                        faces.corners.push(corner as u32);
+                    }
+                }
+                PropertyKind::Scalar(_) if is_corners(property) => {
+                    return invalid("the corners of its faces are no list");
+                }
+                PropertyKind::Scalar(scalar) if property.name == "face_indices" => {
+                    faces.numbers.push(body.read(scalar)? as i32);
+                }
+                _ => skip_property(property, body)?,
+            }
+        }
+        faces.ends.push(faces.corners.len());
+    }
+    Ok(faces)
+}
+
+fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
+    let mut faces = Faces::default();
+    let rows = if element.properties.is_empty() { 0 } else { element.count };
+    for property in std::iter::repeat_n(&element.properties, rows).flatten() {
+        let PropertyKind::List { count, item } = property.kind else {
+            skip_property(property, body)?;
+            continue;
+        };
+        let (mut last, mut length) = ([0_u32; 2], 0_usize);
+        for _ in 0..list_length(body, count, item)? {
+            let corner = body.read(item)?;
+            if corner == -1.0 {
+                length = 0;
+                continue;
+            }
+            if corner < 0.0 || corner.fract() != 0.0 || corner > f64::from(u32::MAX) {
+                return invalid(format!("a strip has vertex {corner}"));
+            }
+            let corner = corner as u32;
+            if length >= 2 {
+                // Every other triangle of a strip turns the other way.
+                let [a, b] = if length % 2 == 0 { last } else { [last[1], last[0]] };
+                faces.corners.extend([a, b, corner]);
+                faces.ends.push(faces.corners.len());
+            }
+            last = [last[1], corner];
+            length += 1;
+        }
+    }
+    Ok(faces)
+}

@@ -1,0 +1,124 @@
+//! Lights and area lights.
+
+use description::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, SpectrumDesc, Stated};
+use math::Vec3;
+
+use super::Builder;
+use crate::pbrt::reader::Reader;
+use crate::pbrt::statement::{LightStatement, Statement};
+
+const TYPES: [&str; 6] = ["point", "spot", "distant", "goniometric", "projection", "infinite"];
+
+impl Builder<'_> {
+    pub(super) fn light(&mut self, light: LightStatement) -> Option<Stated<LightDesc>> {
+        let (read, origin) = self.read(light.statement, |reader| {
+            let kind = kind(reader)?;
+            Some((kind, reader.float("scale", 1.0)))
+        });
+        let medium = light.medium.as_ref().and_then(|name| self.named_medium(name));
+        let (kind, scale) = read?;
+        Some(Stated::new(LightDesc { kind, world_from_light: light.world_from_light, scale, medium }, origin))
+    }
+
+    /// Builds an area light; one that cannot be read stands as one that does not shine.
+    pub(super) fn area_light(&mut self, statement: Statement) -> Stated<AreaLightDesc> {
+        let (read, origin) = self.read(statement, area_light);
+        Stated::new(read.unwrap_or(AreaLightDesc::new(0.0.into())), origin)
+    }
+}
+
+/// The colour of a light: white if it is not given.
+fn color(reader: &mut Reader, name: &'static str) -> SpectrumDesc {
+    reader.spectrum(name).unwrap_or(SpectrumDesc::Illuminant(reader.color_space))
+}
+
+/// A power; the format writes a negative one for none.
+fn power(reader: &mut Reader) -> Option<f32> {
+    reader.optional_float("power").filter(|&power| power > 0.0)
+}
+
+fn kind(reader: &mut Reader) -> Option<LightKind> {
+    Some(match reader.kind.value.as_str() {
+        "point" => LightKind::Point {
+            intensity: color(reader, "I"),
+            power: power(reader),
+            from: reader.point3("from", Vec3::ZERO),
+        },
+        "spot" => LightKind::Spot {
+            intensity: color(reader, "I"),
+            power: power(reader),
+            from: reader.point3("from", Vec3::ZERO),
+            to: reader.point3("to", Vec3::Z),
+            cone_angle: reader.float("coneangle", 30.0),
+            cone_delta_angle: reader.float("conedeltaangle", 5.0),
+        },
+        "distant" => LightKind::Distant {
+            radiance: color(reader, "L"),
+            illuminance: reader.optional_float("illuminance").filter(|&illuminance| illuminance > 0.0),
+            from: reader.point3("from", Vec3::ZERO),
+            to: reader.point3("to", Vec3::Z),
+        },
+        "goniometric" => LightKind::Goniometric {
+            intensity: color(reader, "I"),
+            power: power(reader),
+            image: reader.image("filename", None),
+        },
+        "projection" => {
+            let (power, fov) = (power(reader), reader.positive("fov", 90.0));
+            let Some(image) = reader.image("filename", None) else {
+                reader.missing("filename");
+                return None;
+            };
+            LightKind::Projection { image, power, fov }
+        }
+        "infinite" => infinite(reader),
+        _ => {
+            reader.unknown_type("light", "light", &TYPES);
+            return None;
+        }
+    })
+}
+
+fn infinite(reader: &mut Reader) -> LightKind {
+    let color = reader.spectrum("L");
+    let illuminance = reader.optional_float("illuminance").filter(|&illuminance| illuminance > 0.0);
+    let portal = reader.points3("portal").and_then(|corners| {
+        let four = <[Vec3; 4]>::try_from(&*corners).ok();
+        if four.is_none() {
+            reader.refuse("portal", format!("`portal` takes four points, not {}", corners.len()));
+        }
+        four
+    });
+    let radiance = match (reader.image("filename", None), color) {
+        (Some(image), color) => {
+            if color.is_some() {
+                reader.refuse(
+                    "L",
+                    "an infinite light takes its colour from `L` or from `filename`, not from both",
+                );
+            }
+            InfiniteRadiance::Image(image)
+        }
+        (None, Some(color)) => InfiniteRadiance::Constant(color),
+        (None, None) => InfiniteRadiance::Constant(SpectrumDesc::Illuminant(reader.color_space)),
+    };
+    LightKind::Infinite { radiance, illuminance, portal }
+}
+
+fn area_light(reader: &mut Reader) -> Option<AreaLightDesc> {
+    if reader.kind.value != "diffuse" {
+        reader.unknown_type("area-light", "area light", &["diffuse"]);
+        return None;
+    }
+    let image = reader.image("filename", None);
+    if image.is_some() && reader.has("L") {
+        reader.refuse("L", "an area light takes its colour from `L` or from `filename`, not from both");
+    }
+    Some(AreaLightDesc {
+        radiance: color(reader, "L"),
+        image,
+        scale: reader.float("scale", 1.0),
+        power: power(reader),
+        two_sided: reader.boolean("twosided", false),
+    })
+}

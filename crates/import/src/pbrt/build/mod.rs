@@ -1,0 +1,271 @@
+//! From statements to descriptions: one file per family, and here what they share: looking up names and files.
+
+mod camera;
+mod files;
+mod film;
+mod integrator;
+mod light;
+mod material;
+mod medium;
+mod sampler;
+mod shape;
+mod texture;
+
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use description::{
+    Diagnostic, FloatTextureDesc, Handle, MaterialDesc, MediumDesc, Origin, SceneDesc, SourceMap, Span,
+    Spanned, SpectrumDesc, SpectrumTextureDesc, Stated,
+};
+
+use self::files::ImageRequests;
+use super::reader::Reader;
+use super::state::MaterialReference;
+use super::statement::{MaterialStatement, MediumStatement, Statement, Statements};
+use crate::assets::AssetSource;
+use crate::report::Report;
+use crate::suggest::{closest, did_you_mean};
+
+/// Turns the statements of a scene into its description.
+pub(crate) fn build(
+    mut statements: Statements,
+    report: Report,
+    sources: &SourceMap,
+    assets: &dyn AssetSource,
+) -> (SceneDesc, Report) {
+    let mut builder = Builder::new(&statements, report, sources, assets);
+    let mut desc = SceneDesc { options: builder.options(&mut statements), ..SceneDesc::default() };
+    if let Some(film) = statements.film.take() {
+        desc.film = builder.film(film);
+    }
+    if let Some(filter) = statements.filter.take() {
+        desc.filter = builder.filter(filter);
+    }
+    if let Some(sampler) = statements.sampler.take() {
+        desc.sampler = builder.sampler(sampler);
+    }
+    if let Some(integrator) = statements.integrator.take() {
+        desc.integrator = builder.integrator(integrator);
+    }
+    if let Some(accelerator) = statements.accelerator.take() {
+        desc.accelerator = builder.accelerator(accelerator);
+    }
+    if let Some(camera) = statements.camera.take() {
+        desc.camera = builder.camera(camera, statements.transform_times.unwrap_or([0.0, 1.0]));
+    }
+    builder.textures(&mut statements, &mut desc);
+    desc.media = statements.media.drain(..).map(|medium| builder.medium(medium)).collect();
+    desc.materials = builder.materials(std::mem::take(&mut statements.materials));
+    desc.lights = statements.lights.drain(..).filter_map(|light| builder.light(light)).collect();
+    desc.area_lights = statements.area_lights.drain(..).map(|light| builder.area_light(light)).collect();
+    builder.load_meshes(&statements);
+    for shape in statements.shapes.drain(..) {
+        if let Some(shape) = builder.shape(shape) {
+            desc.shapes.push_stated(shape);
+        }
+    }
+    builder.objects(&mut statements, &mut desc);
+    desc.images = builder.decode_images();
+    builder.unused_attributes(&statements);
+    (desc, builder.report)
+}
+
+/// Wavelengths and values.
+type Samples = Arc<[(f32, f32)]>;
+
+/// What the builders of all families share.
+pub(crate) struct Builder<'a> {
+    pub(crate) report: Report,
+    assets: &'a dyn AssetSource,
+    sources: &'a SourceMap,
+    float_textures: HashMap<String, Handle<FloatTextureDesc>>,
+    spectrum_textures: HashMap<String, Handle<SpectrumTextureDesc>>,
+    materials: HashMap<String, Handle<MaterialDesc>>,
+    media: HashMap<String, Handle<MediumDesc>>,
+    spectra: HashMap<PathBuf, Option<Samples>>,
+    /// Declarations of the attributes that some statement used.
+    pub(crate) used_attributes: HashSet<Span>,
+    images: ImageRequests,
+    meshes: shape::Meshes,
+}
+
+impl<'a> Builder<'a> {
+    fn new(
+        statements: &Statements,
+        report: Report,
+        sources: &'a SourceMap,
+        assets: &'a dyn AssetSource,
+    ) -> Self {
+        let mut builder = Self {
+            report,
+            assets,
+            sources,
+            float_textures: HashMap::new(),
+            spectrum_textures: HashMap::new(),
+            materials: HashMap::new(),
+            media: HashMap::new(),
+            spectra: HashMap::new(),
+            used_attributes: HashSet::new(),
+            images: ImageRequests::default(),
+            meshes: HashMap::new(),
+        };
+        builder.materials =
+            builder.table("material", &statements.materials, |material: &MaterialStatement| {
+                material.name.as_ref()
+            });
+        builder.media =
+            builder.table("medium", &statements.media, |medium: &MediumStatement| Some(&medium.name));
+        builder
+    }
+
+    /// The handles of all named things of a kind, in the order of their statements. The first of several wins.
+    fn table<S, T>(
+        &mut self,
+        what: &str,
+        statements: &[S],
+        name: impl Fn(&S) -> Option<&Spanned<String>>,
+    ) -> HashMap<String, Handle<T>> {
+        let mut table: HashMap<String, Handle<T>> = HashMap::new();
+        for (index, statement) in statements.iter().enumerate() {
+            let Some(spanned) = name(statement) else { continue };
+            if let Some(first) = table.get(&spanned.value) {
+                let message = format!("there is already a {what} `{}`", spanned.value);
+                let mut diagnostic = Diagnostic::error("redefinition", message, spanned.span);
+                if let Some(first) = name(&statements[first.index()]) {
+                    diagnostic = diagnostic.with_label(first.span, "first defined here");
+                }
+                self.report.push(diagnostic);
+                continue;
+            }
+            table.insert(spanned.value.clone(), Handle::new(index as u32));
+        }
+        table
+    }
+
+    /// Reads a statement by a function that asks for its parameters, and checks that it asked for all.
+    fn read<T>(
+        &mut self,
+        statement: Statement,
+        read: impl FnOnce(&mut Reader<'_, 'a>) -> Option<T>,
+    ) -> (Option<T>, Origin) {
+        let mut reader = Reader::new(self, statement);
+        match read(&mut reader) {
+            Some(value) => (Some(value), reader.finish()),
+            None => (None, reader.abandon()),
+        }
+    }
+
+    /// [`Builder::read`] of something that must be there: its default stands in for what cannot be read.
+    fn read_or_default<T: Default>(
+        &mut self,
+        statement: Statement,
+        read: impl FnOnce(&mut Reader<'_, 'a>) -> Option<T>,
+    ) -> Stated<T> {
+        let (value, origin) = self.read(statement, read);
+        Stated::new(value.unwrap_or_default(), origin)
+    }
+
+    /// Reports attributes that no statement used: no statement followed, or none has such a parameter.
+    fn unused_attributes(&mut self, statements: &Statements) {
+        for attribute in &statements.attributes {
+            if !self.used_attributes.contains(&attribute.span) {
+                let message = format!("no statement uses the attribute `{}`", attribute.value);
+                self.report.warning("ignored", message, attribute.span);
+            }
+        }
+    }
+
+    /// The texture of a name.
+    pub(crate) fn float_texture(&mut self, name: &Spanned<String>) -> Option<Handle<FloatTextureDesc>> {
+        let found = self.float_textures.get(&name.value).copied();
+        if found.is_none() {
+            let other = self.spectrum_textures.contains_key(&name.value).then_some("a spectrum texture");
+            unknown_reference(&mut self.report, "float texture", name, other, &self.float_textures);
+        }
+        found
+    }
+
+    /// The texture of a name.
+    pub(crate) fn spectrum_texture(&mut self, name: &Spanned<String>) -> Option<Handle<SpectrumTextureDesc>> {
+        let found = self.spectrum_textures.get(&name.value).copied();
+        if found.is_none() {
+            let other = self.float_textures.contains_key(&name.value).then_some("a float texture");
+            unknown_reference(&mut self.report, "spectrum texture", name, other, &self.spectrum_textures);
+        }
+        found
+    }
+
+    /// The material of a name.
+    fn named_material(&mut self, name: &Spanned<String>) -> Option<Handle<MaterialDesc>> {
+        let found = self.materials.get(&name.value).copied();
+        if found.is_none() {
+            unknown_reference(&mut self.report, "material", name, None, &self.materials);
+        }
+        found
+    }
+
+    fn material_reference(&mut self, reference: &MaterialReference) -> Option<Handle<MaterialDesc>> {
+        match reference {
+            MaterialReference::Default => None,
+            MaterialReference::Nth(index) => Some(Handle::new(*index)),
+            MaterialReference::Named(name) => self.named_material(name),
+        }
+    }
+
+    /// The medium of a name; the empty name is empty space.
+    fn named_medium(&mut self, name: &Spanned<String>) -> Option<Handle<MediumDesc>> {
+        if name.value.is_empty() {
+            return None;
+        }
+        let found = self.media.get(&name.value).copied();
+        if found.is_none() {
+            unknown_reference(&mut self.report, "medium", name, None, &self.media);
+        }
+        found
+    }
+
+    /// A spectrum by its name in the format or from a file of pairs of wavelength and value.
+    pub(crate) fn named_spectrum(&mut self, name: &Spanned<String>) -> Option<SpectrumDesc> {
+        if spectrum::names().any(|known| known == name.value) {
+            return Some(SpectrumDesc::Named(name.value.clone()));
+        }
+        let path = self.path(name);
+        if !self.spectra.contains_key(&path) {
+            let samples = if self.assets.exists(&path) {
+                self.spectrum_file(&path, name.span)
+            } else {
+                let message = format!("`{}` is neither the name of a spectrum nor a file", name.value);
+                let help =
+                    closest(&name.value, spectrum::names()).map(|near| format!("did you mean `{near}`?"));
+                let diagnostic = Diagnostic::error("unknown-spectrum", message, name.span);
+                self.report.push(Diagnostic { help, ..diagnostic });
+                None
+            };
+            self.spectra.insert(path.clone(), samples);
+        }
+        self.spectra[&path].clone().map(SpectrumDesc::Samples)
+    }
+}
+
+/// Reports a name that is in no table; `other` is what it names instead.
+fn unknown_reference<T>(
+    report: &mut Report,
+    what: &str,
+    name: &Spanned<String>,
+    other: Option<&str>,
+    table: &HashMap<String, Handle<T>>,
+) {
+    if report.is_full() {
+        return;
+    }
+    let mut known: Vec<_> = table.keys().map(String::as_str).collect();
+    known.sort_unstable();
+    let message = match other {
+        Some(other) => format!("`{}` is {other}; a {what} is needed here", name.value),
+        None => format!("there is no {what} `{}`", name.value),
+    };
+    let diagnostic = Diagnostic::error("unknown-reference", message, name.span);
+    report.push(Diagnostic { help: did_you_mean(&name.value, known), ..diagnostic });
+}

@@ -1,0 +1,327 @@
+//! Shapes, objects and instances.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use description::{
+    CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
+    SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
+};
+use rayon::prelude::*;
+
+use super::{Builder, unknown_reference};
+use crate::assets::{AssetSource, read_unpacked};
+use crate::mesh::{Format, scene::shape_kind};
+use crate::pbrt::parameter::Values;
+use crate::pbrt::reader::Reader;
+use crate::pbrt::statement::{ShapeStatement, Statements};
+
+const TYPES: [&str; 9] =
+    ["sphere", "cylinder", "disk", "plane", "trianglemesh", "bilinearmesh", "plymesh", "curve", "loopsubdiv"];
+
+/// Mesh files by path, each read once; or why it could not be.
+pub(super) type Meshes = HashMap<PathBuf, Result<ShapeKind, String>>;
+
+impl Builder<'_> {
+    /// Reads all mesh files that shapes name, in parallel.
+    pub(super) fn load_meshes(&mut self, statements: &Statements) {
+        let in_objects = statements.objects.iter().flat_map(|object| &object.shapes);
+        let shapes = statements.shapes.iter().chain(in_objects).map(|shape| &shape.statement);
+        let names = shapes.filter(|statement| statement.kind.value == "plymesh").flat_map(|statement| {
+            statement.parameters.iter().chain(statement.defaults.iter()).filter_map(|parameter| {
+                match (parameter.name.as_str(), &parameter.values) {
+                    ("filename", Values::Strings(names)) => names.first(),
+                    _ => None,
+                }
+            })
+        });
+        let mut paths: Vec<PathBuf> = names.map(|name| self.path(name)).collect();
+        paths.sort_unstable();
+        paths.dedup();
+        let assets = self.assets;
+        self.meshes = paths
+            .into_par_iter()
+            .map(|path| {
+                let mesh = read_mesh(assets, &path);
+                (path, mesh)
+            })
+            .collect();
+    }
+
+    /// Builds a shape; one that cannot be read is left out.
+    pub(super) fn shape(&mut self, shape: ShapeStatement) -> Option<Stated<ShapeDesc>> {
+        let (read, origin) = self.read(shape.statement, |reader| {
+            let kind = kind(reader)?;
+            Some((kind, reader.optional_float_parameter("alpha")))
+        });
+        let material = self.material_reference(&shape.material);
+        let medium_interface = self.medium_interface(shape.medium_interface.as_ref());
+        let (kind, alpha) = read?;
+        let desc = ShapeDesc {
+            kind,
+            world_from_object: shape.world_from_object,
+            reverse_orientation: shape.reverse_orientation,
+            material,
+            area_light: shape.area_light.map(Handle::new),
+            alpha,
+            medium_interface,
+        };
+        Some(Stated::new(desc, origin))
+    }
+
+    /// Builds all objects and instances.
+    pub(super) fn objects(&mut self, statements: &mut Statements, desc: &mut SceneDesc) {
+        let table = self.table("object", &statements.objects, |object| Some(&object.name));
+        for object in statements.objects.drain(..) {
+            let Spanned { value: name, span } = object.name;
+            let mut built = ObjectDesc { name, ..ObjectDesc::default() };
+            for mut shape in object.shapes {
+                if shape.area_light.take().is_some() {
+                    let message = "shapes of an object do not shine: its area light is left out";
+                    self.report.warning("ignored", message, shape.statement.span);
+                }
+                if let Some(shape) = self.shape(shape) {
+                    built.shapes.push_stated(shape);
+                }
+            }
+            desc.objects.push_stated(Stated::new(built, Origin::new(span)));
+        }
+        for instance in statements.instances.drain(..) {
+            let Some(&object) = table.get(&instance.object.value) else {
+                unknown_reference(&mut self.report, "object", &instance.object, None, &table);
+                continue;
+            };
+            let built = InstanceDesc { object, world_from_object: instance.world_from_object };
+            desc.instances.push_stated(Stated::new(built, Origin::new(instance.span)));
+        }
+    }
+}
+
+fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<ShapeKind, String> {
+    let bytes = read_unpacked(assets, path).map_err(|error| error.to_string())?;
+    let format = Format::from_path(path).unwrap_or(Format::Ply);
+    format.read(&bytes).map(shape_kind).map_err(|error| error.to_string())
+}
+
+fn kind(reader: &mut Reader) -> Option<ShapeKind> {
+    Some(match reader.kind.value.as_str() {
+        "sphere" => {
+            let radius = reader.positive("radius", 1.0);
+            let (z_min, z_max) = (reader.float("zmin", -radius), reader.float("zmax", radius));
+            ShapeKind::Sphere { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
+        }
+        "cylinder" => ShapeKind::Cylinder {
+            radius: reader.positive("radius", 1.0),
+            z_min: reader.float("zmin", -1.0),
+            z_max: reader.float("zmax", 1.0),
+            phi_max: reader.positive("phimax", 360.0),
+        },
+        "disk" => ShapeKind::Disk {
+            height: reader.float("height", 0.0),
+            radius: reader.positive("radius", 1.0),
+            inner_radius: reader.float("innerradius", 0.0),
+            phi_max: reader.positive("phimax", 360.0),
+        },
+        "plane" => ShapeKind::Plane,
+        "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
+        "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
+        "plymesh" => mesh_file(reader)?,
+        "curve" => ShapeKind::Curve(curve(reader)?),
+        "loopsubdiv" => {
+            let levels = reader.integer("levels", 3, 0..=12);
+            // The format knows one scheme only.
+            reader.choice("scheme", (), &[("loop", ())]);
+            ShapeKind::LoopSubdivision { mesh: triangle_mesh(reader, false)?, levels }
+        }
+        _ => {
+            reader.unknown_type("shape", "shape", &TYPES);
+            return None;
+        }
+    })
+}
+
+/// The indices of a mesh, `N` per face; `default` are those of a mesh of one face, which needs none.
+fn indices<const N: usize>(
+    reader: &mut Reader,
+    vertices: usize,
+    default: [u32; N],
+) -> Option<Arc<[[u32; N]]>> {
+    let Some(indices) = reader.integers("indices") else {
+        if vertices == N {
+            return Some(Arc::from([default]));
+        }
+        if !reader.has("indices") {
+            reader.missing("indices");
+        }
+        return None;
+    };
+    if let Some(bad) =
+        indices.iter().find(|&&index| usize::try_from(index).map_or(true, |index| index >= vertices))
+    {
+        reader.refuse("indices", format!("`indices` has {bad}, but there are {vertices} points in `P`"));
+        return None;
+    }
+    let (faces, rest) = indices.as_chunks::<N>();
+    if !rest.is_empty() || faces.is_empty() {
+        reader.refuse(
+            "indices",
+            format!("`indices` has {} numbers, which is no multiple of {N}", indices.len()),
+        );
+        return None;
+    }
+    Some(faces.iter().map(|face| face.map(|index| index as u32)).collect())
+}
+
+/// An array with one value per vertex, or empty.
+fn per_vertex<T>(
+    reader: &mut Reader,
+    name: &'static str,
+    vertices: usize,
+    values: Option<Arc<[T]>>,
+) -> Arc<[T]> {
+    let Some(values) = values else { return Arc::from([]) };
+    if values.len() != vertices {
+        reader.refuse(name, format!("`{name}` has {} values for {vertices} points in `P`", values.len()));
+        return Arc::from([]);
+    }
+    values
+}
+
+fn points(reader: &mut Reader) -> Option<Arc<[math::Vec3]>> {
+    let points = reader.points3("P");
+    if points.is_none() && !reader.has("P") {
+        reader.missing("P");
+    }
+    points
+}
+
+fn face_indices(reader: &mut Reader, faces: usize) -> Arc<[i32]> {
+    let Some(values) = reader.integers("faceIndices") else { return Arc::from([]) };
+    if values.len() != faces {
+        let message = format!("`faceIndices` has {} values for {faces} faces", values.len());
+        reader.refuse("faceIndices", message);
+        return Arc::from([]);
+    }
+    values.into()
+}
+
+fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc> {
+    let positions = points(reader)?;
+    let indices = indices(reader, positions.len(), [0, 1, 2])?;
+    if !with_attributes {
+        return Some(MeshDesc { indices, positions, ..MeshDesc::default() });
+    }
+    let (normals, tangents, uvs) = (reader.normals("N"), reader.vectors3("S"), reader.points2("uv"));
+    let vertices = positions.len();
+    Some(MeshDesc {
+        face_indices: face_indices(reader, indices.len()),
+        normals: per_vertex(reader, "N", vertices, normals),
+        tangents: per_vertex(reader, "S", vertices, tangents),
+        uvs: per_vertex(reader, "uv", vertices, uvs),
+        indices,
+        positions,
+    })
+}
+
+fn patch_mesh(reader: &mut Reader) -> Option<PatchMeshDesc> {
+    let positions = points(reader)?;
+    let indices = indices(reader, positions.len(), [0, 1, 2, 3])?;
+    let (normals, uvs) = (reader.normals("N"), reader.points2("uv"));
+    let vertices = positions.len();
+    Some(PatchMeshDesc {
+        face_indices: face_indices(reader, indices.len()),
+        normals: per_vertex(reader, "N", vertices, normals),
+        uvs: per_vertex(reader, "uv", vertices, uvs),
+        emission_image: reader.image("emissionfilename", None),
+        indices,
+        positions,
+    })
+}
+
+fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
+    let displaced = reader.optional_float_parameter("displacement");
+    let edge = if reader.has("edgelength") {
+        reader.positive("edgelength", 1.0)
+    } else {
+        reader.positive("displacement.edgelength", 1.0)
+    };
+    let Some(file) = reader.string("filename") else {
+        if !reader.has("filename") {
+            reader.missing("filename");
+        }
+        return None;
+    };
+    let path = reader.builder.path(&file);
+    match reader.builder.meshes.get(&path) {
+        Some(Ok(kind)) => {
+            let mut kind = kind.clone();
+            if let ShapeKind::PlyMesh { displacement, edge_length, .. } = &mut kind {
+                (*displacement, *edge_length) = (displaced, edge);
+            }
+            Some(kind)
+        }
+        Some(Err(message)) => {
+            let message = format!("cannot read the mesh `{}`: {message}", path.display());
+            reader.builder.report.error("unreadable-mesh", message, file.span);
+            None
+        }
+        None => {
+            // Only a name of the wrong type or count was not loaded; that has been reported.
+            None
+        }
+    }
+}
+
+fn curve(reader: &mut Reader) -> Option<CurveDesc> {
+    let control_points = points(reader)?;
+    let degree = reader.integer("degree", 3, 2..=3);
+    let basis = reader.choice(
+        "basis",
+        CurveBasis::Bezier,
+        &[("bezier", CurveBasis::Bezier), ("bspline", CurveBasis::BSpline)],
+    );
+    let count = control_points.len() as i32;
+    let fits = match basis {
+        CurveBasis::Bezier => count > degree && (count - 1 - degree) % degree == 0,
+        CurveBasis::BSpline => count > degree,
+    };
+    if !fits {
+        let message = format!("{count} points in `P` make no whole number of segments of degree {degree}");
+        reader.refuse("P", message);
+        return None;
+    }
+    let segments = match basis {
+        CurveBasis::Bezier => (count - 1) / degree,
+        CurveBasis::BSpline => count - degree,
+    };
+    let mut profile = reader.choice(
+        "type",
+        CurveProfile::Flat,
+        &[
+            ("flat", CurveProfile::Flat),
+            ("ribbon", CurveProfile::Ribbon),
+            ("cylinder", CurveProfile::Cylinder),
+        ],
+    );
+    let mut normals = reader.normals("N").unwrap_or_default();
+    if profile != CurveProfile::Ribbon && !normals.is_empty() {
+        reader.ignored("N", "curves have normals only if they are of type `ribbon`");
+        normals = Arc::default();
+    }
+    if profile == CurveProfile::Ribbon && normals.len() as i32 != segments + 1 {
+        let message = format!("a ribbon of {segments} segments needs {} normals in `N`", segments + 1);
+        reader.refuse("N", message);
+        profile = CurveProfile::Flat;
+    }
+    let width = reader.float("width", 1.0);
+    Some(CurveDesc {
+        control_points,
+        degree,
+        basis,
+        profile,
+        normals,
+        width: [reader.float("width0", width), reader.float("width1", width)],
+        split_depth: reader.integer("splitdepth", 3, 0..=20),
+    })
+}

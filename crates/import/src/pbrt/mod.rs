@@ -1,0 +1,30 @@
+//! The scene format of pbrt-v4 [Pharr 2023; pbrt.org/fileformat-v4].
+//!
+//! Two steps: the [`interpreter`] runs the directives of all files and collects statements, each with the graphics state
+//! that held for it; then [`build`] turns statements into descriptions and looks names up. A name may thus be used before
+//! it is defined (but for textures in textures).
+
+mod build;
+mod declarations;
+mod interpreter;
+mod names;
+mod parameter;
+mod reader;
+mod state;
+mod statement;
+mod token;
+mod transform;
+
+use std::path::Path;
+
+use crate::Imported;
+use crate::assets::AssetSource;
+
+/// Reads a scene.
+pub(crate) fn read(path: &Path, assets: &dyn AssetSource) -> Imported {
+    let mut interpreter = interpreter::Interpreter::new(assets);
+    interpreter.run(path);
+    let (report, sources, statements) = (interpreter.report, interpreter.sources, interpreter.statements);
+    let (desc, report) = build::build(statements, report, &sources, assets);
+    Imported { desc, sources, diagnostics: report.finish() }
+}

@@ -1,0 +1,335 @@
+//! Parameter lists: `"type name" value` or `"type name" [ values ]`.
+
+use description::{ColorSpaceDesc, Diagnostic, Span, Spanned};
+
+use super::names;
+use super::token::{Token, TokenKind, Tokens};
+use crate::number;
+use crate::report::Report;
+use crate::suggest::did_you_mean;
+
+/// The declared type of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ParameterType {
+    Integer,
+    Float,
+    Bool,
+    String,
+    Point2,
+    Vector2,
+    Point3,
+    Vector3,
+    Normal,
+    Spectrum,
+    Rgb,
+    Blackbody,
+    Texture,
+}
+
+impl ParameterType {
+    const ALL: [(Self, &str); 13] = [
+        (Self::Integer, "integer"),
+        (Self::Float, "float"),
+        (Self::Bool, "bool"),
+        (Self::String, "string"),
+        (Self::Point2, "point2"),
+        (Self::Vector2, "vector2"),
+        (Self::Point3, "point3"),
+        (Self::Vector3, "vector3"),
+        (Self::Normal, "normal"),
+        (Self::Spectrum, "spectrum"),
+        (Self::Rgb, "rgb"),
+        (Self::Blackbody, "blackbody"),
+        (Self::Texture, "texture"),
+    ];
+
+    fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|&(_, known)| known == name).map(|(kind, _)| kind)
+    }
+
+    /// Its name in the format.
+    pub(crate) fn name(self) -> &'static str {
+        Self::ALL[self as usize].1
+    }
+
+    /// How many numbers make one value of this type.
+    pub(crate) fn arity(self) -> usize {
+        match self {
+            Self::Point2 | Self::Vector2 => 2,
+            Self::Point3 | Self::Vector3 | Self::Normal | Self::Rgb => 3,
+            _ => 1,
+        }
+    }
+}
+
+/// The values of a parameter.
+#[derive(Clone, Debug)]
+pub(crate) enum Values {
+    Floats(Vec<f32>),
+    Integers(Vec<i32>),
+    Bools(Vec<bool>),
+    Strings(Vec<Spanned<String>>),
+}
+
+impl Values {
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Floats(values) => values.len(),
+            Self::Integers(values) => values.len(),
+            Self::Bools(values) => values.len(),
+            Self::Strings(values) => values.len(),
+        }
+    }
+}
+
+/// A parameter as it was written.
+#[derive(Clone, Debug)]
+pub(crate) struct RawParameter {
+    pub(crate) kind: ParameterType,
+    pub(crate) name: String,
+    pub(crate) values: Values,
+    /// The declaration and its values.
+    pub(crate) span: Span,
+    /// The declaration alone.
+    pub(crate) declaration: Span,
+    /// The colour space in force.
+    pub(crate) color_space: ColorSpaceDesc,
+}
+
+/// Reads parameters as long as there are any. Whatever is wrong with one is reported, and the next one is read.
+pub(crate) fn parameters(
+    tokens: &mut Tokens,
+    color_space: ColorSpaceDesc,
+    report: &mut Report,
+) -> Vec<RawParameter> {
+    let mut parameters: Vec<RawParameter> = Vec::new();
+    while matches!(tokens.peek().kind, TokenKind::Quoted | TokenKind::Unterminated) {
+        let Some(parameter) = parameter(tokens, color_space, report) else { continue };
+        if let Some(first) = parameters.iter().find(|earlier| earlier.name == parameter.name) {
+            report.push(
+                Diagnostic::error(
+                    "duplicate-parameter",
+                    format!("the parameter `{}` is given twice", parameter.name),
+                    parameter.declaration,
+                )
+                .with_label(first.declaration, "first given here"),
+            );
+            continue;
+        }
+        parameters.push(parameter);
+    }
+    parameters
+}
+
+/// Reads one parameter; `None` if it means nothing, which is then reported.
+pub(crate) fn parameter(
+    tokens: &mut Tokens,
+    color_space: ColorSpaceDesc,
+    report: &mut Report,
+) -> Option<RawParameter> {
+    let declaration = tokens.next();
+    let span = tokens.span(declaration);
+    if declaration.kind == TokenKind::Unterminated {
+        report.error("unterminated-string", "this string has no closing quote on its line", span);
+        return None;
+    }
+    let text = tokens.string(declaration);
+    let mut words = text.split_ascii_whitespace();
+    let (Some(type_name), Some(name), None) = (words.next(), words.next(), words.next()) else {
+        report.push(
+            Diagnostic::error(
+                "parameter-declaration",
+                format!("`{text}` does not declare a parameter"),
+                span,
+            )
+            .with_help("a parameter is declared by its type and its name, as in `\"float radius\"`"),
+        );
+        skip_values(tokens);
+        return None;
+    };
+    let Some(kind) = parameter_type(type_name, span, report) else {
+        skip_values(tokens);
+        return None;
+    };
+    let (values, end) = values(tokens, kind, name, span, report)?;
+    Some(RawParameter {
+        kind,
+        name: name.to_owned(),
+        values,
+        span: span.to(end),
+        declaration: span,
+        color_space,
+    })
+}
+
+fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<ParameterType> {
+    if let Some(kind) = ParameterType::from_name(name) {
+        return Some(kind);
+    }
+    let renamed = match name {
+        "point" => Some(ParameterType::Point3),
+        "vector" => Some(ParameterType::Vector3),
+        "normal3" => Some(ParameterType::Normal),
+        _ => None,
+    };
+    if let Some(kind) = renamed {
+        let message = format!("the parameter type `{name}` is now called `{}`", kind.name());
+        report.warning_once("deprecated", message, span);
+        return renamed;
+    }
+    let message = format!("there is no parameter type `{name}`");
+    report.push(match names::replaced("parameter-type", name) {
+        Some(replacement) => Diagnostic::error("old-name", message, span).with_help(replacement),
+        None => Diagnostic {
+            help: did_you_mean(name, ParameterType::ALL.map(|(_, name)| name)),
+            ..Diagnostic::error("unknown-parameter-type", message, span)
+        },
+    });
+    None
+}
+
+/// Reads the values after a declaration, and where they end; `None` if there are none of the right kind, which is then
+/// reported.
+pub(crate) fn values(
+    tokens: &mut Tokens,
+    kind: ParameterType,
+    name: &str,
+    declaration: Span,
+    report: &mut Report,
+) -> Option<(Values, Span)> {
+    let first = tokens.peek();
+    let bracketed = first.kind == TokenKind::Open;
+    if !bracketed && !matches!(first.kind, TokenKind::Word | TokenKind::Quoted)
+        || is_directive(tokens.bytes(first))
+    {
+        report.error("parameter-value", format!("the parameter `{name}` has no value"), declaration);
+        return None;
+    }
+    if bracketed {
+        tokens.next();
+    }
+    let mut values = match kind {
+        ParameterType::Integer => Values::Integers(Vec::new()),
+        ParameterType::Bool => Values::Bools(Vec::new()),
+        ParameterType::String | ParameterType::Texture => Values::Strings(Vec::new()),
+        ParameterType::Spectrum if tokens.peek().kind == TokenKind::Quoted => Values::Strings(Vec::new()),
+        _ => Values::Floats(Vec::new()),
+    };
+    loop {
+        let token = tokens.peek();
+        match token.kind {
+            TokenKind::Close if bracketed => {
+                tokens.next();
+                return Some((values, tokens.span(token)));
+            }
+            TokenKind::Word | TokenKind::Quoted if push_value(tokens, token, &mut values, report) => {
+                tokens.next();
+                if !bracketed {
+                    return Some((values, tokens.span(token)));
+                }
+            }
+            TokenKind::End | TokenKind::Unterminated | TokenKind::Open | TokenKind::Close => {
+                report.error(
+                    "unclosed-bracket",
+                    format!("the values of `{name}` have no closing `]`"),
+                    declaration,
+                );
+                return None;
+            }
+            TokenKind::Word if is_directive(tokens.bytes(token)) => {
+                report.error(
+                    "unclosed-bracket",
+                    format!("the values of `{name}` have no closing `]`"),
+                    declaration,
+                );
+                return None;
+            }
+            TokenKind::Word | TokenKind::Quoted => {
+                let found = String::from_utf8_lossy(tokens.bytes(token)).into_owned();
+                let expected = match values {
+                    Values::Floats(_) => "a number",
+                    Values::Integers(_) => "a whole number",
+                    Values::Bools(_) => "`true` or `false`",
+                    Values::Strings(_) => "a quoted string",
+                };
+                let message =
+                    format!("`{name}` is of type `{}` and takes {expected}, not {found}", kind.name());
+                report.error("parameter-value", message, tokens.span(token));
+                if bracketed {
+                    skip_to_close(tokens);
+                } else {
+                    tokens.next();
+                }
+                return None;
+            }
+        }
+    }
+}
+
+/// Adds the value of a token; false if it has none of the right kind.
+#[inline]
+fn push_value(tokens: &Tokens, token: Token, values: &mut Values, report: &mut Report) -> bool {
+    let bytes = tokens.bytes(token);
+    match values {
+        Values::Floats(values) => number::float(bytes).map(|value| values.push(value)).is_some(),
+        Values::Integers(values) => number::integer(bytes).map(|value| values.push(value)).is_some(),
+        Values::Bools(values) => {
+            let value = match bytes {
+                b"true" | b"\"true\"" => true,
+                b"false" | b"\"false\"" => false,
+                _ => return false,
+            };
+            if token.kind == TokenKind::Quoted {
+                report.warning(
+                    "deprecated",
+                    "`true` and `false` are written without quotes",
+                    tokens.span(token),
+                );
+            }
+            values.push(value);
+            true
+        }
+        Values::Strings(values) => {
+            let quoted = token.kind == TokenKind::Quoted;
+            if quoted {
+                values.push(Spanned::new(tokens.string(token), tokens.span(token)));
+            }
+            quoted
+        }
+    }
+}
+
+/// Whether a bare word begins a statement: an upper-case letter and then letters.
+pub(crate) fn is_directive(word: &[u8]) -> bool {
+    matches!(word, [b'A'..=b'Z', rest @ ..] if rest.iter().all(u8::is_ascii_alphabetic))
+}
+
+fn skip_values(tokens: &mut Tokens) {
+    match tokens.peek().kind {
+        TokenKind::Open => skip_to_close(tokens),
+        TokenKind::Quoted => _ = tokens.next(),
+        TokenKind::Word => {
+            let word = tokens.peek();
+            if !is_directive(tokens.bytes(word)) {
+                tokens.next();
+            }
+        }
+        _ => (),
+    }
+}
+
+/// Skips to behind the next `]`, but never into the next statement.
+fn skip_to_close(tokens: &mut Tokens) {
+    loop {
+        let token = tokens.peek();
+        match token.kind {
+            TokenKind::Close => {
+                tokens.next();
+                return;
+            }
+            TokenKind::End => return,
+            TokenKind::Word if is_directive(tokens.bytes(token)) => return,
+            _ => _ = tokens.next(),
+        }
+    }
+}

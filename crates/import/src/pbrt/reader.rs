@@ -1,0 +1,496 @@
+//! Reads the parameters of one statement, by name and type, and remembers what was asked for: what nobody asked for is a
+//! mistake, and the names that were asked for are what its author may have meant.
+
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use description::{
+    ColorSpaceDesc, Diagnostic, EncodingDesc, FloatParameter, Handle, ImageDesc, Origin, Parameter, Span,
+    Spanned, SpectrumDesc, SpectrumParameter,
+};
+use math::{Vec2, Vec3};
+
+use super::build::Builder;
+use super::names;
+use super::parameter::{ParameterType, RawParameter, Values};
+use super::statement::Statement;
+use crate::suggest::{closest, did_you_mean};
+
+/// The parameters of a statement under way of being read.
+pub(crate) struct Reader<'b, 'a> {
+    pub(crate) builder: &'b mut Builder<'a>,
+    pub(crate) span: Span,
+    pub(crate) kind: Spanned<String>,
+    pub(crate) color_space: ColorSpaceDesc,
+    given: Vec<Given>,
+    asked: Vec<&'static str>,
+    origin: Origin,
+}
+
+struct Given {
+    parameter: RawParameter,
+    used: bool,
+    /// It comes from `Attribute` and may be left unused.
+    default: bool,
+}
+
+impl<'b, 'a> Reader<'b, 'a> {
+    pub(crate) fn new(builder: &'b mut Builder<'a>, statement: Statement) -> Self {
+        let mut given: Vec<Given> = Vec::with_capacity(statement.parameters.len());
+        given.extend(statement.parameters.into_iter().map(|parameter| Given {
+            parameter,
+            used: false,
+            default: false,
+        }));
+        for parameter in statement.defaults.iter() {
+            if given.iter().all(|earlier| earlier.parameter.name != parameter.name) {
+                given.push(Given { parameter: parameter.clone(), used: false, default: true });
+            }
+        }
+        Self {
+            builder,
+            span: statement.span,
+            kind: statement.kind,
+            color_space: statement.color_space,
+            given,
+            asked: Vec::new(),
+            origin: Origin::new(statement.span),
+        }
+    }
+
+    /// Where the statement and its parameters stand, after a report of every parameter that was not asked for.
+    pub(crate) fn finish(self) -> Origin {
+        for Given { parameter, used, default } in &self.given {
+            if *used || *default {
+                continue;
+            }
+            let name = parameter.name.as_str();
+            let message = format!("`{}` has no parameter `{name}`", self.kind.value);
+            let known = self.asked.iter().copied();
+            let diagnostic = match (closest(name, known.clone()), names::replaced("parameter", name)) {
+                (None, Some(replacement)) => Diagnostic::error("old-name", message, parameter.declaration)
+                    .with_help(format!("`{name}` {replacement}")),
+                _ => Diagnostic {
+                    help: did_you_mean(name, known),
+                    ..Diagnostic::error("unknown-parameter", message, parameter.declaration)
+                },
+            };
+            self.builder.report.push(diagnostic);
+        }
+        self.origin
+    }
+
+    /// As [`Reader::finish`] where it is not known what the parameters should be.
+    pub(crate) fn abandon(self) -> Origin {
+        self.origin
+    }
+
+    /// Reports a type that does not exist in a set.
+    pub(crate) fn unknown_type(&mut self, set: &str, what: &str, known: &[&str]) {
+        let Spanned { value, span } = self.kind.clone();
+        let message = format!("there is no {what} `{value}`");
+        self.builder.report.push(match names::replaced(set, &value) {
+            Some(replacement) => Diagnostic::error("old-name", message, span).with_help(replacement),
+            None => Diagnostic {
+                help: did_you_mean(&value, known.iter().copied()),
+                ..Diagnostic::error("unknown-type", message, span)
+            },
+        });
+    }
+
+    /// The parameter of a name, if it is given and has one of the types; any other type is reported.
+    fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
+        self.asked.push(name);
+        let place = self.given.iter().position(|given| given.parameter.name == name)?;
+        let given = &mut self.given[place];
+        let already = std::mem::replace(&mut given.used, true);
+        let parameter = &given.parameter;
+        if !types.contains(&parameter.kind) {
+            if given.default {
+                given.used = already;
+                return None;
+            }
+            let expected: Vec<_> = types.iter().map(|kind| format!("`{}`", kind.name())).collect();
+            let message =
+                format!("`{name}` is of type {}, not `{}`", expected.join(" or "), parameter.kind.name());
+            let help = format!("write `\"{} {name}\"`", types[0].name());
+            let diagnostic =
+                Diagnostic::error("parameter-type", message, parameter.declaration).with_help(help);
+            self.builder.report.push(diagnostic);
+            return None;
+        }
+        if given.default {
+            self.builder.used_attributes.insert(parameter.declaration);
+        }
+        self.origin.parameters.push((name, parameter.span));
+        Some(place)
+    }
+
+    /// The values of a parameter, taken out of it, if there is any value.
+    fn take(
+        &mut self,
+        name: &'static str,
+        types: &'static [ParameterType],
+    ) -> Option<(ParameterType, Values, Span)> {
+        let place = self.find(name, types)?;
+        self.take_at(place, name)
+    }
+
+    fn take_at(&mut self, place: usize, name: &str) -> Option<(ParameterType, Values, Span)> {
+        let parameter = &mut self.given[place].parameter;
+        let values = std::mem::replace(&mut parameter.values, Values::Bools(Vec::new()));
+        let (kind, span, length) = (parameter.kind, parameter.span, values.len());
+        if let Values::Floats(floats) = &values
+            && floats.iter().any(|value| !value.is_finite())
+        {
+            self.builder.report.error(
+                "parameter-value",
+                format!("`{name}` has a value beyond all bounds"),
+                span,
+            );
+            return None;
+        }
+        if kind != ParameterType::Spectrum && length % kind.arity() != 0 {
+            let message = format!("`{name}` has {length} numbers, which is no multiple of {}", kind.arity());
+            self.builder.report.error("parameter-count", message, span);
+            return None;
+        }
+        Some((kind, values, span))
+    }
+
+    /// Reports a wrong number of values.
+    fn count(&mut self, name: &str, expected: usize, found: usize, span: Span) {
+        let values = if expected == 1 { "one value" } else { &format!("{expected} values") };
+        let message = format!("`{name}` takes {values}, not {found}");
+        self.builder.report.error("parameter-count", message, span);
+    }
+
+    /// Reports a value that cannot be.
+    pub(crate) fn refuse(&mut self, name: &str, message: impl Into<String>) {
+        let span = self.origin.parameter(name);
+        self.builder.report.error("parameter-value", message, span);
+    }
+
+    /// Reports something that has no effect.
+    pub(crate) fn ignored(&mut self, name: &str, message: impl Into<String>) {
+        let span = self.origin.parameter(name);
+        self.builder.report.warning("ignored", message, span);
+    }
+
+    /// Reports that a parameter must be given.
+    pub(crate) fn missing(&mut self, name: &str) {
+        let message = format!("`{}` needs the parameter `{name}`", self.kind.value);
+        self.builder.report.error("missing-parameter", message, self.kind.span);
+    }
+
+    /// Whether a parameter is given by the statement itself or by `Attribute`.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.given.iter().any(|given| given.parameter.name == name)
+    }
+
+    /// Numbers.
+    pub(crate) fn floats(&mut self, name: &'static str) -> Option<Vec<f32>> {
+        match self.take(name, &[ParameterType::Float])? {
+            (_, Values::Floats(values), _) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// A fixed count of numbers.
+    pub(crate) fn float_array<const N: usize>(&mut self, name: &'static str) -> Option<[f32; N]> {
+        let values = self.floats(name)?;
+        <[f32; N]>::try_from(values.as_slice())
+            .map_err(|_| self.count(name, N, values.len(), self.origin.parameter(name)))
+            .ok()
+    }
+
+    /// A number that may be absent.
+    pub(crate) fn optional_float(&mut self, name: &'static str) -> Option<f32> {
+        self.float_array::<1>(name).map(|[value]| value)
+    }
+
+    /// A number.
+    pub(crate) fn float(&mut self, name: &'static str, default: f32) -> f32 {
+        self.optional_float(name).unwrap_or(default)
+    }
+
+    /// A number above zero.
+    pub(crate) fn positive(&mut self, name: &'static str, default: f32) -> f32 {
+        let value = self.float(name, default);
+        if value > 0.0 {
+            return value;
+        }
+        self.refuse(name, format!("`{name}` must be above zero"));
+        default
+    }
+
+    /// Whole numbers.
+    pub(crate) fn integers(&mut self, name: &'static str) -> Option<Vec<i32>> {
+        match self.take(name, &[ParameterType::Integer])? {
+            (_, Values::Integers(values), _) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// A fixed count of whole numbers.
+    pub(crate) fn integer_array<const N: usize>(&mut self, name: &'static str) -> Option<[i32; N]> {
+        let values = self.integers(name)?;
+        <[i32; N]>::try_from(values.as_slice())
+            .map_err(|_| self.count(name, N, values.len(), self.origin.parameter(name)))
+            .ok()
+    }
+
+    /// A whole number that may be absent.
+    pub(crate) fn optional_integer(&mut self, name: &'static str) -> Option<i32> {
+        self.integer_array::<1>(name).map(|[value]| value)
+    }
+
+    /// A whole number in a range.
+    pub(crate) fn integer(&mut self, name: &'static str, default: i32, range: RangeInclusive<i32>) -> i32 {
+        let value = self.optional_integer(name).unwrap_or(default);
+        if range.contains(&value) {
+            return value;
+        }
+        let message = match (*range.start(), *range.end()) {
+            (start, i32::MAX) => format!("`{name}` must be at least {start}"),
+            (start, end) => format!("`{name}` must lie between {start} and {end}"),
+        };
+        self.refuse(name, message);
+        default
+    }
+
+    /// A truth value.
+    pub(crate) fn boolean(&mut self, name: &'static str, default: bool) -> bool {
+        match self.take(name, &[ParameterType::Bool]) {
+            Some((_, Values::Bools(values), span)) => match values[..] {
+                [value] => value,
+                _ => {
+                    self.count(name, 1, values.len(), span);
+                    default
+                }
+            },
+            _ => default,
+        }
+    }
+
+    /// Strings with their places.
+    pub(crate) fn strings(&mut self, name: &'static str) -> Option<Vec<Spanned<String>>> {
+        match self.take(name, &[ParameterType::String])? {
+            (_, Values::Strings(values), _) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// A string that may be absent.
+    pub(crate) fn string(&mut self, name: &'static str) -> Option<Spanned<String>> {
+        let mut values = self.strings(name)?;
+        if values.len() != 1 {
+            self.count(name, 1, values.len(), self.origin.parameter(name));
+            return None;
+        }
+        values.pop()
+    }
+
+    /// One of some names.
+    pub(crate) fn choice<T: Copy>(&mut self, name: &'static str, default: T, known: &[(&str, T)]) -> T {
+        let Some(given) = self.string(name) else { return default };
+        if let Some(&(_, value)) = known.iter().find(|(choice, _)| *choice == given.value) {
+            return value;
+        }
+        let message = format!("`{name}` cannot be `{}`", given.value);
+        self.builder.report.push(Diagnostic {
+            help: did_you_mean(&given.value, known.iter().map(|(choice, _)| *choice)),
+            ..Diagnostic::error("unknown-choice", message, given.span)
+        });
+        default
+    }
+
+    /// Pairs of numbers.
+    pub(crate) fn points2(&mut self, name: &'static str) -> Option<Arc<[Vec2]>> {
+        match self.take(name, &[ParameterType::Point2, ParameterType::Vector2])? {
+            (_, Values::Floats(values), _) => {
+                Some(values.as_chunks::<2>().0.iter().map(|&pair| Vec2::from_array(pair)).collect())
+            }
+            _ => None,
+        }
+    }
+
+    fn triples(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<Arc<[Vec3]>> {
+        match self.take(name, types)? {
+            (_, Values::Floats(values), _) => {
+                Some(values.as_chunks::<3>().0.iter().map(|&triple| Vec3::from_array(triple)).collect())
+            }
+            _ => None,
+        }
+    }
+
+    /// Points.
+    pub(crate) fn points3(&mut self, name: &'static str) -> Option<Arc<[Vec3]>> {
+        self.triples(name, &[ParameterType::Point3])
+    }
+
+    /// Vectors.
+    pub(crate) fn vectors3(&mut self, name: &'static str) -> Option<Arc<[Vec3]>> {
+        self.triples(name, &[ParameterType::Vector3])
+    }
+
+    /// Normals.
+    pub(crate) fn normals(&mut self, name: &'static str) -> Option<Arc<[Vec3]>> {
+        self.triples(name, &[ParameterType::Normal])
+    }
+
+    fn one(&mut self, name: &'static str, values: Option<Arc<[Vec3]>>, default: Vec3) -> Vec3 {
+        match values.as_deref() {
+            None => default,
+            Some(&[value]) => value,
+            Some(several) => {
+                self.count(name, 3, 3 * several.len(), self.origin.parameter(name));
+                default
+            }
+        }
+    }
+
+    /// A point.
+    pub(crate) fn point3(&mut self, name: &'static str, default: Vec3) -> Vec3 {
+        let values = self.points3(name);
+        self.one(name, values, default)
+    }
+
+    /// A vector.
+    pub(crate) fn vector3(&mut self, name: &'static str, default: Vec3) -> Vec3 {
+        let values = self.vectors3(name);
+        self.one(name, values, default)
+    }
+
+    /// Colours, in the space in force where they were given.
+    pub(crate) fn rgbs(&mut self, name: &'static str) -> Option<Vec<[f32; 3]>> {
+        match self.take(name, &[ParameterType::Rgb])? {
+            (_, Values::Floats(values), _) => Some(values.as_chunks::<3>().0.to_vec()),
+            _ => None,
+        }
+    }
+
+    /// A spectrum that may be absent.
+    pub(crate) fn spectrum(&mut self, name: &'static str) -> Option<SpectrumDesc> {
+        self.spectrum_of(name, &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody])
+    }
+
+    /// An index of refraction: a number or a spectrum.
+    pub(crate) fn index_of_refraction(&mut self, name: &'static str, default: f32) -> SpectrumDesc {
+        self.spectrum_of(name, &[ParameterType::Float, ParameterType::Spectrum]).unwrap_or(default.into())
+    }
+
+    fn spectrum_of(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<SpectrumDesc> {
+        let place = self.find(name, types)?;
+        self.spectrum_at(place, name)
+    }
+
+    fn spectrum_at(&mut self, place: usize, name: &'static str) -> Option<SpectrumDesc> {
+        let color_space = self.given[place].parameter.color_space;
+        let (kind, values, span) = self.take_at(place, name)?;
+        match (kind, values) {
+            (ParameterType::Rgb, Values::Floats(values)) => match values[..] {
+                [r, g, b] => Some(SpectrumDesc::Rgb { rgb: [r, g, b], space: color_space }),
+                _ => {
+                    self.count(name, 3, values.len(), span);
+                    None
+                }
+            },
+            (ParameterType::Float, Values::Floats(values)) if values.len() == 1 => {
+                Some(SpectrumDesc::Constant(values[0]))
+            }
+            (ParameterType::Blackbody, Values::Floats(values)) if values.len() == 2 => {
+                let message =
+                    format!("`{name}` takes one temperature; its brightness is now the light's `scale`");
+                self.refuse(name, message);
+                None
+            }
+            (ParameterType::Blackbody, Values::Floats(values)) if values.len() == 1 => {
+                if values[0] > 0.0 {
+                    return Some(SpectrumDesc::Blackbody(values[0]));
+                }
+                self.refuse(name, "the temperature of a black body must be above zero");
+                None
+            }
+            (ParameterType::Spectrum, Values::Floats(values)) => self.samples(name, &values),
+            (ParameterType::Spectrum, Values::Strings(values)) if values.len() == 1 => {
+                self.builder.named_spectrum(&values[0])
+            }
+            (_, values) => {
+                self.count(name, 1, values.len(), span);
+                None
+            }
+        }
+    }
+
+    fn samples(&mut self, name: &'static str, values: &[f32]) -> Option<SpectrumDesc> {
+        let (pairs, rest) = values.as_chunks::<2>();
+        if pairs.is_empty() || !rest.is_empty() {
+            self.refuse(name, format!("`{name}` takes pairs of wavelength and value"));
+            return None;
+        }
+        if pairs.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
+            self.refuse(name, format!("the wavelengths of `{name}` must increase"));
+            return None;
+        }
+        Some(SpectrumDesc::Samples(pairs.iter().map(|&[lambda, value]| (lambda, value)).collect()))
+    }
+
+    /// A number or a texture of numbers, which may be absent.
+    pub(crate) fn optional_float_parameter(&mut self, name: &'static str) -> Option<FloatParameter> {
+        match self.take(name, &[ParameterType::Float, ParameterType::Texture])? {
+            (_, Values::Floats(values), _) if values.len() == 1 => Some(FloatParameter::Value(values[0])),
+            (_, Values::Strings(names), _) if names.len() == 1 => {
+                self.builder.float_texture(&names[0]).map(Parameter::Texture)
+            }
+            (_, values, span) => {
+                self.count(name, 1, values.len(), span);
+                None
+            }
+        }
+    }
+
+    /// A number or a texture of numbers.
+    pub(crate) fn float_parameter(&mut self, name: &'static str, default: f32) -> FloatParameter {
+        self.optional_float_parameter(name).unwrap_or(FloatParameter::Value(default))
+    }
+
+    /// A spectrum or a texture of spectra, which may be absent.
+    pub(crate) fn optional_spectrum_parameter(&mut self, name: &'static str) -> Option<SpectrumParameter> {
+        const TYPES: &[ParameterType] =
+            &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody, ParameterType::Texture];
+        let place = self.find(name, TYPES)?;
+        if self.given[place].parameter.kind != ParameterType::Texture {
+            return self.spectrum_at(place, name).map(Parameter::Value);
+        }
+        let (_, values, span) = self.take_at(place, name)?;
+        match values {
+            Values::Strings(names) if names.len() == 1 => {
+                self.builder.spectrum_texture(&names[0]).map(Parameter::Texture)
+            }
+            values => {
+                self.count(name, 1, values.len(), span);
+                None
+            }
+        }
+    }
+
+    /// A spectrum or a texture of spectra.
+    pub(crate) fn spectrum_parameter(
+        &mut self,
+        name: &'static str,
+        default: impl Into<SpectrumDesc>,
+    ) -> SpectrumParameter {
+        self.optional_spectrum_parameter(name).unwrap_or_else(|| SpectrumParameter::Value(default.into()))
+    }
+
+    /// An image file that may be absent.
+    pub(crate) fn image(
+        &mut self,
+        name: &'static str,
+        encoding: Option<EncodingDesc>,
+    ) -> Option<Handle<ImageDesc>> {
+        let file = self.string(name)?;
+        Some(self.builder.image(&file, encoding))
+    }
+}

@@ -1,0 +1,109 @@
+//! What a scene file says, statement by statement, with the graphics state that held at each. Names are not looked up
+//! yet: a file may use a material before it makes it.
+
+use std::sync::Arc;
+
+use description::{ColorSpaceDesc, Span, Spanned, TransformDesc};
+use math::DMat4;
+
+use super::parameter::RawParameter;
+use super::state::{MaterialReference, TransformSet};
+
+/// A statement that names a member of a set and gives it parameters.
+#[derive(Clone, Debug)]
+pub(crate) struct Statement {
+    /// The directive and everything that belongs to it.
+    pub(crate) span: Span,
+    /// The member.
+    pub(crate) kind: Spanned<String>,
+    /// What the statement gives.
+    pub(crate) parameters: Vec<RawParameter>,
+    /// What holds if the statement does not give it.
+    pub(crate) defaults: Arc<Vec<RawParameter>>,
+    /// The colour space in force.
+    pub(crate) color_space: ColorSpaceDesc,
+}
+
+#[derive(Debug)]
+pub(crate) struct CameraStatement {
+    pub(crate) statement: Statement,
+    pub(crate) camera_from_world: TransformSet,
+    pub(crate) medium: Option<Spanned<String>>,
+}
+
+#[derive(Debug)]
+pub(crate) struct TextureStatement {
+    pub(crate) statement: Statement,
+    pub(crate) name: Spanned<String>,
+    pub(crate) world_from_texture: DMat4,
+}
+
+#[derive(Debug)]
+pub(crate) struct MaterialStatement {
+    pub(crate) statement: Statement,
+    /// Absent for `Material`.
+    pub(crate) name: Option<Spanned<String>>,
+}
+
+#[derive(Debug)]
+pub(crate) struct MediumStatement {
+    pub(crate) statement: Statement,
+    pub(crate) name: Spanned<String>,
+    pub(crate) world_from_medium: TransformDesc,
+}
+
+#[derive(Debug)]
+pub(crate) struct LightStatement {
+    pub(crate) statement: Statement,
+    pub(crate) world_from_light: TransformDesc,
+    pub(crate) medium: Option<Spanned<String>>,
+}
+
+#[derive(Debug)]
+pub(crate) struct ShapeStatement {
+    pub(crate) statement: Statement,
+    pub(crate) world_from_object: TransformDesc,
+    pub(crate) reverse_orientation: bool,
+    pub(crate) material: MaterialReference,
+    pub(crate) area_light: Option<u32>,
+    pub(crate) medium_interface: Option<[Spanned<String>; 2]>,
+}
+
+#[derive(Debug)]
+pub(crate) struct ObjectStatement {
+    pub(crate) name: Spanned<String>,
+    pub(crate) shapes: Vec<ShapeStatement>,
+}
+
+#[derive(Debug)]
+pub(crate) struct InstanceStatement {
+    pub(crate) object: Spanned<String>,
+    pub(crate) span: Span,
+    pub(crate) world_from_object: TransformDesc,
+}
+
+/// Everything that the files of a scene say.
+#[derive(Debug, Default)]
+pub(crate) struct Statements {
+    pub(crate) options: Vec<RawParameter>,
+    pub(crate) film: Option<Statement>,
+    pub(crate) camera: Option<CameraStatement>,
+    pub(crate) sampler: Option<Statement>,
+    pub(crate) filter: Option<Statement>,
+    pub(crate) integrator: Option<Statement>,
+    pub(crate) accelerator: Option<Statement>,
+    /// Parameters that `Attribute` gave, by name and declaration.
+    pub(crate) attributes: Vec<Spanned<String>>,
+    pub(crate) transform_times: Option<[f32; 2]>,
+    pub(crate) float_textures: Vec<TextureStatement>,
+    pub(crate) spectrum_textures: Vec<TextureStatement>,
+    /// Float and spectrum textures in the order in which they were said: `true` for a spectrum texture.
+    pub(crate) texture_order: Vec<bool>,
+    pub(crate) materials: Vec<MaterialStatement>,
+    pub(crate) media: Vec<MediumStatement>,
+    pub(crate) lights: Vec<LightStatement>,
+    pub(crate) area_lights: Vec<Statement>,
+    pub(crate) shapes: Vec<ShapeStatement>,
+    pub(crate) objects: Vec<ObjectStatement>,
+    pub(crate) instances: Vec<InstanceStatement>,
+}

@@ -1,0 +1,466 @@
+//! What textures must do, by themselves and compiled from a scene.
+
+use super::*;
+use ::image::Image;
+use description::{
+    ColorSpaceDesc, Diagnostic, EncodingDesc, FloatTextureDesc, Handle, ImageDesc, ImageTextureDesc,
+    MappingDesc, Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc, TextureFilter, TextureKind,
+    WrapMode,
+};
+use math::{DMat4, DVec3, Transform, Vec2, Vec3};
+use spectrum::{RgbColorSpace, SampledWavelengths};
+use std::sync::Arc;
+
+const FILTERS: [TextureFilter; 4] =
+    [TextureFilter::Point, TextureFilter::Bilinear, TextureFilter::Trilinear, TextureFilter::Ewa];
+
+fn at(u: f32, v: f32) -> TextureContext {
+    TextureContext { uv: Vec2::new(u, v), ..TextureContext::default() }
+}
+
+fn lambda() -> SampledWavelengths {
+    SampledWavelengths::sample_visible(0.37)
+}
+
+fn push_image(scene: &mut SceneDesc, image: Image) -> Handle<ImageDesc> {
+    scene.images.push(ImageDesc { name: "test.png".into(), image: Arc::new(image) })
+}
+
+fn compiled(scene: &SceneDesc) -> (Textures, Vec<Diagnostic>) {
+    let mut diagnostics = Vec::new();
+    let textures = compile(scene, &DMat4::IDENTITY, &mut diagnostics);
+    (textures, diagnostics)
+}
+
+/// The one texture of numbers that `image` makes.
+fn float_image(image: Image, change: impl FnOnce(&mut ImageTextureDesc)) -> Textures {
+    let mut scene = SceneDesc::default();
+    let mut desc = ImageTextureDesc::new(push_image(&mut scene, image));
+    change(&mut desc);
+    scene.float_textures.push(FloatTextureDesc::new(TextureKind::Image(desc)));
+    let (textures, diagnostics) = compiled(&scene);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    textures
+}
+
+/// The textures of spectra that `image` makes, one for each type.
+fn spectrum_image(image: Image, change: impl FnOnce(&mut ImageTextureDesc)) -> Textures {
+    let mut scene = SceneDesc::default();
+    let mut desc = ImageTextureDesc::new(push_image(&mut scene, image));
+    change(&mut desc);
+    scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Image(desc)));
+    let (textures, diagnostics) = compiled(&scene);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    textures
+}
+
+const FIRST: FloatTextureId = FloatTextureId(0);
+
+fn assert_spectrum(found: SampledSpectrum, expected: SampledSpectrum, tolerance: f32) {
+    let worst = (found - expected).map(f32::abs).max_component();
+    assert!(worst <= tolerance, "{found:?} is not {expected:?}");
+}
+
+#[test]
+fn scale_and_mix_follow_their_formulas() {
+    let mut t = Textures::default();
+    let [a, b, quarter] = [0.8, 0.2, 0.25].map(|v| t.push_float(Texture::Constant(v)));
+    let scaled = t.push_float(Texture::Scale { texture: a, scale: quarter });
+    let mixed = t.push_float(Texture::Mix { textures: [a, b], amount: quarter });
+    assert_eq!(t.float(scaled, &at(0.0, 0.0)), 0.8 * 0.25);
+    assert_eq!(t.float(mixed, &at(0.0, 0.0)), 0.8 * 0.75 + 0.2 * 0.25);
+
+    let [red, blue] = [SpectrumDesc::rgb(0.9, 0.1, 0.1), SpectrumDesc::rgb(0.1, 0.2, 0.8)]
+        .map(|s| compile_spectrum(&s, SpectrumType::Albedo, Span::NONE, &mut Vec::new()));
+    let (r, g) = (red.sample(&lambda()), blue.sample(&lambda()));
+    let [red, blue] = [red, blue].map(|s| t.push_spectrum(Texture::Constant(s)));
+    let scaled = t.push_spectrum(Texture::Scale { texture: red, scale: quarter });
+    let mixed = t.push_spectrum(Texture::Mix { textures: [scaled, blue], amount: quarter });
+    let found = t.spectrum(mixed, &at(0.0, 0.0), &lambda());
+    assert_spectrum(found, r * 0.25 * 0.75 + g * 0.25, 1e-6);
+}
+
+fn squares() -> Checkerboard {
+    Checkerboard::Squares(Mapping2d::Uv { scale: Vec2::ONE, delta: Vec2::ZERO })
+}
+
+#[test]
+fn a_sharp_checkerboard_alternates() {
+    for (u, v, second) in [
+        (0.5, 0.5, 0.0),
+        (1.5, 0.5, 1.0),
+        (1.5, 1.5, 0.0),
+        (-0.5, 0.5, 1.0),
+        (-0.5, -0.5, 0.0),
+        (2.0, 0.3, 0.0),
+        (1.0, 0.3, 1.0),
+    ] {
+        assert_eq!(squares().amount(&at(u, v)), second, "({u}, {v})");
+    }
+    let cubes = Checkerboard::Cubes(Mapping3d { texture_from_render: Transform::scale(Vec3::splat(2.0)) });
+    for (p, second) in [(Vec3::splat(0.2), 0.0), (Vec3::new(0.7, 0.2, 0.2), 1.0), (Vec3::splat(-0.2), 1.0)] {
+        assert_eq!(cubes.amount(&TextureContext { p, ..TextureContext::default() }), second, "{p}");
+    }
+}
+
+#[test]
+fn a_filtered_checkerboard_is_the_average_under_a_triangle() {
+    let wave = |x: f64| if (x.floor() as i64) % 2 == 0 { 1.0 } else { -1.0 };
+    for r in [0.02f32, 0.3, 0.49, 0.51, 0.8, 1.7, 6.3] {
+        for x in [-3.9f32, -0.2, 0.01, 0.45, 0.5, 0.99, 4.3] {
+            let n = 20_000;
+            let average: f64 = (0..n)
+                .map(|i| {
+                    let e = (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
+                    wave(f64::from(x) + e * f64::from(r)) * (1.0 - e.abs()) * 2.0 / f64::from(n)
+                })
+                .sum();
+            // v is far from an edge, so that the average over u shows alone.
+            let ctx = TextureContext { dudx: r / 1.5, dudy: -0.1 * r, ..at(x, 0.5) };
+            let found = f64::from(squares().amount(&ctx));
+            assert!((found - (0.5 - 0.5 * average)).abs() < 2e-4, "x {x} r {r}: {found} {average}");
+        }
+    }
+}
+
+#[test]
+fn a_checkerboard_seen_from_afar_is_grey() {
+    for wide in [1e3, 1e30, f32::INFINITY] {
+        let amount = squares().amount(&TextureContext { dudx: wide, dvdy: wide, ..at(0.3, 0.4) });
+        assert!((amount - 0.5).abs() < 1e-3, "{wide}: {amount}");
+    }
+    let lost = TextureContext { dudx: f32::NAN, ..at(f32::NAN, 0.4) };
+    squares().amount(&lost);
+}
+
+fn mappings() -> Vec<Mapping2d> {
+    let texture_from_render = Transform::rotate(0.7, Vec3::new(1.0, -2.0, 0.4))
+        .after(&Transform::translate(Vec3::new(0.2, -0.1, 0.3)));
+    vec![
+        Mapping2d::Uv { scale: Vec2::new(3.0, -2.0), delta: Vec2::new(0.5, 0.1) },
+        Mapping2d::Spherical { texture_from_render },
+        Mapping2d::Cylindrical { texture_from_render },
+        Mapping2d::Planar {
+            texture_from_render,
+            axes: [Vec3::new(0.4, 0.3, 1.0), Vec3::new(-1.0, 2.0, 0.0)],
+            delta: Vec2::new(0.3, -0.4),
+        },
+    ]
+}
+
+#[test]
+fn derivatives_of_mappings_are_finite_differences() {
+    let ctx = TextureContext {
+        p: Vec3::new(1.2, -0.8, 0.6),
+        dpdx: Vec3::new(0.5, 0.2, -0.3),
+        dpdy: Vec3::new(-0.1, 0.7, 0.4),
+        n: Vec3::Z,
+        uv: Vec2::new(0.3, 0.8),
+        dudx: 0.2,
+        dudy: -0.3,
+        dvdx: 0.7,
+        dvdy: 0.1,
+        face_index: 0,
+    };
+    let h = 2e-3;
+    let moved = |x: f32, y: f32| TextureContext {
+        p: ctx.p + ctx.dpdx * x + ctx.dpdy * y,
+        uv: ctx.uv + Vec2::new(ctx.dudx * x + ctx.dudy * y, ctx.dvdx * x + ctx.dvdy * y),
+        ..ctx
+    };
+    for mapping in mappings() {
+        let st = |x, y| mapping.map(&moved(x, y)).st;
+        let c = mapping.map(&ctx);
+        let (dx, dy) = ((st(h, 0.0) - st(-h, 0.0)) / (2.0 * h), (st(0.0, h) - st(0.0, -h)) / (2.0 * h));
+        assert!(
+            (c.dstdx - dx).length() < 1e-3 && (c.dstdy - dy).length() < 1e-3,
+            "{mapping:?} {c:?} {dx} {dy}"
+        );
+    }
+}
+
+#[test]
+fn mappings_follow_their_formulas() {
+    let texture_from_render = Transform::IDENTITY;
+    let p = Vec3::new(0.0, 2.0, 2.0);
+    let ctx = TextureContext { p, ..at(0.25, 0.5) };
+    let [uv, planar] = [&mappings()[0], &mappings()[3]].map(|m| m.map(&ctx).st);
+    assert_eq!(uv, Vec2::new(1.25, -0.9));
+    let Mapping2d::Planar { texture_from_render: t, .. } = &mappings()[3] else { unreachable!() };
+    let q = t.point(p);
+    let expected = Vec2::new(q.dot(Vec3::new(0.4, 0.3, 1.0)) + 0.3, q.dot(Vec3::new(-1.0, 2.0, 0.0)) - 0.4);
+    assert!((planar - expected).length() < 1e-6);
+    let spherical = Mapping2d::Spherical { texture_from_render }.map(&ctx).st;
+    assert!((spherical - Vec2::new(0.25, 0.25)).length() < 1e-6);
+    let cylindrical = Mapping2d::Cylindrical { texture_from_render }.map(&ctx).st;
+    assert!((cylindrical - Vec2::new(0.75, 2.0)).length() < 1e-6);
+}
+
+/// Values 0, 1 in the top row, 2, 3 in the bottom row.
+fn four() -> Image {
+    Image::from_fn(2, 2, ["Y"], |x, y| [(x + 2 * y) as f32])
+}
+
+#[test]
+fn an_image_stands_on_its_lower_left_corner() {
+    for filter in FILTERS {
+        let t = float_image(four(), |desc| desc.filter = filter);
+        for (u, v, value) in [(0.25, 0.75, 0.0), (0.75, 0.75, 1.0), (0.25, 0.25, 2.0), (0.75, 0.25, 3.0)] {
+            assert_eq!(t.float(FIRST, &at(u, v)), value, "{filter:?} ({u}, {v})");
+        }
+    }
+    let middle = float_image(four(), |_| ()).float(FIRST, &at(0.5, 0.25));
+    assert_eq!(middle, 2.5);
+}
+
+#[test]
+fn beyond_an_image_its_wrap_mode_rules() {
+    for (wrap, value) in [(WrapMode::Repeat, 2.0), (WrapMode::Black, 0.0), (WrapMode::Clamp, 3.0)] {
+        let t = float_image(four(), |desc| desc.wrap = wrap);
+        assert_eq!(t.float(FIRST, &at(1.25, 0.25)), value, "{wrap:?}");
+    }
+}
+
+#[test]
+fn images_are_scaled_and_then_inverted() {
+    let t = float_image(four(), |desc| desc.scale = 0.25);
+    assert_eq!(t.float(FIRST, &at(0.75, 0.25)), 0.75);
+    let t = float_image(four(), |desc| {
+        desc.scale = 0.25;
+        desc.invert = true;
+    });
+    assert_eq!([at(0.75, 0.25), at(0.25, 0.75)].map(|ctx| t.float(FIRST, &ctx)), [0.25, 1.0]);
+    let t = float_image(four(), |desc| desc.invert = true);
+    assert_eq!(t.float(FIRST, &at(0.75, 0.25)), 0.0, "clamped");
+
+    let orange = Image::from_fn(1, 1, ["R", "G", "B"], |_, _| [0.9, 0.5, 2.5]);
+    let t = spectrum_image(orange, |desc| {
+        desc.scale = 0.5;
+        desc.invert = true;
+    });
+    let expected = spectrum::Spectrum::rgb_albedo(RgbColorSpace::srgb(), [0.55, 0.75, 0.0].into());
+    let found = t.spectrum(SpectrumTextureId(0), &at(0.1, 0.1), &lambda());
+    assert_spectrum(found, expected.sample(&lambda()), 1e-5);
+}
+
+#[test]
+fn filters_of_constant_images_are_constant() {
+    let wide = TextureContext {
+        p: Vec3::new(1.2, -0.8, 0.6),
+        dpdx: Vec3::new(0.05, 0.02, -0.03),
+        dpdy: Vec3::new(-0.01, 0.07, 0.04),
+        dudx: 0.11,
+        dudy: -0.02,
+        dvdx: 0.03,
+        dvdy: 0.2,
+        ..at(0.3, 0.9)
+    };
+    let axes = [Vec3::X, Vec3::new(0.2, 1.0, 0.0)];
+    for mapping in [
+        MappingDesc::default(),
+        MappingDesc::Spherical,
+        MappingDesc::Cylindrical,
+        MappingDesc::Planar { axes, delta: [0.1, 0.2] },
+    ] {
+        for filter in FILTERS {
+            let t = float_image(Image::from_fn(13, 8, ["Y"], |_, _| [0.625]), |desc| {
+                desc.filter = filter;
+                desc.mapping = mapping;
+            });
+            let pole = TextureContext { p: Vec3::Z, ..wide };
+            for ctx in [wide, at(0.2, 0.3), pole] {
+                let found = t.float(FIRST, &ctx);
+                assert!((found - 0.625).abs() < 1e-5, "{filter:?} {mapping:?}: {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn numbers_come_from_opacity_or_the_mean_of_colours() {
+    let rgba = |alpha: f32| Image::from_fn(1, 1, ["R", "G", "B", "A"], move |_, _| [0.3, 0.6, 0.9, alpha]);
+    assert_eq!(float_image(rgba(0.25), |_| ()).float(FIRST, &at(0.5, 0.5)), 0.25);
+    assert!((float_image(rgba(1.0), |_| ()).float(FIRST, &at(0.5, 0.5)) - 0.6).abs() < 1e-6);
+}
+
+#[test]
+fn colours_become_what_they_stand_for() {
+    let t = spectrum_image(Image::from_fn(1, 1, ["R", "G", "B"], |_, _| [2.0; 3]), |desc| desc.scale = 0.25);
+    let [albedo, unbounded, illuminant] =
+        [0, 1, 2].map(|i| t.spectrum(SpectrumTextureId(i), &at(0.5, 0.5), &lambda()));
+    let half = SampledSpectrum::splat(0.5);
+    assert_spectrum(albedo, half, 2e-3);
+    assert_spectrum(unbounded, half, 2e-3);
+    let white = RgbColorSpace::srgb().illuminant().sample(&lambda());
+    assert_spectrum(illuminant, white * 0.5, 5e-3 * white.max_component());
+}
+
+#[test]
+fn handles_are_ids_and_pyramids_are_shared() {
+    let mut scene = SceneDesc::default();
+    let image = push_image(&mut scene, four());
+    let number = scene.float_textures.push(FloatTextureDesc::new(TextureKind::Constant(0.5)));
+    let picture = SpectrumTextureDesc::new(TextureKind::Image(ImageTextureDesc::new(image)));
+    let first = scene.spectrum_textures.push(picture.clone());
+    let second = scene.spectrum_textures.push(picture);
+    let scaled = scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Scale {
+        texture: SpectrumDesc::from(0.5).into(),
+        scale: number.into(),
+    }));
+    let (mut t, diagnostics) = compiled(&scene);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+
+    let mut id = |handle, spectrum_type| {
+        t.spectrum_parameter(&Parameter::Texture(handle), spectrum_type, Span::NONE, &mut Vec::new())
+    };
+    let ids = [
+        id(first, SpectrumType::Albedo),
+        id(first, SpectrumType::Illuminant),
+        id(second, SpectrumType::Unbounded),
+    ];
+    let scaled = id(scaled, SpectrumType::Unbounded);
+    let pyramids = ids.map(|id| match t.spectrum_texture(id) {
+        Texture::Image(image) => image.lookup.pyramid.clone(),
+        other => panic!("{other:?}"),
+    });
+    assert!(Arc::ptr_eq(&pyramids[0], &pyramids[1]) && Arc::ptr_eq(&pyramids[0], &pyramids[2]));
+    assert_spectrum(t.spectrum(scaled, &at(0.0, 0.0), &lambda()), SampledSpectrum::splat(0.25), 1e-6);
+    let number = t.float_parameter(&Parameter::Texture(number));
+    assert_eq!(t.float(number, &at(0.0, 0.0)), 0.5);
+    let value = t.float_parameter(&0.75.into());
+    assert_eq!(t.float(value, &at(0.0, 0.0)), 0.75);
+}
+
+#[test]
+fn texture_space_is_where_the_author_put_it() {
+    let mut scene = SceneDesc::default();
+    let mut desc = FloatTextureDesc::new(TextureKind::Checkerboard {
+        textures: [1.0.into(), 0.0.into()],
+        mapping: None,
+    });
+    desc.world_from_texture = DMat4::from_translation(DVec3::X * 5.0) * DMat4::from_scale(DVec3::splat(2.0));
+    scene.float_textures.push(desc);
+    let render_from_world = DMat4::from_translation(DVec3::new(-100.0, 0.0, 0.0));
+    let t = compile(&scene, &render_from_world, &mut Vec::new());
+    // World x = 5..7 is the first cube.
+    for (world_x, value) in [(4.0, 0.0), (6.0, 1.0), (8.0, 0.0)] {
+        let p = Vec3::new(world_x - 100.0, 1.0, 1.0);
+        assert_eq!(t.float(FIRST, &TextureContext { p, ..TextureContext::default() }), value, "{world_x}");
+    }
+}
+
+#[test]
+fn what_is_not_drawn_is_said_once_and_has_a_stand_in() {
+    let (octaves, roughness) = (8, 0.5);
+    let mapping = MappingDesc::default();
+    fn colour(value: f32) -> Parameter<SpectrumDesc> {
+        Parameter::Value(SpectrumDesc::Constant(value))
+    }
+    for (kind, value) in [
+        (TextureKind::Bilerp { corners: [0.2, 0.0, 0.0, 0.4].map(SpectrumDesc::Constant), mapping }, 0.3),
+        (TextureKind::DirectionMix { textures: [colour(0.2), colour(0.4)], direction: Vec3::Y }, 0.3),
+        (TextureKind::Dots { inside: colour(0.2), outside: colour(0.4), mapping }, 0.3),
+        (TextureKind::Marble { octaves, roughness, scale: 1.0, variation: 0.2 }, 0.5),
+        (TextureKind::Fbm { octaves, roughness }, 0.5),
+        (TextureKind::Wrinkled { octaves, roughness }, 0.5),
+        (TextureKind::Windy, 0.5),
+        (TextureKind::Ptex { filename: "a.ptx".into(), encoding: EncodingDesc::Linear, scale: 1.0 }, 0.5),
+    ] {
+        let mut scene = SceneDesc::default();
+        scene.spectrum_textures.push(SpectrumTextureDesc::new(kind));
+        let (t, diagnostics) = compiled(&scene);
+        assert_eq!(
+            diagnostics.iter().map(|d| (d.code, d.is_error())).collect::<Vec<_>>(),
+            [("not-drawn", false)]
+        );
+        for i in 0..3 {
+            let found = t.spectrum(SpectrumTextureId(i), &at(0.1, 0.1), &lambda());
+            assert_spectrum(found, SampledSpectrum::splat(value), 1e-6);
+        }
+    }
+}
+
+#[test]
+fn references_go_backwards_and_not_too_far() {
+    let scale = |index| {
+        let texture = Parameter::Texture(Handle::new(index));
+        FloatTextureDesc::new(TextureKind::Scale { texture, scale: 1.0.into() })
+    };
+    let codes = |scene: &SceneDesc| compiled(scene).1.iter().map(|d| d.code).collect::<Vec<_>>();
+    for index in [0, 1, 7] {
+        let mut scene = SceneDesc::default();
+        scene.float_textures.push(scale(index));
+        assert_eq!(codes(&scene), ["texture-cycle"]);
+    }
+    let mut scene = SceneDesc::default();
+    scene.float_textures.push(FloatTextureDesc::new(TextureKind::Constant(1.0)));
+    for i in 0..64 {
+        scene.float_textures.push(scale(i));
+    }
+    assert!(codes(&scene).is_empty());
+    scene.float_textures.push(scale(64));
+    assert_eq!(codes(&scene), ["texture-depth"]);
+}
+
+#[test]
+fn values_without_sense_are_reported() {
+    let codes = |change: &dyn Fn(&mut SceneDesc)| {
+        let mut scene = SceneDesc::default();
+        change(&mut scene);
+        compiled(&scene).1.iter().map(|d| d.code).collect::<Vec<_>>()
+    };
+    let constant = |value: SpectrumDesc| {
+        move |scene: &mut SceneDesc| {
+            scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Constant(value.clone())));
+        }
+    };
+    assert_eq!(codes(&constant(SpectrumDesc::Named("metal-Unobtainium-eta".into()))), ["invalid-value"]);
+    assert_eq!(codes(&constant(SpectrumDesc::Blackbody(-3.0))), ["invalid-value"]);
+    assert_eq!(
+        codes(&constant(SpectrumDesc::Samples([(500.0, 1.0), (400.0, 1.0)].into()))),
+        ["invalid-value"]
+    );
+    assert!(codes(&constant(SpectrumDesc::rgb(2.0, 0.0, 0.0))).is_empty(), "it may be meant as light");
+    let image = |change: fn(&mut FloatTextureDesc, &mut ImageTextureDesc)| {
+        move |scene: &mut SceneDesc| {
+            let mut desc = FloatTextureDesc::new(TextureKind::Constant(0.0));
+            let mut image = ImageTextureDesc::new(push_image(scene, four()));
+            change(&mut desc, &mut image);
+            desc.kind = TextureKind::Image(image);
+            scene.float_textures.push(desc);
+        }
+    };
+    assert_eq!(codes(&image(|_, image| image.scale = f32::NAN)), ["invalid-value"]);
+    let anisotropic = image(|_, image| (image.filter, image.max_anisotropy) = (TextureFilter::Ewa, 0.0));
+    assert_eq!(codes(&anisotropic), ["invalid-value"]);
+    let flat = image(|texture, image| {
+        image.mapping = MappingDesc::Spherical;
+        texture.world_from_texture = DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    });
+    assert_eq!(codes(&flat), ["singular-transform"]);
+}
+
+#[test]
+fn spectra_are_made_for_their_use() {
+    let make = |desc: &SpectrumDesc, spectrum_type| {
+        let mut diagnostics = Vec::new();
+        let spectrum = compile_spectrum(desc, spectrum_type, Span::NONE, &mut diagnostics);
+        (spectrum, diagnostics.iter().map(|d| (d.code, d.is_error())).collect::<Vec<_>>())
+    };
+    let bright = SpectrumDesc::Rgb { rgb: [2.0, 2.0, 2.0], space: ColorSpaceDesc::Rec2020 };
+    let (albedo, warned) = make(&bright, SpectrumType::Albedo);
+    assert_eq!(warned, [("color-out-of-range", false)]);
+    assert!((albedo.at(550.0) - 1.0).abs() < 2e-3);
+    let (light, warned) = make(&bright, SpectrumType::Illuminant);
+    assert!(warned.is_empty());
+    let white = RgbColorSpace::rec2020().illuminant();
+    assert!((light.at(550.0) / white.at(550.0) - 2.0).abs() < 1e-2);
+    assert_eq!(make(&SpectrumDesc::Illuminant(ColorSpaceDesc::Rec2020), SpectrumType::Illuminant).0, white);
+    assert_eq!(
+        make(&SpectrumDesc::rgb(-1.0, 0.0, 0.0), SpectrumType::Unbounded).1[0].0,
+        "color-out-of-range"
+    );
+    assert!(make(&SpectrumDesc::rgb(f32::NAN, 0.0, 0.0), SpectrumType::Albedo).1[0].1);
+    assert!(make(&SpectrumDesc::Constant(f32::INFINITY), SpectrumType::Unbounded).1[0].1);
+    assert!(make(&SpectrumDesc::Named("glass-BK7".into()), SpectrumType::Unbounded).1.is_empty());
+}
