@@ -1,13 +1,12 @@
 //! From what a scene's author said of algorithm and sampler to an integrator.
 
 use description::{
-    ColorSpaceDesc, Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind,
-    SceneDesc, SppmDesc,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind, SceneDesc, SppmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler};
 use scene::light_sampler::LightSamplerKind;
-use spectrum::RgbColorSpace;
+use scene::texture::color_space;
 
 use crate::{
     AmbientOcclusion, Integrator, Path, PathSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator,
@@ -104,12 +103,7 @@ impl Builder<'_> {
                     let message = format!("`maxdistance` is a number above 0, not {max_distance}");
                     self.error(message, "maxdistance");
                 }
-                let color_space = match self.desc.film.color_space {
-                    ColorSpaceDesc::Srgb => RgbColorSpace::srgb(),
-                    ColorSpaceDesc::DciP3 => RgbColorSpace::dci_p3(),
-                    ColorSpaceDesc::Rec2020 => RgbColorSpace::rec2020(),
-                    ColorSpaceDesc::Aces2065_1 => RgbColorSpace::aces2065_1(),
-                };
+                let color_space = color_space(self.desc.film.color_space);
                 pixels(AmbientOcclusion::new(cos_sample, max_distance, color_space), sampler)
             }
             &IntegratorDesc::RandomWalk { max_depth } => {
