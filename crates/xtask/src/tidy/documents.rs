@@ -30,8 +30,10 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         }
     }
     let readme = tree.text(README).unwrap_or_default();
-    let defined = defined_options(tree.text(ARGUMENTS).unwrap_or_default());
+    let mut defined = defined_options(tree.text(ARGUMENTS).unwrap_or_default());
     let told = told_options(readme);
+    // Clap adds this one itself.
+    defined.insert("help".into());
     for option in told.difference(&defined) {
         findings.push(Finding::new(README, 0, format!("`--{option}` is no option of alhazen")));
     }
