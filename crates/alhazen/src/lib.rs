@@ -1,17 +1,29 @@
 //! alhazen, a physically based renderer, as a library.
 //!
-//! The crates of the house under their names, and what joins them into a program.
+//! The crates of the house under their names, and what joins them into a program: [`Overrides`] change a scene before it is
+//! rendered, a [`Job`] takes it from description to picture, [`write_picture`] puts that into a file. [`render_file`] does
+//! all of it but the last.
 
 pub use description;
 pub use film;
 pub use geometry;
 pub use image;
 pub use import;
+pub use integrators;
 pub use math;
 pub use sampling;
 pub use scattering;
+pub use scene;
 pub use spectrum;
 
+mod job;
+mod names;
 mod overrides;
+mod picture;
+mod settings;
 
-pub use overrides::{INTEGRATORS, OverrideError, Overrides, SETTINGS, Setting};
+pub use job::{CompiledJob, Job, RenderError, render_file};
+pub use names::{INTEGRATORS, integrator_name, sampler_name};
+pub use overrides::{OverrideError, Overrides};
+pub use picture::write_picture;
+pub use settings::{SETTINGS, Setting};

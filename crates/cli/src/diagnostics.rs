@@ -8,6 +8,8 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use serde_json::{Value, json};
 
+use crate::console::warn;
+
 /// Most bytes of a line that are shown after what a message is about.
 const MARGIN: usize = 200;
 
@@ -18,11 +20,11 @@ const LONGEST_START: usize = 10_000;
 pub fn print(diagnostics: &[Diagnostic], sources: &SourceMap) {
     let renderer = renderer(std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none());
     for diagnostic in diagnostics {
-        eprintln!("{}\n", render(diagnostic, sources, &renderer));
+        warn(format_args!("{}\n", render(diagnostic, sources, &renderer)));
     }
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
     if let Some(summary) = summary(errors, diagnostics.len() - errors) {
-        eprintln!("{summary}");
+        warn(summary);
     }
 }
 

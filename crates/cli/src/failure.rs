@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use alhazen::description::{Diagnostic, SourceMap};
 use serde_json::{Value, json};
 
+use crate::console::{say, warn};
 use crate::diagnostics;
 
 /// Why a command ended without its result.
@@ -28,10 +29,10 @@ impl Failure {
     /// Tells the failure.
     pub fn report(&self, as_json: bool) -> ExitCode {
         if as_json {
-            println!("{}", self.to_json());
+            say(self.to_json());
         } else {
             match self {
-                Self::Usage(message) | Self::Input(message) => eprintln!("error: {message}"),
+                Self::Usage(message) | Self::Input(message) => warn(format_args!("error: {message}")),
                 Self::Scene { diagnostics, sources } => diagnostics::print(diagnostics, sources),
             }
         }

@@ -9,6 +9,7 @@ use alhazen::image::{
 use serde_json::json;
 
 use crate::args::{Convert, Depth, Diff, Metric};
+use crate::console::say;
 use crate::failure::{Failure, about_file};
 use crate::output;
 
@@ -41,9 +42,7 @@ pub fn diff(arguments: &Diff) -> Result<(), Failure> {
         write(&picture, path, &WriteOptions::default()).map_err(|error| about_file(path, error))?;
     }
     if arguments.json {
-        println!(
-            "{}",
-            json!({
+        say(json!({
                 "status": "done",
                 "mse": difference.mse,
                 "relmse": difference.rel_mse,
@@ -52,23 +51,22 @@ pub fn diff(arguments: &Diff) -> Result<(), Failure> {
                 "mean_a": difference.reference_mean,
                 "mean_b": difference.test_mean,
                 "non_finite": difference.non_finite,
-                "output": arguments.output,
-            })
-        );
+                "output": name(&arguments.output),
+        }));
         return Ok(());
     }
     let means = |mean: [f64; 3]| mean.map(|channel| format!("{channel:.6}")).join("  ");
-    println!("MSE        {:.6e}", difference.mse);
-    println!("relMSE     {:.6e}", difference.rel_mse);
-    println!("FLIP       {:.6}", flip.mean);
-    println!("max error  {:.6}", difference.max_error);
-    println!("mean of A  {}", means(difference.reference_mean));
-    println!("mean of B  {}", means(difference.test_mean));
+    say(format_args!("MSE        {:.6e}", difference.mse));
+    say(format_args!("relMSE     {:.6e}", difference.rel_mse));
+    say(format_args!("FLIP       {:.6}", flip.mean));
+    say(format_args!("max error  {:.6}", difference.max_error));
+    say(format_args!("mean of A  {}", means(difference.reference_mean)));
+    say(format_args!("mean of B  {}", means(difference.test_mean)));
     if difference.non_finite > 0 {
-        println!("{} values are not finite and left out", difference.non_finite);
+        say(format_args!("{} values are not finite and left out", difference.non_finite));
     }
     if let Some(path) = &arguments.output {
-        println!("error picture in {}", path.display());
+        say(format_args!("error picture in {}", path.display()));
     }
     Ok(())
 }
@@ -87,16 +85,13 @@ pub fn convert(arguments: &Convert) -> Result<(), Failure> {
     write(&image, &arguments.output, &WriteOptions { depth })
         .map_err(|error| about_file(&arguments.output, error))?;
     if arguments.json {
-        println!(
-            "{}",
-            json!({
+        say(json!({
                 "status": "done",
-                "output": arguments.output,
+                "output": name(&arguments.output),
                 "width": image.width(),
                 "height": image.height(),
                 "channels": image.channels(),
-            })
-        );
+        }));
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The command line of alhazen.
 
 mod args;
+mod console;
 mod diagnostics;
 mod failure;
 mod image;

@@ -8,7 +8,7 @@
 //! by von Kries' scaling in Bradford's cone space.
 
 use spectrum::{
-    CIE_Y_INTEGRAL, Matrix3, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum,
+    CIE_Y_INTEGRAL, Matrix3, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, daylight,
     white_balance, xyz_from,
 };
 
@@ -23,7 +23,7 @@ impl PixelSensor {
     /// The ideal XYZ sensor. `white_temperature`, in kelvin, is that of the daylight that shall look white in `color_space`;
     /// `None` leaves colours as they are.
     pub fn cie1931(color_space: &RgbColorSpace, white_temperature: Option<f32>, imaging_ratio: f32) -> Self {
-        let balance = |kelvin| white_balance(daylight_chromaticity(kelvin), color_space.white());
+        let balance = |kelvin| white_balance(daylight(kelvin).to_xyz().xy(), color_space.white());
         Self {
             scale: imaging_ratio * CIE_Y_INTEGRAL,
             xyz_from_sensor_rgb: white_temperature.map_or(Matrix3::IDENTITY, balance),
@@ -43,27 +43,10 @@ impl PixelSensor {
     }
 }
 
-/// The chromaticity of daylight of a correlated colour temperature, by the CIE's formula for its D illuminants
-/// [Wyszecki 1982 §3.3.4]; below 4000 K, where that ends, the chromaticity of a black body.
-fn daylight_chromaticity(kelvin: f32) -> [f32; 2] {
-    // The illuminants are named after temperatures on the scale of 1931, when Planck's second constant was 1.4380 cm K.
-    let kelvin = f64::from(kelvin) * 1.4388 / 1.4380;
-    if kelvin < 4000.0 {
-        return Spectrum::blackbody(kelvin as f32).to_xyz().xy();
-    }
-    let t = 1000.0 / kelvin;
-    let x = if kelvin <= 7000.0 {
-        ((-4.6070 * t + 2.9678) * t + 0.09911) * t + 0.244063
-    } else {
-        ((-2.0064 * t + 1.9018) * t + 0.24748) * t + 0.237040
-    };
-    let y = (-3.0 * x + 2.870) * x - 0.275;
-    [x as f32, y as f32]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use spectrum::Spectrum;
 
     /// The mean response to a spectrum over stratified wavelengths.
     fn response(sensor: &PixelSensor, light: &Spectrum) -> [f32; 3] {
@@ -121,13 +104,5 @@ mod tests {
             let balanced = output(&PixelSensor::cie1931(space, Some(kelvin), 1.0), space, &light);
             assert_close(balanced, [1.0; 3], 0.005);
         }
-    }
-
-    #[test]
-    fn daylight_of_6500_kelvin_is_d65() {
-        let [x, y] = daylight_chromaticity(6500.0);
-        assert!((x - 0.31272).abs() < 1e-4 && (y - 0.32903).abs() < 1e-4, "{x} {y}");
-        let (below, above) = (daylight_chromaticity(6990.0), daylight_chromaticity(7010.0));
-        assert!((below[0] - above[0]).abs() < 1e-3, "no jump where the formula changes");
     }
 }

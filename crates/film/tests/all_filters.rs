@@ -18,7 +18,7 @@ fn all() -> Vec<(&'static str, Filter)> {
         ("sharp mitchell", FilterDesc::Mitchell { radius: [2.0, 1.5], b: 0.0, c: 0.5 }),
         ("sinc", FilterDesc::LanczosSinc { radius: [4.0, 4.0], tau: 3.0 }),
     ];
-    describe.into_iter().map(|(name, desc)| (name, Filter::new(&desc).unwrap())).collect()
+    describe.into_iter().map(|(name, desc)| (name, Filter::new(&desc).expect("a filter"))).collect()
 }
 
 fn support(filter: &Filter) -> [[f32; 2]; 2] {
@@ -142,14 +142,12 @@ fn weighted_samples_estimate_integrals() {
         let samples: Vec<_> =
             (0..200_000).map(|_| filter.sample(Vec2::from_array(random.get_2d()))).collect();
         let mean_weight = samples.iter().map(|s| f64::from(s.weight)).sum::<f64>() / samples.len() as f64;
-        for axis in 0..2 {
+        for (axis, expected) in expected.into_iter().enumerate() {
             // A ratio of means, linearised: the mean of w (g − expected) is zero, up to the coarseness of the table.
             let table = 2e-3 * f64::from(filter.radius()[axis]).powi(2);
             let moments: Moments = samples
                 .iter()
-                .map(|s| {
-                    f64::from(s.weight) / mean_weight * (f64::from(s.offset[axis]).powi(2) - expected[axis])
-                })
+                .map(|s| f64::from(s.weight) / mean_weight * (f64::from(s.offset[axis]).powi(2) - expected))
                 .collect();
             if moments.mean.abs() > table {
                 t_test(&moments, 0.0, 2 * filters.len())

@@ -15,7 +15,7 @@ fn scene(resolution: [i32; 2]) -> SceneDesc {
 }
 
 fn film_of(desc: &SceneDesc) -> Film {
-    compile(desc).unwrap().film
+    compile(desc).expect("a film").film
 }
 
 #[derive(Clone, Copy, Debug)]

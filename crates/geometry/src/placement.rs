@@ -72,6 +72,15 @@ impl Placement {
         DVec3::new(i.x_axis.truncate().dot(n), i.y_axis.truncate().dot(n), i.z_axis.truncate().dot(n))
     }
 
+    /// Brings out a unit normal and its change: the change of the unit normal that comes out.
+    #[inline]
+    pub fn normal_change(&self, n: DVec3, dn: DVec3) -> Vec3 {
+        let (n, dn) = (self.normal(n), self.normal(dn));
+        let squared = n.length_squared();
+        let change = (dn - n * (n.dot(dn) / squared)) / squared.sqrt();
+        if change.is_finite() { change.as_vec3() } else { Vec3::ZERO }
+    }
+
     /// Brings out a normal and makes it a unit vector; zero where it has no direction.
     #[inline]
     pub fn unit_normal(&self, n: DVec3) -> Normal3 {

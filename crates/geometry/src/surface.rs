@@ -77,7 +77,7 @@ impl SurfacePoint {
     /// The same point seen from outside of what is placed. The error grows by what a ray loses that is spawned out there and brought back in again.
     pub(crate) fn placed(&self, placement: &Placement, ray: &Ray) -> Self {
         let vector = |v: Vector3| placement.vector(v.as_dvec3());
-        let normal = |n: Normal3| placement.normal(n.as_dvec3()).as_vec3();
+        let change = |n: Normal3, dn: Normal3| placement.normal_change(n.as_dvec3(), dn.as_dvec3());
         let unit = |n: Normal3| placement.unit_normal(n.as_dvec3());
         let return_loss = self.p.p.abs() * (2.0 * MACHINE_EPSILON);
         let n = unit(self.n);
@@ -87,14 +87,14 @@ impl SurfacePoint {
             uv: self.uv,
             dpdu: vector(self.dpdu),
             dpdv: vector(self.dpdv),
-            dndu: normal(self.dndu),
-            dndv: normal(self.dndv),
+            dndu: change(self.n, self.dndu),
+            dndv: change(self.n, self.dndv),
             shading: Shading {
                 n: face_forward(unit(self.shading.n), n),
                 dpdu: vector(self.shading.dpdu),
                 dpdv: vector(self.shading.dpdv),
-                dndu: normal(self.shading.dndu),
-                dndv: normal(self.shading.dndv),
+                dndu: change(self.shading.n, self.shading.dndu),
+                dndv: change(self.shading.n, self.shading.dndv),
             },
             wo: (-ray.d).normalize_or_zero(),
             time: ray.time,

@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::*;
 use alhazen_geometry::*;
+use common::*;
 use math::*;
 use sampling::Rng;
 

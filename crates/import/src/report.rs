@@ -1,12 +1,15 @@
 //! The messages of one import.
 
+use std::collections::HashSet;
+
 use description::{Diagnostic, Severity, Span};
 
-/// Collects messages; past a limit it only counts, so that a file of noise does not fill memory.
+/// Collects messages up to a limit, so that a file of noise does not fill memory.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     diagnostics: Vec<Diagnostic>,
-    left_out: usize,
+    is_full: bool,
+    given_once: HashSet<String>,
 }
 
 impl Report {
@@ -16,8 +19,13 @@ impl Report {
         if self.diagnostics.len() < Self::LIMIT {
             self.diagnostics.push(diagnostic);
         } else {
-            self.left_out += 1;
+            self.is_full = true;
         }
+    }
+
+    /// Whether no more messages are taken.
+    pub(crate) fn is_full(&self) -> bool {
+        self.is_full
     }
 
     pub(crate) fn error(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
@@ -28,14 +36,22 @@ impl Report {
         self.push(Diagnostic::warning(code, message, span));
     }
 
+    /// A warning that is given for its first place only.
+    pub(crate) fn warning_once(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        let message = message.into();
+        if self.given_once.insert(message.clone()) {
+            self.warning(code, message, span);
+        }
+    }
+
     /// All messages in the order of the text that they are about.
     pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
         self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span().file, diagnostic.span().start));
-        if self.left_out > 0 {
+        if self.is_full {
             self.diagnostics.push(Diagnostic {
                 severity: Severity::Error,
                 code: "too-many",
-                message: format!("{} more messages are left out", self.left_out),
+                message: format!("only the first {} messages are shown", Self::LIMIT),
                 labels: Vec::new(),
                 help: None,
             });

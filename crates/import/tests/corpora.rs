@@ -58,24 +58,14 @@ fn good_scenes_are_read_without_errors() {
         let scenes = files(&folder, "pbrt");
         assert!(!scenes.is_empty());
         for path in scenes {
-            // Parts of scenes, which their scenes include.
-            if matches!(
-                path.file_name().and_then(|name| name.to_str()),
-                Some("geometry.pbrt" | "killeroo.pbrt")
-            ) {
-                continue;
+            let text = std::fs::read(&path).unwrap();
+            if !text.windows(10).any(|bytes| bytes == b"WorldBegin") {
+                continue; // A part of a scene, which the scene includes.
             }
             let imported = import(&path, &Files);
             assert!(!imported.has_errors(), "{}:\n{}", path.display(), shown(&imported));
             let desc = &imported.desc;
             assert!(desc.shapes.len() + desc.instances.len() > 0, "{} is empty", path.display());
-            assert!(
-                desc.lights.len() + desc.area_lights.len() > 0
-                    || path.ends_with("integrator-ao.pbrt")
-                    || path.ends_with("integrator-ao-maxdistance.pbrt"),
-                "{} is dark",
-                path.display()
-            );
         }
     }
 }

@@ -38,7 +38,7 @@ impl Quadric {
     pub fn surface(&self, local: &Local, ray: &Ray) -> SurfacePoint {
         let vector = |v: DVec3| self.placement.vector(v);
         let side = if self.flips { -1.0 } else { 1.0 };
-        let dn = weingarten(local).map(|n| (self.placement.normal(n) * side).as_vec3());
+        let dn = weingarten(local).map(|dn| self.placement.normal_change(local.n, dn) * side);
         SurfacePoint::new(
             self.point(local.p),
             self.normal(local.n),

@@ -162,7 +162,7 @@ impl<'a> Interpreter<'a> {
     fn file(&mut self, file: FileId) {
         let text = self.sources.shared_text(file);
         let mut tokens = Tokens::new(&text, file);
-        loop {
+        while !self.report.is_full() {
             let token = tokens.next();
             match token.kind {
                 TokenKind::End => break,
@@ -221,11 +221,15 @@ impl<'a> Interpreter<'a> {
             "AttributeBegin" => self.begin_block(BlockKind::Attribute, span)?,
             "AttributeEnd" => self.end_block(BlockKind::Attribute, span)?,
             "TransformBegin" => {
-                self.report.warning("deprecated", "`TransformBegin` is now written `AttributeBegin`", span);
+                self.report.warning_once(
+                    "deprecated",
+                    "`TransformBegin` is now written `AttributeBegin`",
+                    span,
+                );
                 self.begin_block(BlockKind::Attribute, span)?;
             }
             "TransformEnd" => {
-                self.report.warning("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
+                self.report.warning_once("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
                 self.end_block(BlockKind::Attribute, span)?;
             }
             "Attribute" => self.attribute(tokens)?,

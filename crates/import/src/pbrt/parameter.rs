@@ -174,7 +174,7 @@ fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<Paramet
     };
     if let Some(kind) = renamed {
         let message = format!("the parameter type `{name}` is now called `{}`", kind.name());
-        report.warning("deprecated", message, span);
+        report.warning_once("deprecated", message, span);
         return renamed;
     }
     let message = format!("there is no parameter type `{name}`");

@@ -396,6 +396,12 @@ impl<'b, 'a> Reader<'b, 'a> {
             (ParameterType::Float, Values::Floats(values)) if values.len() == 1 => {
                 Some(SpectrumDesc::Constant(values[0]))
             }
+            (ParameterType::Blackbody, Values::Floats(values)) if values.len() == 2 => {
+                let message =
+                    format!("`{name}` takes one temperature; its brightness is now the light's `scale`");
+                self.refuse(name, message);
+                None
+            }
             (ParameterType::Blackbody, Values::Floats(values)) if values.len() == 1 => {
                 if values[0] > 0.0 {
                     return Some(SpectrumDesc::Blackbody(values[0]));

@@ -165,8 +165,7 @@ impl<'a> Builder<'a> {
         let found = self.float_textures.get(&name.value).copied();
         if found.is_none() {
             let other = self.spectrum_textures.contains_key(&name.value).then_some("a spectrum texture");
-            let known: Vec<_> = self.float_textures.keys().cloned().collect();
-            self.unknown_reference("float texture", name, other, &known);
+            unknown_reference(&mut self.report, "float texture", name, other, &self.float_textures);
         }
         found
     }
@@ -176,8 +175,7 @@ impl<'a> Builder<'a> {
         let found = self.spectrum_textures.get(&name.value).copied();
         if found.is_none() {
             let other = self.float_textures.contains_key(&name.value).then_some("a float texture");
-            let known: Vec<_> = self.spectrum_textures.keys().cloned().collect();
-            self.unknown_reference("spectrum texture", name, other, &known);
+            unknown_reference(&mut self.report, "spectrum texture", name, other, &self.spectrum_textures);
         }
         found
     }
@@ -186,8 +184,7 @@ impl<'a> Builder<'a> {
     fn named_material(&mut self, name: &Spanned<String>) -> Option<Handle<MaterialDesc>> {
         let found = self.materials.get(&name.value).copied();
         if found.is_none() {
-            let known: Vec<_> = self.materials.keys().cloned().collect();
-            self.unknown_reference("material", name, None, &known);
+            unknown_reference(&mut self.report, "material", name, None, &self.materials);
         }
         found
     }
@@ -207,27 +204,9 @@ impl<'a> Builder<'a> {
         }
         let found = self.media.get(&name.value).copied();
         if found.is_none() {
-            let known: Vec<_> = self.media.keys().cloned().collect();
-            self.unknown_reference("medium", name, None, &known);
+            unknown_reference(&mut self.report, "medium", name, None, &self.media);
         }
         found
-    }
-
-    fn unknown_reference(
-        &mut self,
-        what: &str,
-        name: &Spanned<String>,
-        other: Option<&str>,
-        known: &[String],
-    ) {
-        let mut known: Vec<_> = known.iter().map(String::as_str).collect();
-        known.sort_unstable();
-        let message = match other {
-            Some(other) => format!("`{}` is {other}; a {what} is needed here", name.value),
-            None => format!("there is no {what} `{}`", name.value),
-        };
-        let diagnostic = Diagnostic::error("unknown-reference", message, name.span);
-        self.report.push(Diagnostic { help: did_you_mean(&name.value, known), ..diagnostic });
     }
 
     /// A spectrum by its name in the format or from a file of pairs of wavelength and value.
@@ -251,4 +230,25 @@ impl<'a> Builder<'a> {
         }
         self.spectra[&path].clone().map(SpectrumDesc::Samples)
     }
+}
+
+/// Reports a name that is in no table; `other` is what it names instead.
+fn unknown_reference<T>(
+    report: &mut Report,
+    what: &str,
+    name: &Spanned<String>,
+    other: Option<&str>,
+    table: &HashMap<String, Handle<T>>,
+) {
+    if report.is_full() {
+        return;
+    }
+    let mut known: Vec<_> = table.keys().map(String::as_str).collect();
+    known.sort_unstable();
+    let message = match other {
+        Some(other) => format!("`{}` is {other}; a {what} is needed here", name.value),
+        None => format!("there is no {what} `{}`", name.value),
+    };
+    let diagnostic = Diagnostic::error("unknown-reference", message, name.span);
+    report.push(Diagnostic { help: did_you_mean(&name.value, known), ..diagnostic });
 }

@@ -5,18 +5,17 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin,
-    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
+    CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
+    SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
 };
 use rayon::prelude::*;
 
-use super::Builder;
+use super::{Builder, unknown_reference};
 use crate::assets::{AssetSource, read_unpacked};
 use crate::mesh::{Format, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
-use crate::suggest::did_you_mean;
 
 const TYPES: [&str; 9] =
     ["sphere", "cylinder", "disk", "plane", "trianglemesh", "bilinearmesh", "plymesh", "curve", "loopsubdiv"];
@@ -90,12 +89,7 @@ impl Builder<'_> {
         }
         for instance in statements.instances.drain(..) {
             let Some(&object) = table.get(&instance.object.value) else {
-                let message = format!("there is no object `{}`", instance.object.value);
-                let mut known: Vec<_> = table.keys().map(String::as_str).collect();
-                known.sort_unstable();
-                let help = did_you_mean(&instance.object.value, known);
-                let diagnostic = Diagnostic::error("unknown-reference", message, instance.object.span);
-                self.report.push(Diagnostic { help, ..diagnostic });
+                unknown_reference(&mut self.report, "object", &instance.object, None, &table);
                 continue;
             };
             let built = InstanceDesc { object, world_from_object: instance.world_from_object };

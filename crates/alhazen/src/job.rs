@@ -1,0 +1,135 @@
+//! A scene on its way to a picture: compiled, rendered, developed.
+
+use std::path::Path;
+
+use description::{CameraKind, Diagnostic, SceneDesc};
+use film::{Film, Rejected};
+use image::{Attribute, Image, ImageMetadata};
+use import::{AssetSource, Imported};
+use integrators::{Cancelled, Control, Integrator, Progress};
+use scene::Scene;
+
+use crate::{OverrideError, Overrides, integrator_name, sampler_name};
+
+/// Everything that one render needs, and the film that holds what it has found so far.
+pub struct Job {
+    scene: Scene,
+    film: Film,
+    integrator: Box<dyn Integrator>,
+    samples_per_pixel: u32,
+    /// What the picture's header says.
+    header: Vec<(&'static str, Attribute)>,
+}
+
+/// What [`Job::compile`] gives.
+pub struct CompiledJob {
+    /// The job, not begun.
+    pub job: Job,
+    /// What will be drawn otherwise than described.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Job {
+    /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with it.
+    pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
+        let (scene, film) = match (scene::compile(desc), film::compile(desc)) {
+            (Ok(scene), Ok(film)) => (scene, film),
+            (scene, film) => {
+                let said = [
+                    scene.map_or_else(|errors| errors, |scene| scene.warnings),
+                    film.map_or_else(|errors| errors, |film| film.warnings),
+                ];
+                return Err(said.concat());
+            }
+        };
+        let job = Self {
+            scene: scene.scene,
+            film: film.film,
+            integrator: integrators::build(&desc.integrator),
+            samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
+            header: header(desc),
+        };
+        Ok(CompiledJob { job, warnings: [scene.warnings, film.warnings].concat() })
+    }
+
+    /// Renders all passes. Where the render is cancelled, the film has what was found until then.
+    pub fn render(&mut self, control: &Control) -> Result<Progress, Cancelled> {
+        integrators::render(self.integrator.as_mut(), &self.scene, &mut self.film, control)
+    }
+
+    /// The picture as it stands, with the scene's camera and settings in its header.
+    pub fn picture(&self) -> Image {
+        let mut picture = self.film.develop();
+        for (name, value) in &self.header {
+            picture.metadata.set(name, value.clone());
+        }
+        picture
+    }
+
+    /// The film as it stands.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// How many samples a pixel gets.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.samples_per_pixel
+    }
+
+    /// The samples that were refused, because they were no numbers.
+    pub fn rejected(&self) -> Rejected {
+        self.film.rejected()
+    }
+}
+
+/// Why [`render_file`] gives no picture.
+#[derive(Debug)]
+pub enum RenderError {
+    /// The scene is wrong; with everything there is to say about it.
+    Scene(Box<Imported>),
+    /// A change to the scene makes no sense.
+    Override(OverrideError),
+    /// The render was cancelled.
+    Cancelled,
+}
+
+/// Renders a scene file: import, change, compile, render, develop.
+pub fn render_file(
+    path: impl AsRef<Path>,
+    assets: &dyn AssetSource,
+    overrides: &Overrides,
+    control: &Control,
+) -> Result<Image, RenderError> {
+    let mut imported = import::import(path, assets);
+    if imported.has_errors() {
+        return Err(RenderError::Scene(Box::new(imported)));
+    }
+    overrides.apply(&mut imported.desc).map_err(RenderError::Override)?;
+    let compiled = Job::compile(&imported.desc).map_err(|errors| {
+        imported.diagnostics.extend(errors);
+        RenderError::Scene(Box::new(imported))
+    })?;
+    let mut job = compiled.job;
+    job.render(control).map_err(|Cancelled| RenderError::Cancelled)?;
+    Ok(job.picture())
+}
+
+/// Camera and settings as attributes of a picture.
+fn header(desc: &SceneDesc) -> Vec<(&'static str, Attribute)> {
+    let camera = match &desc.camera.kind {
+        CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
+        CameraKind::Orthographic { .. } => "orthographic".into(),
+        CameraKind::Spherical { .. } => "spherical".into(),
+        CameraKind::Realistic(_) => "realistic".into(),
+    };
+    let transform = desc.camera.camera_from_world.start.as_mat4();
+    vec![
+        (ImageMetadata::SOFTWARE, Attribute::Text(concat!("alhazen ", env!("CARGO_PKG_VERSION")).into())),
+        (ImageMetadata::WORLD_TO_CAMERA, Attribute::Matrix(transform)),
+        ("camera", Attribute::Text(camera)),
+        ("integrator", Attribute::Text(integrator_name(&desc.integrator).into())),
+        ("sampler", Attribute::Text(sampler_name(&desc.sampler.kind).into())),
+        ("samplesPerPixel", Attribute::Integer(desc.sampler.pixel_samples)),
+        ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
+    ]
+}

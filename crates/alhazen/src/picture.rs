@@ -1,0 +1,58 @@
+//! Developed films written to files.
+
+use std::path::Path;
+
+use image::{Chromaticities, Format, Image, ImageError, WriteOptions};
+use spectrum::{Rgb, RgbColorSpace};
+
+/// Writes a picture in the format of the name's extension. EXR files keep the picture's colour space and everything that its
+/// header says; other formats cannot tell their colour space, and get sRGB.
+pub fn write_picture(picture: &Image, path: impl AsRef<Path>) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    let options = WriteOptions::default();
+    match (Format::from_name(&path.to_string_lossy()), color_space(picture.metadata.chromaticities)) {
+        (Some(Format::Exr), _) | (_, None) => image::write(picture, path, &options),
+        (_, Some(space)) => image::write(&in_srgb(picture, space), path, &options),
+    }
+}
+
+/// The colour space with these primaries, unless it is sRGB, or none that is known.
+fn color_space(chromaticities: Option<Chromaticities>) -> Option<&'static RgbColorSpace> {
+    let Chromaticities { red, green, blue, white } = chromaticities?;
+    RgbColorSpace::from_chromaticities([red, green, blue], white)
+        .filter(|&space| space != RgbColorSpace::srgb())
+}
+
+fn in_srgb(picture: &Image, space: &RgbColorSpace) -> Image {
+    let matrix = space.convert(RgbColorSpace::srgb());
+    let mut converted = Image::from_fn(picture.width(), picture.height(), ["R", "G", "B"], |x, y| {
+        Rgb::from(matrix.apply_f32(picture.rgb(x, y))).to_array()
+    });
+    converted.metadata = picture.metadata.clone();
+    converted.metadata.chromaticities = None;
+    converted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_without_a_colour_space_get_srgb() {
+        let folder = std::env::temp_dir().join(format!("alhazen-picture-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let wide = RgbColorSpace::rec2020();
+        let grey_green = RgbColorSpace::srgb().convert(wide).apply_f32([0.2, 0.5, 0.3]);
+        let mut picture = Image::from_fn(2, 1, ["R", "G", "B"], |_, _| grey_green);
+        let [red, green, blue] = wide.primaries();
+        picture.metadata.chromaticities = Some(Chromaticities { red, green, blue, white: wide.white() });
+        for (name, expected, tolerance) in
+            [("a.exr", grey_green, 1e-3), ("a.pfm", [0.2, 0.5, 0.3], 1e-4), ("a.png", [0.2, 0.5, 0.3], 1e-2)]
+        {
+            write_picture(&picture, folder.join(name)).unwrap();
+            let read = Image::open(folder.join(name)).unwrap().rgb(1, 0);
+            assert!((0..3).all(|c| (read[c] - expected[c]).abs() < tolerance), "{name}: {read:?}");
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+}

@@ -1,0 +1,91 @@
+//! No bytes, however wrong, make the readers panic, hang or take much memory.
+
+use alhazen_import::{MemoryAssets, import, read_obj, read_ply};
+use proptest::prelude::*;
+
+const SCENE: &str = r#"
+Option "seed" 3
+LookAt 0 1 -5 0 0 0 0 1 0
+Camera "perspective" "float fov" [40] "float screenwindow" [-1 1 -1 1]
+Film "rgb" "integer xresolution" 64 "string filename" "a.exr"
+WorldBegin
+AttributeBegin
+  ActiveTransform EndTime Translate 1 2 3 ActiveTransform All
+  MakeNamedMedium "m" "string type" "homogeneous" "rgb sigma_a" [1 1 1]
+  MediumInterface "m" ""
+  Texture "t" "spectrum" "checkerboard" "rgb tex1" [1 0 0]
+  MakeNamedMaterial "a" "string type" "diffuse" "texture reflectance" "t"
+  NamedMaterial "a"
+  AreaLightSource "diffuse" "blackbody L" 5000 "float scale" .1
+  Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2] "point2 uv" [0 0 1 0 0 1]
+  Shape "curve" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 1] "string type" "cylinder"
+AttributeEnd
+ObjectBegin "o" Shape "sphere" ObjectEnd
+ObjectInstance "o"
+LightSource "infinite" "spectrum L" [400 1 700 2]
+"#;
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n";
+
+const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf -1 -2 -3 -4\n";
+
+/// A text with some bytes replaced, removed or doubled.
+fn mutated(text: &'static str) -> impl Strategy<Value = Vec<u8>> {
+    prop::collection::vec((0..text.len(), any::<u8>(), 0..3_u8), 1..8).prop_map(move |changes| {
+        let mut bytes = text.as_bytes().to_vec();
+        for (at, byte, how) in changes {
+            let at = at % bytes.len();
+            match how {
+                0 => bytes[at] = byte,
+                1 => _ = bytes.remove(at),
+                _ => bytes.insert(at, bytes[at]),
+            }
+        }
+        bytes
+    })
+}
+
+fn import_bytes(bytes: Vec<u8>) -> bool {
+    import("a.pbrt", &MemoryAssets::default().with("a.pbrt", bytes)).has_errors()
+}
+
+#[test]
+fn the_unchanged_texts_are_read() {
+    assert!(!import_bytes(SCENE.into()));
+    assert!(read_ply(PLY.as_bytes()).is_ok() && read_obj(OBJ.as_bytes()).is_ok());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_bytes_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let _ = (read_ply(&bytes).is_ok(), read_obj(&bytes).is_ok(), import_bytes(bytes));
+    }
+
+    #[test]
+    fn random_words_do_no_harm(words in prop::collection::vec(
+        prop::sample::select(SCENE.split_whitespace().collect::<Vec<_>>()), 0..60,
+    )) {
+        let _ = import_bytes(words.join(" ").into_bytes());
+    }
+
+    #[test]
+    fn damaged_scenes_do_no_harm(bytes in mutated(SCENE)) {
+        let _ = import_bytes(bytes);
+    }
+
+    #[test]
+    fn damaged_meshes_do_no_harm(ply in mutated(PLY), obj in mutated(OBJ)) {
+        let _ = (read_ply(&ply).is_ok(), read_obj(&obj).is_ok());
+    }
+
+    #[test]
+    fn damaged_binary_meshes_do_no_harm(body in prop::collection::vec(any::<u8>(), 0..120), big: bool) {
+        let order = if big { "big" } else { "little" };
+        let mut bytes = PLY[..PLY.find("0 0 0").unwrap()].replace("ascii", &format!("binary_{order}_endian")).into_bytes();
+        bytes.extend(body);
+        let _ = read_ply(&bytes).is_ok();
+    }
+}

@@ -1,0 +1,262 @@
+//! One pinned message for every kind of mistake: code, place, words and help.
+
+use alhazen_import::{MemoryAssets, import};
+use description::Severity;
+
+/// Imports a text and shows its messages as `line:column severity[code] message (help)`.
+fn messages(text: &str) -> Vec<String> {
+    let assets = MemoryAssets::default()
+        .with("scene.pbrt", text)
+        .with("self.pbrt", "Include \"self.pbrt\"")
+        .with("double.pbrt", "Include \"double.pbrt\" Include \"double.pbrt\"")
+        .with("wide.pbrt", "Include \"narrow.pbrt\" ".repeat(101))
+        .with("narrow.pbrt", "Include \"empty.pbrt\" ".repeat(100))
+        .with("empty.pbrt", "")
+        .with("bad.ply", "ply\nformat ascii 1.0\nelement vertex 99999999\nproperty float x\nend_header\n0\n")
+        .with("bad.png", "no image")
+        .with("bad.spd", "400 1 500")
+        .with("bad.dat", "1 2 x 4");
+    let imported = import("scene.pbrt", &assets);
+    let show = |diagnostic: &description::Diagnostic| {
+        let position = imported.sources.position(diagnostic.span());
+        let severity = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let help = diagnostic.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));
+        let place = format!("{}:{}", position.line, position.column);
+        format!("{place} {severity}[{}] {}{help}", diagnostic.code, diagnostic.message)
+    };
+    imported.diagnostics.iter().map(show).collect()
+}
+
+/// Mistakes before `WorldBegin`, and what is said about them.
+const BEFORE_WORLD: &[(&str, &str)] = &[
+    (
+        r#"Camra "perspective""#,
+        "1:1 error[unknown-directive] there is no directive `Camra` (did you mean `Camera`?)",
+    ),
+    (
+        r#"SurfaceIntegrator "path""#,
+        "1:1 error[old-name] there is no directive `SurfaceIntegrator` (write `Integrator`)",
+    ),
+    ("17", "1:1 error[unexpected-token] a directive should stand here, not 17"),
+    ("LookAt 1 2 x", "1:12 error[unexpected-token] a number (9 in all) should stand here, not x"),
+    (
+        r#"Camera perspective"#,
+        "1:8 error[unexpected-token] its type in quotes should stand here, not perspective",
+    ),
+    (r#"Film "rgb"#, "1:6 error[unexpected-token] its type in quotes should stand here, not \"rgb"),
+    (r#""Film"#, "1:1 error[unterminated-string] this string has no closing quote on its line"),
+    (r#"Shape "sphere""#, "1:1 error[misplaced-directive] `Shape` may only stand after `WorldBegin`"),
+    (r#"Sampler "sobel""#, "1:9 error[unknown-type] there is no sampler `sobel` (did you mean `sobol`?)"),
+    (
+        r#"Sampler "sobol" "integer pixelsample" 4"#,
+        "1:17 error[unknown-parameter] `sobol` has no parameter `pixelsample` (did you mean `pixelsamples`?)",
+    ),
+    (
+        r#"Sampler "sobol" "float pixelsamples" 4"#,
+        "1:17 error[parameter-type] `pixelsamples` is of type `integer`, not `float` (write `\"integer pixelsamples\"`)",
+    ),
+    (
+        r#"Sampler "sobol" "integer pixelsamples" [4 5]"#,
+        "1:17 error[parameter-count] `pixelsamples` takes one value, not 2",
+    ),
+    (
+        r#"Sampler "sobol" "integer pixelsamples" 1.5"#,
+        "1:40 error[parameter-value] `pixelsamples` is of type `integer` and takes a whole number, not 1.5",
+    ),
+    (
+        r#"Sampler "sobol" "integer pixelsamples" 0"#,
+        "1:17 error[parameter-value] `pixelsamples` must be at least 1",
+    ),
+    (
+        r#"Sampler "sobol" "integer seed" 1 "integer seed" 2"#,
+        "1:34 error[duplicate-parameter] the parameter `seed` is given twice",
+    ),
+    (
+        r#"Sampler "sobol" "integer seed" [1"#,
+        "1:17 error[unclosed-bracket] the values of `seed` have no closing `]`",
+    ),
+    (r#"Sampler "sobol" "integer seed""#, "1:17 error[parameter-value] the parameter `seed` has no value"),
+    (
+        r#"Sampler "sobol" "seed" 1"#,
+        "1:17 error[parameter-declaration] `seed` does not declare a parameter (a parameter is declared by its type and its name, as in `\"float radius\"`)",
+    ),
+    (
+        r#"Sampler "sobol" "int seed" 1"#,
+        "1:17 error[unknown-parameter-type] there is no parameter type `int` (known here: `integer`, `float`, `bool`, `string`, `point2`, `vector2`, `point3`, `vector3`, `normal`, `spectrum`, `rgb`, `blackbody`, `texture`)",
+    ),
+    (
+        r#"Sampler "sobol" "string randomization" "owne""#,
+        "1:40 error[unknown-choice] `randomization` cannot be `owne` (did you mean `owen`?)",
+    ),
+    (
+        r#"Option "disablepixeljiter" true"#,
+        "1:8 error[unknown-option] there is no option `disablepixeljiter` (did you mean `disablepixeljitter`?)",
+    ),
+    (
+        r#"ColorSpace "sRBG""#,
+        "1:12 error[unknown-color-space] there is no colour space `sRBG` (did you mean `srgb`?)",
+    ),
+    (
+        r#"CoordSysTransform "camera""#,
+        "1:19 error[unknown-reference] there is no coordinate system `camera` yet",
+    ),
+    ("Scale 1 0 1", "1:1 error[singular-transform] this transform has no inverse: it makes space flat"),
+    ("Rotate 10 0 0 0", "1:1 error[singular-transform] the axis of this rotation has no direction"),
+    (
+        "LookAt 0 0 0 0 1 0 0 1 0",
+        "1:1 error[singular-transform] eye, target and up of this `LookAt` span no frame",
+    ),
+    (r#"Film "rgb" Film "rgb""#, "1:12 warning[replaced-statement] this `Film` replaces an earlier one"),
+    (
+        r#"Film "rgb" "bool savefp16" "false""#,
+        "1:28 warning[deprecated] `true` and `false` are written without quotes",
+    ),
+    (r#"Film "image""#, "1:6 error[old-name] there is no film `image` (write `rgb`)"),
+    (r#"Camera "realistic""#, "1:8 error[missing-parameter] `realistic` needs the parameter `lensfile`"),
+    (
+        r#"Camera "realistic" "string lensfile" "bad.dat""#,
+        "1:38 error[unreadable-lens] line 1 of `bad.dat` has `x`, no number",
+    ),
+    (
+        r#"Attribute "shap" "float radius" 2"#,
+        "1:11 error[unknown-attribute-target] attributes cannot be for `shap` (did you mean `shape`?)",
+    ),
+    (r#"Include "none.pbrt""#, "1:9 error[unreadable-file] cannot read `none.pbrt`: no such file"),
+    (r#"Include "self.pbrt""#, "1:9 error[include-limit] files include each other more than 64 deep"),
+];
+
+/// Mistakes after `WorldBegin`.
+const IN_WORLD: &[(&str, &str)] = &[
+    (r#"Sampler "sobol""#, "1:1 error[misplaced-directive] `Sampler` may only stand before `WorldBegin`"),
+    ("AttributeEnd", "1:1 error[unbalanced-block] `AttributeEnd` has no `AttributeBegin` before it"),
+    ("AttributeBegin", "1:1 error[unbalanced-block] this `AttributeBegin` has no `AttributeEnd`"),
+    (r#"NamedMaterial "rde" Shape "sphere""#, "1:15 error[unknown-reference] there is no material `rde`"),
+    (
+        r#"MakeNamedMaterial "red" "string type" "diffuse" NamedMaterial "rde" Shape "sphere""#,
+        "1:63 error[unknown-reference] there is no material `rde` (did you mean `red`?)",
+    ),
+    (
+        r#"MakeNamedMaterial "red" "rgb reflectance" [1 0 0]"#,
+        "1:19 error[missing-parameter] the material `red` needs its type, as in `\"string type\" \"…\"`",
+    ),
+    (
+        r#"MakeNamedMaterial "a" "string type" "mix" "string materials" ["a" "a"]"#,
+        "1:43 error[material-cycle] this mix of materials contains itself",
+    ),
+    (
+        r#"Material "glass""#,
+        "1:10 error[old-name] there is no material `glass` (write `dielectric`; for thin sheets `thindielectric`)",
+    ),
+    (
+        r#"Material "diffuse" "rgb Kd" [1 1 1]"#,
+        "1:20 error[old-name] `diffuse` has no parameter `Kd` (`Kd` is now `reflectance`)",
+    ),
+    (
+        r#"Material "diffuse" "rgb reflectance" [1 1]"#,
+        "1:20 error[parameter-count] `reflectance` has 2 numbers, which is no multiple of 3",
+    ),
+    (
+        r#"Material "diffuse" "color reflectance" [1 1 1]"#,
+        "1:20 error[old-name] there is no parameter type `color` (write `rgb`)",
+    ),
+    (
+        r#"Material "diffuse" "spectrum reflectance" "metal-Cu-et""#,
+        "1:43 error[unknown-spectrum] `metal-Cu-et` is neither the name of a spectrum nor a file (did you mean `metal-Cu-eta`?)",
+    ),
+    (
+        r#"Material "diffuse" "spectrum reflectance" "bad.spd""#,
+        "1:43 error[unreadable-spectrum] `bad.spd` does not hold pairs of increasing wavelength and value",
+    ),
+    (
+        r#"Material "diffuse" "texture reflectance" "t""#,
+        "1:42 error[unknown-reference] there is no spectrum texture `t`",
+    ),
+    (
+        r#"Texture "t" "float" "constant" Material "diffuse" "texture reflectance" "t""#,
+        "1:73 error[unknown-reference] `t` is a float texture; a spectrum texture is needed here",
+    ),
+    (
+        r#"Texture "t" "float" "constant" Texture "t" "float" "constant""#,
+        "1:40 error[redefinition] there is already a float texture `t`",
+    ),
+    (
+        r#"Texture "t" "color" "constant""#,
+        "1:13 error[old-name] a texture's values are of type `float` or `spectrum`, not `color` (write `spectrum`)",
+    ),
+    (
+        r#"Texture "t" "spectrum" "imagemap" "string filename" "bad.png""#,
+        "1:53 error[unreadable-image] cannot read the image `bad.png`: ",
+    ),
+    (
+        r#"Shape "plymesh" "string filename" "bad.ply""#,
+        "1:35 error[unreadable-mesh] cannot read the mesh `bad.ply`: mesh too large: 99999999 of `vertex` cannot lie in 2 bytes",
+    ),
+    (
+        r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 3]"#,
+        "1:53 error[parameter-value] `indices` has 3, but there are 3 points in `P`",
+    ),
+    (
+        r#"Shape "cone""#,
+        "1:7 error[old-name] there is no shape `cone` (there are no cones any more; write a mesh)",
+    ),
+    (r#"ObjectInstance "x""#, "1:16 error[unknown-reference] there is no object `x`"),
+    (
+        r#"ObjectBegin "x" AreaLightSource "diffuse" Shape "sphere" ObjectEnd"#,
+        "1:43 warning[ignored] shapes of an object do not shine: its area light is left out",
+    ),
+    ("WorldEnd", "1:1 warning[deprecated] `WorldEnd` is not needed any more: the world ends with the file"),
+];
+
+#[test]
+fn every_mistake_has_its_message() {
+    for (text, expected) in BEFORE_WORLD {
+        let mut found = messages(&format!("{text}\nWorldBegin"));
+        found.retain(|message| !message.contains("`WorldBegin`") || expected.contains("`WorldBegin`"));
+        assert!(
+            found.first().is_some_and(|found| found.starts_with(expected)),
+            "{text}\n{expected}\n{found:#?}"
+        );
+    }
+    for (text, expected) in IN_WORLD {
+        // `WorldBegin` stands behind spaces on a line of its own, so that columns count from the text.
+        let found = messages(&format!("WorldBegin\n{text}"));
+        let expected = expected.replacen("1:", "2:", 1);
+        assert_eq!(found.len(), 1, "{text}\n{found:#?}");
+        assert!(found[0].starts_with(&expected), "{text}\n{expected}\n{}", found[0]);
+    }
+    assert_eq!(
+        messages(""),
+        ["1:1 error[missing-world] the scene has no `WorldBegin`, so that nothing is in its world"]
+    );
+}
+
+#[test]
+fn all_mistakes_of_a_scene_come_in_one_run() {
+    let all: String =
+        IN_WORLD[3..16].iter().map(|(text, _)| format!("AttributeBegin {text} AttributeEnd\n")).collect();
+    let found = messages(&format!("Smapler \"sobol\"\nWorldBegin\n{all}\nShape \"spere\"\n"));
+    assert!(found.len() >= 13, "{found:#?}");
+    assert!(found[0].starts_with("1:1 error[unknown-directive]"));
+    assert!(found.last().is_some_and(|last| last.contains("did you mean `sphere`?")), "{found:#?}");
+}
+
+#[test]
+fn files_that_include_each_other_without_end_are_cut_off() {
+    for (file, message) in [("double", "more than 64 deep"), ("wide", "more than 10000 files are included")] {
+        let found = messages(&format!("Include \"{file}.pbrt\"\nWorldBegin"));
+        assert!(
+            found.iter().any(|found| found.contains("[include-limit]") && found.contains(message)),
+            "{found:#?}"
+        );
+    }
+}
+
+#[test]
+fn noise_does_not_fill_memory_with_messages() {
+    let found = messages(&"Noise 1 2 3\n".repeat(100_000));
+    assert!(found.len() < 1000);
+    assert!(found.last().is_some_and(|last| last.contains("[too-many]")));
+}
