@@ -88,6 +88,11 @@ impl Scene {
         &self.world
     }
 
+    /// The textures, which materials and lights refer to.
+    pub fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
     /// The sphere around everything that has an end.
     pub fn sphere(&self) -> SceneSphere {
         self.sphere
@@ -129,8 +134,13 @@ impl Scene {
         stats: &mut RayStats,
     ) -> bool {
         let s = &from.surface;
-        let ray = Ray::between(s.p, s.n, sample.p, sample.n, s.time);
-        !self.occluded(&ray, Ray::SHADOW_END, stats)
+        match sample.p {
+            Some(p) => {
+                let ray = Ray::between(s.p, s.n, p, sample.n, s.time);
+                !self.occluded(&ray, Ray::SHADOW_END, stats)
+            }
+            None => !self.occluded(&from.spawn_ray(sample.wi), f32::INFINITY, stats),
+        }
     }
 
     /// Whether a surface is there, where its alpha makes it come and go: it is with the probability alpha, decided by a hash
@@ -188,7 +198,9 @@ impl Scene {
         sampler: &mut Sampler,
     ) -> Option<Bsdf> {
         if !self.options.disable_texture_filtering {
-            interaction.compute_footprint(ray, &self.camera, self.samples_per_pixel);
+            // All samples of a pixel in one place see the whole pixel each.
+            let samples = if self.options.disable_pixel_jitter { 1 } else { self.samples_per_pixel };
+            interaction.compute_footprint(ray, &self.camera, samples);
         }
         let entry = self.materials.resolve(interaction, &self.textures);
         if matches!(entry.material, Material::Interface) {

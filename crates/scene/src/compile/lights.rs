@@ -104,7 +104,13 @@ impl Compiler<'_> {
             return None;
         }
         if let Some(target) = illuminance {
-            scale *= target / upward_illuminance(&image);
+            let illuminance = upward_illuminance(&image);
+            if illuminance <= 0.0 {
+                let message = "an image that is black above cannot be scaled to an illuminance";
+                self.error("image-values", message, span);
+                return None;
+            }
+            scale *= target / illuminance;
         }
         let light = ImageInfiniteLight::new(*placement, image.image, image.color_space, scale, scene);
         Some(Light::ImageInfinite(Box::new(light)))

@@ -9,7 +9,7 @@ mod materials;
 mod shapes;
 
 use crate::camera;
-use crate::light::{Light, LightId, SceneSphere};
+use crate::light::{AreaEmission, Light, LightId, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, Scene, SceneOptions};
 use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
@@ -29,10 +29,8 @@ pub struct Compiled {
 /// Compiles a description, or says everything that is wrong with it (warnings included).
 pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
-    let Some(camera) = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics) else {
-        return Err(diagnostics);
-    };
-    let render_from_world = camera.transform().render_from_world();
+    let camera = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics);
+    let render_from_world = camera.as_ref().map_or(DMat4::IDENTITY, |c| c.transform().render_from_world());
     let textures = texture::compile(desc, &render_from_world, &mut diagnostics);
     let mut compiler = Compiler {
         desc,
@@ -42,20 +40,19 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         world: World::builder(),
         entries: Vec::new(),
         materials: Vec::new(),
+        area_emissions: Vec::new(),
         lights: Vec::new(),
     };
     compiler.materials();
+    compiler.area_emissions();
     compiler.shapes();
-    if compiler.diagnostics.iter().any(Diagnostic::is_error) {
-        return Err(compiler.diagnostics);
-    }
     let world = std::mem::take(&mut compiler.world).build();
-    let (center, radius) = world.bounds().bounding_sphere();
-    compiler.lights(SceneSphere { center, radius });
+    let sphere = SceneSphere::around(&world.bounds());
+    compiler.lights(sphere);
     let Compiler { diagnostics, textures, entries, materials, lights, .. } = compiler;
-    if diagnostics.iter().any(Diagnostic::is_error) {
+    let Some(camera) = camera.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)) else {
         return Err(diagnostics);
-    }
+    };
     let infinite_lights =
         (0..).map(LightId).zip(&lights).filter(|(_, light)| light.is_infinite()).map(|(id, _)| id).collect();
     let options = SceneOptions {
@@ -67,7 +64,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let scene = Scene {
         camera,
         world,
-        sphere: SceneSphere { center, radius },
+        sphere,
         entries,
         materials: Materials::new(materials),
         textures,
@@ -88,6 +85,7 @@ struct Compiler<'a> {
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
+    area_emissions: Vec<Option<AreaEmission>>,
     lights: Vec<Light>,
 }
 

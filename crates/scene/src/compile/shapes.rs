@@ -4,9 +4,9 @@ use super::Compiler;
 use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
 use crate::material::Material;
 use crate::scene::GeometryEntry;
-use crate::texture::FloatTextureId;
+use crate::texture::{FloatTextureId, Texture};
 use description::{
-    Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, Parameter, PatchMeshDesc, ShapeDesc,
+    AreaLightDesc, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc, ShapeDesc,
     ShapeKind, Stated, TransformDesc,
 };
 use geometry::{
@@ -33,6 +33,26 @@ impl Compiler<'_> {
             let group = *groups.entry(object.index()).or_insert_with(|| self.object(object));
             self.instance(instance, group);
         }
+    }
+
+    /// What every area light emits, on whatever shape; `None` where that makes no sense.
+    pub(super) fn area_emissions(&mut self) {
+        let desc = self.desc;
+        for (_, light) in desc.area_lights.iter() {
+            let emission = self.area_emission(light, &light.origin);
+            self.area_emissions.push(emission);
+        }
+    }
+
+    fn area_emission(&mut self, desc: &AreaLightDesc, origin: &Origin) -> Option<AreaEmission> {
+        let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
+        let mut image = None;
+        if let Some(handle) = desc.image {
+            let (pixels, scale) = self.emission_image(handle, desc.scale, origin.parameter("filename"))?;
+            radiance.scale = scale;
+            image = Some(pixels);
+        }
+        Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
     }
 
     fn instance(&mut self, instance: &Stated<InstanceDesc>, group: GroupId) {
@@ -111,9 +131,14 @@ impl Compiler<'_> {
     }
 
     fn alpha(&mut self, shape: &ShapeDesc) -> Option<FloatTextureId> {
-        match shape.alpha.as_ref()? {
-            Parameter::Value(value) if *value >= 1.0 => None,
-            parameter => Some(self.float_texture(parameter)),
+        let texture = self.float_texture(shape.alpha.as_ref()?);
+        self.constant_alpha(texture).is_none_or(|alpha| alpha < 1.0).then_some(texture)
+    }
+
+    fn constant_alpha(&self, texture: FloatTextureId) -> Option<f32> {
+        match self.textures.float_texture(texture) {
+            Texture::Constant(alpha) => Some(*alpha),
+            _ => None,
         }
     }
 
@@ -198,7 +223,9 @@ impl Compiler<'_> {
             self.error("invalid-mesh", message, shape.origin.span);
             return None;
         }
-        let image = mesh.emission_image.map(|handle| self.emission_distribution(handle));
+        // An image lies over the patch's own parameters, which texture coordinates would replace.
+        let image = mesh.emission_image.filter(|_| mesh.uvs.is_empty());
+        let image = image.map(|handle| self.emission_distribution(handle));
         let patches = mesh.indices.iter().map(|corners| {
             let at = corners.map(|i| i as usize);
             let patch = BilinearPatch::new(
@@ -242,22 +269,10 @@ impl Compiler<'_> {
             self.warn("light-ignored", "a shape of material `interface` does not emit", span);
             return None;
         }
-        let desc = &self.desc.area_lights[handle];
-        let origin = self.desc.area_lights.origin(handle);
-        let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
-        let mut image = None;
-        if let Some(handle) = desc.image {
-            let (pixels, scale) = self.emission_image(handle, desc.scale, origin.parameter("filename"))?;
-            radiance.scale = scale;
-            image = Some(pixels);
-        }
-        let emission = AreaEmission {
-            radiance,
-            image,
-            two_sided: desc.two_sided,
-            alpha,
-            invisible: matches!(shape.alpha, Some(Parameter::Value(value)) if value <= 0.0),
-        };
+        let invisible = alpha.and_then(|id| self.constant_alpha(id)).is_some_and(|alpha| alpha <= 0.0);
+        let emission =
+            AreaEmission { alpha, invisible, ..self.area_emissions[handle.index()].as_ref()?.clone() };
+        let power = self.desc.area_lights[handle].power;
         let shared = Arc::new(emission.clone());
         let first = LightId(self.lights.len() as u32);
         for primitive in 0..geometry.len() as u32 {
@@ -271,7 +286,7 @@ impl Compiler<'_> {
                 return None;
             }
             // Every part is a light of its own and has the power that is asked for.
-            let emission = match desc.power {
+            let emission = match power {
                 None => shared.clone(),
                 Some(power) => Arc::new(scaled_to_power(&emission, power, part.area())),
             };
@@ -281,12 +296,13 @@ impl Compiler<'_> {
     }
 }
 
-/// The emission whose total over `area` is `power`.
+/// The emission whose total over `area` is `power`; none where nothing can shine.
 fn scaled_to_power(emission: &AreaEmission, power: f32, area: f32) -> AreaEmission {
     let sides = if emission.two_sided { 2.0 } else { 1.0 };
     let mean = emission.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
     let mut scaled = emission.clone();
-    scaled.radiance.scale *= power / (mean * sides * area * PI);
+    let unscaled = mean * sides * area * PI;
+    scaled.radiance.scale *= if unscaled > 0.0 { power / unscaled } else { 0.0 };
     scaled
 }
 

@@ -130,7 +130,7 @@ impl AreaLight {
         }
         let wi = to_light.normalize();
         let l = self.radiance(s.n, s.uv, -wi, lambda);
-        (!l.is_black()).then_some(LightLiSample { l, wi, pdf: s.pdf, p: s.p, n: s.n })
+        (!l.is_black()).then_some(LightLiSample { l, wi, pdf: s.pdf, p: Some(s.p), n: s.n })
     }
 
     pub(super) fn pdf_li(&self, context: &LightSampleContext, wi: Vector3) -> f32 {

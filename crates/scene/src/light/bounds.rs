@@ -69,7 +69,7 @@ impl LightBounds {
     pub fn importance(&self, p: Point3, n: Normal3) -> f32 {
         let center = self.bounds.centroid();
         // Near a cluster, 1/d² would blow up: no nearer than half of its size.
-        let d2 = p.distance_squared(center).max(self.bounds.diagonal().length() / 2.0);
+        let d2 = p.distance_squared(center).max(self.bounds.diagonal().length_squared() / 4.0);
         let wi = (p - center).try_normalize().unwrap_or(Vec3::Z);
         let mut cos_w = self.w.dot(wi);
         if self.two_sided {
@@ -91,7 +91,8 @@ impl LightBounds {
             let sin_i = safe_sqrt(1.0 - cos_i * cos_i);
             importance *= cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
         }
-        importance.max(0.0)
+        // Finite even on top of a point light, so that importances can be compared.
+        importance.clamp(0.0, f32::MAX / 4.0)
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Sources: [Pharr 2023 §12.3].
 
-use super::{Emission, LightLiSample, LightSampleContext, SceneSphere};
-use math::{Point3Error, Vec3, Vector3};
+use super::{Emission, LightLiSample, SceneSphere};
+use math::{Vec3, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 
@@ -23,17 +23,7 @@ impl DistantLight {
         self.radiance.sample(lambda) * (PI * self.scene.radius * self.scene.radius)
     }
 
-    pub(super) fn sample_li(
-        &self,
-        context: &LightSampleContext,
-        lambda: &SampledWavelengths,
-    ) -> Option<LightLiSample> {
-        Some(LightLiSample {
-            l: self.radiance.sample(lambda),
-            wi: self.w,
-            pdf: 1.0,
-            p: Point3Error::exact(context.p.p + self.w * (2.0 * self.scene.radius)),
-            n: Vec3::ZERO,
-        })
+    pub(super) fn sample_li(&self, lambda: &SampledWavelengths) -> Option<LightLiSample> {
+        Some(LightLiSample { l: self.radiance.sample(lambda), wi: self.w, pdf: 1.0, p: None, n: Vec3::ZERO })
     }
 }

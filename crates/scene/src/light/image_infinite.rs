@@ -4,11 +4,10 @@
 //! allowed, the *compensated* distribution max(0, f − mean) is used: multiple importance sampling leaves the dim parts to
 //! the BSDF, and light samples go where they matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]).
 
-use super::{LightLiSample, LightSampleContext, SceneSphere};
+use super::{LightLiSample, SceneSphere};
 use image::{Image, WrapMode};
 use math::{
-    Bounds2, Point2, Point3Error, Transform, Vec3, Vector3, equal_area_sphere_to_square,
-    equal_area_square_to_sphere,
+    Bounds2, Point2, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
 };
 use sampling::PiecewiseConstant2d;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
@@ -88,7 +87,6 @@ impl ImageInfiniteLight {
 
     pub(super) fn sample_li(
         &self,
-        context: &LightSampleContext,
         u: Point2,
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
@@ -102,7 +100,7 @@ impl ImageInfiniteLight {
             l: self.lookup(uv, lambda),
             wi,
             pdf: density / (4.0 * PI),
-            p: Point3Error::exact(context.p.p + wi * (2.0 * self.scene.radius)),
+            p: None,
             n: Vec3::ZERO,
         })
     }

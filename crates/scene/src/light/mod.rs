@@ -26,7 +26,7 @@ pub use spot::SpotLight;
 pub use uniform_infinite::UniformInfiniteLight;
 
 use crate::texture::Textures;
-use math::{Normal3, Point2, Point3, Point3Error, Ray, Vector3};
+use math::{Bounds3, Normal3, Point2, Point3, Point3Error, Ray, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// Index of a light in its scene.
@@ -59,8 +59,8 @@ pub struct LightLiSample {
     pub wi: Vector3,
     /// Density per solid angle at the reference point; 1 for delta lights.
     pub pdf: f32,
-    /// Where on the light (for infinite lights: a point outside of the scene).
-    pub p: Point3Error,
+    /// Where on the light; `None` for lights infinitely far away.
+    pub p: Option<Point3Error>,
     /// Normal of the light's surface there; zero where it has none.
     pub n: Normal3,
 }
@@ -118,10 +118,10 @@ impl Light {
         match self {
             Self::Point(light) => light.sample_li(context, lambda),
             Self::Spot(light) => light.sample_li(context, lambda),
-            Self::Distant(light) => light.sample_li(context, lambda),
+            Self::Distant(light) => light.sample_li(lambda),
             Self::Area(light) => light.sample_li(context, u, lambda, textures),
-            Self::UniformInfinite(light) => light.sample_li(context, u, lambda, allow_incomplete),
-            Self::ImageInfinite(light) => light.sample_li(context, u, lambda, allow_incomplete),
+            Self::UniformInfinite(light) => light.sample_li(u, lambda, allow_incomplete),
+            Self::ImageInfinite(light) => light.sample_li(u, lambda, allow_incomplete),
         }
     }
 
@@ -179,4 +179,12 @@ pub struct SceneSphere {
     pub center: Point3,
     /// Radius.
     pub radius: f32,
+}
+
+impl SceneSphere {
+    /// The sphere around a box. Where nothing has an end, lights still need an extent to have a power: that is 1.
+    pub fn around(bounds: &Bounds3) -> Self {
+        let (center, radius) = bounds.bounding_sphere();
+        Self { center, radius: if bounds.is_empty() { 1.0 } else { radius } }
+    }
 }

@@ -32,7 +32,7 @@ impl PointLight {
             l: self.intensity.sample(lambda) / distance2,
             wi: to_light / distance2.sqrt(),
             pdf: 1.0,
-            p: Point3Error::exact(self.p),
+            p: Some(Point3Error::exact(self.p)),
             n: Vec3::ZERO,
         })
     }

@@ -50,7 +50,7 @@ impl SpotLight {
             l: self.intensity.sample(lambda) * (falloff / distance2),
             wi,
             pdf: 1.0,
-            p: Point3Error::exact(self.p),
+            p: Some(Point3Error::exact(self.p)),
             n: Vec3::ZERO,
         })
     }
@@ -62,8 +62,8 @@ impl SpotLight {
             w: self.axis,
             phi: 4.0 * PI * self.intensity.max_value(),
             cos_theta_o: self.cos_falloff_start,
-            // Room for rounding, so that points just inside of the edge keep some importance.
-            cos_theta_e: if edge > 0.0 { edge.cos().min(0.999) } else { edge.cos() },
+            // Room for rounding, so that points just inside of the edge keep some importance, be it soft or hard.
+            cos_theta_e: edge.cos().min(0.999),
             two_sided: false,
         })
     }

@@ -3,8 +3,8 @@
 //! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling allowed it is left wholly to
 //! BSDF sampling, which covers a constant sky better than uniform directions do. Sources: [Pharr 2023 §12.5.1].
 
-use super::{Emission, LightLiSample, LightSampleContext, SceneSphere};
-use math::{Point2, Point3Error, Vec3};
+use super::{Emission, LightLiSample, SceneSphere};
+use math::{Point2, Vec3};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
@@ -29,7 +29,6 @@ impl UniformInfiniteLight {
 
     pub(super) fn sample_li(
         &self,
-        context: &LightSampleContext,
         u: Point2,
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
@@ -42,7 +41,7 @@ impl UniformInfiniteLight {
             l: self.radiance.sample(lambda),
             wi,
             pdf: self.pdf_li(false),
-            p: Point3Error::exact(context.p.p + wi * (2.0 * self.scene.radius)),
+            p: None,
             n: Vec3::ZERO,
         })
     }

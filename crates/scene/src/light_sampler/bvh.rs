@@ -10,7 +10,6 @@
 
 use crate::light::{Light, LightBounds, LightId, LightSampleContext};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
-use std::collections::HashMap;
 use std::f32::consts::PI;
 
 /// Lights by importance.
@@ -18,9 +17,19 @@ use std::f32::consts::PI;
 pub struct BvhLightSampler {
     nodes: Vec<Node>,
     infinite: Vec<LightId>,
-    /// The way from the root: bit i says right at depth i. Lights of no power have none.
-    trails: HashMap<LightId, u64>,
-    is_infinite: Vec<bool>,
+    /// By light.
+    places: Vec<Place>,
+}
+
+/// Where a light is found.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// Nowhere: it has no power.
+    Nowhere,
+    /// Among the infinite lights.
+    Infinite,
+    /// In the tree, by the way from the root: bit i says right at depth i.
+    Tree(u64),
 }
 
 #[derive(Clone, Debug)]
@@ -39,7 +48,7 @@ enum NodeKind {
 }
 
 const BUCKETS: usize = 12;
-/// Below this depth splits are by the middle, so that a trail always fits into its bits.
+/// Below this depth splits are by the median, so that a trail always fits into its bits.
 const DEEPEST_CHOICE: u32 = 32;
 
 impl BvhLightSampler {
@@ -47,20 +56,19 @@ impl BvhLightSampler {
     pub fn new(lights: &[Light]) -> Self {
         let mut infinite = Vec::new();
         let mut bounded = Vec::new();
+        let mut places = vec![Place::Nowhere; lights.len()];
         for (i, light) in lights.iter().enumerate() {
             let id = LightId(i as u32);
             match light.bounds() {
-                None => infinite.push(id),
+                None => {
+                    infinite.push(id);
+                    places[i] = Place::Infinite;
+                }
                 Some(bounds) if bounds.phi > 0.0 => bounded.push((id, bounds)),
                 Some(_) => {}
             }
         }
-        let mut sampler = Self {
-            nodes: Vec::with_capacity(2 * bounded.len()),
-            is_infinite: lights.iter().map(|l| l.bounds().is_none()).collect(),
-            infinite,
-            trails: HashMap::with_capacity(bounded.len()),
-        };
+        let mut sampler = Self { nodes: Vec::with_capacity(2 * bounded.len()), infinite, places };
         if !bounded.is_empty() {
             sampler.build(&mut bounded, 0, 0);
         }
@@ -70,7 +78,7 @@ impl BvhLightSampler {
     fn build(&mut self, lights: &mut [(LightId, LightBounds)], trail: u64, depth: u32) -> LightBounds {
         let index = self.nodes.len();
         if let [(id, bounds)] = lights {
-            self.trails.insert(*id, trail);
+            self.places[id.0 as usize] = Place::Tree(trail);
             self.nodes.push(Node { bounds: *bounds, kind: NodeKind::Leaf(*id) });
             return *bounds;
         }
@@ -92,8 +100,17 @@ impl BvhLightSampler {
         if infinite == 0.0 { 0.0 } else { infinite / (infinite + tree) }
     }
 
-    fn child_importances(&self, left: usize, right: u32, context: &LightSampleContext) -> [f32; 2] {
-        [left, right as usize].map(|i| self.nodes[i].bounds.importance(context.p.p, context.ns))
+    fn importance(&self, node: usize, context: &LightSampleContext) -> f32 {
+        self.nodes[node].bounds.importance(context.p.p, context.ns)
+    }
+
+    /// Probability of choosing the tree: none where nothing in it matters.
+    fn tree_share(&self, context: &LightSampleContext) -> f32 {
+        // Whether an inner node matters is known from its children.
+        match self.nodes.first() {
+            Some(Node { kind: NodeKind::Leaf(_), .. }) if self.importance(0, context) == 0.0 => 0.0,
+            _ => 1.0 - self.infinite_share(),
+        }
     }
 
     pub(super) fn sample(&self, context: &LightSampleContext, u: f32) -> Option<(LightId, f32)> {
@@ -104,49 +121,42 @@ impl BvhLightSampler {
             return Some((self.infinite[i], share / count as f32));
         }
         let mut u = ((u - share) / (1.0 - share)).min(ONE_MINUS_EPSILON);
-        let mut pmf = 1.0 - share;
+        let mut pmf = self.tree_share(context);
         let mut index = 0;
         loop {
             match self.nodes.get(index)?.kind {
                 NodeKind::Interior { right } => {
-                    let [a, b] = self.child_importances(index + 1, right, context);
+                    let (left, right) = (index + 1, right as usize);
+                    let [a, b] = [left, right].map(|child| self.importance(child, context));
                     if a == 0.0 && b == 0.0 {
                         return None;
                     }
-                    let p = a / (a + b);
-                    if u < p {
-                        (index, u, pmf) = (index + 1, (u / p).min(ONE_MINUS_EPSILON), pmf * p);
-                    } else {
-                        let q = b / (a + b);
-                        (index, u, pmf) =
-                            (right as usize, ((u - p) / q).clamp(0.0, ONE_MINUS_EPSILON), pmf * q);
-                    }
+                    let [p, q] = [a / (a + b), b / (a + b)];
+                    (index, u, pmf) =
+                        if u < p { (left, u / p, pmf * p) } else { (right, (u - p) / q, pmf * q) };
+                    u = u.clamp(0.0, ONE_MINUS_EPSILON);
                 }
-                NodeKind::Leaf(id) => {
-                    let matters =
-                        index > 0 || self.nodes[index].bounds.importance(context.p.p, context.ns) > 0.0;
-                    return (matters && pmf > 0.0).then_some((id, pmf));
-                }
+                NodeKind::Leaf(id) => return (pmf > 0.0).then_some((id, pmf)),
             }
         }
     }
 
     pub(super) fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
-        let share = self.infinite_share();
-        if self.is_infinite.get(light.0 as usize).copied().unwrap_or(false) {
-            return share / self.infinite.len() as f32;
-        }
-        let Some(&trail) = self.trails.get(&light) else { return 0.0 };
-        let (mut trail, mut pmf, mut index) = (trail, 1.0 - share, 0);
+        let mut trail = match self.places[light.0 as usize] {
+            Place::Nowhere => return 0.0,
+            Place::Infinite => return self.infinite_share() / self.infinite.len() as f32,
+            Place::Tree(trail) => trail,
+        };
+        let (mut pmf, mut index) = (self.tree_share(context), 0);
         while let NodeKind::Interior { right } = self.nodes[index].kind {
-            let importances = self.child_importances(index + 1, right, context);
+            let children = [index + 1, right as usize];
+            let importances = children.map(|child| self.importance(child, context));
             let way = (trail & 1) as usize;
-            let sum = importances[0] + importances[1];
-            if sum == 0.0 {
+            if importances[way] == 0.0 {
                 return 0.0;
             }
-            pmf *= importances[way] / sum;
-            index = if way == 0 { index + 1 } else { right as usize };
+            pmf *= importances[way] / (importances[0] + importances[1]);
+            index = children[way];
             trail >>= 1;
         }
         pmf
@@ -155,41 +165,62 @@ impl BvhLightSampler {
 
 /// Reorders the lights and returns where the second half starts.
 fn split(lights: &mut [(LightId, LightBounds)], depth: u32) -> usize {
-    let middle = lights.len() / 2;
-    if depth >= DEEPEST_CHOICE {
-        return middle;
-    }
     let bounds = lights.iter().fold(Bounds3::EMPTY, |b, l| b.union(l.1.bounds));
     let centroids = Bounds3::around(lights.iter().map(|l| l.1.bounds.centroid()));
-    let mut best: Option<(f32, usize, usize)> = None;
-    for axis in 0..3 {
-        let extent = centroids.diagonal()[axis];
-        if extent <= 0.0 {
-            continue;
+    let is_below =
+        |(axis, first): (usize, usize), light: &LightBounds| bucket(light, &centroids, axis) < first;
+    if depth < DEEPEST_CHOICE
+        && lights.len() > 2
+        && let Some(best) = best_split(lights, &bounds, &centroids)
+    {
+        let mut count = 0;
+        for i in 0..lights.len() {
+            if is_below(best, &lights[i].1) {
+                lights.swap(i, count);
+                count += 1;
+            }
         }
+        if count > 0 && count < lights.len() {
+            return count;
+        }
+    }
+    let axis = centroids.diagonal().max_position();
+    let middle = lights.len() / 2;
+    lights.select_nth_unstable_by(middle, |a, b| {
+        a.1.bounds.centroid()[axis].total_cmp(&b.1.bounds.centroid()[axis])
+    });
+    middle
+}
+
+/// The axis and the first bucket of the upper side that cost least; `None` where no split has a cost, as between
+/// points on one line.
+fn best_split(
+    lights: &[(LightId, LightBounds)],
+    bounds: &Bounds3,
+    centroids: &Bounds3,
+) -> Option<(usize, usize)> {
+    let mut best: Option<(f32, (usize, usize))> = None;
+    for axis in (0..3).filter(|&axis| centroids.diagonal()[axis] > 0.0) {
         let mut buckets = [LightBounds::EMPTY; BUCKETS];
-        for (_, b) in lights.iter() {
-            let i = bucket(b, &centroids, axis);
-            buckets[i] = buckets[i].union(*b);
+        for (_, light) in lights {
+            let i = bucket(light, centroids, axis);
+            buckets[i] = buckets[i].union(*light);
         }
+        // above[i] bounds the buckets from i on.
+        let mut above = buckets;
+        for i in (0..BUCKETS - 1).rev() {
+            above[i] = above[i].union(above[i + 1]);
+        }
+        let mut below = LightBounds::EMPTY;
         for i in 1..BUCKETS {
-            let below = buckets[..i].iter().fold(LightBounds::EMPTY, |a, &b| a.union(b));
-            let above = buckets[i..].iter().fold(LightBounds::EMPTY, |a, &b| a.union(b));
-            let cost = cost(&below, &bounds, axis) + cost(&above, &bounds, axis);
-            if cost > 0.0 && best.is_none_or(|(c, ..)| cost < c) {
-                best = Some((cost, axis, i));
+            below = below.union(buckets[i - 1]);
+            let cost = cost(&below, bounds, axis) + cost(&above[i], bounds, axis);
+            if cost > 0.0 && best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, (axis, i)));
             }
         }
     }
-    let Some((_, axis, first)) = best else { return middle };
-    let mut count = 0;
-    for i in 0..lights.len() {
-        if bucket(&lights[i].1, &centroids, axis) < first {
-            lights.swap(i, count);
-            count += 1;
-        }
-    }
-    if count == 0 || count == lights.len() { middle } else { count }
+    best.map(|(_, split)| split)
 }
 
 fn bucket(b: &LightBounds, centroids: &Bounds3, axis: usize) -> usize {

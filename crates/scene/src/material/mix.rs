@@ -27,8 +27,8 @@ impl MixMaterial {
             return self.materials[1];
         }
         let (p, wo) = (interaction.surface.p.p, interaction.surface.wo);
-        let words = [p.x, p.y, p.z, wo.x, wo.y, wo.z].map(f32::to_bits);
-        let u = hash_float(&[&words[..], &self.materials.map(|m| m.0)].concat());
+        let [px, py, pz, wx, wy, wz] = [p.x, p.y, p.z, wo.x, wo.y, wo.z].map(f32::to_bits);
+        let u = hash_float(&[px, py, pz, wx, wy, wz, self.materials[0].0, self.materials[1].0]);
         self.materials[usize::from(u < amount)]
     }
 }
