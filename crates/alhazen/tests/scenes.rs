@@ -13,11 +13,14 @@ fn folder() -> PathBuf {
 
 /// The scenes' files and names; the parts that they share are in a folder of their own.
 fn scenes() -> Vec<(PathBuf, String)> {
-    let entries =
-        std::fs::read_dir(folder()).expect("the folder of scenes").map(|entry| entry.unwrap().path());
-    let files = entries.filter(|path| path.extension().is_some_and(|extension| extension == "pbrt"));
-    let mut scenes: Vec<_> =
-        files.map(|path| (path.clone(), path.file_stem().unwrap().to_string_lossy().into_owned())).collect();
+    let entries = std::fs::read_dir(folder()).expect("the folder of scenes");
+    let paths = entries.map(|entry| entry.expect("an entry of the folder").path());
+    let mut scenes: Vec<_> = paths
+        .filter_map(|path| {
+            let name = path.file_name()?.to_str()?.strip_suffix(".pbrt")?.to_owned();
+            Some((path, name))
+        })
+        .collect();
     scenes.sort();
     scenes
 }
