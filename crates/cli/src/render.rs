@@ -12,7 +12,7 @@ use alhazen::{Job, integrator_name, write_picture};
 
 use crate::args::Render;
 use crate::bar::Bar;
-use crate::console::say;
+use crate::console::{say, warn};
 use crate::diagnostics;
 use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
@@ -64,8 +64,14 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     let rendered_at = Instant::now();
 
     let picture = job.picture();
+    // A picture that cannot be written does not keep the others from being written.
+    let mut unwritten = None;
     for path in &outputs {
-        write_picture(&picture, path).map_err(|error| about_file(path, error))?;
+        unwritten =
+            unwritten.or(write_picture(&picture, path).map_err(|error| about_file(path, error)).err());
+    }
+    if let Some(failure) = unwritten {
+        return Err(failure);
     }
     let summary = Summary {
         interrupted: outcome.is_err(),
@@ -87,8 +93,10 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
         say(summary.to_json(warnings));
-    } else if talkative || summary.interrupted {
+    } else if talkative {
         say(&summary);
+    } else if let Some(interruption) = summary.interruption() {
+        warn(interruption);
     }
     Ok(if summary.interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }

@@ -88,6 +88,13 @@ impl Summary<'_> {
         })
     }
 
+    /// What is to say where the render was stopped before its end.
+    pub fn interruption(&self) -> Option<String> {
+        let (done, all) = (self.progress.pass, self.progress.passes);
+        self.interrupted
+            .then(|| format!("interrupted after {done} of {all} passes; the picture is written as it stands"))
+    }
+
     fn rays_per_second(&self) -> f64 {
         self.progress.stats.rays as f64 / self.seconds.render.max(1e-9)
     }
@@ -97,9 +104,8 @@ impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let bounds = self.film.pixel_bounds();
         let [width, height] = self.film.full_resolution();
-        if self.interrupted {
-            let (done, all) = (self.progress.pass, self.progress.passes);
-            writeln!(f, "interrupted after {done} of {all} passes; the picture is written as it stands")?;
+        if let Some(interruption) = self.interruption() {
+            writeln!(f, "{interruption}")?;
         }
         write!(f, "{}: {}, ", self.scene.display(), self.integrator)?;
         let plural = if self.samples_per_pixel == 1 { "" } else { "s" };
