@@ -19,7 +19,7 @@ const STEPS: [Step; 4] = [
         name: "lints",
         arguments: &["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"],
     },
-    Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps"] },
+    Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps", "--lib"] },
     Step {
         name: "tests",
         arguments: &["test", "--quiet", "--workspace", "--profile", "checked", "--no-fail-fast"],
