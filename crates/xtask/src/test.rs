@@ -17,7 +17,16 @@ const STEPS: [Step; 4] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"] },
     Step {
         name: "lints",
-        arguments: &["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"],
+        arguments: &[
+            "clippy",
+            "--quiet",
+            "--workspace",
+            "--all-targets",
+            "--keep-going",
+            "--",
+            "-D",
+            "warnings",
+        ],
     },
     Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps", "--lib"] },
     Step {
