@@ -17,9 +17,18 @@ const STEPS: [Step; 4] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"] },
     Step {
         name: "lints",
-        arguments: &["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"],
+        arguments: &[
+            "clippy",
+            "--quiet",
+            "--workspace",
+            "--all-targets",
+            "--keep-going",
+            "--",
+            "-D",
+            "warnings",
+        ],
     },
-    Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps"] },
+    Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps", "--lib"] },
     Step {
         name: "tests",
         arguments: &["test", "--quiet", "--workspace", "--profile", "checked", "--no-fail-fast"],
