@@ -2,11 +2,11 @@
 
 #![allow(dead_code, reason = "each test uses its own part")]
 
+use alhazen_scene::light::{Light, LightLiSample, LightSampleContext};
+use alhazen_scene::{RayStats, Scene, SurfaceInteraction};
 use description::{ImageDesc, MeshDesc, PatchMeshDesc, SceneDesc, ShapeKind};
 use image::Image;
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
-use alhazen_scene::light::{Light, LightLiSample, LightSampleContext};
-use alhazen_scene::{RayStats, Scene, SurfaceInteraction};
 use spectrum::SampledWavelengths;
 use std::sync::Arc;
 use testkit::Random;
