@@ -105,9 +105,11 @@ impl Placement {
     }
 }
 
-/// A point known to within `error`, rounded to floats.
+/// A point known to within `error`, rounded to floats. A test of the surface mixes the axes, so that its rounding along one may
+/// come from coordinates along another: none is known better than the largest lets it be, not even a zero.
 #[inline]
 pub(crate) fn rounded(p: DVec3, error: DVec3) -> Point3Error {
     let q = p.as_vec3();
-    Point3Error::new(q, q.abs() * (2.0 * MACHINE_EPSILON) + error.as_vec3() * 1.001)
+    let mixed = p.abs().max_element() * ROUNDING;
+    Point3Error::new(q, q.abs() * (2.0 * MACHINE_EPSILON) + (error + mixed).as_vec3() * 1.001)
 }

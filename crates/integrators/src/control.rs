@@ -22,13 +22,16 @@ pub struct Progress {
     pub elapsed: Duration,
 }
 
+/// Hears how far a render is, on the thread that runs it.
+pub type ProgressSink = Box<dyn Fn(&Progress) + Send + Sync>;
+
 /// What a caller holds of a render. The default never stops it and hears nothing.
 #[derive(Default)]
 pub struct Control {
     /// Set it, from any thread, and the render ends before its next tile.
     pub cancel: Arc<AtomicBool>,
     /// Hears of each pass when it is done.
-    pub progress: Option<Box<dyn Fn(&Progress) + Send + Sync>>,
+    pub progress: Option<ProgressSink>,
 }
 
 impl Control {

@@ -215,7 +215,7 @@ impl BilinearPatch {
     fn point(&self, uv: Vec2) -> Point3Error {
         let p = self.p.map(|p| p.as_dvec3());
         let size = p.iter().fold(DVec3::ZERO, |sum, p| sum + p.abs());
-        rounded(at(&p, uv), size * ROUNDING)
+        rounded(at(&p, uv), DVec3::splat(size.max_element() * ROUNDING))
     }
 
     fn texture(&self, uv: Vec2) -> Vec2 {

@@ -126,7 +126,7 @@ impl Triangle {
 
     fn point(&self, b: Vec2) -> Point3Error {
         let size = self.p.iter().fold(DVec3::ZERO, |sum, p| sum + p.as_dvec3().abs());
-        rounded(barycentric(&self.p, b), size * ROUNDING)
+        rounded(barycentric(&self.p, b), DVec3::splat(size.max_element() * ROUNDING))
     }
 
     fn texture(&self, b: Vec2) -> Vec2 {

@@ -32,8 +32,8 @@ fn closed_box(rho: f32) -> Scene {
 fn a_closed_furnace_shows_emission_over_absorption() {
     let tests = 2 * Unbiased::all(0).len();
     for (shape, scene) in [("sphere", closed_sphere(0.5)), ("box", closed_box(0.5))] {
-        for (name, mut rays) in Unbiased::all(100) {
-            let found = radiance(&mut rays, &scene, v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7), 40_000);
+        for (name, mut rays) in Unbiased::all(24) {
+            let found = radiance(&mut rays, &scene, v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7), 6_000);
             assert_mean(&found, 2.0, tests, &format!("{name} in a {shape}"));
         }
     }
@@ -47,7 +47,7 @@ fn depth_counts_scattering_events() {
     for max_depth in depths {
         let expected = (0..=max_depth).map(|k| 0.6f64.powi(k as i32)).sum();
         for (name, mut rays) in Unbiased::all(max_depth) {
-            let found = radiance(&mut rays, &scene, v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7), 20_000);
+            let found = radiance(&mut rays, &scene, v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7), 6_000);
             assert_mean(&found, expected, tests, &format!("{name} of depth {max_depth}"));
         }
     }
