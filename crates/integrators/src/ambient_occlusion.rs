@@ -11,7 +11,7 @@
 use geometry::RayStats;
 use math::{Frame, RayDifferential};
 use sampling::{Sampler, warp};
-use scene::Scene;
+use scene::{Interfaces, Scene};
 use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
 
@@ -63,7 +63,7 @@ impl RayIntegrator for AmbientOcclusion {
         };
         let n = if surface.n.dot(surface.wo) < 0.0 { -surface.n } else { surface.n };
         let outward = surface.spawn_ray(Frame::from_z(n).from_local(wi));
-        if pdf == 0.0 || scene.occluded(&outward, self.max_distance, stats) {
+        if pdf == 0.0 || scene.occluded(&outward, self.max_distance, Interfaces::Stop, stats) {
             return SampledSpectrum::ZERO;
         }
         self.white.sample(lambda) * (self.white_scale * wi.z / (PI * pdf))

@@ -5,6 +5,7 @@ use description::{
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler};
+use scene::Interfaces;
 use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
@@ -112,9 +113,11 @@ impl Builder<'_> {
             &IntegratorDesc::SimplePath { max_depth, sample_lights, sample_bsdf } => {
                 pixels(SimplePath { max_depth: self.depth(max_depth), sample_lights, sample_bsdf }, sampler)
             }
-            &IntegratorDesc::Path { max_depth, regularize, light_sampler }
-            | &IntegratorDesc::VolPath { max_depth, regularize, light_sampler } => {
-                self.path(max_depth, regularize, light_sampler, sampler)
+            &IntegratorDesc::Path { max_depth, regularize, light_sampler } => {
+                self.path(max_depth, regularize, light_sampler, Interfaces::Stop, sampler)
+            }
+            &IntegratorDesc::VolPath { max_depth, regularize, light_sampler } => {
+                self.path(max_depth, regularize, light_sampler, Interfaces::Pass, sampler)
             }
             &IntegratorDesc::SimpleVolPath { max_depth } => {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
@@ -146,7 +149,7 @@ impl Builder<'_> {
         let message = format!("integrator `{name}` is not drawn yet; drawn as `path`");
         let span = self.desc.integrator.origin.span;
         self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
-        self.path(max_depth, regularize, LightSamplerDesc::Bvh, sampler)
+        self.path(max_depth, regularize, LightSamplerDesc::Bvh, Interfaces::Pass, sampler)
     }
 
     fn path(
@@ -154,6 +157,7 @@ impl Builder<'_> {
         max_depth: i32,
         regularize: bool,
         light_sampler: LightSamplerDesc,
+        interfaces: Interfaces,
         sampler: Sampler,
     ) -> Box<dyn Integrator> {
         let light_sampler = match light_sampler {
@@ -168,7 +172,7 @@ impl Builder<'_> {
             }
         };
         let max_depth = self.depth(max_depth);
-        pixels(Path::new(PathSettings { max_depth, regularize, light_sampler }), sampler)
+        pixels(Path::new(PathSettings { max_depth, regularize, light_sampler, interfaces }), sampler)
     }
 
     /// A depth of 0 or more; 0, and an error, where it is none.

@@ -5,7 +5,7 @@ use math::{Point3Error, RayDifferential, offset_ray_origin};
 use sampling::Sampler;
 use scattering::{Bsdf, BxdfFlags, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightLiSample, LightSampleContext};
-use scene::{Scene, SurfaceInteraction};
+use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// What light sampling needs to know of a surface that scatters as `flags` say. A point that scatters to one side only is moved to
@@ -61,7 +61,7 @@ pub(crate) fn all_lights(
             let u = sampler.get_2d();
             let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
             let l = scattered(surface, &bsdf, &sample);
-            if !l.is_black() && (shadows == Shadows::Ignored || scene.unoccluded(surface, &sample, stats)) {
+            if !l.is_black() && (shadows == Shadows::Ignored || scene.unoccluded(surface, &sample, Interfaces::Pass, stats)) {
                 sum += l / sample.pdf;
             }
         }

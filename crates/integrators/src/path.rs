@@ -17,7 +17,7 @@ use sampling::Sampler;
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightSampleContext};
 use scene::light_sampler::{LightSampler, LightSamplerKind};
-use scene::{Scene, SurfaceInteraction};
+use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::RayIntegrator;
@@ -32,11 +32,18 @@ pub struct PathSettings {
     pub regularize: bool,
     /// How a light is chosen; by default through the tree of lights.
     pub light_sampler: LightSamplerKind,
+    /// Whether light samples are found through interfaces; by default not, so that delta lights throw their shadow.
+    pub interfaces: Interfaces,
 }
 
 impl Default for PathSettings {
     fn default() -> Self {
-        Self { max_depth: 5, regularize: false, light_sampler: LightSamplerKind::Bvh }
+        Self {
+            max_depth: 5,
+            regularize: false,
+            light_sampler: LightSamplerKind::Bvh,
+            interfaces: Interfaces::Stop,
+        }
     }
 }
 
@@ -111,7 +118,7 @@ impl Path {
             return SampledSpectrum::ZERO;
         };
         let l = scattered(surface, bsdf, &sample);
-        if l.is_black() || !scene.unoccluded(surface, &sample, stats) {
+        if l.is_black() || !scene.unoccluded(surface, &sample, self.settings.interfaces, stats) {
             return SampledSpectrum::ZERO;
         }
         let p_l = pmf * sample.pdf;
@@ -148,6 +155,10 @@ impl RayIntegrator for Path {
             l += beta * self.emitted(scene, &surface, origin.as_ref(), lambda);
             let Some(mut bsdf) = scene.bsdf(&mut surface, &ray, lambda, sampler) else {
                 ray = pass_through(&ray, &surface, t);
+                if self.settings.interfaces == Interfaces::Stop {
+                    // No light sample gets through here: what the ray meets beyond it alone finds.
+                    origin = None;
+                }
                 continue;
             };
             if depth == self.settings.max_depth {

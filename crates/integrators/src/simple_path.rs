@@ -16,7 +16,7 @@ use math::{RayDifferential, Vector3};
 use sampling::{Sampler, warp};
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
 use scene::light_sampler::LightSamplerKind;
-use scene::{Scene, SurfaceInteraction};
+use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::RayIntegrator;
@@ -72,6 +72,8 @@ impl RayIntegrator for SimplePath {
             }
             let Some(bsdf) = scene.bsdf(&mut surface, &ray, lambda, sampler) else {
                 ray = pass_through(&ray, &surface, t);
+                // No light sample gets through here: what the ray meets beyond it alone finds.
+                specular_bounce = true;
                 continue;
             };
             if depth == self.max_depth {
@@ -114,7 +116,7 @@ fn one_light<B: Scatter>(
         return SampledSpectrum::ZERO;
     };
     let l = scattered(surface, bsdf, &sample);
-    if l.is_black() || !scene.unoccluded(surface, &sample, stats) {
+    if l.is_black() || !scene.unoccluded(surface, &sample, Interfaces::Stop, stats) {
         return SampledSpectrum::ZERO;
     }
     l / (pmf * sample.pdf)
