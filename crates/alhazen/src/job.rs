@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use description::{CameraKind, Diagnostic, SceneDesc};
-use film::{Film, Rejected};
+use film::Film;
 use image::{Attribute, Image, ImageMetadata};
 use import::{AssetSource, Imported};
-use integrators::{Cancelled, Control, Integrator, Progress};
+use integrators::{Cancelled, Control, Integrator, RenderReport};
 use scene::Scene;
 
 use crate::{OverrideError, Overrides, integrator_name, sampler_name};
@@ -16,7 +16,6 @@ pub struct Job {
     scene: Scene,
     film: Film,
     integrator: Box<dyn Integrator>,
-    samples_per_pixel: u32,
     /// What the picture's header says.
     header: Vec<(&'static str, Attribute)>,
 }
@@ -32,28 +31,25 @@ pub struct CompiledJob {
 impl Job {
     /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with it.
     pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
-        let (scene, film) = match (scene::compile(desc), film::compile(desc)) {
-            (Ok(scene), Ok(film)) => (scene, film),
-            (scene, film) => {
+        let (scene, film, built) = match (scene::compile(desc), film::compile(desc), integrators::build(desc))
+        {
+            (Ok(scene), Ok(film), Ok(built)) => (scene, film, built),
+            (scene, film, built) => {
                 let said = [
                     scene.map_or_else(|errors| errors, |scene| scene.warnings),
                     film.map_or_else(|errors| errors, |film| film.warnings),
+                    built.map_or_else(|errors| errors, |built| built.warnings),
                 ];
                 return Err(said.concat());
             }
         };
-        let job = Self {
-            scene: scene.scene,
-            film: film.film,
-            integrator: integrators::build(&desc.integrator),
-            samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
-            header: header(desc),
-        };
-        Ok(CompiledJob { job, warnings: [scene.warnings, film.warnings].concat() })
+        let warnings = [scene.warnings, film.warnings, built.warnings].concat();
+        let (scene, film, integrator) = (scene.scene, film.film, built.integrator);
+        Ok(CompiledJob { job: Self { scene, film, integrator, header: header(desc) }, warnings })
     }
 
     /// Renders all passes. Where the render is cancelled, the film has what was found until then.
-    pub fn render(&mut self, control: &Control) -> Result<Progress, Cancelled> {
+    pub fn render(&mut self, control: &Control) -> Result<RenderReport, Cancelled> {
         integrators::render(self.integrator.as_mut(), &self.scene, &mut self.film, control)
     }
 
@@ -66,19 +62,14 @@ impl Job {
         picture
     }
 
+    /// How many passes make the picture.
+    pub fn passes(&self) -> u32 {
+        self.integrator.passes()
+    }
+
     /// The film as it stands.
     pub fn film(&self) -> &Film {
         &self.film
-    }
-
-    /// How many samples a pixel gets.
-    pub fn samples_per_pixel(&self) -> u32 {
-        self.samples_per_pixel
-    }
-
-    /// The samples that were refused, because they were no numbers.
-    pub fn rejected(&self) -> Rejected {
-        self.film.rejected()
     }
 }
 

@@ -15,7 +15,7 @@ pub struct Setting {
     pub(crate) apply: fn(&mut SceneDesc, &str) -> Result<(), String>,
 }
 
-/// Everything that [`Overrides::settings`] can change.
+/// Everything that [`Overrides`](crate::Overrides) can change by name.
 pub static SETTINGS: [Setting; 15] = [
     Setting {
         name: "maxdepth",

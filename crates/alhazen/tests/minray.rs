@@ -4,7 +4,7 @@
 #[path = "../examples/minray.rs"]
 mod minray;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The numbers of a plain portable pixmap after its magic number: width, height, maximum, channels.
 fn numbers(text: &str) -> Vec<i32> {
@@ -13,7 +13,9 @@ fn numbers(text: &str) -> Vec<i32> {
 
 #[test]
 fn the_picture_is_that_of_the_card() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/minray/minray.ppm");
+    let data = std::env::var_os("ALHAZEN_DATA").map(PathBuf::from);
+    let data = data.unwrap_or(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
+    let path = data.join("../minray/minray.ppm");
     let Ok(text) = std::fs::read_to_string(&path) else {
         return eprintln!("skipped: there is no {}", path.display());
     };

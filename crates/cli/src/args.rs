@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Renders scenes by following light.
 #[derive(Debug, Parser)]
-#[command(name = "alhazen", version, about, long_about = None, subcommand_required = true, after_help = EXIT_CODES)]
+#[command(name = "alhazen", version, subcommand_required = true, after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -21,6 +21,9 @@ const EXIT_CODES: &str =
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene file to pictures.
+    ///
+    /// Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second Ctrl-C ends the
+    /// program at once.
     Render(Box<Render>),
     /// Look at scene files.
     #[command(subcommand)]
@@ -42,10 +45,7 @@ impl Command {
     }
 }
 
-/// Render a scene file to pictures.
-///
-/// Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second Ctrl-C ends the
-/// program at once.
+/// Options of `alhazen render`.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct Render {
@@ -111,7 +111,7 @@ pub enum Scene {
     Check(Check),
 }
 
-/// Tell everything that is wrong with a scene, or not drawn as it says, without rendering it.
+/// Options of `alhazen scene check`.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Check {
@@ -126,16 +126,16 @@ pub struct Check {
 #[derive(Debug, Subcommand)]
 pub enum Image {
     /// Tell how far a picture is from a reference: MSE, relative MSE, FLIP.
+    ///
+    /// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² + 0.01); FLIP the mean of the
+    /// visible difference, from 0 to 1, over the exposures that show the reference's range. The exit code is 0 however large the
+    /// difference is.
     Diff(Diff),
-    /// Write a picture in another format.
+    /// Write a picture in another format: that of the new name's extension.
     Convert(Convert),
 }
 
-/// Tell how far a picture is from a reference.
-///
-/// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² + 0.01); FLIP the mean of the
-/// visible difference, from 0 to 1, over the exposures that show the reference's range. The exit code is 0 however large the
-/// difference is.
+/// Options of `alhazen image diff`.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Diff {
@@ -165,7 +165,7 @@ pub enum Metric {
     Flip,
 }
 
-/// Write a picture in another format: that of the new name's extension.
+/// Options of `alhazen image convert`.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Convert {

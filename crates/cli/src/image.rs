@@ -51,7 +51,7 @@ pub fn diff(arguments: &Diff) -> Result<(), Failure> {
                 "mean_a": difference.reference_mean,
                 "mean_b": difference.test_mean,
                 "non_finite": difference.non_finite,
-                "output": name(&arguments.output),
+                "output": arguments.output.as_ref().map(|path| path.display().to_string()),
         }));
         return Ok(());
     }
@@ -87,7 +87,7 @@ pub fn convert(arguments: &Convert) -> Result<(), Failure> {
     if arguments.json {
         say(json!({
                 "status": "done",
-                "output": name(&arguments.output),
+                "output": arguments.output.display().to_string(),
                 "width": image.width(),
                 "height": image.height(),
                 "channels": image.channels(),

@@ -1,40 +1,46 @@
 //! The command line of alhazen.
 
 mod args;
+mod bar;
 mod console;
 mod diagnostics;
 mod failure;
 mod image;
+mod interrupt;
+mod numbers;
 mod output;
+mod render;
+mod scene;
+mod summary;
 
 use std::process::ExitCode;
 
 use args::{Cli, Command};
 use clap::Parser;
+use failure::Failure;
 
 fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
+    let done = |()| ExitCode::SUCCESS;
     let result = match &cli.command {
-        Command::Image(args::Image::Diff(diff)) => image::diff(diff),
-        Command::Image(args::Image::Convert(convert)) => image::convert(convert),
-        _ => Ok(()),
+        Command::Render(arguments) => render::render(arguments),
+        Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
+        Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
+        Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => failure.report(cli.command.json()),
-    }
+    result.unwrap_or_else(|failure| failure.report(cli.command.json()))
 }
 
-/// Tells what is wrong with the command line, or the help that was asked for.
+/// Tells what is wrong with the command line, or gives the help that was asked for.
 fn usage(error: &clap::Error) -> ExitCode {
-    let asked_for_json = std::env::args().any(|argument| argument == "--json");
-    if error.use_stderr() && asked_for_json {
-        return failure::Failure::Usage(error.render().to_string().trim().to_owned()).report(true);
+    let wrong = error.use_stderr();
+    if wrong && std::env::args().any(|argument| argument == "--json") {
+        return Failure::Usage(error.render().to_string().trim().to_owned()).report(true);
     }
     // If nobody listens, there is nobody to tell.
     let _ = error.print();
-    ExitCode::from(if error.use_stderr() { 2 } else { 0 })
+    ExitCode::from(if wrong { 2 } else { 0 })
 }

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
-use alhazen::description::{Diagnostic, SceneDesc};
+use alhazen::description::SceneDesc;
 use alhazen::import::{Files, Imported, import};
-use alhazen::integrators::Control;
-use alhazen::{Job, image::Image, integrator_name, write_picture};
+use alhazen::integrators::{Control, Progress};
+use alhazen::{Job, integrator_name, write_picture};
 
 use crate::args::Render;
 use crate::bar::Bar;
@@ -16,27 +17,30 @@ use crate::diagnostics;
 use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
 use crate::output;
-use crate::summary::{Seconds, Summary};
+use crate::summary::{Seconds, Summary, peak_memory};
 
 /// Renders a scene and tells what came of it.
 pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     for path in &arguments.output {
         output::check(path).map_err(Failure::Usage)?;
     }
-    let threads = start_threads(arguments.threads)?;
+    start_threads(arguments.threads)?;
     let interrupt = Interrupt::listen()?;
-    let begin = Instant::now();
+    let talkative = !arguments.quiet && !arguments.json;
 
+    let begin = Instant::now();
     let mut imported = import(&arguments.scene, &Files);
     if imported.has_errors() {
         return Err(scene_failure(imported));
     }
     arguments.overrides().apply(&mut imported.desc).map_err(|error| Failure::Usage(error.to_string()))?;
-    let outputs = outputs(arguments, &imported.desc)?;
+    let outputs = if arguments.output.is_empty() {
+        vec![default_output(&arguments.scene, &imported.desc)?]
+    } else {
+        arguments.output.clone()
+    };
     let imported_at = Instant::now();
-
-    let compiled = Job::compile(&imported.desc);
-    let mut job = match compiled {
+    let mut job = match Job::compile(&imported.desc) {
         Ok(compiled) => {
             imported.diagnostics.extend(compiled.warnings);
             compiled.job
@@ -46,33 +50,102 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
             return Err(scene_failure(imported));
         }
     };
-    if !arguments.quiet && !arguments.json {
+    interrupt.begin_rendering();
+    if talkative {
         diagnostics::print(&imported.diagnostics, &imported.sources);
     }
     let compiled_at = Instant::now();
 
-    let shown = !arguments.quiet && !arguments.json;
-    let bar = Bar::new(shown, &job);
-    interrupt.begin_rendering();
-    let control = Control { cancel: interrupt.cancel(), progress: Some(&|progress| bar.show(progress)) };
-    let outcome = job.render(&control);
-    bar.clear();
+    let bar = Arc::new(Bar::new(talkative, job.passes()));
+    let sink = Arc::clone(&bar);
+    let progress = Box::new(move |progress: &Progress| sink.show(progress));
+    let outcome = job.render(&Control { cancel: interrupt.cancel(), progress: Some(progress) });
+    let last = bar.finish();
     let rendered_at = Instant::now();
 
     let picture = job.picture();
+    // A picture that cannot be written does not keep the others from being written.
+    let mut unwritten = None;
     for path in &outputs {
-        write_picture(&picture, path).map_err(|error| about_file(path, error))?;
+        unwritten =
+            unwritten.or(write_picture(&picture, path).map_err(|error| about_file(path, error)).err());
+    }
+    if let Some(failure) = unwritten {
+        return Err(failure);
     }
     let summary = Summary {
+        interrupted: outcome.is_err(),
         scene: &arguments.scene,
         outputs: &outputs,
         integrator: integrator_name(&imported.desc.integrator),
+        samples_per_pixel: imported.desc.sampler.pixel_samples,
+        film: job.film(),
+        progress: last,
+        threads: rayon::current_num_threads(),
         seconds: Seconds {
             import: (imported_at - begin).as_secs_f64(),
             compile: (compiled_at - imported_at).as_secs_f64(),
             render: (rendered_at - compiled_at).as_secs_f64(),
             write: rendered_at.elapsed().as_secs_f64(),
         },
+        peak_memory: peak_memory(),
     };
-    Ok(ExitCode::SUCCESS)
+    if arguments.json {
+        let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
+        say(summary.to_json(warnings));
+    } else if talkative {
+        say(&summary);
+    } else if let Some(interruption) = summary.interruption() {
+        warn(interruption);
+    }
+    Ok(if summary.interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+}
+
+/// Makes the threads that everything runs on.
+fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = threads {
+        builder = builder.num_threads(threads.into());
+    }
+    builder.build_global().map_err(|error| Failure::Input(format!("cannot start threads: {error}")))
+}
+
+fn scene_failure(imported: Imported) -> Failure {
+    Failure::Scene { diagnostics: imported.diagnostics, sources: imported.sources }
+}
+
+/// Where the picture goes if the command line does not say: where the scene's film says, else to the scene's name with the
+/// extension of OpenEXR, in the current folder.
+fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
+    let said = &desc.film.filename;
+    let path = if said.span.is_none() { named_after(scene) } else { PathBuf::from(&said.value) };
+    output::check(&path).map_err(|problem| {
+        Failure::Input(format!("{problem}\nThe scene names this output; `-o FILE` names another."))
+    })?;
+    Ok(path)
+}
+
+/// "scenes/room.pbrt.gz" gives "room.exr".
+fn named_after(scene: &Path) -> PathBuf {
+    let name = scene.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().filter(|stem| !stem.is_empty() && *stem != "-").unwrap_or("picture");
+    PathBuf::from(format!("{stem}.exr"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_named_after_their_scenes() {
+        for (scene, picture) in [
+            ("scenes/room.pbrt.gz", "room.exr"),
+            ("room.pbrt", "room.exr"),
+            ("-", "picture.exr"),
+            (".hidden", "picture.exr"),
+            ("..", "picture.exr"),
+        ] {
+            assert_eq!(named_after(Path::new(scene)), Path::new(picture));
+        }
+    }
 }

@@ -28,6 +28,7 @@ mod source;
 mod texture;
 mod transform;
 
+pub use self::image::ImageDesc;
 pub use accelerator::{AcceleratorDesc, BvhSplit};
 pub use arena::{Arena, Handle, Origin, Stated};
 pub use camera::{
@@ -38,7 +39,6 @@ pub use color::{ColorSpaceDesc, SpectrumDesc};
 pub use diagnostic::{Diagnostic, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
-pub use self::image::ImageDesc;
 pub use integrator::{IntegratorDesc, LightSamplerDesc, MltDesc, SppmDesc};
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
 pub use material::{

@@ -67,7 +67,8 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Brings an object's triangles into render space. Arrays that the transform leaves alone are shared, not copied.
+    /// Brings an object's triangles into render space. Arrays that the transform leaves alone are shared, not
+    /// copied.
     ///
     /// Given normals point to the outside; with `reverse_orientation`, to the inside.
     pub fn new(

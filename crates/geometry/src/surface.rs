@@ -1,7 +1,8 @@
 //! What is known of a surface at one point.
 //!
-//! Conventions are those of [Pharr 2023 §3.11, §6.5]: `n` is the geometric normal, dpdu × dpdv normalised, turned round when the shape's orientation is reversed
-//! or its transform swaps handedness, but not both. Interpolated shading normals have the last word on the side: `n` is turned to theirs.
+//! Conventions are those of [Pharr 2023 §3.11, §6.5]: `n` is the geometric normal, dpdu × dpdv normalised,
+//! turned round when the shape's orientation is reversed or its transform swaps handedness, but not both.
+//! Interpolated shading normals have the last word on the side: `n` is turned to theirs.
 
 use crate::placement::Placement;
 use math::{
@@ -74,7 +75,8 @@ impl SurfacePoint {
         Ray::spawn(self.p, self.n, d, self.time)
     }
 
-    /// The same point seen from outside of what is placed. The error grows by what a ray loses that is spawned out there and brought back in again.
+    /// The same point seen from outside of what is placed. The error grows by what a ray loses that is
+    /// spawned out there and brought back in again.
     pub(crate) fn placed(&self, placement: &Placement, ray: &Ray) -> Self {
         let vector = |v: Vector3| placement.vector(v.as_dvec3());
         let change = |n: Normal3, dn: Normal3| placement.normal_change(n.as_dvec3(), dn.as_dvec3());
@@ -108,7 +110,8 @@ pub(crate) fn any_tangents(n: Normal3) -> [Vector3; 2] {
     [u, v]
 }
 
-/// The derivatives by texture coordinates (s, t) from those by (u, v): the inverse of the Jacobian ∂(s,t)/∂(u,v). `None` where that has no inverse.
+/// The derivatives by texture coordinates (s, t) from those by (u, v): the inverse of the Jacobian
+/// ∂(s,t)/∂(u,v). `None` where that has no inverse.
 pub(crate) fn by_texture(d: [DVec3; 2], st_du: Vec2, st_dv: Vec2) -> Option<[DVec3; 2]> {
     let (du, dv) = (st_du.as_dvec2(), st_dv.as_dvec2());
     let determinant = du.x * dv.y - dv.x * du.y;

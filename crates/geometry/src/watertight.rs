@@ -1,11 +1,14 @@
 //! Ray against triangle, without gaps between triangles that share an edge.
 //!
-//! The triangle is moved and sheared so that the ray becomes the +z axis from the origin. Its edge functions there, e₀ = x₁y₂ − y₁x₂ and so on, are twice the areas
-//! that the origin makes with each edge; the ray passes inside when none differs in sign from another. Two triangles compute the function of a shared edge from the same
-//! numbers and get opposite signs, so that no ray slips between ([Woop et al. 2013]; [Pharr 2023 §6.5.3]).
+//! The triangle is moved and sheared so that the ray becomes the +z axis from the origin. Its edge functions
+//! there, e₀ = x₁y₂ − y₁x₂ and so on, are twice the areas that the origin makes with each edge; the ray
+//! passes inside when none differs in sign from another. Two triangles compute the function of a shared edge
+//! from the same numbers and get opposite signs, so that no ray slips between ([Woop et al. 2013]; [Pharr
+//! 2023 §6.5.3]).
 //!
-//! What floats cannot tell is decided in doubles: on which side of an edge the ray passes when an edge function vanishes, and whether a hit nearer than the rounding error of
-//! its distance lies before or behind the origin. A hit is thus lost neither on edges nor in corners.
+//! What floats cannot tell is decided in doubles: on which side of an edge the ray passes when an edge
+//! function vanishes, and whether a hit nearer than the rounding error of its distance lies before or behind
+//! the origin. A hit is thus lost neither on edges nor in corners.
 
 use math::{Ray, Vec2, Vec3, difference_of_products, gamma};
 
@@ -39,7 +42,8 @@ impl Sheared {
         Self { axes, shear: [-d[0] / d[2], -d[1] / d[2], 1.0 / d[2]], o: ray.o, d: ray.d }
     }
 
-    /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1 and 2.
+    /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
+    /// and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
         let [ax, ay, az] = self.axes;

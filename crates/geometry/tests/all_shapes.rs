@@ -1,4 +1,5 @@
-//! What every shape promises: samples have their density, densities integrate to one, hits lie on the surface, and partial derivatives are those of the surface.
+//! What every shape promises: samples have their density, densities integrate to one, hits lie on the
+//! surface, and partial derivatives are those of the surface.
 
 mod common;
 
@@ -58,7 +59,8 @@ fn visible(shape: &Shape, reference: &ShapeSampleContext, sample: &ShapeSample) 
     met(shape, reference, toward).filter(|(hit, _)| hit.t > 0.999).map(|_| toward.normalize())
 }
 
-/// Directions around a shape in equal cells (z, φ) of the cone in which its box is seen, and the density's integral over each, by a fine midpoint rule.
+/// Directions around a shape in equal cells (z, φ) of the cone in which its box is seen, and the density's
+/// integral over each, by a fine midpoint rule.
 struct Cells {
     frame: Frame,
     z_min: f32,
@@ -66,7 +68,7 @@ struct Cells {
 
 impl Cells {
     const BINS: usize = 12;
-    const STEPS: usize = 40;
+    const STEPS: usize = 32;
 
     fn new(shape: &Shape, reference: &ShapeSampleContext) -> Self {
         let cone = bound_subtended_directions(&shape.bounds().expect("bounded"), reference.p.p);
@@ -248,6 +250,37 @@ fn check_derivatives(name: &str, shape: &Shape, surface: &SurfacePoint) {
             "{name}: {turned} and {dn}"
         );
     }
+}
+
+#[test]
+fn hits_in_closed_form() {
+    let m = &Transform::IDENTITY;
+    let meet = |shape: Shape, o: Vec3, d: Vec3| {
+        shape.intersect(&Ray::new(o, d, 0.0), 1e9).map(|hit| (hit.t, hit.uv))
+    };
+    let high = Vec3::new(0.0, 0.0, 5.0);
+    let sphere = || Shape::from(Sphere::whole(m, false, 1.0));
+    assert_eq!(meet(sphere(), high, -Vec3::Z), Some((4.0, Vec2::new(0.0, 1.0))));
+    assert_eq!(meet(sphere(), Vec3::ZERO, Vec3::Y * 0.5), Some((2.0, Vec2::new(0.25, 0.5))));
+    assert_eq!(meet(sphere(), high + Vec3::X, -Vec3::Z).map(|hit| hit.0), Some(5.0), "touched");
+    assert_eq!(meet(sphere(), high + Vec3::X * 1.001, -Vec3::Z), None);
+    assert_eq!(meet(sphere(), high, Vec3::Z), None);
+    let dome = Sphere::new(m, false, 1.0, [-1.0, 0.0], 360.0).into();
+    assert_eq!(meet(dome, high, -Vec3::Z).map(|hit| hit.0), Some(6.0), "through the open top");
+    let tube = || Shape::from(Cylinder::new(m, false, 2.0, [0.0, 4.0], 360.0));
+    assert_eq!(meet(tube(), Vec3::new(5.0, 0.0, 1.0), -Vec3::X), Some((3.0, Vec2::new(0.0, 0.25))));
+    assert_eq!(meet(tube(), Vec3::new(0.0, 0.0, 9.0), -Vec3::Z), None, "it has no ends");
+    let ring = || Shape::from(Disk::new(m, false, 1.0, 2.0, 1.0, 360.0));
+    assert_eq!(meet(ring(), high + Vec3::Y * 1.5, -Vec3::Z), Some((4.0, Vec2::new(0.25, 0.5))));
+    assert_eq!(meet(ring(), high + Vec3::Y * 0.5, -Vec3::Z), None);
+    let plane = || Shape::from(Plane::new(m, false));
+    assert_eq!(meet(plane(), Vec3::new(3.0, 4.0, -8.0), Vec3::Z * 4.0), Some((2.0, Vec2::new(3.0, 4.0))));
+    assert_eq!(meet(plane(), Vec3::Z, Vec3::X), None, "d_z = 0");
+    assert_eq!(meet(plane(), Vec3::ZERO, Vec3::X), None, "within the plane");
+    // z = uv over the unit square.
+    let saddle = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE];
+    let saddle = BilinearPatch::new(saddle, None, None, m, false).into();
+    assert_eq!(meet(saddle, Vec3::new(0.5, 0.25, 1.0), -Vec3::Z), Some((0.875, Vec2::new(0.5, 0.25))));
 }
 
 #[test]

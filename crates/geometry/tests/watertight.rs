@@ -16,7 +16,7 @@ fn transform(rng: &mut Rng, i: usize) -> Transform {
     let scale = [1f32, 1e-4, 1e5, 30.0][i % 4];
     let away = AWAY[i % 3] * scale;
     let turn = Transform::rotate(between(rng, 0.0, 6.0), direction(rng));
-    let stretch = if i % 2 == 0 { Vec3::ONE } else { Vec3::new(1.0, 0.4, -1.7) };
+    let stretch = if i.is_multiple_of(2) { Vec3::ONE } else { Vec3::new(1.0, 0.4, -1.7) };
     let place = Transform::translate(direction(rng) * away);
     place.after(&turn).after(&Transform::scale(stretch * scale))
 }
@@ -84,7 +84,8 @@ fn axis_parallel_rays_along_shared_edges_do_not_leak() {
     }
 }
 
-/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside none ever comes.
+/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside none ever
+/// comes.
 #[test]
 fn walks_inside_do_not_leak() {
     let rng = &mut Rng::new(3, 0);
@@ -175,4 +176,49 @@ fn transmitted_rays_reach_the_far_side() {
             );
         }
     }
+}
+
+/// Coordinates that are exactly zero are where a relative error bound says nothing.
+#[test]
+fn rays_do_not_meet_a_flat_surface_in_a_coordinate_plane_again() {
+    let rng = &mut Rng::new(9, 0);
+    let corners = [(-7.0, -6.0), (7.0, -7.0), (-6.5, 7.0), (7.0, 5.0)];
+    for axis in 0..3 {
+        let turn = match axis {
+            0 => Transform::from_parts(swapped(0, 2), swapped(0, 2)),
+            1 => Transform::from_parts(swapped(1, 2), swapped(1, 2)),
+            _ => Transform::IDENTITY,
+        };
+        for away in [Vec3::ZERO, Vec3::new(30.0, -20.0, 0.0), Vec3::new(0.3, 4e4, 0.0)] {
+            let m = turn.after(&Transform::translate(away));
+            let flat = |p: [(f32, f32); 4]| p.map(|(x, y)| Vec3::new(x, y, 0.0));
+            let square = flat([(-7.0, -7.0), (7.0, -7.0), (-7.0, 7.0), (7.0, 7.0)]);
+            let indices = vec![[0, 1, 2], [2, 1, 3]];
+            let shapes: Vec<Geometry> = vec![
+                Shape::from(BilinearPatch::new(square, None, None, &m, false)).into(),
+                Shape::from(BilinearPatch::new(flat(corners), None, None, &m, false)).into(),
+                Shape::from(Disk::new(&m, false, 0.0, 7.0, 0.0, 360.0)).into(),
+                Shape::from(Plane::new(&m, false)).into(),
+                mesh(flat(corners).to_vec(), indices, &m).into(),
+            ];
+            for (k, shape) in shapes.into_iter().enumerate() {
+                let world = world([shape]);
+                for _ in 0..5_000 {
+                    let target = m.point(Vec3::new(between(rng, -4.0, 4.0), between(rng, -4.0, 4.0), 0.0));
+                    let ray = Ray::new(target - direction(rng) * 13.0, Vec3::ZERO, 0.0);
+                    let ray = Ray { d: target - ray.o, ..ray };
+                    let Some(hit) = nearest(&world, &ray) else { continue };
+                    let spawned = world.surface(&ray, &hit).spawn_ray(direction(rng));
+                    assert!(nearest(&world, &spawned).is_none(), "shape {k} across axis {axis}: {spawned:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The exchange of two axes.
+fn swapped(a: usize, b: usize) -> Mat4 {
+    let mut axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|v| v.extend(0.0));
+    axes.swap(a, b);
+    Mat4::from_cols(axes[0], axes[1], axes[2], Vec3::ZERO.extend(1.0))
 }

@@ -23,7 +23,13 @@ fn world(text: &str) -> SceneDesc {
 
 /// The transform of the first shape.
 fn transform(text: &str) -> TransformDesc {
-    world(&format!("{text} Shape \"sphere\"")).shapes.iter().next().unwrap().1.world_from_object
+    world(&format!("{text} Shape \"sphere\""))
+        .shapes
+        .iter()
+        .next()
+        .expect("there is a shape")
+        .1
+        .world_from_object
 }
 
 fn assert_near(a: DMat4, b: DMat4) {

@@ -124,6 +124,10 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
         r#"Attribute "shap" "float radius" 2"#,
         "1:11 error[unknown-attribute-target] attributes cannot be for `shap` (did you mean `shape`?)",
     ),
+    (
+        r#"Attribute "shape" "float raduis" 2"#,
+        "1:19 warning[ignored] no statement uses the attribute `raduis`",
+    ),
     (r#"Include "none.pbrt""#, "1:9 error[unreadable-file] cannot read `none.pbrt`: no such file"),
     (r#"Include "self.pbrt""#, "1:9 error[include-limit] files include each other more than 64 deep"),
 ];

@@ -1,1 +1,43 @@
-//! The algorithms of light transport and the one loop that runs them
+//! The algorithms of light transport and the one loop that runs them.
+//!
+//! An [`Integrator`] fills a film in passes; [`render`] runs the passes, tells of each and stops when asked to. An algorithm that
+//! only has to answer how much light comes along one ray is a [`RayIntegrator`], and [`PixelLoop`] makes an integrator of it.
+//! [`build`] chooses the algorithm that a scene names.
+//!
+//! | algorithm | what it follows |
+//! |---|---|
+//! | [`RayCasting`] | the camera's ray; lights shine through everything |
+//! | [`Whitted`] | shadow rays, perfect mirrors and smooth glass |
+//! | [`AmbientOcclusion`] | how much of the sky each point sees |
+//! | [`RandomWalk`] | paths in uniform directions that meet light by chance |
+//! | [`SimplePath`] | paths by light sampling and BSDF sampling, each to be switched off |
+//! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
+//!
+//! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
+//! that reaches the camera, and the depth of a path the number of its scattering events: depth 0 shows lights alone, depth 1
+//! adds direct light.
+
+mod ambient_occlusion;
+mod build;
+mod control;
+mod direct;
+mod integrator;
+mod path;
+mod pixel_loop;
+mod random_walk;
+mod ray_casting;
+mod render;
+mod simple_path;
+mod whitted;
+
+pub use ambient_occlusion::AmbientOcclusion;
+pub use build::{Built, build};
+pub use control::{Cancelled, Control, Progress, ProgressSink};
+pub use integrator::Integrator;
+pub use path::{Path, PathSettings};
+pub use pixel_loop::{PixelLoop, RayIntegrator};
+pub use random_walk::RandomWalk;
+pub use ray_casting::RayCasting;
+pub use render::{RenderReport, render};
+pub use simple_path::SimplePath;
+pub use whitted::Whitted;

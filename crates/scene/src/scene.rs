@@ -36,6 +36,16 @@ pub struct SceneOptions {
     pub force_diffuse: bool,
 }
 
+/// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interfaces {
+    /// They stop them, as in the algorithms of the pbrt-v4 format that know no media.
+    #[default]
+    Stop,
+    /// They let them pass, as they let light.
+    Pass,
+}
+
 /// Everything that is rendered. Never changes once compiled.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -116,12 +126,13 @@ impl Scene {
         Some((interaction, hit.t))
     }
 
-    /// Whether a surface that stops light lies at 0 < t < `t_max`. Interfaces of media let it pass.
-    pub fn occluded(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> bool {
+    /// Whether a surface that stops light lies at 0 < t < `t_max`.
+    pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
         let stops = |hit: &Hit, ray: &Ray| {
             let entry = &self.entries[hit.geometry.0 as usize];
-            !matches!(self.materials.get(entry.material).material, Material::Interface)
-                && self.is_there(hit, ray)
+            let passes = interfaces == Interfaces::Pass
+                && matches!(self.materials.get(entry.material).material, Material::Interface);
+            !passes && self.is_there(hit, ray)
         };
         self.world.occluded(ray, t_max, &stops, stats)
     }
@@ -131,15 +142,16 @@ impl Scene {
         &self,
         from: &SurfaceInteraction,
         sample: &LightLiSample,
+        interfaces: Interfaces,
         stats: &mut RayStats,
     ) -> bool {
         let s = &from.surface;
         match sample.p {
             Some(p) => {
                 let ray = Ray::between(s.p, s.n, p, sample.n, s.time);
-                !self.occluded(&ray, Ray::SHADOW_END, stats)
+                !self.occluded(&ray, Ray::SHADOW_END, interfaces, stats)
             }
-            None => !self.occluded(&from.spawn_ray(sample.wi), f32::INFINITY, stats),
+            None => !self.occluded(&from.spawn_ray(sample.wi), f32::INFINITY, interfaces, stats),
         }
     }
 

@@ -1,26 +1,42 @@
 //! Chores of the project.
 
 mod rgb_table;
+mod test;
+mod tidy;
 
+use std::path::Path;
 use std::process::ExitCode;
 
-fn main() -> ExitCode {
-    match std::env::args().nth(1).as_deref() {
-        Some("rgb-table") => report(rgb_table::run()),
-        _ => {
-            eprintln!("usage: cargo xtask rgb-table");
-            ExitCode::from(2)
-        }
-    }
-}
+const USAGE: &str = "\
+usage: cargo xtask CHORE
 
-/// Success, or the error printed.
-fn report(result: std::io::Result<()>) -> ExitCode {
-    match result {
+  test       everything that must hold: format, house rules, lints, tests, documentation
+  tidy       the house rules alone, in a second
+  rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let done = match arguments[..] {
+        ["test"] => test::run(workspace()),
+        ["tidy"] => tidy::run(workspace()),
+        ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// The root of the workspace: two folders above this crate.
+fn workspace() -> &'static Path {
+    let crate_folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    crate_folder.ancestors().nth(2).unwrap_or(crate_folder)
 }

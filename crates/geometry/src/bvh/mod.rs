@@ -1,9 +1,11 @@
 //! A tree of boxes over anything that has bounds.
 //!
-//! Three things are kept apart: how to split is [`split`]'s affair, what a node is [`node`]'s, and what a leaf tests is left to the caller. A leaf is a range of *blocks*,
-//! each of a fixed number of primitives, so that a caller may test a block at once. [`Bvh::order`] says which primitive stands at each place.
+//! Three things are kept apart: how to split is [`split`]'s affair, what a node is [`node`]'s, and what a
+//! leaf tests is left to the caller. A leaf is a range of *blocks*, each of a fixed number of primitives, so
+//! that a caller may test a block at once. [`Bvh::order`] says which primitive stands at each place.
 //!
-//! Children are visited front to back. The tree depends on the primitives alone, never on the number of threads that built it.
+//! Children are visited front to back. The tree depends on the primitives alone, never on the number of
+//! threads that built it.
 
 mod node;
 mod split;
@@ -46,8 +48,8 @@ impl Bvh {
         self.bounds
     }
 
-    /// Calls `leaf` with the blocks that the ray may meet before `t_max`, the nearest first. `leaf` may lower `t_max`, or break off.
-    /// Counts the boxes tested in `extents`. The ray must be finite.
+    /// Calls `leaf` with the blocks that the ray may meet before `t_max`, the nearest first. `leaf` may lower
+    /// `t_max`, or break off. Counts the boxes tested in `extents`. The ray must be finite.
     #[inline]
     pub fn traverse(
         &self,

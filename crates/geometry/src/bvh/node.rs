@@ -1,8 +1,10 @@
 //! Nodes of eight children, whose boxes are tested together.
 //!
-//! A binary tree is flattened by opening, of the children of a node, the one with the largest surface until there are eight ([Wald et al. 2008]). The slab test is the one of
-//! [`Bounds3::intersect`], with one difference: it widens boxes by what the watertight triangle test may err. That test rounds vertices after
-//! moving them to the ray's origin, so that it may meet a triangle that the exact ray misses by γ(8) times the distance; a box that is not as generous would let such a ray slip through a closed surface.
+//! A binary tree is flattened by opening, of the children of a node, the one with the largest surface until
+//! there are eight ([Wald et al. 2008]). The slab test is the one of [`Bounds3::intersect`], with one
+//! difference: it widens boxes by what the watertight triangle test may err. That test rounds vertices after
+//! moving them to the ray's origin, so that it may meet a triangle that the exact ray misses by γ(8) times
+//! the distance; a box that is not as generous would let such a ray slip through a closed surface.
 
 use super::split::{Primitive, Tree};
 use math::{Bounds3, Ray, gamma};

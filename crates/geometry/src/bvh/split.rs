@@ -1,9 +1,10 @@
 //! How primitives are divided: top-down, by a binned surface-area heuristic.
 //!
-//! A ray that meets a box meets a box inside of it with the probability of their ratio of surfaces. The expected cost of splitting a set S into L and R is therefore
-//!   c_box + (A(L)·blocks(L) + A(R)·blocks(R)) / A(S),
-//! against blocks(S) for a leaf. Centroids are sorted into bins along all three axes, and every border between bins is tried ([Wald 2007]; [Pharr 2023 §7.3]).
-//! Minimum, maximum and count do not depend on order, so that bins may be filled and halves be split by any number of threads.
+//! A ray that meets a box meets a box inside of it with the probability of their ratio of surfaces. The
+//! expected cost of splitting a set S into L and R is therefore   c_box + (A(L)·blocks(L) + A(R)·blocks(R)) /
+//! A(S), against blocks(S) for a leaf. Centroids are sorted into bins along all three axes, and every border
+//! between bins is tried ([Wald 2007]; [Pharr 2023 §7.3]). Minimum, maximum and count do not depend on order,
+//! so that bins may be filled and halves be split by any number of threads.
 
 use math::{Bounds3, Point3, Vec3};
 use rayon::prelude::*;
@@ -209,7 +210,8 @@ impl Bins {
     }
 }
 
-/// Folds a large set in parts, by many threads. The result does not depend on the parts as long as `merge` is associative.
+/// Folds a large set in parts, by many threads. The result does not depend on the parts as long as `merge` is
+/// associative.
 fn in_parts<T: Send>(
     primitives: &[Primitive],
     serial: impl Fn(&[Primitive]) -> T + Sync + Send,

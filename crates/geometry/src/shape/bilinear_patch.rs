@@ -1,10 +1,13 @@
 //! The bilinear patch p(u, v) = (1−u)(1−v)·p₀₀ + u(1−v)·p₁₀ + (1−u)v·p₀₁ + uv·p₁₁.
 //!
-//! A ray meets the line of constant u when the three vectors between them are coplanar, which is a quadratic equation in u; v and t follow from the nearest points of ray and line
-//! ([Reshetov 2019]; [Pharr 2023 §6.6]). It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the patch whatever t was.
+//! A ray meets the line of constant u when the three vectors between them are coplanar, which is a quadratic
+//! equation in u; v and t follow from the nearest points of ray and line ([Reshetov 2019]; [Pharr 2023
+//! §6.6]). It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the patch
+//! whatever t was.
 //!
-//! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the corners, or an image given by [`BilinearPatch::with_image`]. A rectangle
-//! seen from a point is sampled by solid angle ([Ureña et al. 2013]) and warped to follow the cosine there.
+//! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the corners, or
+//! an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is sampled by solid angle
+//! ([Ureña et al. 2013]) and warped to follow the cosine there.
 
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
@@ -31,8 +34,8 @@ pub struct BilinearPatch {
 }
 
 impl BilinearPatch {
-    /// A patch given in object space, with shading normals and texture coordinates at the corners where there are any.
-    /// Given normals point to the outside; with `reverse_orientation`, to the inside.
+    /// A patch given in object space, with shading normals and texture coordinates at the corners where there
+    /// are any. Given normals point to the outside; with `reverse_orientation`, to the inside.
     pub fn new(
         p: [Point3; 4],
         n: Option<[Normal3; 4]>,
@@ -178,7 +181,8 @@ impl BilinearPatch {
         Some(seen.pdf() * warp)
     }
 
-    /// A cone of all normals on the outside: ∂p/∂u × ∂p/∂v is linear in u and v, so that all lie between those of the corners.
+    /// A cone of all normals on the outside: ∂p/∂u × ∂p/∂v is linear in u and v, so that all lie between
+    /// those of the corners.
     pub(super) fn normal_bounds(&self) -> DirectionCone {
         let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| self.outside(uv));
         let w = corners.iter().sum::<Vec3>().normalize_or_zero();
@@ -211,7 +215,7 @@ impl BilinearPatch {
     fn point(&self, uv: Vec2) -> Point3Error {
         let p = self.p.map(|p| p.as_dvec3());
         let size = p.iter().fold(DVec3::ZERO, |sum, p| sum + p.abs());
-        rounded(at(&p, uv), size * ROUNDING)
+        rounded(at(&p, uv), DVec3::splat(size.max_element() * ROUNDING))
     }
 
     fn texture(&self, uv: Vec2) -> Vec2 {
@@ -250,7 +254,8 @@ fn d_dv(c: &[DVec3; 4], uv: Vec2) -> DVec3 {
     (c[2] - c[0]).lerp(c[3] - c[1], uv.x as f64)
 }
 
-/// ∂n/∂u and ∂n/∂v of the unit normal n ∝ ∂p/∂u × ∂p/∂v, of whose second derivatives only the mixed one is not zero.
+/// ∂n/∂u and ∂n/∂v of the unit normal n ∝ ∂p/∂u × ∂p/∂v, of whose second derivatives only the mixed one is
+/// not zero.
 fn normal_derivatives([du, dv]: [DVec3; 2], mixed: DVec3) -> [DVec3; 2] {
     let cross = du.cross(dv);
     let length = cross.length();
@@ -274,7 +279,8 @@ fn solve_quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     Some([q / a, if q == 0.0 { 0.0 } else { c / q }])
 }
 
-/// Turns `v` as the shortest turn does that brings one unit vector to another less than a right angle away (Rodrigues).
+/// Turns `v` as the shortest turn does that brings one unit vector to another less than a right angle away
+/// (Rodrigues).
 fn turn(v: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     let (axis, cos) = (from.cross(to), from.dot(to));
     v * cos + axis.cross(v) + axis * (axis.dot(v) / (1.0 + cos))

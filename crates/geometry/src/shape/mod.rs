@@ -1,13 +1,17 @@
 //! Shapes: what a single primitive can do.
 //!
-//! Each shape is met by rays, describes its surface at a hit, and samples itself: by area ([`Shape::sample`]), or as seen from a point
-//! ([`Shape::sample_from`], by solid angle). Every sample has its density.
+//! Each shape is met by rays, describes its surface at a hit, and samples itself: by area
+//! ([`Shape::sample`]), or as seen from a point ([`Shape::sample_from`], by solid angle). Every sample has
+//! its density.
 //!
-//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is solved; z is their axis.
+//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is solved; z is
+//!   their axis.
 //! - Triangles and patches have their vertices in render space.
-//! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on other shapes; a
-//!   [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which vertices may assign at will.
-//! - Where a surface covers a direction twice, the density of the direction is that of its nearest point; the other is out of sight.
+//! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on other shapes;
+//!   a [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which vertices may assign at
+//!   will.
+//! - Where a surface covers a direction twice, the density of the direction is that of its nearest point; the
+//!   other is out of sight.
 
 mod bilinear_patch;
 mod cylinder;
@@ -82,7 +86,8 @@ impl ShapeSampleContext {
         (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
     }
 
-    /// Weights of the corners of the unit square that make samples follow the cosine at this point, given directions to the corners; never quite zero.
+    /// Weights of the corners of the unit square that make samples follow the cosine at this point, given
+    /// directions to the corners; never quite zero.
     fn cosine_weights(&self, corners: [Vector3; 4]) -> [f32; 4] {
         corners.map(|w| w.normalize_or_zero().dot(self.ns).abs().max(0.01))
     }
@@ -153,7 +158,8 @@ impl Shape {
         }
     }
 
-    /// The area; infinite for the plane. Approximate where a quadric's transform is no similarity, and for bent patches.
+    /// The area; infinite for the plane. Approximate where a quadric's transform is no similarity, and for
+    /// bent patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
     }
@@ -163,7 +169,8 @@ impl Shape {
         each_shape!(self, shape => shape.sample(u)).filter(|s| s.pdf.is_finite() && s.pdf > 0.0)
     }
 
-    /// The density per area with which [`Shape::sample`] chooses the point with the given parameters (those of a [`ShapeHit`]).
+    /// The density per area with which [`Shape::sample`] chooses the point with the given parameters (those
+    /// of a [`ShapeHit`]).
     #[doc(alias = "pdf")]
     pub fn pdf_area(&self, uv: Vec2) -> f32 {
         each_shape!(self, shape => shape.pdf_area(uv))
@@ -183,7 +190,8 @@ impl Shape {
         }
     }
 
-    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met along `wi`; 0 where nothing is.
+    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met along `wi`; 0
+    /// where nothing is.
     pub fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> f32 {
         let ray = reference.spawn_ray(wi);
         let Some(hit) = self.intersect(&ray, f32::INFINITY) else { return 0.0 };

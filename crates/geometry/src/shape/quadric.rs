@@ -1,7 +1,8 @@
 //! What quadrics share.
 //!
-//! A ray is brought to object space and the equation solved in doubles; the point is then put back on the surface and rounded to floats in render space. All that is left of errors is that
-//! last rounding, which the point's bounds cover: neither the distance of the ray's origin nor the shape's transform makes them grow.
+//! A ray is brought to object space and the equation solved in doubles; the point is then put back on the
+//! surface and rounded to floats in render space. All that is left of errors is that last rounding, which the
+//! point's bounds cover: neither the distance of the ray's origin nor the shape's transform makes them grow.
 
 use crate::placement::{Placement, ROUNDING};
 use crate::shape::ShapeSample;
@@ -70,7 +71,8 @@ impl Quadric {
         (pdf / self.placement.area_factor(n)) as f32
     }
 
-    /// The area in render space of what has `area` in object space, and the unit normal `normal(u, v)` at parameters spread evenly over that area.
+    /// The area in render space of what has `area` in object space, and the unit normal `normal(u, v)` at
+    /// parameters spread evenly over that area.
     pub fn area(&self, area: f64, normal: impl Fn(f64, f64) -> DVec3) -> f32 {
         const STEPS: usize = 64;
         let place = |i: usize| (i as f64 + 0.5) / STEPS as f64;
@@ -110,8 +112,9 @@ fn weingarten(local: &Local) -> [DVec3; 2] {
 
 /// The roots of |o + t·d|² = r² in ascending order, without cancellation.
 ///
-/// The discriminant is (r + m)(r − m)/d² with m the least distance from the centre, and of the two roots the one of larger size is found
-/// first; the other is the quotient of their product ([Pharr 2023 §6.8.3]). A ray that only touches has the root twice.
+/// The discriminant is (r + m)(r − m)/d² with m the least distance from the centre, and of the two roots the
+/// one of larger size is found first; the other is the quotient of their product ([Pharr 2023 §6.8.3]). A ray
+/// that only touches has the root twice.
 pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     let a = d.dot(d);
     let middle = -o.dot(d) / a;

@@ -1,4 +1,5 @@
-//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single items, and whatever has no bounds in a list.
+//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
+//! items, and whatever has no bounds in a list.
 
 use super::packet::Packet;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};

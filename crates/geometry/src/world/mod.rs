@@ -1,7 +1,8 @@
 //! Everything that a ray can hit.
 //!
-//! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`] places another group in it, at rest or moving. A shape that
-//! moves is an instance of a group with that shape alone.
+//! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`]
+//! places another group in it, at rest or moving. A shape that moves is an instance of a group with that
+//! shape alone.
 
 mod builder;
 mod group;
@@ -13,7 +14,7 @@ use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
 use crate::surface::SurfacePoint;
 use group::{Group, Trace, Verdict};
-use math::{AnimatedTransform, Bounds3, Ray, Transform, Vec2};
+use math::{AnimatedTransform, Bounds3, Ray, Vec2};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -37,7 +38,8 @@ impl GroupId {
     pub const TOP: Self = Self(0);
 }
 
-/// What one description of an object becomes: one or more primitives that share whatever a scene ties to a [`GeometryId`].
+/// What one description of an object becomes: one or more primitives that share whatever a scene ties to a
+/// [`GeometryId`].
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// The triangles of a mesh.
@@ -95,7 +97,8 @@ pub struct Instance {
 pub struct Hit {
     /// How far along the ray, in lengths of its direction.
     pub t: f32,
-    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, the parameters (u, v) on other shapes.
+    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, the parameters (u,
+    /// v) on other shapes.
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
@@ -159,7 +162,8 @@ impl World {
         &self.instances[id.0 as usize].motion
     }
 
-    /// The nearest hit at 0 < t < `t_max` that `filter` keeps. The filter sees candidates in no promised order, and must answer alike for the same candidate.
+    /// The nearest hit at 0 < t < `t_max` that `filter` keeps. The filter sees candidates in no promised
+    /// order, and must answer alike for the same candidate.
     pub fn intersect(
         &self,
         ray: &Ray,
@@ -222,10 +226,5 @@ impl World {
                 shapes[hit.primitive as usize].surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
             }
         }
-    }
-
-    /// The transform from the space of a hit's shape to render space at a moment: the identity for what stands in the top group.
-    pub fn render_from_hit(&self, hit: &Hit, time: f32) -> Transform {
-        hit.instance.map_or(Transform::IDENTITY, |id| self.render_from_instance(id).at(time))
     }
 }

@@ -1,7 +1,8 @@
 //! What a leaf tests: several triangles at once.
 //!
-//! A packet only says which of its triangles the ray may hit; each of those few is then put to the scalar test, which has the last word. Both
-//! compute the same numbers, so that a packet refuses nothing that the scalar test would keep.
+//! A packet only says which of its triangles the ray may hit; each of those few is then put to the scalar
+//! test, which has the last word. Both compute the same numbers, so that a packet refuses nothing that the
+//! scalar test would keep.
 
 use crate::watertight::{Sheared, is_vanishing, weighted};
 use math::{Vec3, difference_of_products};

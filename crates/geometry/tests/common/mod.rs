@@ -5,6 +5,7 @@ use alhazen_geometry::*;
 use math::*;
 use sampling::Rng;
 use sampling::warp::sample_uniform_sphere;
+use std::f32::consts::{PI, TAU};
 
 pub fn uniform_2d(rng: &mut Rng) -> Vec2 {
     Vec2::new(rng.uniform_f32(), rng.uniform_f32())
@@ -44,7 +45,7 @@ pub fn ball(n: u32, bump: f32, transform: &Transform) -> TriangleMesh {
     let mut positions = vec![Vec3::Z, -Vec3::Z];
     for i in 1..n {
         for j in 0..n {
-            let (theta, phi) = (i as f32 / n as f32 * 3.14159, j as f32 / n as f32 * 6.28318);
+            let (theta, phi) = (i as f32 / n as f32 * PI, j as f32 / n as f32 * TAU);
             let r = 1.0 + bump * (5.0 * theta).sin() * (7.0 * phi).cos();
             positions.push(spherical_direction(theta.sin(), theta.cos(), phi) * r);
         }

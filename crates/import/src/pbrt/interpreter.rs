@@ -5,17 +5,13 @@
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use description::{ColorSpaceDesc, Diagnostic, FileId, SourceMap, Span, Spanned};
+use description::{Diagnostic, FileId, SourceMap, Span, Spanned};
 
 use super::names;
-use super::parameter::{self, ParameterType, RawParameter, is_directive};
-use super::state::{Attributes, Block, BlockKind, GraphicsState, MaterialReference, TransformSet};
-use super::statement::{
-    CameraStatement, InstanceStatement, LightStatement, MaterialStatement, MediumStatement, ObjectStatement,
-    ShapeStatement, Statement, Statements, TextureStatement,
-};
+use super::parameter::is_directive;
+use super::state::{Block, BlockKind, GraphicsState, MaterialReference, TransformSet};
+use super::statement::{ObjectStatement, Statements};
 use super::token::{Token, TokenKind, Tokens};
 use crate::assets::{AssetSource, read_unpacked, resolve};
 use crate::number;
@@ -82,28 +78,6 @@ const DIRECTIVES: [(&str, Place); 40] = [
     ("WorldBegin", Place::Options),
 ];
 
-/// All options and the types of their values.
-const OPTIONS: [(&str, ParameterType); 11] = [
-    ("disablepixeljitter", ParameterType::Bool),
-    ("disabletexturefiltering", ParameterType::Bool),
-    ("disablewavelengthjitter", ParameterType::Bool),
-    ("displacementedgescale", ParameterType::Float),
-    ("forcediffuse", ParameterType::Bool),
-    ("msereferenceimage", ParameterType::String),
-    ("msereferenceout", ParameterType::String),
-    ("pixelstats", ParameterType::Bool),
-    ("rendercoordsys", ParameterType::String),
-    ("seed", ParameterType::Integer),
-    ("wavefront", ParameterType::Bool),
-];
-
-const COLOR_SPACES: [(&str, ColorSpaceDesc); 4] = [
-    ("srgb", ColorSpaceDesc::Srgb),
-    ("dci-p3", ColorSpaceDesc::DciP3),
-    ("rec2020", ColorSpaceDesc::Rec2020),
-    ("aces2065-1", ColorSpaceDesc::Aces2065_1),
-];
-
 pub(crate) struct Interpreter<'a> {
     assets: &'a dyn AssetSource,
     pub(super) report: Report,
@@ -114,7 +88,7 @@ pub(crate) struct Interpreter<'a> {
     blocks: Vec<Block>,
     in_world: bool,
     /// The object that is being defined.
-    object: Option<ObjectStatement>,
+    pub(super) object: Option<ObjectStatement>,
     /// Files that are being read.
     depth: usize,
     /// `Include` and `Import` directives that were run.
@@ -241,33 +215,12 @@ impl<'a> Interpreter<'a> {
             "NamedMaterial" => {
                 self.state.material = MaterialReference::Named(self.string(tokens, "the material")?)
             }
-            "Material" => {
-                let defaults = self.state.attributes.material.clone();
-                let statement = self.statement(span, tokens, "the material's type", defaults)?;
-                self.state.material = MaterialReference::Nth(self.statements.materials.len() as u32);
-                self.statements.materials.push(MaterialStatement { statement, name: None });
-            }
+            "Material" => self.material(span, tokens)?,
             "Texture" => self.texture(span, tokens)?,
             "MakeNamedMedium" => self.make_named_medium(span, tokens)?,
-            "MediumInterface" => {
-                let inside = self.string(tokens, "the medium inside")?;
-                let two = tokens.peek().kind == TokenKind::Quoted;
-                let outside = if two { self.string(tokens, "the medium outside")? } else { inside.clone() };
-                self.state.medium_interface = Some([inside, outside]);
-            }
-            "LightSource" => {
-                let defaults = self.state.attributes.light.clone();
-                let statement = self.statement(span, tokens, "the light's type", defaults)?;
-                let world_from_light = self.state.ctm.over(self.times());
-                let medium = self.state.outside();
-                self.statements.lights.push(LightStatement { statement, world_from_light, medium });
-            }
-            "AreaLightSource" => {
-                let defaults = self.state.attributes.light.clone();
-                let statement = self.statement(span, tokens, "the area light's type", defaults)?;
-                self.state.area_light = Some(self.statements.area_lights.len() as u32);
-                self.statements.area_lights.push(statement);
-            }
+            "MediumInterface" => self.medium_interface(tokens)?,
+            "LightSource" => self.light(span, tokens)?,
+            "AreaLightSource" => self.area_light(span, tokens)?,
             "Shape" => self.shape(span, tokens)?,
             "Include" => self.include(tokens)?,
             "Import" => self.import(tokens)?,
@@ -296,89 +249,6 @@ impl<'a> Interpreter<'a> {
         Err(Abandoned)
     }
 
-    /// A statement of which a scene has one; a second one replaces the first.
-    fn only(
-        &mut self,
-        name: &str,
-        span: Span,
-        tokens: &mut Tokens,
-        earlier: impl Fn(&Statements) -> Option<&Statement>,
-    ) -> Step<Statement> {
-        let statement = self.statement(span, tokens, "its type", Arc::default())?;
-        if let Some(first) = earlier(&self.statements) {
-            let message = format!("this `{name}` replaces an earlier one");
-            let diagnostic = Diagnostic::warning("replaced-statement", message, span);
-            self.report.push(diagnostic.with_label(first.kind.span, "the earlier one"));
-        }
-        Ok(statement)
-    }
-
-    /// Reads the type and the parameters of a statement.
-    fn statement(
-        &mut self,
-        span: Span,
-        tokens: &mut Tokens,
-        what: &str,
-        defaults: Arc<Vec<RawParameter>>,
-    ) -> Step<Statement> {
-        let kind = self.string(tokens, what)?;
-        let color_space = self.state.color_space;
-        let parameters = parameter::parameters(tokens, color_space, &mut self.report);
-        let end = parameters.last().map_or(kind.span, |last| last.span);
-        Ok(Statement { span: span.to(end), kind, parameters, defaults, color_space })
-    }
-
-    fn camera(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let statement =
-            self.only("Camera", span, tokens, |all| all.camera.as_ref().map(|camera| &camera.statement))?;
-        let camera_from_world = self.state.ctm;
-        self.coordinate_systems.insert("camera".into(), camera_from_world.inverse());
-        let medium = self.state.outside();
-        self.statements.camera = Some(CameraStatement { statement, camera_from_world, medium });
-        Ok(())
-    }
-
-    /// `Option "name" value`: alone among parameters it is written without its type.
-    fn option(&mut self, tokens: &mut Tokens) -> Step {
-        let name = self.string(tokens, "the option's name")?;
-        let plain: String =
-            name.value.chars().filter(|c| !matches!(c, '-' | '_')).map(|c| c.to_ascii_lowercase()).collect();
-        let Some(&(known, kind)) = OPTIONS.iter().find(|(known, _)| *known == plain) else {
-            let message = format!("there is no option `{}`", name.value);
-            self.report.push(Diagnostic {
-                help: did_you_mean(&plain, OPTIONS.map(|(known, _)| known)),
-                ..Diagnostic::error("unknown-option", message, name.span)
-            });
-            return Err(Abandoned);
-        };
-        let (values, end) =
-            parameter::values(tokens, kind, known, name.span, &mut self.report).ok_or(Abandoned)?;
-        self.statements.options.retain(|earlier| earlier.name != known);
-        self.statements.options.push(RawParameter {
-            kind,
-            name: known.to_owned(),
-            values,
-            span: name.span.to(end),
-            declaration: name.span,
-            color_space: self.state.color_space,
-        });
-        Ok(())
-    }
-
-    fn color_space(&mut self, tokens: &mut Tokens) -> Step {
-        let name = self.string(tokens, "the colour space")?;
-        let Some((_, space)) = COLOR_SPACES.into_iter().find(|(known, _)| *known == name.value) else {
-            let message = format!("there is no colour space `{}`", name.value);
-            self.report.push(Diagnostic {
-                help: did_you_mean(&name.value, COLOR_SPACES.map(|(known, _)| known)),
-                ..Diagnostic::error("unknown-color-space", message, name.span)
-            });
-            return Err(Abandoned);
-        };
-        self.state.color_space = space;
-        Ok(())
-    }
-
     fn world_begin(&mut self) {
         self.in_world = true;
         self.state.ctm = TransformSet::IDENTITY;
@@ -386,7 +256,7 @@ impl<'a> Interpreter<'a> {
         self.coordinate_systems.insert("world".into(), self.state.ctm);
     }
 
-    fn begin_block(&mut self, kind: BlockKind, span: Span) -> Step {
+    pub(super) fn begin_block(&mut self, kind: BlockKind, span: Span) -> Step {
         if self.blocks.len() >= Self::DEEPEST_BLOCK {
             self.report.error("unbalanced-block", "blocks are nested too deeply", span);
             return Err(Abandoned);
@@ -395,7 +265,7 @@ impl<'a> Interpreter<'a> {
         Ok(())
     }
 
-    fn end_block(&mut self, kind: BlockKind, span: Span) -> Step {
+    pub(super) fn end_block(&mut self, kind: BlockKind, span: Span) -> Step {
         match self.blocks.last() {
             Some(block) if block.kind == kind => {
                 if let Some(block) = self.blocks.pop() {
@@ -430,158 +300,6 @@ impl<'a> Interpreter<'a> {
                 self.statements.objects.extend(self.object.take());
             }
         }
-    }
-
-    fn attribute(&mut self, tokens: &mut Tokens) -> Step {
-        let target = self.string(tokens, "what the attributes are for")?;
-        let given = parameter::parameters(tokens, self.state.color_space, &mut self.report);
-        let Some(list) = self.state.attributes.target(&target.value) else {
-            let message = format!("attributes cannot be for `{}`", target.value);
-            self.report.push(Diagnostic {
-                help: did_you_mean(&target.value, Attributes::TARGETS),
-                ..Diagnostic::error("unknown-attribute-target", message, target.span)
-            });
-            return Ok(());
-        };
-        let list = Arc::make_mut(list);
-        list.retain(|earlier| given.iter().all(|new| new.name != earlier.name));
-        list.extend(given);
-        Ok(())
-    }
-
-    fn object_begin(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let name = self.string(tokens, "the object's name")?;
-        if self.object.is_some() {
-            self.report.error("unbalanced-block", "an object cannot be defined inside another one", span);
-            return Err(Abandoned);
-        }
-        self.begin_block(BlockKind::Object, span)?;
-        self.object = Some(ObjectStatement { name, shapes: Vec::new() });
-        Ok(())
-    }
-
-    fn object_end(&mut self, span: Span) -> Step {
-        self.end_block(BlockKind::Object, span)?;
-        self.statements.objects.extend(self.object.take());
-        Ok(())
-    }
-
-    fn object_instance(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let object = self.string(tokens, "the object's name")?;
-        if self.object.is_some() {
-            let message = "an object cannot be instanced inside the definition of one";
-            self.report.error("misplaced-directive", message, span);
-            return Err(Abandoned);
-        }
-        let world_from_object = self.state.ctm.over(self.times());
-        let span = span.to(object.span);
-        self.statements.instances.push(InstanceStatement { object, span, world_from_object });
-        Ok(())
-    }
-
-    fn make_named_material(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let name = self.string(tokens, "the material's name")?;
-        let kind_span = name.span;
-        let color_space = self.state.color_space;
-        let mut parameters = parameter::parameters(tokens, color_space, &mut self.report);
-        let end = parameters.last().map_or(kind_span, |last| last.span);
-        let defaults = self.state.attributes.material.clone();
-        let kind = self.take_type("material", &name, &mut parameters)?;
-        let statement = Statement { span: span.to(end), kind, parameters, defaults, color_space };
-        self.statements.materials.push(MaterialStatement { statement, name: Some(name) });
-        Ok(())
-    }
-
-    fn make_named_medium(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let name = self.string(tokens, "the medium's name")?;
-        let color_space = self.state.color_space;
-        let mut parameters = parameter::parameters(tokens, color_space, &mut self.report);
-        let end = parameters.last().map_or(name.span, |last| last.span);
-        let defaults = self.state.attributes.medium.clone();
-        let kind = self.take_type("medium", &name, &mut parameters)?;
-        let statement = Statement { span: span.to(end), kind, parameters, defaults, color_space };
-        let world_from_medium = self.state.ctm.over(self.times());
-        self.statements.media.push(MediumStatement { statement, name, world_from_medium });
-        Ok(())
-    }
-
-    /// Takes the parameter `"string type"` out of a list.
-    fn take_type(
-        &mut self,
-        what: &str,
-        name: &Spanned<String>,
-        parameters: &mut Vec<RawParameter>,
-    ) -> Step<Spanned<String>> {
-        let place = parameters.iter().position(|parameter| parameter.name == "type");
-        let given = place.map(|place| parameters.remove(place));
-        if let Some(RawParameter { values: parameter::Values::Strings(mut strings), .. }) = given
-            && strings.len() == 1
-        {
-            return Ok(strings.remove(0));
-        }
-        let message = format!("the {what} `{}` needs its type, as in `\"string type\" \"…\"`", name.value);
-        self.report.error("missing-parameter", message, name.span);
-        Err(Abandoned)
-    }
-
-    fn texture(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let name = self.string(tokens, "the texture's name")?;
-        let value = self.string(tokens, "`\"float\"` or `\"spectrum\"`")?;
-        let defaults = self.state.attributes.texture.clone();
-        let statement = self.statement(span, tokens, "the texture's type", defaults)?;
-        let world_from_texture = self.state.ctm.0[0];
-        if self.state.ctm.0[0] != self.state.ctm.0[1] {
-            let message = "textures do not move: the transform at the start of the shutter is used";
-            self.report.warning("ignored", message, span);
-        }
-        let textures = match value.value.as_str() {
-            "float" => &mut self.statements.float_textures,
-            "spectrum" => &mut self.statements.spectrum_textures,
-            other => {
-                let message = format!("a texture's values are of type `float` or `spectrum`, not `{other}`");
-                self.report.push(match names::replaced("texture-value", other) {
-                    Some(replacement) => {
-                        Diagnostic::error("old-name", message, value.span).with_help(replacement)
-                    }
-                    None => Diagnostic {
-                        help: did_you_mean(other, ["float", "spectrum"]),
-                        ..Diagnostic::error("unknown-type", message, value.span)
-                    },
-                });
-                return Ok(());
-            }
-        };
-        if let Some(first) = textures.iter().find(|earlier| earlier.name.value == name.value) {
-            let message = format!("there is already a {} texture `{}`", value.value, name.value);
-            let diagnostic = Diagnostic::error("redefinition", message, name.span);
-            self.report.push(diagnostic.with_label(first.name.span, "first defined here"));
-            return Ok(());
-        }
-        textures.push(TextureStatement { statement, name, world_from_texture });
-        self.statements.texture_order.push(value.value == "spectrum");
-        Ok(())
-    }
-
-    fn shape(&mut self, span: Span, tokens: &mut Tokens) -> Step {
-        let defaults = self.state.attributes.shape.clone();
-        let statement = self.statement(span, tokens, "the shape's type", defaults)?;
-        let shape = ShapeStatement {
-            statement,
-            world_from_object: self.state.ctm.over(self.times()),
-            reverse_orientation: self.state.reverse_orientation,
-            material: self.state.material.clone(),
-            area_light: self.state.area_light,
-            medium_interface: self.state.medium_interface.clone(),
-        };
-        match &mut self.object {
-            Some(object) => object.shapes.push(shape),
-            None => self.statements.shapes.push(shape),
-        }
-        Ok(())
-    }
-
-    fn times(&self) -> [f32; 2] {
-        self.statements.transform_times.unwrap_or([0.0, 1.0])
     }
 
     /// Reads another file as if it stood here.

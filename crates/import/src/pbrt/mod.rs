@@ -5,6 +5,7 @@
 //! it is defined (but for textures in textures).
 
 mod build;
+mod declarations;
 mod interpreter;
 mod names;
 mod parameter;

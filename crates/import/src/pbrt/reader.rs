@@ -119,6 +119,9 @@ impl<'b, 'a> Reader<'b, 'a> {
             self.builder.report.push(diagnostic);
             return None;
         }
+        if given.default {
+            self.builder.used_attributes.insert(parameter.declaration);
+        }
         self.origin.parameters.push((name, parameter.span));
         Some(place)
     }

@@ -92,6 +92,8 @@ pub(crate) struct Statements {
     pub(crate) filter: Option<Statement>,
     pub(crate) integrator: Option<Statement>,
     pub(crate) accelerator: Option<Statement>,
+    /// Parameters that `Attribute` gave, by name and declaration.
+    pub(crate) attributes: Vec<Spanned<String>>,
     pub(crate) transform_times: Option<[f32; 2]>,
     pub(crate) float_textures: Vec<TextureStatement>,
     pub(crate) spectrum_textures: Vec<TextureStatement>,

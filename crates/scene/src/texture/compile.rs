@@ -5,8 +5,8 @@
 //! for. A texture that is wrong, or not drawn yet, is reported and replaced by a stand-in.
 
 use super::{
-    Checkerboard, FloatImage, FloatTexture, FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage,
-    SpectrumTexture, SpectrumTextureId, SpectrumType, Texture, Textures, compile_spectrum,
+    Bilerp, Checkerboard, FloatImage, FloatTexture, FloatTextureId, ImageLookup, Mapping2d, Mapping3d,
+    SpectrumImage, SpectrumTexture, SpectrumTextureId, SpectrumType, Texture, Textures, compile_spectrum,
     pyramids::Pyramids,
 };
 use description::{
@@ -239,9 +239,12 @@ impl Compiler<'_> {
                 Some(image) => Texture::Image(image),
                 None => self.half::<V>(usage, origin),
             },
-            TextureKind::Bilerp { corners: [v00, _, _, v11], .. } => {
-                let corners = [v00, v11].map(|corner| Parameter::Value(corner.clone()));
-                self.even_mix("bilerp", &corners, usage, origin)
+            TextureKind::Bilerp { corners, mapping } => {
+                let names = ["v00", "v01", "v10", "v11"];
+                let constant =
+                    |i: usize| corners[i].constant(usage, origin.parameter(names[i]), self.diagnostics);
+                let corners = [0, 1, 2, 3].map(constant);
+                Texture::Bilerp(Bilerp { corners, mapping: self.mapping(mapping, desc) })
             }
             TextureKind::DirectionMix { textures, .. } => {
                 self.even_mix("directionmix", textures, usage, origin)

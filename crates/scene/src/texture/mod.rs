@@ -8,6 +8,7 @@
 //! constant       c
 //! scale          s·t
 //! mix            (1 − a)·t₀ + a·t₁
+//! bilerp         four corner values, interpolated over the unit square
 //! checkerboard   t₀ and t₁ in alternation, averaged over the footprint of the pixel
 //! image          pixels, averaged over the footprint of the pixel
 //! ```
@@ -18,6 +19,7 @@
 //!
 //! Source: [Pharr 2023 ch. 10].
 
+mod bilerp;
 mod checkerboard;
 mod compile;
 mod imagemap;
@@ -31,6 +33,7 @@ use math::{Normal3, Point2, Point3, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 use std::ops::{Add, Mul};
 
+pub use bilerp::Bilerp;
 pub use checkerboard::Checkerboard;
 pub use compile::compile;
 pub use imagemap::{FloatImage, ImageLookup, SpectrumImage};
@@ -89,6 +92,8 @@ pub enum Texture<C, Id, I> {
         /// How much of the second; the rest is of the first.
         amount: FloatTextureId,
     },
+    /// Corner values, interpolated.
+    Bilerp(Bilerp<C>),
     /// Two textures in alternation.
     Checkerboard {
         /// The first has the square or cube that begins at the origin.
@@ -128,6 +133,11 @@ impl<C, Id: Copy, I> Texture<C, Id, I> {
             Self::Constant(value) => constant(value),
             Self::Scale { texture, scale } => other(*texture) * textures.float(*scale, ctx),
             Self::Mix { textures: mixed, amount } => mix(*mixed, textures.float(*amount, ctx)),
+            Self::Bilerp(bilerp) => {
+                let [v00, v01, v10, v11] = &bilerp.corners;
+                let [w00, w01, w10, w11] = bilerp.weights(ctx);
+                constant(v00) * w00 + constant(v01) * w01 + constant(v10) * w10 + constant(v11) * w11
+            }
             Self::Checkerboard { textures: mixed, pattern } => mix(*mixed, pattern.amount(ctx)),
             Self::Image(pixels) => image(pixels),
         }

@@ -350,6 +350,21 @@ fn texture_space_is_where_the_author_put_it() {
 }
 
 #[test]
+fn bilerp_meets_its_corners_and_their_mean() {
+    let mapping = MappingDesc::Uv { scale: [2.0, 1.0], delta: [0.0, 0.5] };
+    let mut scene = SceneDesc::default();
+    let corners = [0.1, 0.2, 0.4, 0.8];
+    scene.float_textures.push(FloatTextureDesc::new(TextureKind::Bilerp { corners, mapping }));
+    let (t, diagnostics) = compiled(&scene);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    for (u, v, value) in
+        [(0.0, -0.5, 0.1), (0.0, 0.5, 0.2), (0.5, -0.5, 0.4), (0.5, 0.5, 0.8), (0.25, 0.0, 0.375)]
+    {
+        assert!((t.float(FIRST, &at(u, v)) - value).abs() < 1e-6, "({u}, {v})");
+    }
+}
+
+#[test]
 fn what_is_not_drawn_is_said_once_and_has_a_stand_in() {
     let (octaves, roughness) = (8, 0.5);
     let mapping = MappingDesc::default();
@@ -357,7 +372,6 @@ fn what_is_not_drawn_is_said_once_and_has_a_stand_in() {
         Parameter::Value(SpectrumDesc::Constant(value))
     }
     for (kind, value) in [
-        (TextureKind::Bilerp { corners: [0.2, 0.0, 0.0, 0.4].map(SpectrumDesc::Constant), mapping }, 0.3),
         (TextureKind::DirectionMix { textures: [colour(0.2), colour(0.4)], direction: Vec3::Y }, 0.3),
         (TextureKind::Dots { inside: colour(0.2), outside: colour(0.4), mapping }, 0.3),
         (TextureKind::Marble { octaves, roughness, scale: 1.0, variation: 0.2 }, 0.5),

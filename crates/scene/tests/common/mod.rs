@@ -5,7 +5,7 @@
 pub mod lights;
 
 use alhazen_scene::light::{Light, LightLiSample, LightSampleContext};
-use alhazen_scene::{RayStats, Scene, SurfaceInteraction};
+use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction};
 use description::{ImageDesc, MeshDesc, PatchMeshDesc, SceneDesc, ShapeKind};
 use image::Image;
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
@@ -61,7 +61,7 @@ pub fn seen_sample(
     let sample = scene.sample_light(id, from, u.into(), &lambda(), allow_incomplete)?;
     let hidden = sample.p.is_some_and(|p| {
         let ray = Ray::between(from.p, from.n, p, sample.n, from.time);
-        scene.occluded(&ray, Ray::SHADOW_END, &mut RayStats::default())
+        scene.occluded(&ray, Ray::SHADOW_END, Interfaces::Stop, &mut RayStats::default())
     });
     (!hidden).then_some(sample)
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use description::{Arena, Diagnostic, EncodingDesc, Handle, ImageDesc, Origin, Span, Spanned, Stated};
 use rayon::prelude::*;
 
-use super::Builder;
+use super::{Builder, Samples};
 use crate::assets::{read_unpacked, resolve};
 use crate::images;
 use crate::number;
@@ -97,7 +97,7 @@ impl Builder<'_> {
     }
 
     /// A file of pairs of wavelength and value.
-    pub(super) fn spectrum_file(&mut self, path: &Path, span: Span) -> Option<Arc<[(f32, f32)]>> {
+    pub(super) fn spectrum_file(&mut self, path: &Path, span: Span) -> Option<Samples> {
         let numbers = self.number_file(path, "unreadable-spectrum", span)?;
         let (pairs, rest) = numbers.as_chunks::<2>();
         let increasing = pairs.windows(2).all(|pair| pair[0][0] < pair[1][0]);

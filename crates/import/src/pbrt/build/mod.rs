@@ -11,13 +11,13 @@ mod sampler;
 mod shape;
 mod texture;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    Diagnostic, FloatTextureDesc, Handle, MaterialDesc, MediumDesc, Origin, SceneDesc, SourceMap, Spanned,
-    SpectrumDesc, SpectrumTextureDesc, Stated,
+    Diagnostic, FloatTextureDesc, Handle, MaterialDesc, MediumDesc, Origin, SceneDesc, SourceMap, Span,
+    Spanned, SpectrumDesc, SpectrumTextureDesc, Stated,
 };
 
 use self::files::ImageRequests;
@@ -68,8 +68,12 @@ pub(crate) fn build(
     }
     builder.objects(&mut statements, &mut desc);
     desc.images = builder.decode_images();
+    builder.unused_attributes(&statements);
     (desc, builder.report)
 }
+
+/// Wavelengths and values.
+type Samples = Arc<[(f32, f32)]>;
 
 /// What the builders of all families share.
 pub(crate) struct Builder<'a> {
@@ -80,7 +84,9 @@ pub(crate) struct Builder<'a> {
     spectrum_textures: HashMap<String, Handle<SpectrumTextureDesc>>,
     materials: HashMap<String, Handle<MaterialDesc>>,
     media: HashMap<String, Handle<MediumDesc>>,
-    spectra: HashMap<PathBuf, Option<Arc<[(f32, f32)]>>>,
+    spectra: HashMap<PathBuf, Option<Samples>>,
+    /// Declarations of the attributes that some statement used.
+    pub(crate) used_attributes: HashSet<Span>,
     images: ImageRequests,
     meshes: shape::Meshes,
 }
@@ -101,6 +107,7 @@ impl<'a> Builder<'a> {
             materials: HashMap::new(),
             media: HashMap::new(),
             spectra: HashMap::new(),
+            used_attributes: HashSet::new(),
             images: ImageRequests::default(),
             meshes: HashMap::new(),
         };
@@ -158,6 +165,16 @@ impl<'a> Builder<'a> {
     ) -> Stated<T> {
         let (value, origin) = self.read(statement, read);
         Stated::new(value.unwrap_or_default(), origin)
+    }
+
+    /// Reports attributes that no statement used: no statement followed, or none has such a parameter.
+    fn unused_attributes(&mut self, statements: &Statements) {
+        for attribute in &statements.attributes {
+            if !self.used_attributes.contains(&attribute.span) {
+                let message = format!("no statement uses the attribute `{}`", attribute.value);
+                self.report.warning("ignored", message, attribute.span);
+            }
+        }
     }
 
     /// The texture of a name.

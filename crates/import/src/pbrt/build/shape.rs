@@ -131,7 +131,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
         "loopsubdiv" => {
             let levels = reader.integer("levels", 3, 0..=12);
             // The format knows one scheme only.
-            let _ = reader.choice("scheme", (), &[("loop", ())]);
+            reader.choice("scheme", (), &[("loop", ())]);
             ShapeKind::LoopSubdivision { mesh: triangle_mesh(reader, false)?, levels }
         }
         _ => {

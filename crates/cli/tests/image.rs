@@ -1,0 +1,63 @@
+//! `alhazen image` from outside.
+
+mod common;
+
+use alhazen::image::{Image, WriteOptions, write};
+use common::Folder;
+
+/// A folder with two pictures, `a.exr` and a brighter `b.exr`.
+fn with_pictures(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    for (name, offset) in [("a.exr", 0.0), ("b.exr", 0.1)] {
+        let picture =
+            Image::from_fn(20, 10, ["R", "G", "B"], |x, y| [x as f32 / 20.0 + offset, y as f32 / 10.0, 0.5]);
+        write(&picture, folder.path().join(name), &WriteOptions::default()).expect("a picture for the test");
+    }
+    folder
+}
+
+#[test]
+fn differences_are_told_and_drawn() {
+    let folder = with_pictures("diff");
+    for metric in ["mse", "relmse", "flip"] {
+        let picture = format!("{metric}.png");
+        let finished = folder
+            .alhazen(&["image", "diff", "a.exr", "b.exr", "-o", &picture, "--metric", metric])
+            .expect(0);
+        assert!(finished.out.contains("MSE        3.33"), "{finished:?}");
+        assert!(finished.out.contains("relMSE") && finished.out.contains("FLIP"), "{finished:?}");
+        let error = folder.image(&picture);
+        assert_eq!((error.width(), error.height()), (20, 10));
+    }
+    let json = folder.alhazen(&["image", "diff", "a.exr", "b.exr", "--json"]).expect(0).json();
+    assert!((json["mse"].as_f64().expect("a number") - 0.01 / 3.0).abs() < 1e-6, "{json}");
+    let same = folder.alhazen(&["image", "diff", "a.exr", "a.exr", "--json"]).expect(0).json();
+    assert_eq!((&same["mse"], &same["flip"]), (&0.0.into(), &0.0.into()));
+}
+
+#[test]
+fn pictures_that_cannot_be_compared_are_wrong_input() {
+    let folder = with_pictures("sizes");
+    let small = Image::from_fn(5, 5, ["R", "G", "B"], |_, _| [0.0; 3]);
+    write(&small, folder.path().join("small.exr"), &WriteOptions::default()).expect("a picture for the test");
+    let finished = folder.alhazen(&["image", "diff", "a.exr", "small.exr"]).expect(1);
+    assert!(finished.err.contains("differ in size: 20 × 10 and 5 × 5"), "{finished:?}");
+    folder.write("text.exr", "no picture");
+    assert!(folder.alhazen(&["image", "diff", "a.exr", "text.exr"]).expect(1).err.contains("text.exr"));
+    assert!(folder.alhazen(&["image", "diff", "a.exr", "none.exr"]).expect(1).err.contains("none.exr"));
+}
+
+#[test]
+fn pictures_are_converted() {
+    let folder = with_pictures("convert");
+    for name in ["a.png", "a.pfm", "a.tif"] {
+        folder.alhazen(&["image", "convert", "a.exr", name]).expect(0);
+        let (from, to) = (folder.image("a.exr").rgb(7, 3), folder.image(name).rgb(7, 3));
+        assert!((0..3).all(|c| (from[c] - to[c]).abs() < 0.01), "{name}: {from:?} {to:?}");
+    }
+    folder.alhazen(&["image", "convert", "a.exr", "deep.png", "--depth", "u16"]).expect(0);
+    folder.alhazen(&["image", "convert", "a.exr", "none/a.png"]).expect(2);
+    folder.alhazen(&["image", "convert", "a.exr", "float.png", "--depth", "f32"]).expect(1);
+    let json = folder.alhazen(&["image", "convert", "a.exr", "b.png", "--json"]).expect(0).json();
+    assert_eq!((&json["output"], &json["width"]), (&"b.png".into(), &20.into()));
+}

@@ -1,0 +1,125 @@
+//! `alhazen render` from outside.
+
+mod common;
+
+use alhazen::image::{Attribute, Pixels};
+use common::{Folder, SCENE};
+
+#[test]
+fn pictures_are_written_in_every_format_asked_for() {
+    let folder = Folder::with_scene("formats");
+    let names = ["a.exr", "a.png", "a.pfm", "a.jpg", "a.hdr", "a.bmp", "a.tga", "a.qoi", "a.tif"];
+    let mut arguments = vec!["render", "scene.pbrt"];
+    names.iter().for_each(|name| arguments.extend(["-o", name]));
+    let finished = folder.alhazen(&arguments).expect(0);
+    let exr = folder.image("a.exr");
+    assert!(exr.values().all(f32::is_finite) && exr.values().any(|value| value > 0.1));
+    for name in names {
+        let image = folder.image(name);
+        assert_eq!((image.width(), image.height()), (24, 16), "{name}");
+        assert!(finished.out.contains(&format!("picture  {name}")), "{finished:?}");
+        let difference = (0..3).map(|c| (image.rgb(12, 8)[c] - exr.rgb(12, 8)[c]).abs()).fold(0.0, f32::max);
+        assert!(difference < 0.05, "{name}: {:?} is not {:?}", image.rgb(12, 8), exr.rgb(12, 8));
+    }
+}
+
+#[test]
+fn the_summary_says_what_was_done() {
+    let folder = Folder::with_scene("summary");
+    let said = folder.alhazen(&["render", "scene.pbrt", "--crop", "0,0.5,0,1"]).expect(0).out;
+    for part in [
+        "scene.pbrt: path, 2 samples per pixel, 24 × 16 pixels, of them x 0 to 11, y 0 to 15",
+        "picture  scene.exr",
+        "samples  384",
+        "primitive tests a ray",
+    ] {
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
+    if cfg!(target_os = "linux") {
+        assert!(said.contains("memory "), "{said}");
+    }
+}
+
+#[test]
+fn the_default_name_is_the_films_or_the_scenes() {
+    let folder = Folder::with_scene("names");
+    folder.alhazen(&["render", "scene.pbrt", "--quiet"]).expect(0);
+    folder.write(
+        "other.pbrt",
+        &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string filename\" \"named.png\""),
+    );
+    folder.alhazen(&["render", "other.pbrt", "--quiet"]).expect(0);
+    folder.alhazen_reading(&["render", "-", "--quiet"], SCENE).expect(0);
+    assert_eq!(folder.files(), ["named.png", "other.pbrt", "picture.exr", "scene.exr", "scene.pbrt"]);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let folder = Folder::with_scene("quiet");
+    let finished = folder.alhazen(&["render", "scene.pbrt", "--quiet"]).expect(0);
+    assert_eq!((finished.out.as_str(), finished.err.as_str()), ("", ""));
+}
+
+#[test]
+fn json_is_one_object_with_everything_in_it() {
+    let folder = Folder::with_scene("json");
+    let finished =
+        folder.alhazen(&["render", "scene.pbrt", "--json", "--threads", "2", "-o", "a.exr"]).expect(0);
+    let json = finished.json();
+    assert_eq!(json["status"], "done");
+    assert_eq!(json["outputs"], serde_json::json!(["a.exr"]));
+    assert_eq!(json["integrator"], "path");
+    assert_eq!(json["samples"], 24 * 16 * 2);
+    assert_eq!(json["passes"], 2);
+    assert_eq!(json["threads"], 2);
+    assert_eq!(json["non_finite_samples"], 0);
+    assert!(json["rays"].as_u64() >= Some(24 * 16 * 2), "{json}");
+    assert!(json["extent_tests"].is_u64() && json["primitive_tests"].is_u64());
+    assert!(json["seconds"]["total"].as_f64() > Some(0.0));
+    assert_eq!(finished.err, "");
+}
+
+#[test]
+fn options_change_the_picture() {
+    let folder = Folder::with_scene("options");
+    let run = |arguments: &[&str]| {
+        folder
+            .alhazen(&[&["render", "scene.pbrt", "-o", "a.exr", "--json"], arguments].concat())
+            .expect(0)
+            .json()
+    };
+    let json = run(&["--resolution", "40x20", "--spp", "3", "--integrator", "ray-casting", "--seed", "5"]);
+    assert_eq!((&json["samples"], &json["integrator"]), (&(40 * 20 * 3).into(), &"ray-casting".into()));
+    let image = folder.image("a.exr");
+    assert_eq!((image.width(), image.height()), (40, 20));
+    assert_eq!(image.metadata.get("integrator"), Some(&Attribute::Text("ray-casting".into())));
+    assert_eq!(image.metadata.get("seed"), Some(&Attribute::Integer(5)));
+    assert!(image.metadata.chromaticities.is_some() && image.metadata.get("worldToCamera").is_some());
+
+    run(&["--crop", "0.5,1,0.25,0.5", "--set", "savefp16=false"]);
+    let image = folder.image("a.exr");
+    assert_eq!((image.data_window().min, image.data_window().max), ([12, 4], [24, 8]));
+    assert_eq!(image.display_window().max, [24, 16]);
+    assert!(matches!(image.pixels(), Pixels::F32(_)));
+
+    run(&["--pixel", "7,3"]);
+    let image = folder.image("a.exr");
+    assert_eq!((image.data_window().min, image.width(), image.height()), ([7, 3], 1, 1));
+}
+
+#[test]
+fn threads_never_change_a_bit_and_seeds_do() {
+    let folder = Folder::with_scene("threads");
+    let bits = |arguments: &[&str]| {
+        let arguments =
+            [&["render", "scene.pbrt", "-o", "a.pfm", "--quiet", "--resolution", "50x40"], arguments]
+                .concat();
+        folder.alhazen(&arguments).expect(0);
+        folder.image("a.pfm").values().map(f32::to_bits).collect::<Vec<_>>()
+    };
+    let one = bits(&["--threads", "1"]);
+    assert!(bits(&["--threads", "3"]) == one, "threads changed the picture");
+    let pixel = bits(&["--threads", "3", "--pixel", "20,25"]);
+    assert_eq!(pixel, one[(20 + 25 * 50) * 3..][..3], "a pixel alone is the pixel of the whole");
+    assert!(bits(&["--threads", "1", "--seed", "1"]) != one, "the seed changed nothing");
+}

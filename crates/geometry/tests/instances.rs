@@ -1,0 +1,169 @@
+//! Placed groups behave as if their members stood where they are placed, at rest or moving; and meshes keep
+//! the conventions of shading.
+
+mod common;
+
+use alhazen_geometry::*;
+use common::*;
+use math::*;
+use sampling::Rng;
+
+fn placed(geometries: impl IntoIterator<Item = Geometry>, motion: AnimatedTransform) -> World {
+    let mut builder = World::builder();
+    let group = builder.add_group();
+    for geometry in geometries {
+        builder.add_geometry(group, geometry);
+    }
+    builder.add_instance(Instance { group, render_from_instance: motion });
+    builder.build()
+}
+
+fn everything(m: &Transform) -> Vec<Geometry> {
+    let mut all: Vec<Geometry> = shapes(m).into_iter().map(|(_, shape)| shape.into()).collect();
+    all.push(ball(20, 0.2, m).into());
+    all
+}
+
+#[test]
+fn an_instance_equals_what_it_places() {
+    let rng = &mut Rng::new(1, 0);
+    let m = Transform::translate(Vec3::new(3.0, -2.0, 1.0))
+        .after(&Transform::rotate(1.0, Vec3::new(1.0, 2.0, 3.0)))
+        .after(&Transform::scale(Vec3::new(0.5, 1.5, 0.8)));
+    let outside = world(everything(&m));
+    let inside = placed(everything(&Transform::IDENTITY), m.into());
+    assert!((inside.bounds().diagonal() - outside.bounds().diagonal()).abs().max_element() < 2.0);
+    let mut hits = 0;
+    for _ in 0..5000 {
+        let target = m.point(point_in(rng, 1.0));
+        let o = target + direction(rng) * 5.0;
+        let ray = Ray::new(o, target - o, 0.3);
+        let (a, b) = (nearest(&outside, &ray), nearest(&inside, &ray));
+        assert_eq!(a.is_some(), b.is_some(), "{ray:?}");
+        let (Some(a), Some(b)) = (a, b) else { continue };
+        if a.geometry != b.geometry || a.primitive != b.primitive {
+            continue;
+        }
+        hits += 1;
+        assert!((a.t - b.t).abs() < 1e-5);
+        assert_eq!((a.instance, b.instance), (None, Some(InstanceId(0))));
+        let (a, b) = (outside.surface(&ray, &a), inside.surface(&ray, &b));
+        assert!(a.p.p.distance(b.p.p) < 1e-4 && a.n.distance(b.n) < 1e-3 && a.wo.distance(b.wo) < 1e-5);
+        assert!(a.uv.distance(b.uv) < 1e-3);
+        assert!(
+            a.dpdu.distance(b.dpdu) < 1e-2 * a.dpdu.length()
+                && a.dpdv.distance(b.dpdv) < 1e-2 * a.dpdv.length()
+        );
+        assert!(a.dndu.distance(b.dndu) < 1e-2 * (1.0 + a.dndu.length()));
+        let off = (a.p.p - b.p.p).dot(a.n).abs();
+        assert!(off <= (a.p.error + b.p.error).dot(a.n.abs()) + 1e-6, "both are on one surface: {off}");
+    }
+    assert!(hits > 1000);
+}
+
+#[test]
+fn what_moves_is_met_where_it_is_at_the_time() {
+    let end = DMat4::from_translation(DVec3::new(10.0, 0.0, 0.0));
+    let motion = AnimatedTransform::new(DMat4::IDENTITY, end, [0.0, 1.0]).expect("invertible");
+    let ball = Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0));
+    let world = placed([ball.into()], motion);
+    for time in [0.0, 0.25, 0.5, 1.0] {
+        let down = |x| nearest(&world, &Ray::new(Vec3::new(x, 0.0, 5.0), -Vec3::Z, time));
+        assert!(down(10.0 * time + 1.5).is_none() && down(10.0 * time - 1.5).is_none());
+        let ray = Ray::new(Vec3::new(10.0 * time, 0.0, 5.0), -Vec3::Z, time);
+        let hit = nearest(&world, &ray).expect("hit");
+        assert!((hit.t - 4.0).abs() < 1e-5);
+        let surface = world.surface(&ray, &hit);
+        assert!(
+            surface.n.distance(Vec3::Z) < 1e-3
+                && surface.p.p.distance(Vec3::new(10.0 * time, 0.0, 1.0)) < 1e-3
+        );
+    }
+    assert!(
+        world.bounds().contains(Vec3::new(-1.0, 0.0, 0.0))
+            && world.bounds().contains(Vec3::new(11.0, 0.0, 0.0))
+    );
+}
+
+#[test]
+fn a_placed_plane_has_no_end() {
+    let m = Transform::translate(Vec3::Z * -2.0);
+    let world = placed([Shape::from(Plane::new(&Transform::IDENTITY, false)).into()], m.into());
+    let hit = nearest(&world, &Ray::new(Vec3::new(1e6, -1e6, 1.0), -Vec3::Z, 0.0)).expect("hit");
+    assert_eq!(hit.t, 3.0);
+    assert!(nearest(&world, &Ray::new(Vec3::ZERO, Vec3::X, 0.0)).is_none(), "along the plane");
+}
+
+/// Rays that leave flat things far away, through an instance, do not meet them again.
+#[test]
+fn spawned_rays_do_not_meet_a_placed_surface_again() {
+    let rng = &mut Rng::new(3, 0);
+    for i in 0..200 {
+        let size = 10f32.powf(between(rng, -3.0, 4.0));
+        let m = Transform::translate(direction(rng) * size * 10f32.powf(between(rng, -2.0, 3.0)))
+            .after(&Transform::rotate(between(rng, 0.0, 6.0), direction(rng)))
+            .after(&Transform::scale(Vec3::new(1.0, 0.7, -1.3) * size));
+        let (_, shape) = shapes(&Transform::IDENTITY).swap_remove([3, 4, 5, 7][i % 4]);
+        let triangle =
+            mesh(vec![Vec3::ZERO, Vec3::X, Vec3::new(0.3, 1.0, 0.5)], vec![[0, 1, 2]], &Transform::IDENTITY);
+        for geometry in [Geometry::from(shape), triangle.into()] {
+            let shape = geometry.shape(0);
+            let world = placed([geometry], m.into());
+            for _ in 0..100 {
+                let target = m.point(shape.sample(uniform_2d(rng)).expect("a sample").p.p);
+                let o = target + direction(rng) * size;
+                let ray = Ray::new(o, target - o, 0.0);
+                let Some(hit) = nearest(&world, &ray) else { continue };
+                let surface = world.surface(&ray, &hit);
+                let next = surface.spawn_ray(direction(rng));
+                assert_eq!(nearest(&world, &next), None, "{next:?} from {surface:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn shading_normals_have_the_last_word() {
+    let corners: Vec<Vec3> = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let ns = Vec3::new(0.3, 0.2, -1.0).normalize();
+    let attributes = MeshAttributes { normals: Some(vec![ns; 3].into()), ..MeshAttributes::default() };
+    for (reverse, expected) in [(false, ns), (true, -ns)] {
+        let mesh = TriangleMesh::new(
+            corners.clone().into(),
+            vec![[0, 1, 2]].into(),
+            attributes.clone(),
+            &Transform::IDENTITY,
+            reverse,
+        );
+        let world = world([mesh.expect("a mesh").into()]);
+        let ray = Ray::new(Vec3::new(0.2, 0.3, 1.0), -Vec3::Z, 0.0);
+        let surface = world.surface(&ray, &nearest(&world, &ray).expect("hit"));
+        assert!(surface.shading.n.distance(expected) < 1e-6);
+        assert!(surface.n.distance(Vec3::Z * expected.z.signum()) < 1e-6, "n is turned to it");
+        assert!(
+            surface.shading.dpdu.dot(expected).abs() < 1e-6
+                && surface.shading.dpdv.dot(expected).abs() < 1e-6
+        );
+        assert!(surface.dpdu.distance(Vec3::X) < 1e-6, "u runs from corner 0 to corner 1");
+        assert_eq!(surface.uv, Vec2::new(0.5, 0.3));
+    }
+}
+
+#[test]
+fn arrays_that_are_no_mesh_are_refused() {
+    let corners: Vec<Vec3> = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let make = |index: u32, uvs: usize| {
+        let attributes =
+            MeshAttributes { uvs: Some(vec![Vec2::ZERO; uvs].into()), ..MeshAttributes::default() };
+        TriangleMesh::new(
+            corners.clone().into(),
+            vec![[0, 1, index]].into(),
+            attributes,
+            &Transform::IDENTITY,
+            false,
+        )
+    };
+    assert!(make(2, 3).is_ok());
+    assert_eq!(make(3, 3).unwrap_err(), MeshError::Index { triangle: 0, vertex: 3 });
+    assert_eq!(make(2, 4).unwrap_err().to_string(), "4 texture coordinates for 3 vertices");
+}

@@ -1,0 +1,146 @@
+//! Mesh files in all their forms give the same mesh.
+
+use std::io::Write;
+
+use alhazen_import::{MemoryAssets, Mesh, MeshError, import, read_obj, read_ply};
+use description::ShapeKind;
+use flate2::{Compression, write::GzEncoder};
+use math::{Vec2, Vec3};
+
+const HEADER: &str = "comment made by hand\nelement vertex 5\nproperty uchar red\nproperty float x\nproperty double y\nproperty short z\n\
+    property list uchar float weights\nproperty float texture_u\nproperty float texture_v\nelement face 2\n\
+    property int material\nproperty list uint ushort vertex_index\nelement edge 1\nproperty int a\nend_header\n";
+
+/// x, y, z, weights, and u and v.
+type Vertex = (f32, f64, i16, &'static [f32], [f32; 2]);
+
+const VERTICES: [Vertex; 5] = [
+    (0.0, 0.0, 0, &[], [0.0, 0.0]),
+    (1.0, 0.0, 0, &[0.5], [1.0, 0.0]),
+    (1.0, 1.0, 0, &[0.25, 0.75], [1.0, 1.0]),
+    (0.0, 1.0, 0, &[], [0.0, 1.0]),
+    (0.5, 2.0, -1, &[1.0], [0.5, 0.5]),
+];
+
+const FACES: [&[u16]; 2] = [&[0, 1, 2, 3], &[3, 2, 4]];
+
+fn ascii() -> Vec<u8> {
+    let mut text = format!("ply\r\nformat ascii 1.0\r\n{}", HEADER.replace('\n', "\r\n"));
+    let list = |values: Vec<String>| format!("{} {}", values.len(), values.join(" "));
+    for (x, y, z, weights, [u, v]) in VERTICES {
+        let weights = list(weights.iter().map(f32::to_string).collect());
+        text += &format!("255 {x} {y} {z} {weights} {u} {v}\r\n");
+    }
+    for face in FACES {
+        text += &format!("7 {}\r\n", list(face.iter().map(u16::to_string).collect()));
+    }
+    (text + "3\r\n").into_bytes()
+}
+
+fn binary(big: bool) -> Vec<u8> {
+    let order = if big { "big" } else { "little" };
+    let mut bytes = format!("ply\nformat binary_{order}_endian 1.0\n{HEADER}").into_bytes();
+    macro_rules! put {
+        ($value:expr) => {
+            if big { bytes.extend($value.to_be_bytes()) } else { bytes.extend($value.to_le_bytes()) }
+        };
+    }
+    for (x, y, z, weights, [u, v]) in VERTICES {
+        put!(255_u8);
+        put!(x);
+        put!(y);
+        put!(z);
+        put!((weights.len() as u8));
+        weights.iter().for_each(|weight| put!(weight));
+        put!(u);
+        put!(v);
+    }
+    for face in FACES {
+        put!(7_i32);
+        put!((face.len() as u32));
+        face.iter().for_each(|corner| put!(corner));
+    }
+    put!(3_i32);
+    bytes
+}
+
+fn expected() -> Mesh {
+    Mesh {
+        positions: VERTICES.iter().map(|&(x, y, z, ..)| Vec3::new(x, y as f32, z.into())).collect(),
+        uvs: VERTICES.iter().map(|&(.., uv)| Vec2::from_array(uv)).collect(),
+        quads: vec![[0, 1, 2, 3]],
+        triangles: vec![[3, 2, 4]],
+        ..Mesh::default()
+    }
+}
+
+#[test]
+fn all_encodings_of_ply_say_the_same() {
+    for bytes in [ascii(), binary(false), binary(true)] {
+        assert_eq!(read_ply(&bytes), Ok(expected()));
+    }
+}
+
+#[test]
+fn every_shortened_ply_is_refused() {
+    for bytes in [binary(false), binary(true)] {
+        for length in 0..bytes.len() {
+            assert!(read_ply(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());
+        }
+    }
+}
+
+#[test]
+fn counts_are_checked_before_memory_is_taken() {
+    let text =
+        "ply\nformat ascii 1.0\nelement vertex 18446744073709551615\nproperty float x\nend_header\n1\n";
+    assert!(matches!(read_ply(text.as_bytes()), Err(MeshError::Limits(_))));
+    let mut bytes = binary(false);
+    let count = bytes.len() - 4 - 3 * 2 - 4;
+    bytes[count..count + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert!(matches!(read_ply(&bytes), Err(MeshError::Limits(_))));
+}
+
+#[test]
+fn strips_turn_one_way() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
+        property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n8 0 1 2 3 -1 2 3 4\n";
+    let mesh = read_ply(text.as_bytes()).unwrap();
+    assert_eq!(mesh.triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+}
+
+#[test]
+fn packed_files_are_read_wherever_they_are_named() {
+    let pack = |bytes: &[u8]| {
+        let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+        encoder.write_all(bytes).unwrap();
+        encoder.finish().unwrap()
+    };
+    let assets = MemoryAssets::default()
+        .with("scene.pbrt.gz", pack(b"WorldBegin\nInclude \"part.pbrt.gz\""))
+        .with("part.pbrt.gz", pack(b"Shape \"plymesh\" \"string filename\" \"a.ply.gz\""))
+        .with("a.ply.gz", pack(&binary(true)));
+    let imported = import("scene.pbrt.gz", &assets);
+    assert!(!imported.has_errors(), "{:#?}", imported.diagnostics);
+    let (_, shape) = imported.desc.shapes.iter().next().unwrap();
+    assert!(matches!(&shape.kind, ShapeKind::PlyMesh { triangles, .. } if triangles.indices.len() == 1));
+}
+
+#[test]
+fn an_obj_file_is_a_scene_with_its_materials() {
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\nusemtl glass\nf 3 2 1\n";
+    assert_eq!(read_obj(obj.as_bytes()).unwrap().triangles.len(), 2);
+    let mtl = "newmtl lamp\nKd 0.5 0.5 0.5\nKe 4 4 4\nnewmtl glass\nd 0.1\nNi 1.4\n";
+    let imported = import("a.obj", &MemoryAssets::default().with("a.obj", obj).with("a.mtl", mtl));
+    assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
+    let desc = imported.desc;
+    assert_eq!((desc.shapes.len(), desc.materials.len(), desc.area_lights.len()), (2, 2, 1));
+    let camera = desc.camera.camera_from_world.start;
+    for corner in [Vec3::ZERO, Vec3::X, Vec3::Y] {
+        let seen = camera.transform_point3(corner.as_dvec3());
+        assert!(
+            seen.z > 0.0 && seen.x.abs().max(seen.y.abs()) < seen.z * 20_f64.to_radians().tan(),
+            "{seen}"
+        );
+    }
+}

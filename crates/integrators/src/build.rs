@@ -1,0 +1,203 @@
+//! From what a scene's author said of algorithm and sampler to an integrator.
+
+use description::{
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind, SceneDesc, SppmDesc,
+};
+use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
+use sampling::{Randomize, Sampler};
+use scene::Interfaces;
+use scene::light_sampler::LightSamplerKind;
+use scene::texture::color_space;
+
+use crate::{
+    AmbientOcclusion, Integrator, Path, PathSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator,
+    SimplePath, Whitted,
+};
+
+/// What [`build`] gives.
+pub struct Built {
+    /// The algorithm with its sampler.
+    pub integrator: Box<dyn Integrator>,
+    /// What is drawn otherwise than described.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Makes the integrator of a scene, or tells everything that is wrong with its settings (warnings included).
+pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
+    let mut builder = Builder { desc, diagnostics: Vec::new() };
+    builder.media();
+    let sampler = builder.sampler();
+    let integrator = builder.integrator(sampler);
+    let diagnostics = builder.diagnostics;
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        return Err(diagnostics);
+    }
+    Ok(Built { integrator, warnings: diagnostics })
+}
+
+struct Builder<'a> {
+    desc: &'a SceneDesc,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Builder<'_> {
+    /// Warns of each medium.
+    fn media(&mut self) {
+        for (_, medium) in self.desc.media.iter() {
+            let message = "participating media are not drawn yet; left out";
+            self.diagnostics.push(Diagnostic::warning("not-drawn", message, medium.origin.span));
+        }
+    }
+
+    /// A positive number of samples; 1, and an error, where it is none.
+    fn samples(&mut self, samples: i32, parameter: &str) -> u32 {
+        match u32::try_from(samples) {
+            Ok(samples) if samples > 0 => samples,
+            _ => {
+                let message = format!("`{parameter}` is a number above 0, not {samples}");
+                let span = self.desc.sampler.origin.parameter(parameter);
+                self.diagnostics.push(Diagnostic::error("invalid-sampler", message, span));
+                1
+            }
+        }
+    }
+
+    fn sampler(&mut self) -> Sampler {
+        let desc = &self.desc.sampler;
+        let seed = desc.seed.unwrap_or(self.desc.options.seed) as u32;
+        let resolution = self.desc.film.resolution;
+        if let SamplerKind::Stratified { strata, jitter } = desc.kind {
+            let strata = [self.samples(strata[0], "xsamples"), self.samples(strata[1], "ysamples")];
+            return Sampler::Stratified(Stratified::new(strata, jitter, seed));
+        }
+        let samples = self.samples(desc.pixel_samples, "pixelsamples");
+        match desc.kind {
+            SamplerKind::Independent => Sampler::Independent(Independent::new(samples, seed)),
+            SamplerKind::Halton { randomization } => {
+                Sampler::Halton(Halton::new(samples, resolution, randomize(randomization), seed))
+            }
+            SamplerKind::PaddedSobol { randomization } => {
+                Sampler::PaddedSobol(PaddedSobol::new(samples, randomize(randomization), seed))
+            }
+            SamplerKind::Sobol { randomization } => {
+                Sampler::Sobol(Sobol::new(samples, resolution, randomize(randomization), seed))
+            }
+            SamplerKind::ZSobol { randomization } => {
+                Sampler::ZSobol(ZSobol::new(samples, resolution, randomize(randomization), seed))
+            }
+            SamplerKind::Pmj02Bn | SamplerKind::Stratified { .. } => {
+                let message = "sampler `pmj02bn` is not drawn yet; drawn with `zsobol`";
+                self.diagnostics.push(Diagnostic::warning("not-drawn", message, desc.origin.span));
+                Sampler::ZSobol(ZSobol::new(samples, resolution, Randomize::FastOwen, seed))
+            }
+        }
+    }
+
+    fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
+        match &self.desc.integrator.value {
+            IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
+            &IntegratorDesc::Whitted { max_depth } => {
+                pixels(Whitted { max_depth: self.depth(max_depth) }, sampler)
+            }
+            &IntegratorDesc::AmbientOcclusion { cos_sample, max_distance } => {
+                if max_distance.is_nan() || max_distance <= 0.0 {
+                    let message = format!("`maxdistance` is a number above 0, not {max_distance}");
+                    self.error(message, "maxdistance");
+                }
+                let color_space = color_space(self.desc.film.color_space);
+                pixels(AmbientOcclusion::new(cos_sample, max_distance, color_space), sampler)
+            }
+            &IntegratorDesc::RandomWalk { max_depth } => {
+                pixels(RandomWalk { max_depth: self.depth(max_depth) }, sampler)
+            }
+            &IntegratorDesc::SimplePath { max_depth, sample_lights, sample_bsdf } => {
+                pixels(SimplePath { max_depth: self.depth(max_depth), sample_lights, sample_bsdf }, sampler)
+            }
+            &IntegratorDesc::Path { max_depth, regularize, light_sampler } => {
+                self.path(max_depth, regularize, light_sampler, Interfaces::Stop, sampler)
+            }
+            &IntegratorDesc::VolPath { max_depth, regularize, light_sampler } => {
+                self.path(max_depth, regularize, light_sampler, Interfaces::Pass, sampler)
+            }
+            &IntegratorDesc::SimpleVolPath { max_depth } => {
+                self.instead_of("simplevolpath", max_depth, false, sampler)
+            }
+            &IntegratorDesc::LightPath { max_depth } => {
+                self.instead_of("lightpath", max_depth, false, sampler)
+            }
+            &IntegratorDesc::Bdpt { max_depth, regularize, .. } => {
+                self.instead_of("bdpt", max_depth, regularize, sampler)
+            }
+            &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
+                self.instead_of("mlt", max_depth, regularize, sampler)
+            }
+            &IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => {
+                self.instead_of("sppm", max_depth, false, sampler)
+            }
+            IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
+        }
+    }
+
+    /// Path tracing where the author asked for something else.
+    fn instead_of(
+        &mut self,
+        name: &str,
+        max_depth: i32,
+        regularize: bool,
+        sampler: Sampler,
+    ) -> Box<dyn Integrator> {
+        let message = format!("integrator `{name}` is not drawn yet; drawn as `path`");
+        let span = self.desc.integrator.origin.span;
+        self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
+        self.path(max_depth, regularize, LightSamplerDesc::Bvh, Interfaces::Pass, sampler)
+    }
+
+    fn path(
+        &mut self,
+        max_depth: i32,
+        regularize: bool,
+        light_sampler: LightSamplerDesc,
+        interfaces: Interfaces,
+        sampler: Sampler,
+    ) -> Box<dyn Integrator> {
+        let light_sampler = match light_sampler {
+            LightSamplerDesc::Uniform => LightSamplerKind::Uniform,
+            LightSamplerDesc::Power => LightSamplerKind::Power,
+            LightSamplerDesc::Bvh => LightSamplerKind::Bvh,
+            LightSamplerDesc::Exhaustive => {
+                let message = "light sampler `exhaustive` is not drawn yet; drawn with `bvh`";
+                let span = self.desc.integrator.origin.parameter("lightsampler");
+                self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
+                LightSamplerKind::Bvh
+            }
+        };
+        let max_depth = self.depth(max_depth);
+        pixels(Path::new(PathSettings { max_depth, regularize, light_sampler, interfaces }), sampler)
+    }
+
+    /// A depth of 0 or more; 0, and an error, where it is none.
+    fn depth(&mut self, max_depth: i32) -> u32 {
+        u32::try_from(max_depth).unwrap_or_else(|_| {
+            self.error(format!("`maxdepth` is 0 or more, not {max_depth}"), "maxdepth");
+            0
+        })
+    }
+
+    fn error(&mut self, message: String, parameter: &str) {
+        let span = self.desc.integrator.origin.parameter(parameter);
+        self.diagnostics.push(Diagnostic::error("invalid-integrator", message, span));
+    }
+}
+
+fn pixels(rays: impl RayIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
+    Box::new(PixelLoop::new(rays, sampler))
+}
+
+fn randomize(randomization: Randomization) -> Randomize {
+    match randomization {
+        Randomization::None => Randomize::None,
+        Randomization::PermuteDigits => Randomize::PermuteDigits,
+        Randomization::FastOwen => Randomize::FastOwen,
+        Randomization::Owen => Randomize::Owen,
+    }
+}

@@ -1,0 +1,29 @@
+//! The contract of all algorithms.
+
+use film::Film;
+use geometry::RayStats;
+use scene::Scene;
+
+use crate::{Cancelled, Control};
+
+/// An algorithm of light transport, run by [`render`](crate::render()).
+///
+/// What a pass adds to the film depends on the scene, the settings, the seed and the pass's number alone: not on threads, nor on
+/// the passes before it.
+pub trait Integrator: Send {
+    /// How many passes make the picture.
+    fn passes(&self) -> u32;
+
+    /// Looks at the scene; called once, before the first pass.
+    fn prepare(&mut self, scene: &Scene);
+
+    /// Does one pass, one sample per pixel, on the threads of rayon's current pool, and looks at `control` at least once
+    /// per tile of the film. A pass that was cancelled leaves some pixels with a sample less, which their weights account for.
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled>;
+}

@@ -1,0 +1,86 @@
+//! What becomes of each algorithm and sampler that can be described.
+
+use alhazen_integrators::build;
+use description::{
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, SamplerDesc, SamplerKind, SceneDesc, Span,
+    SppmDesc, Stated,
+};
+
+fn messages(diagnostics: &[Diagnostic]) -> Vec<&str> {
+    diagnostics.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
+}
+
+fn warnings(integrator: IntegratorDesc) -> Vec<Diagnostic> {
+    let desc = SceneDesc { integrator: integrator.into(), ..SceneDesc::default() };
+    build(&desc).ok().unwrap().warnings
+}
+
+#[test]
+fn what_is_drawn_is_drawn_without_a_word() {
+    let light_sampler = LightSamplerDesc::Power;
+    for integrator in [
+        IntegratorDesc::RayCasting,
+        IntegratorDesc::Whitted { max_depth: 0 },
+        IntegratorDesc::AmbientOcclusion { cos_sample: false, max_distance: 1.0 },
+        IntegratorDesc::RandomWalk { max_depth: 5 },
+        IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+        IntegratorDesc::Path { max_depth: 5, regularize: true, light_sampler },
+        IntegratorDesc::VolPath { max_depth: 5, regularize: true, light_sampler },
+    ] {
+        assert_eq!(warnings(integrator), []);
+    }
+}
+
+#[test]
+fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
+    for (name, integrator) in [
+        ("simplevolpath", IntegratorDesc::SimpleVolPath { max_depth: 5 }),
+        ("lightpath", IntegratorDesc::LightPath { max_depth: 5 }),
+        ("mlt", IntegratorDesc::Mlt(MltDesc::default())),
+        ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
+    ] {
+        let expected = format!("integrator `{name}` is not drawn yet; drawn as `path`");
+        assert_eq!(messages(&warnings(integrator)), [expected]);
+    }
+    let light_sampler = LightSamplerDesc::Exhaustive;
+    let found = warnings(IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler });
+    assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
+}
+
+fn with_sampler(kind: SamplerKind, pixel_samples: i32) -> SceneDesc {
+    let sampler = SamplerDesc { kind, pixel_samples, seed: None }.into();
+    SceneDesc { sampler, ..SceneDesc::default() }
+}
+
+#[test]
+fn samplers_decide_the_number_of_passes() {
+    let randomization = description::Randomization::FastOwen;
+    for (kind, passes) in [
+        (SamplerKind::Independent, 6),
+        (SamplerKind::Stratified { strata: [3, 2], jitter: true }, 6),
+        (SamplerKind::Halton { randomization: description::Randomization::Owen }, 6),
+        (SamplerKind::PaddedSobol { randomization }, 6),
+        (SamplerKind::Sobol { randomization }, 8),
+        (SamplerKind::ZSobol { randomization }, 8),
+        (SamplerKind::Pmj02Bn, 8),
+    ] {
+        let built = build(&with_sampler(kind.clone(), 6)).ok().unwrap();
+        assert_eq!(built.integrator.passes(), passes, "{kind:?}");
+        assert_eq!(built.warnings.len(), usize::from(kind == SamplerKind::Pmj02Bn));
+    }
+}
+
+#[test]
+fn settings_without_sense_are_errors_at_their_place() {
+    let span = Span { start: 7, ..Span::NONE };
+    let origin = Origin { span: Span::NONE, parameters: vec![("maxdepth", span), ("pixelsamples", span)] };
+    let mut desc = with_sampler(SamplerKind::Independent, 0);
+    desc.sampler.origin = origin.clone();
+    desc.integrator = Stated::new(IntegratorDesc::Whitted { max_depth: -1 }, origin);
+    let errors = build(&desc).err().unwrap();
+    assert_eq!(
+        messages(&errors),
+        ["`pixelsamples` is a number above 0, not 0", "`maxdepth` is 0 or more, not -1"]
+    );
+    assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
+}

@@ -1,0 +1,11 @@
+//! The algorithms against what is known: closed forms, each other, and the promises of the loop.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod agreement;
+mod ambient_occlusion;
+mod build;
+mod direct_light;
+mod furnace;
+mod render_loop;
+mod support;

@@ -1,0 +1,188 @@
+//! The promises of the loop: the same bits on any number of threads, valid pictures when stopped, fixed samples.
+
+use std::collections::HashSet;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
+
+use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
+use description::{IntegratorDesc, LightSamplerDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc};
+use film::Film;
+use geometry::RayStats;
+use math::RayDifferential;
+use sampling::Sampler;
+use sampling::sampler::Independent;
+use scene::Scene;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use crate::support::{at, compile, diffuse, emission, glass, sphere, v, white_sky};
+
+/// 40 × 24 pixels of two balls and a lamp, 4 samples each.
+fn balls() -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = [40, 24];
+    desc.film.save_fp16 = false;
+    desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent, pixel_samples: 4, seed: Some(1) };
+    desc.integrator.value =
+        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh };
+    white_sky(&mut desc);
+    let material = diffuse(&mut desc, 0.5);
+    desc.shapes.push(ShapeDesc { material, ..at(sphere(1.0), v(-1.0, 0.0, 3.0)) });
+    let material = glass(&mut desc);
+    desc.shapes.push(ShapeDesc { material, ..at(sphere(0.8), v(1.0, 0.0, 2.5)) });
+    let area_light = emission(&mut desc, 4.0);
+    desc.shapes.push(ShapeDesc { area_light, ..at(sphere(0.3), v(0.0, 1.5, 2.5)) });
+    desc
+}
+
+fn empty_film(desc: &SceneDesc) -> Film {
+    film::compile(desc).unwrap().film
+}
+
+fn bits(film: &Film) -> Vec<u32> {
+    film.develop().values().map(f32::to_bits).collect()
+}
+
+fn picture(desc: &SceneDesc, threads: usize, control: &Control) -> (Film, Result<RayStats, Cancelled>) {
+    let (scene, mut film) = (compile(desc), empty_film(desc));
+    let mut integrator = build(desc).unwrap().integrator;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let report = pool.install(|| render(&mut *integrator, &scene, &mut film, control));
+    (film, report.map(|report| report.stats))
+}
+
+#[test]
+fn threads_never_change_a_bit() {
+    let integrators = [
+        balls().integrator.value,
+        IntegratorDesc::RayCasting,
+        IntegratorDesc::Whitted { max_depth: 5 },
+        IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY },
+        IntegratorDesc::RandomWalk { max_depth: 5 },
+        IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+    ];
+    for integrator in integrators {
+        let desc = SceneDesc { integrator: integrator.into(), ..balls() };
+        let (one, stats) = picture(&desc, 1, &Control::default());
+        let (many, same_stats) = picture(&desc, 5, &Control::default());
+        assert_eq!(stats, same_stats);
+        assert!(bits(&one) == bits(&many), "{:?}", desc.integrator.value);
+        assert_eq!(one.rejected().count, 0);
+        assert!(one.develop().values().any(|value| value > 0.1));
+    }
+}
+
+#[test]
+fn progress_is_told_after_each_pass() {
+    let heard = Arc::new(Mutex::new(Vec::new()));
+    let sink = Arc::clone(&heard);
+    let progress = move |progress: &Progress| sink.lock().unwrap().push(*progress);
+    let control = Control { progress: Some(Box::new(progress)), ..Control::default() };
+    let (_, stats) = picture(&balls(), 2, &control);
+    let heard = heard.lock().unwrap();
+    assert_eq!(
+        heard.iter().map(|p| (p.pass, p.passes)).collect::<Vec<_>>(),
+        [(1, 4), (2, 4), (3, 4), (4, 4)]
+    );
+    assert_eq!(heard[3].samples, 4 * 40 * 24);
+    assert!(heard.is_sorted_by(|a, b| a.elapsed <= b.elapsed && a.stats.rays < b.stats.rays));
+    assert_eq!(heard[3].stats, stats.unwrap());
+}
+
+#[test]
+fn a_render_stopped_between_passes_is_one_of_fewer_passes() {
+    let mut control = Control::default();
+    let cancel = Arc::clone(&control.cancel);
+    control.progress = Some(Box::new(move |p| cancel.store(p.pass == 2, Ordering::Relaxed)));
+    let (stopped, result) = picture(&balls(), 2, &control);
+    assert_eq!(result, Err(Cancelled));
+    let mut short = balls();
+    short.sampler.pixel_samples = 2;
+    // Differentials follow the number of samples; without textures they do not matter.
+    assert!(bits(&stopped) == bits(&picture(&short, 2, &Control::default()).0));
+}
+
+/// Answers 1 for everything, and pulls the brake at the 700th ray.
+struct Brake {
+    rays: AtomicU32,
+    control: Arc<AtomicBool>,
+}
+
+impl RayIntegrator for Brake {
+    fn li(
+        &self,
+        _: &Scene,
+        _: RayDifferential,
+        _: &mut SampledWavelengths,
+        _: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> SampledSpectrum {
+        stats.rays += 1;
+        if self.rays.fetch_add(1, Ordering::Relaxed) == 700 {
+            self.control.store(true, Ordering::Relaxed);
+        }
+        SampledSpectrum::ONE
+    }
+}
+
+#[test]
+fn a_render_stopped_within_a_pass_is_valid() {
+    let mut desc = balls();
+    desc.options.disable_wavelength_jitter = true;
+    let (scene, mut film) = (compile(&desc), empty_film(&desc));
+    let control = Control::default();
+    let brake = Brake { rays: AtomicU32::new(0), control: Arc::clone(&control.cancel) };
+    let mut integrator = PixelLoop::new(brake, Sampler::Independent(Independent::new(100, 0)));
+    assert_eq!(render(&mut integrator, &scene, &mut film, &control), Err(Cancelled));
+    let taken = film.sample_count();
+    assert!((700..2 * 40 * 24).contains(&taken), "{taken}");
+    let image = film.develop();
+    let white = image.values().fold(0.0, f32::max);
+    assert!(white > 0.0);
+    for y in 0..24 {
+        for x in 0..40 {
+            let seen = film.pixel_sample_count([x, y]) > 0;
+            assert_eq!(image.rgb(x as u32, y as u32)[0] > 0.0, seen);
+            assert!(image.values().all(f32::is_finite));
+        }
+    }
+}
+
+/// Remembers the directions and wavelengths that it is asked about.
+#[derive(Default)]
+struct Recorder(Mutex<Vec<[u32; 4]>>);
+
+impl RayIntegrator for &'static Recorder {
+    fn li(
+        &self,
+        _: &Scene,
+        ray: RayDifferential,
+        lambda: &mut SampledWavelengths,
+        _: &mut Sampler,
+        _: &mut RayStats,
+    ) -> SampledSpectrum {
+        let d = ray.ray.d;
+        self.0.lock().unwrap().push([d.x, d.y, d.z, lambda[0]].map(f32::to_bits));
+        SampledSpectrum::ZERO
+    }
+}
+
+#[test]
+fn jitter_can_be_switched_off() {
+    let distinct = |pixel: bool, wavelength: bool| {
+        let mut desc = SceneDesc::default();
+        desc.film.resolution = [1, 1];
+        desc.options.disable_pixel_jitter = pixel;
+        desc.options.disable_wavelength_jitter = wavelength;
+        let recorder: &'static Recorder = Box::leak(Box::default());
+        let mut integrator = PixelLoop::new(recorder, Sampler::Independent(Independent::new(8, 0)));
+        render(&mut integrator, &compile(&desc), &mut empty_film(&desc), &Control::default()).unwrap();
+        let seen = recorder.0.lock().unwrap();
+        assert_eq!(seen.len(), 8);
+        let directions: HashSet<_> = seen.iter().map(|sample| &sample[..3]).collect();
+        let wavelengths: HashSet<_> = seen.iter().map(|sample| sample[3]).collect();
+        (directions.len(), wavelengths.len())
+    };
+    assert_eq!(distinct(false, false), (8, 8));
+    assert_eq!(distinct(true, false), (1, 8));
+    assert_eq!(distinct(false, true), (8, 1));
+}

@@ -1,0 +1,88 @@
+//! Everything that must hold before a change lands, cheapest first; the first step that fails ends the run.
+
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use super::tidy;
+
+/// A step that cargo runs.
+struct Step {
+    name: &'static str,
+    arguments: &'static [&'static str],
+}
+
+/// Lints and documentation share one check of the workspace; tests are built once, optimised and with assertions.
+const STEPS: [Step; 4] = [
+    Step { name: "format", arguments: &["fmt", "--all", "--check"] },
+    Step {
+        name: "lints",
+        arguments: &[
+            "clippy",
+            "--quiet",
+            "--workspace",
+            "--all-targets",
+            "--keep-going",
+            "--",
+            "-D",
+            "warnings",
+        ],
+    },
+    Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps", "--lib"] },
+    Step {
+        name: "tests",
+        arguments: &["test", "--quiet", "--workspace", "--profile", "checked", "--no-fail-fast"],
+    },
+];
+
+/// Runs all steps in the workspace at `root`.
+pub fn run(root: &Path) -> Result<(), String> {
+    let start = Instant::now();
+    install_components(root)?;
+    step("house rules", || tidy::run(root))?;
+    for Step { name, arguments } in STEPS {
+        step(name, || cargo(root, arguments))?;
+    }
+    println!("all tests passed in {:.0} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Shows a step's name before it and its time after it.
+fn step(name: &str, work: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
+    println!("== {name}");
+    let start = Instant::now();
+    work().map_err(|error| format!("{name}: {error}"))?;
+    println!("== {name}: {:.1} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Adds the formatter and the linter where Rust was installed without them.
+fn install_components(root: &Path) -> Result<(), String> {
+    for (command, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
+        let found = Command::new(cargo_path()).args([command, "--version"]).output();
+        if !found.is_ok_and(|output| output.status.success()) {
+            println!("== installing {component}");
+            succeed(Command::new("rustup").args(["component", "add", component]).current_dir(root))?;
+        }
+    }
+    Ok(())
+}
+
+fn cargo(root: &Path, arguments: &[&str]) -> Result<(), String> {
+    let mut command = Command::new(cargo_path());
+    succeed(command.args(arguments).env("RUSTDOCFLAGS", "-D warnings").current_dir(root))
+}
+
+/// The cargo that runs this program, so that one toolchain does all.
+fn cargo_path() -> String {
+    std::env::var("CARGO").unwrap_or_else(|_| "cargo".into())
+}
+
+/// Runs a command to its end.
+fn succeed(command: &mut Command) -> Result<(), String> {
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{command:?} ended with {status}")),
+        Err(error) => Err(format!("{command:?} did not start: {error}")),
+    }
+}

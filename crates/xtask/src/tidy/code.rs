@@ -1,0 +1,138 @@
+//! Rules of Rust code: libraries neither print nor exit, only those that must touch files do, and nothing is unfinished,
+//! unsafe or global and mutable.
+
+use super::tree::Tree;
+use super::{Finding, rust};
+
+/// Crates that are programs: they may print, exit and touch files.
+const PROGRAMS: [&str; 2] = ["crates/cli/", "crates/xtask/"];
+
+/// Where a library may touch files: codecs and the importer's `AssetSource`.
+const FILE_READERS: [&str; 2] = ["crates/image/", "crates/import/src/assets.rs"];
+
+/// What no code has, tests neither, and why.
+const NOWHERE: [(&str, &str); 6] = [
+    ("todo!", "finish it"),
+    ("unimplemented!", "finish it"),
+    ("dbg!", "take it out"),
+    ("#[ignore]", "say why: #[ignore = \"slow: …\"]"),
+    ("unsafe ", "no crate here needs it"),
+    ("static mut ", "there is no mutable global state"),
+];
+
+/// What no library has outside its tests, and what to do instead.
+const NOT_IN_LIBRARIES: [(&str, &str); 6] = [
+    ("print!", "libraries return values, and programs print them"),
+    ("println!", "libraries return values, and programs print them"),
+    ("eprint!", "libraries return errors, and programs print them"),
+    ("eprintln!", "libraries return errors, and programs print them"),
+    ("process::exit", "libraries return errors, and programs exit"),
+    ("process::abort", "libraries return errors, and programs exit"),
+];
+
+/// Ways to the file system.
+const FILES: [&str; 5] = ["std::fs", "fs::read", "File::open", "File::create", "OpenOptions"];
+
+/// What makes a static mutable.
+const CELLS: [&str; 5] = ["Mutex", "RwLock", "Atomic", "Cell<", "thread_local!"];
+
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    tree.ending(".rs").flat_map(|(path, text)| check_file(path, text)).collect()
+}
+
+fn check_file(path: &str, text: &str) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let code = rust::layers(text).code;
+    each_word(&code, &NOWHERE, |line, word, instead| {
+        findings.push(Finding::new(path, line, format!("`{}`: {instead}", word.trim())));
+    });
+    let outside = |folders: &[&str]| !folders.iter().any(|folder| path.starts_with(folder));
+    let library = path.contains("/src/") && outside(&PROGRAMS) && !path.ends_with("/tests.rs");
+    if library {
+        let code = rust::without_tests(&code);
+        each_word(&code, &NOT_IN_LIBRARIES, |line, word, instead| {
+            findings.push(Finding::new(path, line, format!("`{word}` in a library: {instead}")));
+        });
+        for (number, line) in code.lines().enumerate() {
+            if outside(&FILE_READERS) && FILES.iter().any(|word| finds(line, word)) {
+                let message = "files are read by image codecs and the importer's AssetSource alone";
+                findings.push(Finding::new(path, number + 1, message));
+            }
+            let global = words_start(line, "static ") || line.contains("thread_local!");
+            if global && CELLS.iter().any(|cell| line.contains(cell)) {
+                findings.push(Finding::new(path, number + 1, "mutable global state; pass it as a value"));
+            }
+        }
+    }
+    findings
+}
+
+/// Calls `found` with line, word and remark for every line that has a word of the table.
+fn each_word(code: &str, table: &[(&str, &str)], mut found: impl FnMut(usize, &str, &str)) {
+    for (number, line) in code.lines().enumerate() {
+        for (word, remark) in table.iter().filter(|(word, _)| finds(line, word)) {
+            found(number + 1, word, remark);
+        }
+    }
+}
+
+/// Whether a line has the word, not as the end of a longer one.
+fn finds(line: &str, word: &str) -> bool {
+    line.match_indices(word)
+        .any(|(at, _)| !line[..at].chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_'))
+}
+
+/// Whether an item begins so, whatever its visibility.
+fn words_start(line: &str, word: &str) -> bool {
+    line.trim_start().trim_start_matches("pub ").trim_start_matches("pub(crate) ").starts_with(word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(path: &str, text: &str) -> usize {
+        check_file(path, text).len()
+    }
+
+    #[test]
+    fn libraries_do_not_print_but_programs_and_tests_may() {
+        let print = "fn a() {\n    println!(\"b\");\n}\n";
+        let finding = &check_file("crates/math/src/a.rs", print)[0];
+        assert_eq!(
+            finding.to_string(),
+            "crates/math/src/a.rs:2: `println!` in a library: libraries return values, and programs print them"
+        );
+        assert_eq!(found("crates/cli/src/main.rs", print), 0);
+        assert_eq!(found("crates/math/tests/a.rs", print), 0);
+        assert_eq!(found("crates/math/examples/a.rs", print), 0);
+        assert_eq!(found("crates/math/src/a.rs", &format!("#[cfg(test)]\nmod tests {{ {print} }}\n")), 0);
+        assert_eq!(found("crates/math/src/a.rs", "//! println!\nconst A: &str = \"println!\";\n"), 0);
+    }
+
+    #[test]
+    fn files_are_for_codecs_and_assets() {
+        for code in ["use std::fs;\n", "let a = File::open(path)?;\n"] {
+            assert_eq!(found("crates/scene/src/a.rs", code), 1);
+            assert_eq!(found("crates/image/src/a.rs", code), 0);
+            assert_eq!(found("crates/import/src/assets.rs", code), 0);
+        }
+    }
+
+    #[test]
+    fn unfinished_and_unsafe_code_is_found_everywhere() {
+        for code in
+            ["todo!()", "dbg!(a)", "unimplemented!()", "#[ignore]", "unsafe { a() }", "static mut A: u8 = 0;"]
+        {
+            assert_eq!(found("crates/math/tests/a.rs", code), 1, "{code}");
+        }
+        assert_eq!(found("crates/math/tests/a.rs", "#[ignore = \"slow: an hour\"]"), 0);
+    }
+
+    #[test]
+    fn statics_do_not_change() {
+        assert_eq!(found("crates/math/src/a.rs", "static A: Mutex<u8> = Mutex::new(0);\n"), 1);
+        assert_eq!(found("crates/math/src/a.rs", "pub static A: AtomicBool = AtomicBool::new(false);\n"), 1);
+        assert_eq!(found("crates/math/src/a.rs", "static A: LazyLock<u8> = LazyLock::new(|| 1);\n"), 0);
+    }
+}

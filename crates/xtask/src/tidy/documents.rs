@@ -1,0 +1,146 @@
+//! Rules of documents: their links lead somewhere, the licences are there, and README tells every option and algorithm that
+//! the program has and no others.
+
+use std::collections::BTreeSet;
+
+use super::Finding;
+use super::tree::Tree;
+
+const README: &str = "README.md";
+const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
+/// Where the command line is defined.
+const ARGUMENTS: &str = "crates/cli/src/args.rs";
+/// Options that clap adds by itself.
+const CLAPS_OWN: [&str; 2] = ["help", "version"];
+/// Where the algorithms are listed, in one of its files.
+const LIBRARY: &str = "crates/alhazen/src/";
+
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for licence in LICENCES.iter().filter(|licence| !tree.exists(licence)) {
+        findings.push(Finding::new(licence, 0, "missing"));
+    }
+    for (path, text) in tree.ending(".md") {
+        for (line, target) in links(text) {
+            if !tree.exists(&resolve(path, target)) {
+                findings.push(Finding::new(
+                    path,
+                    line,
+                    format!("a link to `{target}`, which does not exist"),
+                ));
+            }
+        }
+    }
+    let readme = tree.text(README).unwrap_or_default();
+    let defined = defined_options(tree.text(ARGUMENTS).unwrap_or_default());
+    let told = told_options(readme);
+    for option in told.difference(&defined).filter(|option| !CLAPS_OWN.contains(&option.as_str())) {
+        findings.push(Finding::new(README, 0, format!("`--{option}` is no option of alhazen")));
+    }
+    for option in defined.difference(&told) {
+        findings.push(Finding::new(README, 0, format!("the option `--{option}` is not told")));
+    }
+    let library = tree.texts().filter(|(path, _)| path.starts_with(LIBRARY));
+    let integrators: Vec<&str> = library.flat_map(|(_, text)| integrators(text)).collect();
+    for (path, none) in [(ARGUMENTS, defined.is_empty()), (LIBRARY, integrators.is_empty())] {
+        if none {
+            findings.push(Finding::new(path, 0, "tells nothing to hold README to; see tidy's documents.rs"));
+        }
+    }
+    for name in integrators {
+        if !readme.contains(&format!("`{name}`")) {
+            findings.push(Finding::new(README, 0, format!("the integrator `{name}` is not told")));
+        }
+    }
+    findings
+}
+
+/// Lines and targets of the links of a document to files.
+fn links(text: &str) -> Vec<(usize, &str)> {
+    let mut links = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        for (at, opening) in line.match_indices("](") {
+            let Some((target, _)) = line[at + opening.len()..].split_once(')') else { continue };
+            let file = target.split('#').next().unwrap_or_default();
+            if !file.is_empty() && !file.contains("://") {
+                links.push((number + 1, file));
+            }
+        }
+    }
+    links
+}
+
+/// The path from the root that a link in a document leads to.
+fn resolve(document: &str, target: &str) -> String {
+    let mut folders: Vec<&str> = document.split('/').collect();
+    folders.pop();
+    for part in target.split('/').filter(|part| !matches!(*part, "" | ".")) {
+        if part == ".." {
+            folders.pop();
+        } else {
+            folders.push(part);
+        }
+    }
+    folders.join("/")
+}
+
+/// The long options that clap is told of: the fields under `#[arg(… long …)]`, or the names in `long = "…"`.
+fn defined_options(source: &str) -> BTreeSet<String> {
+    let mut options = BTreeSet::new();
+    for (at, opening) in source.match_indices("#[arg(") {
+        let (attribute, rest) = source[at + opening.len()..].split_once(")]").unwrap_or_default();
+        let Some(long) = attribute.split(", ").find(|part| part.starts_with("long")) else { continue };
+        let field = || rest.trim_start().strip_prefix("pub ")?.split(':').next();
+        let name = long.split('"').nth(1).map(str::to_owned);
+        options.extend(name.or_else(|| Some(field()?.replace('_', "-"))));
+    }
+    options
+}
+
+/// The options that a document names, but for those on lines that run cargo.
+fn told_options(text: &str) -> BTreeSet<String> {
+    let mut options = BTreeSet::new();
+    for line in text.lines().filter(|line| !line.contains("cargo ")) {
+        for (at, opening) in line.match_indices("--") {
+            let name = line[at + opening.len()..].split(|c: char| !c.is_ascii_lowercase() && c != '-').next();
+            options.extend(
+                name.map(|name| name.trim_matches('-')).filter(|name| !name.is_empty()).map(str::to_owned),
+            );
+        }
+    }
+    options
+}
+
+/// The names in the list `INTEGRATORS` of a source.
+fn integrators(source: &str) -> Vec<&str> {
+    let list = source.split_once("pub const INTEGRATORS").and_then(|(_, rest)| rest.split_once("];"));
+    list.map(|(list, _)| list.split('"').skip(1).step_by(2).collect()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_somewhere() {
+        let text = "[a](../README.md#here) [b](c.png) [d](https://e.org) [f](#g)\n";
+        assert_eq!(links(text), [(1, "../README.md"), (1, "c.png")]);
+        assert_eq!(resolve("docs/a.md", "../README.md"), "README.md");
+        assert_eq!(resolve("docs/a.md", "./images/b.png"), "docs/images/b.png");
+    }
+
+    #[test]
+    fn options_are_read_from_both_sides() {
+        let source = "#[arg(short, long = \"output\", value_name = \"FILE\")]\npub output: Vec<PathBuf>,\n\
+                      #[arg(long, value_parser = range(1..))]\npub spp: u32,\n#[arg(long)]\npub max_time: u32,\n";
+        let expected: BTreeSet<String> = ["output", "spp", "max-time"].map(String::from).into();
+        assert_eq!(defined_options(source), expected);
+        let text = "| `--spp N`, `-o` or `--output` |\n|---|---|\ncargo run --release\n`--max-time`\n";
+        assert_eq!(told_options(text), expected);
+    }
+
+    #[test]
+    fn integrators_are_listed() {
+        assert_eq!(integrators("pub const INTEGRATORS: [&str; 2] = [\n \"a\",\n \"b\",\n];\n"), ["a", "b"]);
+    }
+}

@@ -1,0 +1,62 @@
+//! The house rules that no compiler knows. Each check reads the texts of the tree and returns what it found, with file and
+//! line; `cargo xtask tidy` prints all of it at once.
+
+mod citations;
+mod code;
+mod crates;
+mod documents;
+mod rust;
+mod text;
+mod tree;
+
+use std::fmt;
+use std::path::Path;
+
+use tree::Tree;
+
+/// A rule that is broken, and where.
+#[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Finding {
+    /// The file, from the root of the workspace.
+    path: String,
+    /// The line, counted from 1; 0 is the file as a whole.
+    line: usize,
+    /// What is wrong, and what to do instead.
+    message: String,
+}
+
+impl Finding {
+    fn new(path: &str, line: usize, message: impl Into<String>) -> Self {
+        Self { path: path.to_owned(), line, message: message.into() }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(f, "{}: {}", self.path, self.message),
+            line => write!(f, "{}:{line}: {}", self.path, self.message),
+        }
+    }
+}
+
+/// All checks.
+const CHECKS: [fn(&Tree) -> Vec<Finding>; 5] =
+    [text::check, code::check, crates::check, citations::check, documents::check];
+
+/// Holds the workspace at `root` to the house rules; what is broken goes to standard error.
+pub fn run(root: &Path) -> Result<(), String> {
+    let tree = Tree::read(root).map_err(|error| format!("{}: {error}", root.display()))?;
+    let mut findings: Vec<Finding> = CHECKS.iter().flat_map(|check| check(&tree)).collect();
+    findings.sort();
+    for finding in &findings {
+        eprintln!("{finding}");
+    }
+    match findings.len() {
+        0 => {
+            println!("tidy: {} files hold to the house rules", tree.len());
+            Ok(())
+        }
+        count => Err(format!("{count} broken house rules")),
+    }
+}
