@@ -2,6 +2,7 @@
 
 mod common;
 
+use alhazen_scene::Interfaces;
 use alhazen_scene::light::LightSampleContext;
 use common::lights::*;
 use common::*;
@@ -269,6 +270,9 @@ fn lights_far_away_are_hidden_by_what_is_far_away() {
         let floor = hit(&scene, &ray(Vec3::new(3.0, 3.0, 0.0), -Vec3::Z)).unwrap();
         let light = alhazen_scene::light::LightId(0);
         let sample = scene.sample_light(light, &floor.light_context(), Vec2::ZERO, &lambda(), false).unwrap();
-        assert_eq!(scene.unoccluded(&floor, &sample, &mut Default::default()), !ceiling && sample.wi.z > 0.0);
+        assert_eq!(
+            scene.unoccluded(&floor, &sample, Interfaces::Stop, &mut Default::default()),
+            !ceiling && sample.wi.z > 0.0
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use alhazen_scene::{Scene, SurfaceInteraction};
+use alhazen_scene::{Interfaces, Scene, SurfaceInteraction};
 use common::*;
 use description::{
     CameraDesc, CameraKind, ConductorDesc, ConductorReflectance, Handle, LensDesc, MaterialDesc,
@@ -113,10 +113,13 @@ fn dispersion_ends_all_wavelengths_but_the_first() {
 }
 
 #[test]
-fn an_interface_scatters_nothing_and_stops_no_light() {
+fn an_interface_scatters_nothing_and_stops_shadow_rays_only_if_asked() {
     let scene = scene(&floor(|_| MaterialKind::Interface.into()));
     assert!(bsdf_at(&scene, down(0.0, 0.0), &mut lambda()).1.is_none());
-    assert!(!scene.occluded(&down(0.0, 0.0), f32::INFINITY, &mut Default::default()));
+    for (interfaces, stops) in [(Interfaces::Pass, false), (Interfaces::Stop, true)] {
+        let ray = down(0.0, 0.0);
+        assert_eq!(scene.occluded(&ray, f32::INFINITY, interfaces, &mut Default::default()), stops);
+    }
 }
 
 #[test]
@@ -159,7 +162,7 @@ fn a_surface_is_there_by_its_alpha() {
             let ray = down(random.get_1d(), random.get_1d());
             let meets = hit(&scene, &ray).is_some();
             met.push(f64::from(u8::from(meets)));
-            let stops = scene.occluded(&ray, f32::INFINITY, &mut Default::default());
+            let stops = scene.occluded(&ray, f32::INFINITY, Interfaces::Stop, &mut Default::default());
             stopped.push(f64::from(u8::from(stops)));
             assert_eq!(meets, stops, "the same ray always fares alike");
         }
