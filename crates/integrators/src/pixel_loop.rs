@@ -10,7 +10,7 @@ use math::{RayDifferential, Vec2};
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::Scene;
-use scene::camera::{CameraSample, differential_scale};
+use scene::camera::{CameraRayDifferential, CameraSample, differential_scale};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::{Cancelled, Control, Integrator};
@@ -82,9 +82,13 @@ impl<R: RayIntegrator> PixelLoop<R> {
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> SampledSpectrum {
-        let Some(mut camera_ray) = scene.camera().generate_ray_differential(sample) else {
-            return SampledSpectrum::ZERO;
+        let camera = scene.camera();
+        let camera_ray = if scene.has_footprints() {
+            camera.generate_ray_differential(sample)
+        } else {
+            camera.generate_ray(sample).map(|r| CameraRayDifferential { ray: r.ray.into(), weight: r.weight })
         };
+        let Some(mut camera_ray) = camera_ray else { return SampledSpectrum::ZERO };
         camera_ray.ray.scale(differential_scale(sampler.samples_per_pixel()));
         self.rays.li(scene, camera_ray.ray, lambda, sampler, stats) * camera_ray.weight
     }

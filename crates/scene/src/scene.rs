@@ -59,6 +59,7 @@ pub struct Scene {
     pub(crate) infinite_lights: Vec<LightId>,
     pub(crate) samples_per_pixel: u32,
     pub(crate) options: SceneOptions,
+    pub(crate) has_footprints: bool,
 }
 
 impl Scene {
@@ -70,6 +71,11 @@ impl Scene {
     /// Switches that concern all algorithms.
     pub fn options(&self) -> SceneOptions {
         self.options
+    }
+
+    /// Whether anything depends on the size of a pixel on a surface, so that ray differentials are of use.
+    pub fn has_footprints(&self) -> bool {
+        self.has_footprints
     }
 
     /// The lights; their ids are their indices.
@@ -209,7 +215,7 @@ impl Scene {
         lambda: &mut SampledWavelengths,
         sampler: &mut Sampler,
     ) -> Option<Bsdf> {
-        if !self.options.disable_texture_filtering {
+        if self.has_footprints {
             // All samples of a pixel in one place see the whole pixel each.
             let samples = if self.options.disable_pixel_jitter { 1 } else { self.samples_per_pixel };
             interaction.compute_footprint(ray, &self.camera, samples);

@@ -20,7 +20,7 @@ impl DenselySampled {
     /// The value at the whole nanometre nearest to `lambda`.
     #[inline]
     pub fn at(&self, lambda: f32) -> f32 {
-        let offset = lambda.round() - LAMBDA_MIN;
+        let offset = lambda - (LAMBDA_MIN - 0.5);
         if (0.0..COUNT as f32).contains(&offset) { self.values[offset as usize] } else { 0.0 }
     }
 

@@ -45,8 +45,8 @@ impl SampledSpectrum {
 
     /// Applies `f` to each value.
     #[inline]
-    pub fn map(self, f: impl FnMut(f32) -> f32) -> Self {
-        Self(self.0.map(f))
+    pub fn map(self, mut f: impl FnMut(f32) -> f32) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i])))
     }
 
     /// Applies `f` to each pair of values.
@@ -314,7 +314,8 @@ fn rotations(u: f32) -> [f32; N] {
 
 /// A wavelength with the density of [`visible_wavelength_pdf`].
 pub fn sample_visible_wavelength(u: f32) -> f32 {
-    (538.0 - 138.888_89 * (0.856_910_62 - 1.827_502 * u).atanh()).clamp(LAMBDA_MIN, LAMBDA_MAX)
+    let tanh = 0.856_910_62 - 1.827_502 * u;
+    (538.0 - 69.444_44 * ((1.0 + tanh) / (1.0 - tanh)).ln()).clamp(LAMBDA_MIN, LAMBDA_MAX)
 }
 
 /// p(λ) ∝ sech²(0.0072 (λ − 538)) on the range of wavelengths, per nanometre.
@@ -322,7 +323,9 @@ pub fn visible_wavelength_pdf(lambda: f32) -> f32 {
     if !(LAMBDA_MIN..=LAMBDA_MAX).contains(&lambda) {
         return 0.0;
     }
-    0.003_939_804 / (0.0072 * (lambda - 538.0)).cosh().powi(2)
+    // sech² x = 4e²ˣ / (1 + e²ˣ)²
+    let e = (0.0144 * (lambda - 538.0)).exp();
+    4.0 * 0.003_939_804 * e / ((1.0 + e) * (1.0 + e))
 }
 
 #[cfg(test)]

@@ -76,7 +76,16 @@ impl Spectrum {
     /// The values at sampled wavelengths.
     #[inline]
     pub fn sample(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
-        SampledSpectrum(lambda.lambda().map(|l| self.at(l)))
+        let lambda = SampledSpectrum(*lambda.lambda());
+        match self {
+            Self::Constant(value) => SampledSpectrum::splat(*value),
+            Self::PiecewiseLinear(s) => lambda.map(|l| s.at(l)),
+            Self::DenselySampled(s) => lambda.map(|l| s.at(l)),
+            Self::Blackbody(s) => lambda.map(|l| s.at(l)),
+            Self::RgbAlbedo(s) => lambda.map(|l| s.at(l)),
+            Self::RgbUnbounded(s) => lambda.map(|l| s.at(l)),
+            Self::RgbIlluminant(s) => lambda.map(|l| s.at(l)),
+        }
     }
 
     /// A bound on the values, attained by most kinds.

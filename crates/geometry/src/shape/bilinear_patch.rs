@@ -2,7 +2,7 @@
 //!
 //! A ray meets the line of constant u when the three vectors between them are coplanar, which is a quadratic
 //! equation in u; v and t follow from the nearest points of ray and line ([Reshetov 2019]; [Pharr 2023
-//! §6.6]). It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the patch
+//! §6.6]). Of a parallelogram, which most patches are, all is linear. It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the patch
 //! whatever t was.
 //!
 //! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the corners, or
@@ -30,7 +30,45 @@ pub struct BilinearPatch {
     uv: Option<[Vec2; 4]>,
     flips: bool,
     is_rectangle: bool,
+    flat: Option<Flat>,
     image: Option<Arc<PiecewiseConstant2d>>,
+}
+
+/// A patch that is a parallelogram exactly: p(u, v) = p₀₀ + u·right + v·up.
+#[derive(Clone, Copy, Debug)]
+struct Flat {
+    corner: DVec3,
+    right: DVec3,
+    up: DVec3,
+    /// right × up.
+    cross: DVec3,
+    /// Its direction.
+    n: Normal3,
+}
+
+impl Flat {
+    fn new(p: &[Point3; 4]) -> Option<Self> {
+        let [p00, p10, p01, p11] = p.map(|p| p.as_dvec3());
+        let (right, up) = (p10 - p00, p01 - p00);
+        let cross = right.cross(up);
+        let n = cross.try_normalize()?.as_vec3();
+        (p11 - p01 == right && p11 - p10 == up).then_some(Self { corner: p00, right, up, cross, n })
+    }
+
+    /// Cramer's rule for o + t·d = p(u, v) [Möller 1997].
+    #[inline]
+    fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+        let d = ray.d.as_dvec3();
+        let o = ray.o.as_dvec3() - self.corner;
+        let inverse = -1.0 / d.dot(self.cross);
+        let t = o.dot(self.cross) * inverse;
+        let moment = o.cross(d);
+        let u = self.up.dot(moment) * inverse;
+        let v = -self.right.dot(moment) * inverse;
+        // NaN, where the ray runs along the plane, fails.
+        let is_met = t > 0.0 && (t as f32) < t_max && (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
+        is_met.then(|| ShapeHit { t: t as f32, uv: Vec2::new(u as f32, v as f32) })
+    }
 }
 
 impl BilinearPatch {
@@ -51,6 +89,7 @@ impl BilinearPatch {
             uv,
             flips: reverse_orientation != render_from_object.swaps_handedness(),
             is_rectangle: is_rectangle(&p),
+            flat: Flat::new(&p),
             image: None,
         }
     }
@@ -65,6 +104,9 @@ impl BilinearPatch {
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+        if let Some(flat) = &self.flat {
+            return flat.intersect(ray, t_max);
+        }
         let (o, d) = (ray.o.as_dvec3(), ray.d.as_dvec3());
         let [p00, p10, p01, p11] = self.p.map(|p| p.as_dvec3() - o);
         let a = (p10 - p00).cross(p01 - p11).dot(d);
@@ -91,8 +133,12 @@ impl BilinearPatch {
     }
 
     pub(super) fn surface(&self, ray: &Ray, uv: Vec2) -> SurfacePoint {
-        let geometric = self.cross(uv).normalize_or_zero().as_vec3();
+        let geometric = self.normal(uv);
         let n = if self.flips { -geometric } else { geometric };
+        if let (Some(flat), None, None) = (&self.flat, &self.uv, &self.n) {
+            let sides = [flat.right.as_vec3(), flat.up.as_vec3()];
+            return SurfacePoint::new(self.point(uv), n, uv, sides, [Vec3::ZERO; 2], ray);
+        }
         let p = self.p.map(|p| p.as_dvec3());
         let derivatives = |c: &[DVec3; 4]| [d_du(c, uv), d_dv(c, uv)];
         let by_texture = |d: [DVec3; 2]| match &self.uv {
@@ -227,11 +273,20 @@ impl BilinearPatch {
 
     /// The unit normal on the side of the shading normals, where there are any.
     fn outside(&self, uv: Vec2) -> Normal3 {
-        let n = self.cross(uv).normalize_or_zero().as_vec3();
+        let n = self.normal(uv);
         match &self.n {
             Some(normals) => face_forward(n, at(&normals.map(|n| n.as_dvec3()), uv).as_vec3()),
             None if self.flips => -n,
             None => n,
+        }
+    }
+
+    /// The unit normal on the side of [`Self::cross`].
+    #[inline]
+    fn normal(&self, uv: Vec2) -> Normal3 {
+        match &self.flat {
+            Some(flat) => flat.n,
+            None => self.cross(uv).normalize_or_zero().as_vec3(),
         }
     }
 

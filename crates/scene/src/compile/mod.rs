@@ -61,6 +61,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         disable_texture_filtering: desc.options.disable_texture_filtering,
         force_diffuse: desc.options.force_diffuse,
     };
+    let has_footprints = !options.disable_texture_filtering && textures.are_filtered();
     let scene = Scene {
         camera,
         world,
@@ -72,6 +73,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         infinite_lights,
         samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
         options,
+        has_footprints,
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }

@@ -5,7 +5,7 @@
 //! distance d is Φ·cos θ′ / d², where θ′ is the smallest possible angle between an emission direction and the point, given that
 //! the box subtends θ_b ([Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3]).
 
-use math::{Bounds3, DirectionCone, Normal3, Point3, Vec3, Vector3, bound_subtended_directions, safe_sqrt};
+use math::{Bounds3, DirectionCone, Normal3, Point3, Vec3, Vector3, safe_sqrt};
 
 /// Where light comes from and whereto it goes.
 #[derive(Clone, Copy, Debug)]
@@ -67,17 +67,18 @@ impl LightBounds {
 
     /// An estimate ≥ 0 of how much arrives at `p`; a surface with normal `n` (zero: none) counts the angle of incidence.
     pub fn importance(&self, p: Point3, n: Normal3) -> f32 {
-        let center = self.bounds.centroid();
-        // Near a cluster, 1/d² would blow up: no nearer than half of its size.
-        let d2 = p.distance_squared(center).max(self.bounds.diagonal().length_squared() / 4.0);
-        let wi = (p - center).try_normalize().unwrap_or(Vec3::Z);
+        let to = p - self.bounds.centroid();
+        let distance2 = to.length_squared();
+        let radius2 = self.bounds.diagonal().length_squared() / 4.0;
+        let wi = to.try_normalize().unwrap_or(Vec3::Z);
         let mut cos_w = self.w.dot(wi);
         if self.two_sided {
             cos_w = cos_w.abs();
         }
         let sin_w = safe_sqrt(1.0 - cos_w * cos_w);
-        let cos_b = bound_subtended_directions(&self.bounds, p).cos_theta;
-        let sin_b = safe_sqrt(1.0 - cos_b * cos_b);
+        // Of the cone that holds the box: everything, from inside of its sphere.
+        let sin2_b = radius2 / distance2;
+        let (sin_b, cos_b) = if sin2_b < 1.0 { (sin2_b.sqrt(), (1.0 - sin2_b).sqrt()) } else { (0.0, -1.0) };
         let sin_o = safe_sqrt(1.0 - self.cos_theta_o * self.cos_theta_o);
         let cos_x = cos_sub_clamped(sin_w, cos_w, sin_o, self.cos_theta_o);
         let sin_x = sin_sub_clamped(sin_w, cos_w, sin_o, self.cos_theta_o);
@@ -85,7 +86,8 @@ impl LightBounds {
         if cos_p <= self.cos_theta_e {
             return 0.0;
         }
-        let mut importance = self.phi * cos_p / d2;
+        // Near a cluster, 1/d² would blow up: no nearer than half of its size.
+        let mut importance = self.phi * cos_p / distance2.max(radius2);
         if n != Vec3::ZERO {
             let cos_i = wi.dot(n).abs();
             let sin_i = safe_sqrt(1.0 - cos_i * cos_i);

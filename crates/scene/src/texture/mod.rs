@@ -111,6 +111,14 @@ pub type FloatTexture = Texture<f32, FloatTextureId, FloatImage>;
 pub type SpectrumTexture = Texture<Spectrum, SpectrumTextureId, SpectrumImage>;
 
 impl<C, Id: Copy, I> Texture<C, Id, I> {
+    /// Whether it is itself averaged over the footprint of a pixel.
+    fn is_filtered(&self) -> bool {
+        match self {
+            Self::Checkerboard { .. } | Self::Image(_) => true,
+            Self::Constant(_) | Self::Scale { .. } | Self::Mix { .. } | Self::Bilerp(_) => false,
+        }
+    }
+
     /// The value, from those of its parts: `other` evaluates another texture of the same sort.
     fn evaluate<V: Add<Output = V> + Mul<f32, Output = V>>(
         &self,
@@ -172,6 +180,11 @@ impl Textures {
     /// The texture of spectra with this id.
     pub fn spectrum_texture(&self, id: SpectrumTextureId) -> &SpectrumTexture {
         &self.spectrum[id.0 as usize]
+    }
+
+    /// Whether any texture is averaged over the footprint of a pixel.
+    pub fn are_filtered(&self) -> bool {
+        self.float.iter().any(Texture::is_filtered) || self.spectrum.iter().any(Texture::is_filtered)
     }
 
     /// The number at a point.
