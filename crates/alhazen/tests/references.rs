@@ -74,17 +74,13 @@ fn the_cornell_box_in_spectra() {
 #[ignore = "slow: 1024 samples for each of a million pixels, four times"]
 fn the_cornell_box_as_large_as_its_reference() {
     let Some((path, text, reference)) = cornell_box() else { return };
-    let expected = means(&reference);
     let overrides = Overrides { samples_per_pixel: Some(1024), ..Overrides::default() };
-    for channel in 0..3 {
-        let found = means(&render_text(&grey(&text, channel), &overrides))[channel];
-        assert!((found / expected[channel] - 1.0).abs() < 5e-3, "{found}, not {}", expected[channel]);
+    let assert_close = |found: f64, expected: f64| {
+        assert!((found / expected - 1.0).abs() < 5e-3, "{found}, not {expected}");
+    };
+    for (channel, expected) in means(&reference).into_iter().enumerate() {
+        assert_close(means(&render_text(&grey(&text, channel), &overrides))[channel], expected);
     }
     let found = means(&render_scene(&path, &overrides));
-    for channel in 0..3 {
-        assert!(
-            (found[channel] / SPECTRAL_MEAN[channel] - 1.0).abs() < 5e-3,
-            "{found:?}, not {SPECTRAL_MEAN:?}"
-        );
-    }
+    found.into_iter().zip(SPECTRAL_MEAN).for_each(|(found, expected)| assert_close(found, expected));
 }
