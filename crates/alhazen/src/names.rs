@@ -1,26 +1,12 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
-use description::{
-    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind, SppmDesc,
-};
+use description::{FilterDesc, IntegratorDesc, LightSamplerDesc, Randomization, SamplerKind};
 
 use crate::settings::{light_sampler, max_depth, regularize};
 
-/// The algorithms' names.
-pub const INTEGRATORS: [&str; 12] = [
-    "ray-casting",
-    "whitted",
-    "ambient-occlusion",
-    "random-walk",
-    "simple-path",
-    "path",
-    "simple-vol-path",
-    "vol-path",
-    "light-path",
-    "bdpt",
-    "mlt",
-    "sppm",
-];
+/// The names of the algorithms that can be chosen.
+pub const INTEGRATORS: [&str; 7] =
+    ["ray-casting", "whitted", "ambient-occlusion", "random-walk", "simple-path", "path", "vol-path"];
 
 pub(crate) const LIGHT_SAMPLERS: [(&str, LightSamplerDesc); 4] = [
     ("uniform", LightSamplerDesc::Uniform),
@@ -63,17 +49,7 @@ pub(crate) fn integrator_called(name: &str, current: &mut IntegratorDesc) -> Opt
         "random-walk" => IntegratorDesc::RandomWalk { max_depth },
         "simple-path" => IntegratorDesc::SimplePath { max_depth, sample_lights: true, sample_bsdf: true },
         "path" => IntegratorDesc::Path { max_depth, regularize, light_sampler },
-        "simple-vol-path" => IntegratorDesc::SimpleVolPath { max_depth },
-        "vol-path" => IntegratorDesc::VolPath { max_depth, regularize, light_sampler },
-        "light-path" => IntegratorDesc::LightPath { max_depth },
-        "bdpt" => IntegratorDesc::Bdpt {
-            max_depth,
-            regularize,
-            visualize_strategies: false,
-            visualize_weights: false,
-        },
-        "mlt" => IntegratorDesc::Mlt(MltDesc { max_depth, regularize, ..MltDesc::default() }),
-        _ => IntegratorDesc::Sppm(SppmDesc { max_depth, ..SppmDesc::default() }),
+        _ => IntegratorDesc::VolPath { max_depth, regularize, light_sampler },
     })
 }
 

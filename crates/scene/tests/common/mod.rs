@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses its own part")]
 
+pub mod lights;
+
 use alhazen_scene::light::{Light, LightLiSample, LightSampleContext};
 use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction};
 use description::{ImageDesc, MeshDesc, PatchMeshDesc, SceneDesc, ShapeKind};

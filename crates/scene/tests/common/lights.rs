@@ -1,0 +1,171 @@
+//! The list of configured lights.
+
+use super::*;
+use alhazen_scene::Scene;
+use alhazen_scene::light::{Light, LightSampleContext};
+use description::{
+    AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+    TransformDesc,
+};
+use math::{DMat4, DVec3, Vec3};
+
+/// A scene of one light.
+pub struct Case {
+    pub name: &'static str,
+    pub scene: Scene,
+}
+
+impl Case {
+    pub fn light(&self) -> &Light {
+        &self.scene.lights()[0]
+    }
+}
+
+pub fn white() -> SpectrumDesc {
+    SpectrumDesc::Constant(100.0)
+}
+
+/// An emitting shape, turned and moved so that nothing is special about its axes.
+pub fn area(shape: ShapeKind, change: impl Fn(&mut AreaLightDesc, &mut ShapeDesc)) -> SceneDesc {
+    let mut light = AreaLightDesc::new(white());
+    let mut shape = ShapeDesc::from(shape);
+    let turn = DMat4::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), 0.3);
+    shape.world_from_object =
+        TransformDesc::fixed(DMat4::from_translation(DVec3::new(0.1, -0.2, 0.3)) * turn);
+    change(&mut light, &mut shape);
+    let mut desc = SceneDesc::default();
+    shape.area_light = Some(desc.area_lights.push(light));
+    desc.shapes.push(shape);
+    desc
+}
+
+pub fn both_sides(light: &mut AreaLightDesc, _: &mut ShapeDesc) {
+    light.two_sided = true;
+}
+
+pub fn one_side(_: &mut AreaLightDesc, _: &mut ShapeDesc) {}
+
+pub fn colours(x: u32, y: u32) -> [f32; 3] {
+    [0.2 + x as f32, 0.4 + (x * y % 5) as f32, 1.0 + 0.5 * y as f32]
+}
+
+/// An emitting shape with an image over its (u, v).
+pub fn with_image(shape: ShapeKind) -> SceneDesc {
+    let mut desc = area(shape, both_sides);
+    let image = desc.images.push(rgb_image(6, 4, colours));
+    for (_, light) in desc.area_lights.iter_mut() {
+        light.image = Some(image);
+    }
+    desc
+}
+
+pub fn triangle() -> ShapeKind {
+    triangles(&[[-1.0, -0.7, 0.0], [1.3, -0.4, 0.2], [0.1, 1.2, -0.1]], &[[0, 1, 2]])
+}
+
+pub fn placement() -> DMat4 {
+    DMat4::from_translation(DVec3::new(0.1, 0.2, 0.3)) * DMat4::from_rotation_x(0.8)
+}
+
+/// A light without a surface, and a ball far away that gives the scene an extent.
+pub fn free(kind: LightKind) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    let far_away = TransformDesc::translation(0.0, 0.0, -1e3);
+    desc.shapes.push(ShapeDesc { world_from_object: far_away, ..sphere(0.01).into() });
+    let world_from_light = TransformDesc::fixed(placement());
+    desc.lights.push(LightDesc { world_from_light, ..kind.into() });
+    desc
+}
+
+pub fn spot(cone_angle: f32, cone_delta_angle: f32, power: Option<f32>) -> LightKind {
+    LightKind::Spot {
+        intensity: white(),
+        power,
+        from: Vec3::ZERO,
+        to: Vec3::new(0.1, 0.2, 1.0),
+        cone_angle,
+        cone_delta_angle,
+    }
+}
+
+pub fn point(power: Option<f32>) -> LightKind {
+    LightKind::Point { intensity: white(), power, from: Vec3::new(0.0, 0.5, 0.0) }
+}
+
+pub fn distant(illuminance: Option<f32>) -> LightKind {
+    LightKind::Distant { radiance: white(), illuminance, from: Vec3::new(1.0, 0.3, 2.0), to: Vec3::ZERO }
+}
+
+pub fn sky(illuminance: Option<f32>) -> LightKind {
+    LightKind::Infinite { radiance: InfiniteRadiance::Constant(white()), illuminance, portal: None }
+}
+
+pub fn image_sky(size: u32, illuminance: Option<f32>, pixel: impl FnMut(u32, u32) -> [f32; 3]) -> SceneDesc {
+    let mut desc = free(sky(illuminance));
+    let image = desc.images.push(rgb_image(size, size, pixel));
+    for (_, light) in desc.lights.iter_mut() {
+        let LightKind::Infinite { radiance, .. } = &mut light.kind else { continue };
+        *radiance = InfiniteRadiance::Image(image);
+    }
+    desc
+}
+
+pub fn delta_lights() -> Vec<Case> {
+    let cases = [
+        ("point", free(point(None))),
+        ("spot", free(spot(40.0, 15.0, None))),
+        ("spot, hard edge", free(spot(60.0, 0.0, None))),
+        ("distant", free(distant(None))),
+    ];
+    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+}
+
+pub fn area_lights() -> Vec<Case> {
+    let flat = rectangle([-1.0, -0.5], [0.8, 0.7]);
+    let bent = patch([[-1.0, -1.0, 0.0], [1.0, -0.8, 0.5], [-0.9, 1.0, 0.4], [1.1, 1.2, -0.3]]);
+    let cases = [
+        ("sphere", area(sphere(0.8), one_side)),
+        ("sphere, both sides", area(sphere(0.8), both_sides)),
+        ("cylinder", area(cylinder(0.5, -0.6, 0.9), one_side)),
+        ("cylinder, both sides", area(cylinder(0.5, -0.6, 0.9), both_sides)),
+        ("disk", area(disk(0.2, 0.9), one_side)),
+        ("disk, both sides", area(disk(0.2, 0.9), both_sides)),
+        ("disk, reversed", area(disk(0.2, 0.9), |_, shape| shape.reverse_orientation = true)),
+        ("triangle", area(triangle(), one_side)),
+        ("triangle, both sides", area(triangle(), both_sides)),
+        ("rectangle", area(flat.clone(), one_side)),
+        ("rectangle, both sides", area(flat.clone(), both_sides)),
+        ("rectangle, image", with_image(flat)),
+        ("bent patch", area(bent, both_sides)),
+        ("disk, image", with_image(disk(0.0, 0.9))),
+    ];
+    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+}
+
+pub fn infinite_lights() -> Vec<Case> {
+    // One bright pixel, as a sun.
+    let sun = |x, y| if (x, y) == (5, 2) { [40.0, 35.0, 30.0] } else { colours(x, y) };
+    let cases = [
+        ("sky", free(sky(None))),
+        ("image sky", image_sky(8, None, colours)),
+        ("image sky with a sun", image_sky(8, None, sun)),
+        ("image sky of one colour", image_sky(8, None, |_, _| [0.5; 3])),
+    ];
+    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+}
+
+pub fn hittable_lights() -> Vec<Case> {
+    let mut lights = area_lights();
+    lights.extend(infinite_lights());
+    lights
+}
+
+/// Points before, behind, beside and near the lights; on surfaces and in space.
+pub fn references() -> Vec<LightSampleContext> {
+    vec![
+        context(Vec3::new(0.3, 0.2, 2.0), Vec3::ZERO),
+        context(Vec3::new(-0.5, 0.4, -1.9), Vec3::new(0.3, 0.0, 1.0).normalize()),
+        context(Vec3::new(1.1, -0.9, 1.0), Vec3::new(-0.5, 0.4, -0.9).normalize()),
+        context(Vec3::new(0.1, -0.1, 0.6), Vec3::ZERO),
+    ]
+}

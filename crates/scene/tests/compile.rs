@@ -1,0 +1,437 @@
+//! What compiling a scene makes of it: places, times, ids, and messages.
+
+mod common;
+
+use alhazen_scene::light::LightId;
+use alhazen_scene::{RayStats, compile};
+use common::*;
+use description::{
+    AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, CurveBasis, CurveDesc,
+    CurveProfile, Diagnostic, FileId, HairColor, ImageDesc, InfiniteRadiance, InstanceDesc, LightDesc,
+    LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, Origin, PatchMeshDesc, RoughnessDesc,
+    SceneDesc, Severity, ShapeDesc, ShapeKind, Span, SpectrumDesc, Stated, SubsurfaceScattering,
+    TransformDesc,
+};
+use image::Image;
+use math::{DMat4, DVec3, Ray, Vec3};
+use std::sync::Arc;
+
+fn span(start: u32) -> Span {
+    Span::new(FileId(0), start, start + 1)
+}
+
+fn stated<T>(value: T, start: u32) -> Stated<T> {
+    Stated::new(value, Origin::new(span(start)))
+}
+
+fn with_parameter<T>(value: T, name: &'static str, start: u32) -> Stated<T> {
+    Stated::new(value, Origin { span: span(1000), parameters: vec![(name, span(start))] })
+}
+
+fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
+    match compile(desc) {
+        Ok(compiled) => compiled.warnings,
+        Err(diagnostics) => {
+            assert!(diagnostics.iter().any(Diagnostic::is_error));
+            diagnostics
+        }
+    }
+}
+
+/// The one message about a scene.
+fn check(desc: &SceneDesc, severity: Severity, code: &str, message: &str, start: u32) {
+    let all = diagnostics(desc);
+    let [only] = &all[..] else { panic!("expected only `{message}`: {all:?}") };
+    assert_eq!((only.severity, only.code, &only.message[..]), (severity, code, message));
+    assert_eq!(only.span(), span(start), "{message}");
+}
+
+fn warns(desc: &SceneDesc, message: &str, start: u32) {
+    check(desc, Severity::Warning, "not-drawn", message, start);
+}
+
+/// A scene changed in one way, whatever the change returns.
+fn with<T>(change: impl FnOnce(&mut SceneDesc) -> T) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    change(&mut desc);
+    desc
+}
+
+fn flat() -> TransformDesc {
+    TransformDesc::fixed(DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0)))
+}
+
+fn gray_image() -> ImageDesc {
+    ImageDesc { name: "gray.png".into(), image: Arc::new(Image::from_fn(4, 4, ["Y"], |_, _| [0.5])) }
+}
+
+fn image_sky(image: ImageDesc, illuminance: Option<f32>) -> SceneDesc {
+    with(|desc| {
+        let radiance = InfiniteRadiance::Image(desc.images.push(image));
+        let kind = LightKind::Infinite { radiance, illuminance, portal: None };
+        desc.lights.push_stated(with_parameter(kind.into(), "filename", 5));
+    })
+}
+
+#[test]
+fn transforms_without_an_inverse_are_errors() {
+    let check = |desc: &SceneDesc, what: &str, start| {
+        let message = format!("the transform of the {what} has no inverse");
+        check(desc, Severity::Error, "singular-transform", &message, start);
+    };
+    let squashed = || ShapeDesc { world_from_object: flat(), ..sphere(1.0).into() };
+    check(&with(|desc| desc.shapes.push_stated(stated(squashed(), 3))), "shape", 3);
+    let in_object = with(|desc| {
+        let mut object = ObjectDesc::default();
+        object.shapes.push_stated(stated(squashed(), 4));
+        let object = desc.objects.push(object);
+        desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::default() });
+    });
+    check(&in_object, "shape", 4);
+    let instance = with(|desc| {
+        let object = desc.objects.push(ObjectDesc::default());
+        desc.instances.push_stated(stated(InstanceDesc { object, world_from_object: flat() }, 5));
+    });
+    check(&instance, "instance", 5);
+    let light = with(|desc| {
+        let kind = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
+        desc.lights.push_stated(stated(LightDesc { world_from_light: flat(), ..kind.into() }, 6));
+    });
+    check(&light, "light", 6);
+}
+
+#[test]
+fn a_mix_of_itself_is_an_error() {
+    let desc = with(|desc| {
+        let other = desc.materials.push(MaterialDesc::default());
+        let itself = description::Handle::new(1);
+        let kind = MaterialKind::Mix { materials: [other, itself], amount: 0.5.into() };
+        desc.materials.push_stated(stated(MaterialDesc { name: "loop".into(), ..kind.into() }, 7));
+    });
+    check(&desc, Severity::Error, "material-cycle", "material `loop` is a mix of itself", 7);
+}
+
+#[test]
+fn images_that_serve_for_nothing_are_errors() {
+    let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
+    error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
+    error(
+        &image_sky(rgb_image(4, 2, |_, _| [1.0; 3]), None),
+        "image-shape",
+        "an infinite light wants a square image in the equal-area octahedral mapping, not 4 × 2",
+    );
+    error(
+        &image_sky(rgb_image(4, 4, |x, _| [if x == 2 { f32::NAN } else { 1.0 }; 3]), None),
+        "image-values",
+        "the image of a light has values that are infinite or no numbers",
+    );
+    error(
+        &image_sky(rgb_image(4, 4, |_, _| [0.0; 3]), Some(100.0)),
+        "image-values",
+        "an image that is black above cannot be scaled to an illuminance",
+    );
+    let area = with(|desc| {
+        let image = Some(desc.images.push(gray_image()));
+        let light = AreaLightDesc { image, ..AreaLightDesc::new(1.0.into()) };
+        let area_light = Some(desc.area_lights.push_stated(with_parameter(light, "filename", 5)));
+        // Said once, however many shapes there are.
+        for _ in 0..3 {
+            desc.shapes.push(ShapeDesc { area_light, ..sphere(1.0).into() });
+        }
+    });
+    error(&area, "image-channels", "the image of a light needs red, green and blue");
+    let normals = with(|desc| {
+        let normal_map = Some(desc.images.push(gray_image()));
+        let material = MaterialDesc { normal_map, ..MaterialDesc::default() };
+        desc.materials.push_stated(with_parameter(material, "normalmap", 5));
+    });
+    error(&normals, "image-channels", "a normal map needs red, green and blue");
+}
+
+#[test]
+fn lights_without_sense_are_errors() {
+    let plane = with(|desc| {
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
+        desc.shapes.push_stated(stated(ShapeDesc { area_light, ..ShapeKind::Plane.into() }, 8));
+    });
+    let message = "an infinite plane cannot emit: its power would be infinite";
+    check(&plane, Severity::Error, "infinite-light", message, 8);
+    let nowhere = with(|desc| {
+        let kind =
+            LightKind::Distant { radiance: 1.0.into(), illuminance: None, from: Vec3::ONE, to: Vec3::ONE };
+        desc.lights.push_stated(with_parameter(kind.into(), "to", 9));
+    });
+    let message = "`from` and `to` must differ: they give the direction";
+    check(&nowhere, Severity::Error, "invalid-value", message, 9);
+    let unnamed = with(|desc| {
+        let intensity = SpectrumDesc::Named("no-such".into());
+        let kind = LightKind::Point { intensity, power: None, from: Vec3::ZERO };
+        desc.lights.push_stated(with_parameter(kind.into(), "I", 10));
+    });
+    check(&unnamed, Severity::Error, "invalid-value", "there is no spectrum named `no-such`", 10);
+}
+
+#[test]
+fn an_interface_does_not_emit() {
+    let desc = with(|desc| {
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
+        let material = Some(desc.materials.push(MaterialKind::Interface.into()));
+        desc.shapes.push_stated(stated(ShapeDesc { area_light, material, ..sphere(1.0).into() }, 2));
+    });
+    check(&desc, Severity::Warning, "light-ignored", "a shape of material `interface` does not emit", 2);
+    assert!(compile(&desc).unwrap().scene.lights().is_empty());
+}
+
+#[test]
+fn meshes_that_hang_together_badly_are_errors() {
+    let shape = |kind: ShapeKind| with(|desc| desc.shapes.push_stated(stated(kind.into(), 3)));
+    let message = "a patch names a vertex that does not exist";
+    let patches = |indices, normals: usize| {
+        ShapeKind::Patches(PatchMeshDesc {
+            indices: [indices].into(),
+            positions: [Vec3::ZERO; 4].into(),
+            normals: vec![Vec3::Z; normals].into(),
+            ..PatchMeshDesc::default()
+        })
+    };
+    check(&shape(patches([0, 1, 2, 4], 0)), Severity::Error, "invalid-mesh", message, 3);
+    let message = "a patch mesh needs as many normals and texture coordinates as vertices, or none";
+    check(&shape(patches([0, 1, 2, 3], 3)), Severity::Error, "invalid-mesh", message, 3);
+    let all = diagnostics(&shape(triangles(&[[0.0; 3]; 3], &[[0, 1, 3]])));
+    assert!(all.len() == 1 && all[0].code == "invalid-mesh" && all[0].span() == span(3), "{all:?}");
+}
+
+#[test]
+fn all_mistakes_come_in_one_run() {
+    let desc = with(|desc| {
+        desc.shapes.push_stated(stated(ShapeDesc { world_from_object: flat(), ..sphere(1.0).into() }, 1));
+        let eta = SpectrumDesc::Named("no-glass".into());
+        desc.materials.push_stated(stated(MaterialKind::ThinDielectric { eta }.into(), 2));
+        let kind = LightKind::Point { intensity: f32::NAN.into(), power: None, from: Vec3::ZERO };
+        desc.lights.push_stated(stated(kind.into(), 3));
+        desc.camera.camera_from_world = flat();
+    });
+    let all = diagnostics(&desc);
+    let places: Vec<_> = all.iter().map(|d| d.span().start).collect();
+    assert!([1, 2, 3].iter().all(|start| places.contains(start)) && all.len() == 4, "{all:?}");
+}
+
+#[test]
+fn materials_that_are_not_drawn_yet_say_what_is_drawn() {
+    let coated = CoatedConductorDesc {
+        conductor: ConductorDesc::default(),
+        eta: 1.5.into(),
+        roughness: RoughnessDesc::default(),
+        layers: Default::default(),
+    };
+    let hair = MaterialKind::Hair {
+        color: HairColor::Melanin { eumelanin: 1.3.into(), pheomelanin: 0.0.into() },
+        eta: 1.55.into(),
+        beta_m: 0.3.into(),
+        beta_n: 0.3.into(),
+        alpha: 2.0.into(),
+    };
+    let skin = MaterialKind::Subsurface {
+        scattering: SubsurfaceScattering::Named("Skin1".into()),
+        scale: 1.0,
+        eta: 1.33,
+        g: 0.0,
+        roughness: RoughnessDesc::default(),
+    };
+    let cases = [
+        (
+            MaterialKind::CoatedDiffuse(CoatedDiffuseDesc::default()),
+            "`coateddiffuse` is not drawn yet; drawn as `diffuse`, without its coat",
+        ),
+        (
+            MaterialKind::CoatedConductor(coated),
+            "`coatedconductor` is not drawn yet; drawn as `conductor`, without its coat",
+        ),
+        (hair, "`hair` is not drawn yet; drawn as diffuse"),
+        (skin, "`subsurface` is not drawn yet; drawn as diffuse"),
+        (
+            MaterialKind::Measured { filename: "a.bsdf".into() },
+            "`measured` is not drawn yet; drawn as diffuse",
+        ),
+    ];
+    for (kind, message) in cases {
+        warns(&with(|desc| desc.materials.push_stated(stated(kind.into(), 4))), message, 4);
+    }
+    let displaced = MaterialDesc { displacement: Some(0.1.into()), ..MaterialDesc::default() };
+    let desc = with(|desc| desc.materials.push_stated(with_parameter(displaced, "displacement", 6)));
+    warns(&desc, "displacement is not drawn yet; the surface stays as it is", 6);
+}
+
+#[test]
+fn shapes_that_are_not_drawn_yet_say_what_is_drawn() {
+    let curve = ShapeKind::Curve(CurveDesc {
+        control_points: [Vec3::ZERO; 4].into(),
+        degree: 3,
+        basis: CurveBasis::Bezier,
+        profile: CurveProfile::Flat,
+        normals: [].into(),
+        width: [0.1; 2],
+        split_depth: 3,
+    });
+    let loops = ShapeKind::LoopSubdivision { mesh: MeshDesc::default(), levels: 3 };
+    for (kind, message) in [
+        (curve, "shape `curve` is not drawn yet; left out"),
+        (loops, "shape `loopsubdiv` is not drawn yet; drawn as its coarse mesh"),
+    ] {
+        warns(&with(|desc| desc.shapes.push_stated(stated(kind.into(), 4))), message, 4);
+    }
+    let displaced = ShapeKind::PlyMesh {
+        triangles: MeshDesc::default(),
+        patches: PatchMeshDesc::default(),
+        displacement: Some(0.1.into()),
+        edge_length: 1.0,
+    };
+    let desc = with(|desc| desc.shapes.push_stated(with_parameter(displaced.into(), "displacement", 5)));
+    warns(&desc, "displacement is not drawn yet; the surface stays as it is", 5);
+}
+
+fn moving() -> TransformDesc {
+    let at = |x| DMat4::from_translation(DVec3::new(x, 0.0, 5.0));
+    TransformDesc { start: at(-2.0), end: at(2.0), times: [0.0, 1.0] }
+}
+
+#[test]
+fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
+    let light = |light: LightDesc| with(|desc| desc.lights.push_stated(stated(light, 4)));
+    let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
+    let message = "lights do not move yet; drawn where it starts";
+    warns(&light(LightDesc { world_from_light: moving(), ..point.into() }), message, 4);
+    let goniometric = LightKind::Goniometric { intensity: 1.0.into(), power: None, image: None };
+    warns(&light(goniometric.into()), "light `goniometric` is not drawn yet; drawn as `point`", 4);
+    let projection = with(|desc| {
+        let image = desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
+        let kind = LightKind::Projection { image, power: None, fov: 90.0 };
+        desc.lights.push_stated(stated(kind.into(), 4));
+    });
+    warns(&projection, "light `projection` is not drawn yet; left out", 4);
+    let radiance = InfiniteRadiance::Constant(1.0.into());
+    let portal = LightKind::Infinite { radiance, illuminance: None, portal: Some([Vec3::ZERO; 4]) };
+    let desc = with(|desc| desc.lights.push_stated(with_parameter(portal.into(), "portal", 7)));
+    warns(&desc, "portals are not drawn yet; light comes from everywhere", 7);
+
+    let emitting = |desc: &mut SceneDesc, world_from_object| {
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
+        stated(ShapeDesc { area_light, world_from_object, ..sphere(1.0).into() }, 8)
+    };
+    let desc = with(|desc| {
+        let shape = emitting(desc, moving());
+        desc.shapes.push_stated(shape);
+    });
+    warns(&desc, "moving shapes do not emit yet; drawn without light", 8);
+    let in_object = |world_from_object| {
+        with(|desc| {
+            let mut shape = emitting(desc, world_from_object);
+            if world_from_object.is_animated() {
+                shape.area_light = None;
+            }
+            let mut object = ObjectDesc::default();
+            object.shapes.push_stated(shape);
+            let object = desc.objects.push(object);
+            desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::default() });
+        })
+    };
+    let message = "shapes of objects do not emit; drawn without light";
+    warns(&in_object(TransformDesc::default()), message, 8);
+    let message = "shapes do not move within objects yet; drawn where it starts";
+    warns(&in_object(moving()), message, 8);
+}
+
+fn distance_along(desc: &SceneDesc, o: Vec3, d: Vec3, time: f32) -> Option<f32> {
+    let scene = scene(desc);
+    scene.intersect(&Ray::new(o, d, time), f32::INFINITY, &mut RayStats::default()).map(|(_, t)| t)
+}
+
+#[test]
+fn moving_shapes_are_where_they_should_be() {
+    let desc = with(|desc| {
+        desc.shapes.push(ShapeDesc { world_from_object: moving(), ..sphere(0.5).into() });
+    });
+    for time in [-1.0f32, 0.0, 0.25, 0.5, 0.9, 1.0, 3.0] {
+        let x = -2.0 + 4.0 * time.clamp(0.0, 1.0);
+        let t = distance_along(&desc, Vec3::new(x, 0.0, 0.0), Vec3::Z, time).expect("the ball");
+        assert!((t - 4.5).abs() < 1e-4, "at {time}: {t}");
+        assert!(distance_along(&desc, Vec3::new(x + 0.6, 0.0, 0.0), Vec3::Z, time).is_none());
+        let left = distance_along(&desc, Vec3::new(-10.0, 0.0, 5.0), Vec3::X, time).expect("the ball");
+        assert!((left - (x + 9.5)).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn instances_are_where_they_should_be() {
+    // A ball off the object's origin; an instance turned and scaled, one that moves, and a camera that is elsewhere.
+    let desc = with(|desc| {
+        let mut object = ObjectDesc::default();
+        let in_object = TransformDesc::translation(1.0, 0.0, 0.0);
+        object.shapes.push(ShapeDesc { world_from_object: in_object, ..sphere(0.5).into() });
+        let object = desc.objects.push(object);
+        let turned = DMat4::from_translation(DVec3::new(0.0, 0.0, 10.0))
+            * DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2)
+            * DMat4::from_scale(DVec3::splat(2.0));
+        desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::fixed(turned) });
+        desc.instances.push(InstanceDesc { object, world_from_object: moving() });
+        desc.camera.camera_from_world = TransformDesc::translation(0.0, 0.0, 7.0);
+    });
+    // The camera stands at z = −7 of the world, the origin of render space.
+    let camera = Vec3::new(0.0, 0.0, -7.0);
+    let from = |x: f32, y: f32, time| distance_along(&desc, Vec3::new(x, y, 0.0) - camera, Vec3::Z, time);
+    assert!((from(0.0, 2.0, 0.3).expect("the turned ball") - 9.0).abs() < 1e-4);
+    assert!(from(2.0, 2.0, 0.3).is_none());
+    for time in [0.0, 0.5, 0.75, 1.0] {
+        let x = -2.0 + 4.0 * time + 1.0;
+        assert!((from(x, 0.0, time).expect("the moving ball") - 4.5).abs() < 1e-4, "at {time}");
+        assert!(from(x - 0.6, 0.0, time).is_none());
+    }
+}
+
+#[test]
+fn emitting_primitives_know_their_lights() {
+    let desc = with(|desc| {
+        let light = |desc: &mut SceneDesc| Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
+        // Dark, two triangles, dark, one ball, then lights that are no surfaces.
+        desc.shapes.push(ShapeDesc {
+            world_from_object: TransformDesc::translation(20.0, 0.0, 5.0),
+            ..sphere(1.0).into()
+        });
+        let area_light = light(desc);
+        let quad = triangles(
+            &[[-1.0, -1.0, 5.0], [1.0, -1.0, 5.0], [1.0, 1.0, 5.0], [-1.0, 1.0, 5.0]],
+            &[[0, 1, 2], [0, 2, 3]],
+        );
+        desc.shapes.push(ShapeDesc { area_light, ..quad.into() });
+        desc.shapes.push(ShapeDesc {
+            world_from_object: TransformDesc::translation(-20.0, 0.0, 5.0),
+            ..sphere(1.0).into()
+        });
+        let area_light = light(desc);
+        desc.shapes.push(ShapeDesc {
+            area_light,
+            world_from_object: TransformDesc::translation(5.0, 0.0, 5.0),
+            ..sphere(1.0).into()
+        });
+        desc.lights.push(LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO }.into());
+        let radiance = InfiniteRadiance::Constant(1.0.into());
+        desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
+    });
+    let scene = scene(&desc);
+    let light =
+        |x, y| hit(&scene, &ray(Vec3::new(x, y, 0.0), Vec3::Z)).and_then(|surface| surface.area_light);
+    assert_eq!(light(20.0, 0.0), None);
+    assert_eq!(light(-20.0, 0.0), None);
+    assert_eq!(light(0.5, -0.5), Some(LightId(0)));
+    assert_eq!(light(-0.5, 0.5), Some(LightId(1)));
+    assert_eq!(light(5.0, 0.0), Some(LightId(2)));
+    assert_eq!(scene.lights().len(), 5);
+    assert_eq!(scene.infinite_lights(), [LightId(4)]);
+    // Light samples lie on the primitive that the id names.
+    for (id, x, y) in [(0, 0.5, -0.5), (1, -0.5, 0.5)] {
+        let from = context(Vec3::new(0.0, 0.0, 8.0), Vec3::ZERO);
+        let sample = scene.sample_light(LightId(id), &from, math::Vec2::splat(0.3), &lambda(), false);
+        let p = sample.expect("the lit side").p.expect("a surface").p;
+        assert_eq!(light(p.x, p.y), light(x, y));
+    }
+}
