@@ -35,16 +35,9 @@ pub fn offset_ray_origin(p: Point3Error, n: Normal3, w: Vector3) -> Point3 {
     let distance = n.abs().dot(p.error);
     let offset = if w.dot(n) < 0.0 { -n * distance } else { n * distance };
     let q = p.p + offset;
-    let away = |q: f32, offset: f32| {
-        if offset > 0.0 {
-            q.next_up()
-        } else if offset < 0.0 {
-            q.next_down()
-        } else {
-            q
-        }
-    };
-    Vec3::new(away(q.x, offset.x), away(q.y, offset.y), away(q.z, offset.z))
+    // A step beyond the rounding of the sum, along the axes that move at all.
+    let step = (q.abs() * f32::EPSILON).copysign(offset);
+    Vec3::select(offset.cmpeq(Vec3::ZERO), q, q + step)
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ struct Stack {
 }
 
 impl Stack {
-    const ARRAY: usize = 64;
+    const ARRAY: usize = 32;
 
     #[inline]
     fn new() -> Self {

@@ -29,6 +29,8 @@ pub struct BilinearPatch {
     n: Option<[Normal3; 4]>,
     uv: Option<[Vec2; 4]>,
     flips: bool,
+    /// How far a point computed from (u, v) may be from the patch before it is rounded to floats.
+    error: DVec3,
     is_rectangle: bool,
     flat: Option<Flat>,
     image: Option<Arc<PiecewiseConstant2d>>,
@@ -88,6 +90,7 @@ impl BilinearPatch {
             n: n.map(|n| n.map(|n| turn * render_from_object.normal(n).normalize_or_zero())),
             uv,
             flips: reverse_orientation != render_from_object.swaps_handedness(),
+            error: DVec3::splat(p.iter().map(|p| p.abs().as_dvec3()).sum::<DVec3>().max_element() * ROUNDING),
             is_rectangle: is_rectangle(&p),
             flat: Flat::new(&p),
             image: None,
@@ -259,9 +262,11 @@ impl BilinearPatch {
     }
 
     fn point(&self, uv: Vec2) -> Point3Error {
-        let p = self.p.map(|p| p.as_dvec3());
-        let size = p.iter().fold(DVec3::ZERO, |sum, p| sum + p.abs());
-        rounded(at(&p, uv), DVec3::splat(size.max_element() * ROUNDING))
+        let p = match &self.flat {
+            Some(flat) => flat.corner + flat.right * f64::from(uv.x) + flat.up * f64::from(uv.y),
+            None => at(&self.p.map(|p| p.as_dvec3()), uv),
+        };
+        rounded(p, self.error)
     }
 
     fn texture(&self, uv: Vec2) -> Vec2 {

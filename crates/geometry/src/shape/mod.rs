@@ -89,7 +89,7 @@ impl ShapeSampleContext {
     /// Weights of the corners of the unit square that make samples follow the cosine at this point, given
     /// directions to the corners; never quite zero.
     fn cosine_weights(&self, corners: [Vector3; 4]) -> [f32; 4] {
-        corners.map(|w| w.normalize_or_zero().dot(self.ns).abs().max(0.01))
+        corners.map(|w| (w.dot(self.ns) / w.length()).abs().max(0.01))
     }
 }
 

@@ -43,6 +43,9 @@ fn matrix(line: &str) -> [u32; COLUMNS] {
 /// The coordinate of point `index` in a dimension below [`SOBOL_DIMENSIONS`], as a binary fraction of 32 bits.
 #[inline]
 pub fn sobol_bits(mut index: u64, dimension: usize) -> u32 {
+    if dimension == 0 {
+        return (index as u32).reverse_bits();
+    }
     let matrix = &MATRICES[dimension];
     let mut bits = 0;
     while index != 0 {

@@ -28,7 +28,7 @@ impl SphericalRectangle {
     pub fn new(p: Point3, corner: Point3, side_x: Vector3, side_y: Vector3) -> Option<SphericalRectangle> {
         let (side_x, side_y) = (side_x.as_dvec3(), side_y.as_dvec3());
         let (length_x, length_y) = (side_x.length(), side_y.length());
-        let (axis_x, axis_y) = (side_x / length_x, side_y / length_y);
+        let (axis_x, axis_y) = (side_x * (1.0 / length_x), side_y * (1.0 / length_y));
         let mut axis_z = axis_x.cross(axis_y);
         let d = corner.as_dvec3() - p.as_dvec3();
         let mut z = d.dot(axis_z);
@@ -61,20 +61,19 @@ impl SphericalRectangle {
         (1.0 / (self.phi[1] - self.phi[0])) as f32
     }
 
-    /// A point of the rectangle.
+    /// A point of the rectangle. (Squares of what were floats neither overflow nor vanish.)
     pub fn sample(&self, u: Vec2) -> Point3 {
         let Self { x: [x0, x1], y: [y0, y1], z, .. } = *self;
         // z components of the normals of the planes through p and the sides at y₀ and y₁.
-        let b0 = -y0 / length(y0, z);
-        let b1 = y1 / length(y1, z);
+        let [b0, b1] = [-y0, y1].map(|y| y / (y * y + z * z).sqrt());
         let (sin, cos) = (self.phi[0] + u.x as f64 * (self.phi[1] - self.phi[0])).sin_cos();
         let f = (cos * b0 + b1) / sin;
         let x = ((-z).copysign(f) / (f * f + b0 * b0 - 1.0).max(1e-300).sqrt()).clamp(x0, x1);
 
-        let distance = length(x, z);
-        let (h0, h1) = (y0 / length(distance, y0), y1 / length(distance, y1));
+        let distance2 = x * x + z * z;
+        let [h0, h1] = [y0, y1].map(|y| y / (distance2 + y * y).sqrt());
         let h = h0 + u.y as f64 * (h1 - h0);
-        let y = (h * distance / (1.0 - h * h).max(1e-300).sqrt()).clamp(y0, y1);
+        let y = (h * (distance2 / (1.0 - h * h).max(1e-300)).sqrt()).clamp(y0, y1);
         let [axis_x, axis_y, axis_z] = self.axes;
         (self.origin + x * axis_x + y * axis_y + z * axis_z).as_vec3()
     }
@@ -84,8 +83,7 @@ impl SphericalRectangle {
         let d = point.as_dvec3() - self.origin;
         let x = d.dot(self.axes[0]).clamp(self.x[0], self.x[1]);
         let y = d.dot(self.axes[1]).clamp(self.y[0], self.y[1]);
-        let distance = length(x, self.z);
-        let height = |y: f64| y / length(distance, y);
+        let height = |y: f64| y / (x * x + self.z * self.z + y * y).sqrt();
         let (h0, h1) = (height(self.y[0]), height(self.y[1]));
         let u0 = (self.phi_at(x) - self.phi[0]) / (self.phi[1] - self.phi[0]);
         let u1 = (height(y) - h0) / (h1 - h0);
@@ -98,9 +96,4 @@ impl SphericalRectangle {
             self.y.map(|y| (x * y, -self.z * (x * x + y * y + self.z * self.z).sqrt()));
         (sin1 * cos0 - cos1 * sin0).atan2(cos1 * cos0 + sin1 * sin0)
     }
-}
-
-/// |(a, b)|, for numbers that were floats: their squares neither overflow nor vanish.
-fn length(a: f64, b: f64) -> f64 {
-    (a * a + b * b).sqrt()
 }
