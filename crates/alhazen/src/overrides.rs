@@ -79,6 +79,7 @@ impl Overrides {
                 )));
             }
             desc.film.pixel_bounds = Some([x, x + 1, y, y + 1]);
+            desc.film.crop_window = None;
         }
         if let Some(seed) = self.seed {
             desc.options.seed = seed;

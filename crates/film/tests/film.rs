@@ -197,6 +197,8 @@ fn a_crop_window_is_rounded_up_on_both_sides() {
     desc.film.crop_window = Some([0.25, 0.55, 0.0, 0.5]);
     let bounds = film_of(&desc).pixel_bounds();
     assert_eq!((bounds.min, bounds.max), ([3, 0], [6, 5]));
+    desc.film.pixel_bounds = Some([0, 9, 0, 9]);
+    assert_eq!(film_of(&desc).pixel_bounds(), bounds, "pixel bounds do not count beside it");
 }
 
 /// The codes and messages of what [`compile`] says about a scene.

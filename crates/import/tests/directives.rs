@@ -268,3 +268,25 @@ fn every_parameter_knows_its_place() {
     assert_eq!(imported.sources.snippet(origin.span), "Shape \"sphere\" \"float radius\" 2");
     assert_eq!(imported.sources.snippet(origin.parameter("radius")), "\"float radius\" 2");
 }
+
+#[test]
+fn an_index_of_refraction_is_a_number_or_any_spectrum() {
+    let index = |eta: &str| {
+        let desc = world(&format!("Material \"dielectric\" {eta} Shape \"sphere\""));
+        let (_, material) = desc.materials.iter().next().expect("there is a material");
+        match &material.kind {
+            MaterialKind::Dielectric { eta, .. } => eta.clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(index(""), SpectrumDesc::Constant(1.5));
+    assert_eq!(index("\"float eta\" 1.3"), SpectrumDesc::Constant(1.3));
+    assert_eq!(index("\"spectrum eta\" \"glass-BK7\""), SpectrumDesc::Named("glass-BK7".into()));
+    assert_eq!(index("\"rgb eta\" [1.3 1.4 1.5]"), SpectrumDesc::rgb(1.3, 1.4, 1.5));
+}
+
+#[test]
+fn the_corners_of_a_crop_window_come_in_any_order() {
+    let desc = read(r#"Film "rgb" "float cropwindow" [0.75 0.25 0 1] WorldBegin"#);
+    assert_eq!(desc.film.crop_window, Some([0.25, 0.75, 0.0, 1.0]));
+}

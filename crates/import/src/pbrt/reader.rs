@@ -377,7 +377,9 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// An index of refraction: a number or a spectrum.
     pub(crate) fn index_of_refraction(&mut self, name: &'static str, default: f32) -> SpectrumDesc {
-        self.spectrum_of(name, &[ParameterType::Float, ParameterType::Spectrum]).unwrap_or(default.into())
+        const TYPES: &[ParameterType] =
+            &[ParameterType::Float, ParameterType::Spectrum, ParameterType::Rgb, ParameterType::Blackbody];
+        self.spectrum_of(name, TYPES).unwrap_or(default.into())
     }
 
     fn spectrum_of(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<SpectrumDesc> {

@@ -20,6 +20,14 @@ use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
+/// Where the shapes of an object are.
+struct ObjectGroups {
+    /// Those that rest, together, in render space.
+    resting: GroupId,
+    /// Those that move, each by itself and in its own space, which moves so in the object.
+    moving: Vec<(GroupId, TransformDesc)>,
+}
+
 impl Compiler<'_> {
     /// Everything that can be hit.
     pub(super) fn shapes(&mut self) {
@@ -30,8 +38,8 @@ impl Compiler<'_> {
         let mut groups = HashMap::new();
         for (_, instance) in desc.instances.iter() {
             let object = instance.object;
-            let group = *groups.entry(object.index()).or_insert_with(|| self.object(object));
-            self.instance(instance, group);
+            let groups = groups.entry(object.index()).or_insert_with(|| self.object(object));
+            self.instance(instance, groups);
         }
     }
 
@@ -55,18 +63,32 @@ impl Compiler<'_> {
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
     }
 
-    fn instance(&mut self, instance: &Stated<InstanceDesc>, group: GroupId) {
-        match self.motion(&instance.world_from_object) {
-            Some(render_from_instance) => {
-                self.world.add_instance(Instance { group, render_from_instance });
+    fn instance(&mut self, instance: &Stated<InstanceDesc>, groups: &ObjectGroups) {
+        let place = instance.world_from_object;
+        let Some(render_from_instance) = self.instance_motion(&place) else {
+            return self.singular("instance", &instance.origin);
+        };
+        self.world.add_instance(Instance { group: groups.resting, render_from_instance });
+        for (group, shape) in &groups.moving {
+            let times = if shape.is_animated() { shape.times } else { place.times };
+            let (start, end) = (place.start * shape.start, place.end * shape.end);
+            if let Some(render_from_instance) = self.motion(&TransformDesc { start, end, times }) {
+                self.world.add_instance(Instance { group: *group, render_from_instance });
             }
-            None => self.singular("instance", &instance.origin),
         }
     }
 
-    /// The group of an object's shapes, in the object's space.
-    fn object(&mut self, handle: Handle<ObjectDesc>) -> GroupId {
-        let group = self.world.add_group();
+    /// How an instance moves whose shapes already stand in render space. Its transform is brought there before the moments
+    /// between start and end are found: of a turn they depend on the place of the origin, and this is that of the format.
+    fn instance_motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
+        let world_from_render = self.render_from_world.inverse();
+        let moved = |world_from_object| self.render_from_world * world_from_object * world_from_render;
+        AnimatedTransform::new(moved(t.start), moved(t.end), t.times)
+    }
+
+    /// The groups of an object's shapes.
+    fn object(&mut self, handle: Handle<ObjectDesc>) -> ObjectGroups {
+        let mut groups = ObjectGroups { resting: self.world.add_group(), moving: Vec::new() };
         let object = &self.desc.objects[handle];
         for (_, shape) in object.shapes.iter() {
             if shape.area_light.is_some() {
@@ -74,15 +96,17 @@ impl Compiler<'_> {
                 self.warn("not-drawn", message, shape.origin.span);
             }
             if shape.world_from_object.is_animated() {
-                let message = "shapes do not move within objects yet; drawn where it starts";
-                self.warn("not-drawn", message, shape.origin.span);
+                let group = self.world.add_group();
+                self.unlit(shape, group, &Transform::IDENTITY);
+                groups.moving.push((group, shape.world_from_object));
+                continue;
             }
-            match Transform::from_f64(shape.world_from_object.start) {
-                Some(transform) => self.unlit(shape, group, &transform),
+            match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
+                Some(transform) => self.unlit(shape, groups.resting, &transform),
                 None => self.singular("shape", &shape.origin),
             }
         }
-        group
+        groups
     }
 
     /// A shape of the world: in render space where it rests, in a group of its own where it moves.

@@ -1,7 +1,7 @@
 //! What textures must do, by themselves and compiled from a scene.
 
 use super::*;
-use ::image::Image;
+use ::image::{ColorEncoding, Image};
 use description::{
     ColorSpaceDesc, Diagnostic, EncodingDesc, FloatTextureDesc, Handle, ImageDesc, ImageTextureDesc,
     MappingDesc, Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc, TextureFilter, TextureKind,
@@ -281,6 +281,27 @@ fn numbers_come_from_opacity_or_the_mean_of_colours() {
     let rgba = |alpha: f32| Image::from_fn(1, 1, ["R", "G", "B", "A"], move |_, _| [0.3, 0.6, 0.9, alpha]);
     assert_eq!(float_image(rgba(0.25), |_| ()).float(FIRST, &at(0.5, 0.5)), 0.25);
     assert!((float_image(rgba(1.0), |_| ()).float(FIRST, &at(0.5, 0.5)) - 0.6).abs() < 1e-6);
+    let grey = Image::from_fn(1, 1, ["Y", "A"], |_, _| [0.3, 0.25]);
+    assert_eq!(float_image(grey, |_| ()).float(FIRST, &at(0.5, 0.5)), 0.3);
+}
+
+#[test]
+fn filters_that_take_single_texels_take_the_first_channel() {
+    for filter in [TextureFilter::Point, TextureFilter::Ewa] {
+        let image = Image::from_fn(1, 1, ["R", "G", "B", "A"], |_, _| [0.3, 0.6, 0.9, 0.25]);
+        let found = float_image(image, |desc| desc.filter = filter).float(FIRST, &at(0.5, 0.5));
+        assert!((found - 0.3).abs() < 1e-6, "{filter:?}: {found}");
+    }
+}
+
+#[test]
+fn opacity_in_8_bits_is_decoded_as_colours_are() {
+    let image = |encoding| {
+        let image = Image::from_fn(1, 1, ["R", "G", "B", "A"], |_, _| [0.3, 0.6, 0.9, 0.6]).to_u8(encoding);
+        float_image(image, |_| ()).float(FIRST, &at(0.5, 0.5))
+    };
+    assert!((image(ColorEncoding::Linear) - 0.6).abs() < 1e-6);
+    assert!((image(ColorEncoding::Gamma(2.0)) - 0.36).abs() < 1e-6);
 }
 
 #[test]

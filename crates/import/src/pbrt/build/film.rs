@@ -113,9 +113,11 @@ fn film(reader: &mut Reader) -> Option<FilmDesc> {
         reader.integer("yresolution", default.resolution[1], 1..=1_000_000),
     ];
     let pixel_bounds = reader.integer_array::<4>("pixelbounds");
-    let crop_window = reader.float_array::<4>("cropwindow");
+    let crop_window = reader
+        .float_array::<4>("cropwindow")
+        .map(|[x0, x1, y0, y1]| [x0.min(x1), x0.max(x1), y0.min(y1), y0.max(y1)]);
     if pixel_bounds.is_some() && crop_window.is_some() {
-        reader.ignored("cropwindow", "`cropwindow` has no effect beside `pixelbounds`");
+        reader.ignored("pixelbounds", "`pixelbounds` has no effect beside `cropwindow`");
     }
     if let Some([x0, x1, y0, y1]) = pixel_bounds
         && (x0.max(0) >= x1.min(resolution[0]) || y0.max(0) >= y1.min(resolution[1]))

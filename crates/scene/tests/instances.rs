@@ -1,0 +1,59 @@
+//! Where instances of objects and the shapes in them are, also while they move.
+
+mod common;
+
+use alhazen_scene::{RayStats, Scene};
+use common::{scene, sphere};
+use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, TransformDesc};
+use math::{DMat4, DVec3, Ray, Vec3};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+
+/// A scene of one object in one place. The camera stands at `eye`.
+fn placed(shape: ShapeDesc, world_from_object: TransformDesc, eye: DVec3) -> Scene {
+    let mut desc = SceneDesc::default();
+    desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_translation(-eye));
+    let mut object = ObjectDesc::default();
+    object.shapes.push(shape);
+    let object = desc.objects.push(object);
+    desc.instances.push(InstanceDesc { object, world_from_object });
+    scene(&desc)
+}
+
+/// Whether a ray along −z at a moment meets something above the point (x, y) of render space.
+fn there(scene: &Scene, x: f32, y: f32, time: f32) -> bool {
+    let ray = Ray::new(Vec3::new(x, y, 50.0), -Vec3::Z, time);
+    scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).is_some()
+}
+
+fn moving(start: DMat4, end: DMat4) -> TransformDesc {
+    TransformDesc { start, end, times: [0.0, 1.0] }
+}
+
+fn ball(world_from_object: TransformDesc) -> ShapeDesc {
+    ShapeDesc { world_from_object, ..sphere(0.1).into() }
+}
+
+#[test]
+fn a_shape_that_moves_in_an_object_moves_in_its_instances() {
+    let shape = ball(moving(DMat4::IDENTITY, DMat4::from_translation(DVec3::X * 2.0)));
+    let scene = placed(shape, TransformDesc::translation(0.0, 3.0, 0.0), DVec3::ZERO);
+    for (time, x) in [(0.0, 0.0), (0.5, 1.0), (1.0, 2.0)] {
+        assert!(there(&scene, x, 3.0, time), "at {time}");
+        assert!(!there(&scene, x + 0.5, 3.0, time), "elsewhere at {time}");
+    }
+}
+
+#[test]
+fn an_instance_turns_about_the_origin_of_render_space() {
+    // A quarter turn about z, of which the half is about the camera: the translations that belong to the keys, (0, 0) and
+    // (−4, 4) for the second eye, meet in the middle.
+    let shape = ball(TransformDesc::translation(1.0, 0.0, 0.0));
+    let turn = moving(DMat4::IDENTITY, DMat4::from_rotation_z(FRAC_PI_2));
+    let c = FRAC_1_SQRT_2 as f32;
+    for (eye, x, y) in [(0.0_f32, c, c), (4.0, -2.0 - 3.0 * c, 2.0 - 3.0 * c)] {
+        let scene = placed(shape.clone(), turn, DVec3::X * f64::from(eye));
+        assert!(there(&scene, 1.0 - eye, 0.0, 0.0));
+        assert!(there(&scene, -eye, 1.0, 1.0));
+        assert!(there(&scene, x, y, 0.5), "from {eye}");
+    }
+}
