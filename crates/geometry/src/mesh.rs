@@ -109,7 +109,7 @@ impl TriangleMesh {
             indices,
             normals: normals.map(|normals| {
                 if moved || reverse_orientation {
-                    normals.iter().map(|&n| turn * render_from_object.normal(n).normalize_or_zero()).collect()
+                    normals.iter().map(|&n| turn * render_from_object.normal(n)).collect()
                 } else {
                     normals
                 }

@@ -167,3 +167,28 @@ fn arrays_that_are_no_mesh_are_refused() {
     assert_eq!(make(3, 3).unwrap_err(), MeshError::Index { triangle: 0, vertex: 3 });
     assert_eq!(make(2, 4).unwrap_err().to_string(), "4 texture coordinates for 3 vertices");
 }
+
+#[test]
+fn shading_normals_weigh_by_their_lengths_wherever_they_stand() {
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
+    let normals = [Vec3::Z, Vec3::new(3.0, 0.0, 4.0), Vec3::new(0.0, -1.0, 2.0), Vec3::Z];
+    let m = Transform::scale(Vec3::new(0.5, 2.0, 1.0));
+    let ray = Ray::new(Vec3::new(0.125, 0.5, 1.0), -Vec3::Z, 0.0);
+    let mesh = |m: &Transform| -> Geometry {
+        let attributes = MeshAttributes { normals: Some(normals[..3].into()), tangents: None, uvs: None };
+        TriangleMesh::new(corners[..3].into(), [[0, 1, 2]].into(), attributes, m, false).unwrap().into()
+    };
+    let patch = |m: &Transform| -> Geometry {
+        Shape::from(BilinearPatch::new(corners, Some(normals), None, m, false)).into()
+    };
+    // At a quarter of the way along both sides; the transform acts on the sum.
+    let object = [normals[0] * 0.5 + (normals[1] + normals[2]) * 0.25, Vec3::new(9.0, -3.0, 28.0) / 16.0];
+    for (make, n) in [(&mesh as &dyn Fn(&Transform) -> Geometry, object[0]), (&patch, object[1])] {
+        let expected = m.normal(n).normalize();
+        for there in [world([make(&m)]), placed([make(&Transform::IDENTITY)], m.into())] {
+            let hit = nearest(&there, &ray).unwrap();
+            let found = there.surface(&ray, &hit).shading.n;
+            assert!(found.distance(expected) < 1e-5, "{found} {expected}");
+        }
+    }
+}

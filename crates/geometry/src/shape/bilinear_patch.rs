@@ -87,7 +87,7 @@ impl BilinearPatch {
         let turn = if reverse_orientation { -1.0 } else { 1.0 };
         Self {
             p,
-            n: n.map(|n| n.map(|n| turn * render_from_object.normal(n).normalize_or_zero())),
+            n: n.map(|n| n.map(|n| turn * render_from_object.normal(n))),
             uv,
             flips: reverse_orientation != render_from_object.swaps_handedness(),
             error: DVec3::splat(p.iter().map(|p| p.abs().as_dvec3()).sum::<DVec3>().max_element() * ROUNDING),
