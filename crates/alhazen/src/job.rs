@@ -45,7 +45,8 @@ impl Job {
         };
         let warnings = [scene.warnings, film.warnings, built.warnings].concat();
         let (scene, film, integrator) = (scene.scene, film.film, built.integrator);
-        Ok(CompiledJob { job: Self { scene, film, integrator, header: header(desc) }, warnings })
+        let header = header(desc, integrator.passes());
+        Ok(CompiledJob { job: Self { scene, film, integrator, header }, warnings })
     }
 
     /// Renders all passes. Where the render is cancelled, the film has what was found until then.
@@ -106,7 +107,7 @@ pub fn render_file(
 }
 
 /// Camera and settings as attributes of a picture.
-fn header(desc: &SceneDesc) -> Vec<(&'static str, Attribute)> {
+fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Vec<(&'static str, Attribute)> {
     let camera = match &desc.camera.kind {
         CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
         CameraKind::Orthographic { .. } => "orthographic".into(),
@@ -120,7 +121,7 @@ fn header(desc: &SceneDesc) -> Vec<(&'static str, Attribute)> {
         ("camera", Attribute::Text(camera)),
         ("integrator", Attribute::Text(integrator_name(&desc.integrator).into())),
         ("sampler", Attribute::Text(sampler_name(&desc.sampler.kind).into())),
-        ("samplesPerPixel", Attribute::Integer(desc.sampler.pixel_samples)),
+        ("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32)),
         ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
     ]
 }

@@ -78,7 +78,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         scene: &arguments.scene,
         outputs: &outputs,
         integrator: integrator_name(&imported.desc.integrator),
-        samples_per_pixel: imported.desc.sampler.pixel_samples,
+        samples_per_pixel: job.passes(),
         film: job.film(),
         progress: last,
         threads: rayon::current_num_threads(),

@@ -20,8 +20,8 @@ pub struct Summary<'a> {
     pub outputs: &'a [PathBuf],
     /// The algorithm's name.
     pub integrator: &'static str,
-    /// Samples per pixel that were asked for.
-    pub samples_per_pixel: i32,
+    /// Samples per pixel of the whole picture.
+    pub samples_per_pixel: u32,
     /// The film with what came in.
     pub film: &'a Film,
     /// How far the render came.

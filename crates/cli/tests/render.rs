@@ -38,6 +38,10 @@ fn the_summary_says_what_was_done() {
     if cfg!(target_os = "linux") {
         assert!(said.contains("memory "), "{said}");
     }
+    // This sampler makes powers of two.
+    let said =
+        folder.alhazen(&["render", "scene.pbrt", "--spp", "3", "--set", "sampler=zsobol"]).expect(0).out;
+    assert!(said.contains("4 samples per pixel"), "{said}");
 }
 
 #[test]

@@ -323,22 +323,13 @@ fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
         desc.shapes.push_stated(shape);
     });
     warns(&desc, "moving shapes do not emit yet; drawn without light", 8);
-    let in_object = |world_from_object| {
-        with(|desc| {
-            let mut shape = emitting(desc, world_from_object);
-            if world_from_object.is_animated() {
-                shape.area_light = None;
-            }
-            let mut object = ObjectDesc::default();
-            object.shapes.push_stated(shape);
-            let object = desc.objects.push(object);
-            desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::default() });
-        })
-    };
-    let message = "shapes of objects do not emit; drawn without light";
-    warns(&in_object(TransformDesc::default()), message, 8);
-    let message = "shapes do not move within objects yet; drawn where it starts";
-    warns(&in_object(moving()), message, 8);
+    let in_object = with(|desc| {
+        let mut object = ObjectDesc::default();
+        object.shapes.push_stated(emitting(desc, TransformDesc::default()));
+        let object = desc.objects.push(object);
+        desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::default() });
+    });
+    warns(&in_object, "shapes of objects do not emit; drawn without light", 8);
 }
 
 fn distance_along(desc: &SceneDesc, o: Vec3, d: Vec3, time: f32) -> Option<f32> {
