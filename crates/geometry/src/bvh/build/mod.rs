@@ -56,7 +56,7 @@ pub(crate) fn build(mut references: Vec<Reference>, _quality: BuildQuality, widt
     let blocks = Blocks::of(width);
     let mut inner = vec![Inner::default(); references.len()];
     let extent = Extent::around(&references);
-    let root = balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0).root;
-    let wide = widen::widen(&references, &mut inner, root, blocks);
+    let tree = balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0);
+    let wide = widen::widen(&references, &inner, &tree, blocks);
     Built { nodes: wide.nodes, bounds: wide.extent.bounds(), references, blocks: wide.blocks }
 }

@@ -48,10 +48,11 @@ pub(super) struct Inner {
     /// Borders at which the halves are divided in turn; 0 where a half is not.
     pub halves: [u32; 2],
     /// Three bits for each number of branches i from 2: how many the left half gets, 0 to do with i − 1.
-    /// Bit 0 says that, as one branch, this is a leaf.
+    /// Bit 0 says that, as one branch, this is a leaf; the bits above all others how many the left half gets of a
+    /// wide node here.
     plan: u32,
-    /// What there is from here down if this becomes a wide node.
-    pub size: Size,
+    /// What there is below this if it becomes a wide node.
+    pub below: Size,
 }
 
 /// How much a tree becomes: wide nodes, and blocks of primitives.
@@ -92,10 +93,13 @@ impl Inner {
     /// How this node as a wide node shares its branches.
     #[inline]
     pub fn open(&self) -> [usize; 2] {
-        match self.cut(WIDTH) {
-            Cut::Opened(branches) => branches,
-            Cut::Leaf | Cut::Node => [1, 1],
-        }
+        let left = (self.plan >> (3 * WIDTH)) as usize;
+        [left, WIDTH - left]
+    }
+
+    /// How much a wide node here becomes.
+    pub fn as_node(&self) -> Size {
+        Size { nodes: self.below.nodes + 1, ..self.below }
     }
 }
 
@@ -108,19 +112,21 @@ pub(super) struct Grown {
     pub extent: Extent,
     /// C(n, i + 1).
     cost: [f32; WIDTH],
+    /// What it becomes as so many branches.
+    size: [Size; WIDTH],
 }
 
 impl Grown {
     pub fn leaf(extent: Extent, count: u32, blocks: Blocks) -> Self {
         let cost = extent.half_area() * blocks.count(count) as f32;
-        Self { root: 0, count, extent, cost: [cost; WIDTH] }
+        let size = Size { nodes: 0, blocks: blocks.count(count) };
+        Self { root: 0, count, extent, cost: [cost; WIDTH], size: [size; WIDTH] }
     }
 
     /// Joins two neighbours at `border`.
     pub fn join(left: &Self, right: &Self, border: usize, blocks: Blocks) -> (Self, Inner) {
         let extent = left.extent.union(right.extent);
         let count = left.count + right.count;
-        let area = extent.half_area();
         // By i − 1: the cost of sharing i branches between the halves, and how many the left one gets.
         let mut shared = [(f32::INFINITY, 1); WIDTH];
         for branches in 2..=WIDTH {
@@ -128,26 +134,45 @@ impl Grown {
             for k in 1..branches {
                 let cost = left.cost[k - 1] + right.cost[branches - k - 1];
                 if cost < best.0 {
-                    *best = (cost, k as u32);
+                    *best = (cost, k);
                 }
             }
         }
-        let as_node = area * NODE_COST + shared[WIDTH - 1].0;
-        let as_leaf = area * blocks.count(count) as f32;
+        let size_of = |left_share: usize, branches: usize| {
+            left.size[left_share - 1].plus(right.size[branches - left_share - 1])
+        };
+        let (opened, left_share) = shared[WIDTH - 1];
+        let below = size_of(left_share, WIDTH);
+        let mut plan = (left_share as u32) << (3 * WIDTH);
+        let as_node = extent.half_area() * NODE_COST + opened;
+        let as_leaf = extent.half_area() * blocks.count(count) as f32;
         let is_leaf = blocks.count(count) <= LARGEST_LEAF && as_leaf <= as_node;
-        let mut plan = is_leaf as u32;
-        let mut cost = [if is_leaf { as_leaf } else { as_node }; WIDTH];
+        let (one, one_size) = if is_leaf {
+            plan |= 1;
+            (as_leaf, Size { nodes: 0, blocks: blocks.count(count) })
+        } else {
+            (as_node, Size { nodes: below.nodes + 1, ..below })
+        };
+        let mut cost = [one; WIDTH];
+        let mut size = [one_size; WIDTH];
         for i in 1..WIDTH {
-            let (opened, k) = shared[i];
+            let (opened, left_share) = shared[i];
             if opened > cost[i - 1] {
-                cost[i] = cost[i - 1];
+                (cost[i], size[i]) = (cost[i - 1], size[i - 1]);
             } else {
-                cost[i] = opened;
-                plan |= k << (3 * i);
+                plan |= (left_share as u32) << (3 * i);
+                (cost[i], size[i]) = (opened, size_of(left_share, i + 1));
             }
         }
-        let halves = [left.root, right.root];
-        let inner = Inner { halves, plan, size: Size::default() };
-        (Self { root: border as u32, count, extent, cost }, inner)
+        let inner = Inner { halves: [left.root, right.root], plan, below };
+        (Self { root: border as u32, count, extent, cost, size }, inner)
+    }
+
+    /// How much a wide node over this becomes.
+    pub fn as_node(&self, inner: &[Inner]) -> Size {
+        match self.root {
+            0 => Size { nodes: 1, ..self.size[0] },
+            root => inner[root as usize].as_node(),
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! From the binary tree to wide nodes.
 //!
 //! Nodes are written parent first, then the subtrees one after another, each as a whole; so are the blocks of
-//! the leaves, those right below a node before those further down. Sizes of subtrees are counted before, so
+//! the leaves, those right below a node before those further down. The sizes of subtrees are known before, so
 //! that threads can write to parts of one array.
 
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Cut, Inner, Size};
+use super::tree::{Blocks, Cut, Grown, Inner, Size};
 use crate::bvh::node::{Child, WIDTH, WideNode};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,10 +20,10 @@ pub(super) struct Wide {
     pub extent: Extent,
 }
 
-/// Cuts a binary tree with the border `root` (0 for a leaf) over at least one reference.
-pub(super) fn widen(references: &[Reference], inner: &mut [Inner], root: u32, blocks: Blocks) -> Wide {
-    let whole = Branch { range: 0..references.len() as u32, root };
-    let size = Counter { blocks, base: 0, inner }.count(&whole);
+/// Cuts a binary tree over at least one reference.
+pub(super) fn widen(references: &[Reference], inner: &[Inner], tree: &Grown, blocks: Blocks) -> Wide {
+    let whole = Branch { range: 0..references.len() as u32, root: tree.root };
+    let size = tree.as_node(inner);
     let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];
     let mut list = vec![0..0; size.blocks as usize];
     let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
@@ -52,28 +52,27 @@ struct Branches {
 }
 
 impl Branches {
-    /// `inner` begins at `base`.
-    fn below(inner: &[Inner], base: u32, node: &Branch) -> Self {
+    fn below(inner: &[Inner], node: &Branch) -> Self {
         let mut branches = Self::default();
         match node.root {
             0 => branches.push(node.clone()),
-            root => branches.open(inner, base, node, inner[(root - base) as usize].open()),
+            root => branches.open(inner, node, inner[root as usize].open()),
         }
         branches
     }
 
-    fn open(&mut self, inner: &[Inner], base: u32, node: &Branch, shares: [usize; 2]) {
+    fn open(&mut self, inner: &[Inner], node: &Branch, shares: [usize; 2]) {
         let border = node.root;
         let ranges = [node.range.start..border, border..node.range.end];
-        let halves = inner[(border - base) as usize].halves;
+        let halves = inner[border as usize].halves;
         for ((range, root), share) in ranges.into_iter().zip(halves).zip(shares) {
             let half = Branch { range, root };
             match root {
                 0 => self.push(half),
-                _ => match inner[(root - base) as usize].cut(share) {
+                _ => match inner[root as usize].cut(share) {
                     Cut::Leaf => self.push(Branch { root: 0, ..half }),
                     Cut::Node => self.push(half),
-                    Cut::Opened(shares) => self.open(inner, base, &half, shares),
+                    Cut::Opened(shares) => self.open(inner, &half, shares),
                 },
             }
         }
@@ -86,41 +85,6 @@ impl Branches {
 
     fn list(&self) -> &[Branch] {
         &self.list[..self.len]
-    }
-}
-
-/// Counts what the nodes below become, and writes it down. `inner` begins at `base`.
-struct Counter<'a> {
-    blocks: Blocks,
-    base: u32,
-    inner: &'a mut [Inner],
-}
-
-impl Counter<'_> {
-    fn count(&mut self, node: &Branch) -> Size {
-        let branches = Branches::below(self.inner, self.base, node);
-        let mut size = Size { nodes: 1, blocks: 0 };
-        let mut below = Vec::new();
-        let (mut rest, mut base) = (&mut *self.inner, self.base);
-        for branch in branches.list() {
-            let part;
-            (part, rest) = std::mem::take(&mut rest).split_at_mut((branch.range.end - base) as usize);
-            let mut part = Counter { blocks: self.blocks, base, inner: part };
-            base = branch.range.end;
-            match branch.root {
-                0 => size.blocks += self.blocks.count(branch.len()),
-                _ if node.len() > PARALLEL => below.push((part, branch)),
-                _ => size = size.plus(part.count(branch)),
-            }
-        }
-        if !below.is_empty() {
-            let sizes = below.into_par_iter().map(|(mut part, branch)| part.count(branch));
-            size = size.plus(sizes.reduce(Size::default, Size::plus));
-        }
-        if node.root > 0 {
-            self.inner[(node.root - self.base) as usize].size = size;
-        }
-        size
     }
 }
 
@@ -155,7 +119,7 @@ struct Writer<'a> {
 impl Writer<'_> {
     /// Writes a node and all below it; gives the box around it.
     fn write(&self, node: &Branch, mut part: Part) -> Extent {
-        let branches = Branches::below(self.inner, 0, node);
+        let branches = Branches::below(self.inner, node);
         let mut wide = WideNode::EMPTY;
         let mut all = Extent::EMPTY;
         let mut add = |extent: Extent, child| {
@@ -175,7 +139,7 @@ impl Writer<'_> {
         }
         let mut below = Vec::new();
         for branch in branches.list().iter().filter(|branch| branch.root > 0) {
-            let mine = part.take(self.inner[branch.root as usize].size);
+            let mine = part.take(self.inner[branch.root as usize].as_node());
             let child = Child { first: mine.first_node, blocks: 0 };
             if node.len() > PARALLEL {
                 below.push((branch, mine, child));
