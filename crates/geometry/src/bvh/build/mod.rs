@@ -8,6 +8,7 @@
 
 mod balanced;
 mod bins;
+mod fast;
 mod partition;
 mod reference;
 mod tree;
@@ -49,14 +50,19 @@ impl Built {
 }
 
 /// Builds a tree over references with finite bounds; leaves hold blocks of `width` references, a power of two.
-pub(crate) fn build(mut references: Vec<Reference>, _quality: BuildQuality, width: usize) -> Built {
+pub(crate) fn build(mut references: Vec<Reference>, quality: BuildQuality, width: usize) -> Built {
     if references.is_empty() {
         return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, references, blocks: Vec::new() };
     }
     let blocks = Blocks::of(width);
     let mut inner = vec![Inner::default(); references.len()];
-    let extent = Extent::around(&references);
-    let tree = balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0);
+    let tree = match quality {
+        BuildQuality::Fast => fast::grow(&mut references, &mut inner, blocks),
+        BuildQuality::Balanced | BuildQuality::High => {
+            let extent = Extent::around(&references);
+            balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0)
+        }
+    };
     let wide = widen::widen(&references, &inner, &tree, blocks);
     Built { nodes: wide.nodes, bounds: wide.extent.bounds(), references, blocks: wide.blocks }
 }
