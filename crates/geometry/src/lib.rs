@@ -22,4 +22,6 @@ pub use shape::{
     BilinearPatch, Cylinder, Disk, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
 pub use surface::{Shading, SurfacePoint};
-pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};
+pub use world::{
+    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, RefitError, World, WorldBuilder,
+};

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 
 pub use build::BuildQuality;
+use build::Corners;
 pub(crate) use build::Reference;
 
 /// The tree.
@@ -32,11 +33,17 @@ impl Bvh {
         references: Vec<Reference>,
         quality: BuildQuality,
         width: usize,
+        corners: impl Corners,
         block: impl Fn(&[Reference]) -> B + Sync + Send,
     ) -> (Self, Vec<B>) {
-        let built = build::build(references, quality, width);
+        let built = build::build(references, quality, width, corners);
         let blocks = built.blocks().map(block).collect();
         (Self { bounds: built.bounds, nodes: built.nodes }, blocks)
+    }
+
+    /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its box.
+    pub fn refit<B: Send>(&mut self, blocks: &mut [B], renew: impl Fn(&mut B) -> Bounds3 + Sync) {
+        self.bounds = build::refit(&mut self.nodes, blocks, &renew);
     }
 
     /// The box around everything.

@@ -81,13 +81,17 @@ impl WideNode {
 
     pub fn push(&mut self, bounds: &Bounds3, child: Child) {
         let lane = self.len();
+        self.set_bounds(lane, bounds);
+        self.first[lane] = child.first;
+        self.blocks[lane] = child.blocks as u8;
+        self.len += 1;
+    }
+
+    pub fn set_bounds(&mut self, lane: usize, bounds: &Bounds3) {
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.min[axis];
             self.planes[axis + 3][lane] = bounds.max[axis];
         }
-        self.first[lane] = child.first;
-        self.blocks[lane] = child.blocks as u8;
-        self.len += 1;
     }
 
     /// Where the ray enters each box, and a bit for each box that it enters before `t_max`.

@@ -5,6 +5,7 @@
 //! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach et al. 2009]). The
 //! smallest ranges are divided so that blocks are full.
 
+use super::balanced::PARALLEL;
 use super::bins::centroids;
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Grown, Inner};
@@ -17,8 +18,6 @@ const BITS: u32 = 30;
 const DIGIT: u32 = 10;
 /// How many keys a thread sorts into digits at a time.
 const PART: usize = 1 << 16;
-/// Smaller sets are not worth another thread.
-const PARALLEL: usize = 4096;
 /// Ranges of so many blocks are divided between blocks.
 const FULL_BLOCKS: u32 = 4;
 
@@ -107,7 +106,13 @@ fn spread(x: u32) -> u32 {
 }
 
 /// `first` is the index of the first reference.
-fn divide(references: &[Reference], keys: &[u64], inner: &mut [Inner], first: usize, blocks: Blocks) -> Grown {
+fn divide(
+    references: &[Reference],
+    keys: &[u64],
+    inner: &mut [Inner],
+    first: usize,
+    blocks: Blocks,
+) -> Grown {
     let n = keys.len();
     if n <= blocks.width() {
         return Grown::leaf(Extent::around(references), n as u32, blocks);

@@ -9,18 +9,24 @@
 mod balanced;
 mod bins;
 mod fast;
+mod high;
 mod partition;
 mod reference;
+mod refit;
+mod spatial;
 mod tree;
 mod widen;
 
 use super::node::WideNode;
 use math::Bounds3;
 use rayon::prelude::*;
+use reference::Extent;
 use std::ops::Range;
 use tree::{Blocks, Inner};
 
-pub(crate) use reference::{Extent, Reference};
+pub(crate) use reference::Reference;
+pub(super) use refit::refit;
+pub(crate) use spatial::Corners;
 
 /// How much time a tree is worth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -50,19 +56,31 @@ impl Built {
 }
 
 /// Builds a tree over references with finite bounds; leaves hold blocks of `width` references, a power of two.
-pub(crate) fn build(mut references: Vec<Reference>, quality: BuildQuality, width: usize) -> Built {
+pub(crate) fn build(
+    mut references: Vec<Reference>,
+    quality: BuildQuality,
+    width: usize,
+    corners: impl Corners,
+) -> Built {
     if references.is_empty() {
         return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, references, blocks: Vec::new() };
     }
     let blocks = Blocks::of(width);
-    let mut inner = vec![Inner::default(); references.len()];
-    let tree = match quality {
-        BuildQuality::Fast => fast::grow(&mut references, &mut inner, blocks),
-        BuildQuality::Balanced | BuildQuality::High => {
-            let extent = Extent::around(&references);
-            balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0)
+    let (tree, inner);
+    match quality {
+        BuildQuality::Fast => {
+            let mut nodes = vec![Inner::default(); references.len()];
+            tree = fast::grow(&mut references, &mut nodes, blocks);
+            inner = nodes;
         }
-    };
+        BuildQuality::Balanced => {
+            let mut nodes = vec![Inner::default(); references.len()];
+            let extent = Extent::around(&references);
+            tree = balanced::grow(&mut references, &mut nodes, 0, extent, blocks, 0);
+            inner = nodes;
+        }
+        BuildQuality::High => (tree, inner, references) = high::grow(references, &corners, blocks),
+    }
     let wide = widen::widen(&references, &inner, &tree, blocks);
     Built { nodes: wide.nodes, bounds: wide.extent.bounds(), references, blocks: wide.blocks }
 }

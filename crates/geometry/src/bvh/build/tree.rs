@@ -90,6 +90,11 @@ impl Inner {
         if self.plan & 1 == 1 { Cut::Leaf } else { Cut::Node }
     }
 
+    /// Whether a node is stored here.
+    pub fn is_used(&self) -> bool {
+        self.plan != 0
+    }
+
     /// How this node as a wide node shares its branches.
     #[inline]
     pub fn open(&self) -> [usize; 2] {
