@@ -94,6 +94,12 @@ impl WideNode {
         }
     }
 
+    #[cfg(test)]
+    pub fn bounds(&self, lane: usize) -> Bounds3 {
+        let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
+        Bounds3 { min: corner(0), max: corner(3) }
+    }
+
     /// Where the ray enters each box, and a bit for each box that it enters before `t_max`.
     /// Comparisons keep the old value beside a NaN, which 0 · ∞ makes when the ray runs along a slab.
     #[inline]

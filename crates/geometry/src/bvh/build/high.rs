@@ -3,7 +3,7 @@
 //! triangles, whose boxes are mostly empty, gain most ([Stich et al. 2009]).
 //!
 //! A spatial split is tried where the boxes of the best object split overlap by more than [`OVERLAP`] of the
-//! whole, and as long as there is room for more references, of which there are at most half as many again.
+//! whole, and as long as there is room for more references, of which there are at most twice as many as primitives.
 //! Room that a set does not need goes to its halves in proportion to their numbers.
 
 use super::balanced::{DEEPEST, PARALLEL, halve};
@@ -23,7 +23,7 @@ pub(super) fn grow(
     blocks: Blocks,
 ) -> (Grown, Vec<Inner>, Vec<Reference>) {
     let count = references.len();
-    let room = (count + count / 2).min(u32::MAX as usize);
+    let room = (2 * count).min(u32::MAX as usize);
     let extent = Extent::around(&references);
     references.resize(room, Reference::none());
     let mut inner = vec![Inner::default(); room];
@@ -108,7 +108,8 @@ impl<C: Corners> Builder<'_, C> {
         share_room(references, [middle, count - middle], border.halves)
     }
 
-    /// Brings what is on the left of a plane to the front and what is on the right behind it, if there is room.
+    /// Brings what is on the left of a plane to the front and what is on the right behind it. What is on both
+    /// sides goes to one of them alone where that is cheaper, or where there is no room left.
     fn split_space(
         &self,
         references: &mut [Reference],
@@ -116,21 +117,30 @@ impl<C: Corners> Builder<'_, C> {
         plane: &Plane,
     ) -> Option<[(usize, Extent); 2]> {
         let mut sides = [Vec::with_capacity(count), Vec::with_capacity(count)];
+        let mut spare = references.len() - count;
         for r in &references[..count] {
-            for (side, part) in sides.iter_mut().zip(plane.split(r, self.corners)) {
-                side.extend(part);
+            match plane.split(r, self.corners) {
+                [Some(left), Some(right)] => match plane.one_side(r) {
+                    (_, false) if spare > 0 => {
+                        spare -= 1;
+                        sides[0].push(left);
+                        sides[1].push(right);
+                    }
+                    (side, _) => sides[side].push(*r),
+                },
+                [left, right] => {
+                    sides[0].extend(left);
+                    sides[1].extend(right);
+                }
             }
         }
         let [left, right] = &sides;
-        if left.is_empty() || right.is_empty() || left.len() + right.len() > references.len() {
+        if left.is_empty() || right.is_empty() {
             return None;
         }
-        // Further splits must not find the same set again.
-        if left.len() == count && right.len() == count {
-            return None;
-        }
-        references[..left.len()].copy_from_slice(left);
-        references[left.len()..left.len() + right.len()].copy_from_slice(right);
+        let (left_room, right_room) = references.split_at_mut(left.len());
+        left_room.copy_from_slice(left);
+        right_room[..right.len()].copy_from_slice(right);
         Some(sides.map(|side| (side.len(), Extent::around(&side))))
     }
 }

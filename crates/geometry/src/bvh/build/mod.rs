@@ -14,6 +14,8 @@ mod partition;
 mod reference;
 mod refit;
 mod spatial;
+#[cfg(test)]
+mod tests;
 mod tree;
 mod widen;
 

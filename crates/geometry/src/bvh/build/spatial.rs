@@ -22,6 +22,8 @@ pub(super) struct Plane {
     at: f32,
     /// As [`super::bins::Border::cost`].
     pub cost: f32,
+    /// What is on either side: a box around it, and how many.
+    sides: [(Extent, u32); 2],
 }
 
 impl Plane {
@@ -35,6 +37,19 @@ impl Plane {
         let grid = Grid::new(extent);
         let serial = |part: &[Reference]| Intervals::of(part, &grid, corners);
         in_parts(references, serial, Intervals::merge).cheapest(&grid, blocks)
+    }
+
+    /// The side (0 left, 1 right) to which a primitive across the plane best goes if it goes to one alone, and
+    /// whether that costs less than both.
+    pub fn one_side(&self, r: &Reference) -> (usize, bool) {
+        let cost = |(extent, count): (Extent, u32)| extent.half_area() * count as f32;
+        let alone = |side: usize| {
+            let [(here, n), (there, m)] = [self.sides[side], self.sides[1 - side]];
+            cost((here.union(r.extent()), n)) + cost((there, m - 1))
+        };
+        let (left, right) = (alone(0), alone(1));
+        let both = cost(self.sides[0]) + cost(self.sides[1]);
+        ((right < left) as usize, left.min(right) < both)
     }
 
     /// The parts of a primitive to the left and to the right.
@@ -151,16 +166,17 @@ impl Intervals {
 
     fn cheapest(&self, grid: &Grid, blocks: Blocks) -> Option<Plane> {
         let mut best: Option<Plane> = None;
-        let cost = |extent: Extent, count: u32| extent.half_area() * blocks.count(count) as f32;
         for axis in 0..3 {
             let around = |boxes: &[Extent]| boxes.iter().fold(Extent::EMPTY, |all, &b| all.union(b));
             for i in 1..INTERVALS {
                 let (left, right) = self.boxes[axis].split_at(i);
-                let (begun, ended) = (self.begin[axis][..i].iter().sum(), self.end[axis][i..].iter().sum());
+                let begun = self.begin[axis][..i].iter().sum();
+                let ended = self.end[axis][i..].iter().sum();
+                let sides = [(around(left), begun), (around(right), ended)];
+                let cost = sides.map(|(extent, n)| extent.half_area() * blocks.count(n) as f32).iter().sum();
                 // NaN, of an empty side, is never cheaper.
-                let cost = cost(around(left), begun) + cost(around(right), ended);
                 if cost < best.as_ref().map_or(f32::INFINITY, |b| b.cost) {
-                    best = Some(Plane { axis, at: grid.border(i, axis), cost });
+                    best = Some(Plane { axis, at: grid.border(i, axis), cost, sides });
                 }
             }
         }
