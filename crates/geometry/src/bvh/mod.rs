@@ -43,6 +43,11 @@ impl Bvh {
         &self.order
     }
 
+    /// Bytes of memory taken.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes) + size_of_val(&*self.order)
+    }
+
     /// The box around everything.
     pub fn bounds(&self) -> Bounds3 {
         self.bounds

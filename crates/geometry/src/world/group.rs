@@ -99,6 +99,13 @@ impl Group {
         Self { triangles, packets, items: boxes, item_list, unbounded }
     }
 
+    /// Bytes of memory that the trees take.
+    pub fn bytes(&self) -> usize {
+        let packets = size_of_val(&*self.packets);
+        let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
+        self.triangles.bytes() + packets + self.items.bytes() + items
+    }
+
     /// A box around all that has bounds.
     pub fn bounds(&self) -> Bounds3 {
         self.triangles.bounds().union(self.items.bounds())

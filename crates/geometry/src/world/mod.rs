@@ -74,6 +74,14 @@ impl Geometry {
         self.len() == 0
     }
 
+    /// Bytes of memory that the primitives take, boxes of their own apart.
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.bytes(),
+            Self::Shapes(shapes) => size_of_val(&**shapes),
+        }
+    }
+
     /// One primitive as a shape of its own, as a light wants it.
     pub fn shape(&self, primitive: u32) -> Shape {
         match self {
@@ -150,6 +158,12 @@ impl World {
     /// A box around everything but infinite planes; empty when there is nothing.
     pub fn bounds(&self) -> Bounds3 {
         self.groups[0].bounds()
+    }
+
+    /// Bytes of memory that the trees and the meshes take; arrays that meshes share count for each.
+    pub fn bytes(&self) -> usize {
+        let trees: usize = self.groups.iter().map(Group::bytes).sum();
+        trees + self.geometries.iter().map(Geometry::bytes).sum::<usize>()
     }
 
     /// A geometry by its id.
