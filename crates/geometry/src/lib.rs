@@ -16,6 +16,7 @@ mod surface;
 mod watertight;
 mod world;
 
+pub use bvh::BuildQuality;
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
     BilinearPatch, Cylinder, Disk, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
