@@ -41,7 +41,7 @@ impl From<ShapeKind> for ShapeDesc {
     }
 }
 
-/// The shapes of the format, and an infinite plane. Angles are in degrees.
+/// The shapes of the format, the quadrics of its third version, and an infinite plane. Angles are in degrees.
 #[derive(Clone, Debug)]
 pub enum ShapeKind {
     /// About the origin.
@@ -63,6 +63,33 @@ pub enum ShapeKind {
         z_min: f32,
         /// Highest z.
         z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// From a circle around the z axis in z = 0 to a point on it.
+    Cone {
+        /// Radius of the circle.
+        radius: f32,
+        /// z of the point.
+        height: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// A bowl with its lowest point at the origin, open along z.
+    Paraboloid {
+        /// Radius at the highest z.
+        radius: f32,
+        /// Lowest z.
+        z_min: f32,
+        /// Highest z.
+        z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// What a line sweeps about the z axis.
+    Hyperboloid {
+        /// The ends of the line, of different z.
+        ends: [Point3; 2],
         /// Sweep about z.
         phi_max: f32,
     },

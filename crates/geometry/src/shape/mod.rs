@@ -14,16 +14,22 @@
 //!   other is out of sight.
 
 mod bilinear_patch;
+mod cone;
 mod cylinder;
 mod disk;
+mod hyperboloid;
+mod paraboloid;
 mod plane;
 mod quadric;
 mod sphere;
 mod triangle;
 
 pub use bilinear_patch::BilinearPatch;
+pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use hyperboloid::Hyperboloid;
+pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
@@ -100,6 +106,12 @@ pub enum Shape {
     Sphere(Box<Sphere>),
     /// Tube without ends.
     Cylinder(Box<Cylinder>),
+    /// Cone without a base.
+    Cone(Box<Cone>),
+    /// Bowl.
+    Paraboloid(Box<Paraboloid>),
+    /// What a straight line sweeps.
+    Hyperboloid(Box<Hyperboloid>),
     /// Flat disk or ring.
     Disk(Box<Disk>),
     /// Infinite plane.
@@ -115,6 +127,9 @@ macro_rules! each_shape {
         match $self {
             Shape::Sphere($shape) => $result,
             Shape::Cylinder($shape) => $result,
+            Shape::Cone($shape) => $result,
+            Shape::Paraboloid($shape) => $result,
+            Shape::Hyperboloid($shape) => $result,
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
@@ -132,7 +147,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Disk Plane BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane BilinearPatch Triangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -151,6 +166,9 @@ impl Shape {
         match self {
             Self::Sphere(shape) => shape.surface(ray, hit),
             Self::Cylinder(shape) => shape.surface(ray, hit),
+            Self::Cone(shape) => shape.surface(ray, hit),
+            Self::Paraboloid(shape) => shape.surface(ray, hit),
+            Self::Hyperboloid(shape) => shape.surface(ray, hit),
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
@@ -182,7 +200,7 @@ impl Shape {
             Self::Sphere(shape) => shape.sample_from(reference, u),
             Self::BilinearPatch(shape) => shape.sample_from(reference, u),
             Self::Triangle(shape) => shape.sample_from(reference, u),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) => None,
+            _ => None,
         };
         match special {
             Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
@@ -199,7 +217,7 @@ impl Shape {
             Self::Sphere(shape) => shape.pdf_from(reference),
             Self::BilinearPatch(shape) => shape.pdf_from(reference, hit.uv),
             Self::Triangle(shape) => shape.pdf_from(reference, wi),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) => None,
+            _ => None,
         };
         let pdf = special.unwrap_or_else(|| {
             let surface = self.surface(&ray, &hit);
@@ -211,7 +229,11 @@ impl Shape {
     /// A cone of all normals, on the side of [`ShapeSample::n`].
     pub fn normal_bounds(&self) -> DirectionCone {
         match self {
-            Self::Sphere(_) | Self::Cylinder(_) => DirectionCone::ENTIRE_SPHERE,
+            Self::Sphere(_)
+            | Self::Cylinder(_)
+            | Self::Cone(_)
+            | Self::Paraboloid(_)
+            | Self::Hyperboloid(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),

@@ -10,8 +10,8 @@ use description::{
     ShapeKind, Stated, TransformDesc,
 };
 use geometry::{
-    BilinearPatch, Cylinder, Disk, Geometry, GroupId, Instance, MeshAttributes, Plane, Shape, Sphere,
-    TriangleMesh,
+    BilinearPatch, Cone, Cylinder, Disk, Geometry, GroupId, Hyperboloid, Instance, MeshAttributes,
+    Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
 use math::{AnimatedTransform, Bounds2, Transform};
 use sampling::PiecewiseConstant2d;
@@ -175,6 +175,15 @@ impl Compiler<'_> {
             }
             ShapeKind::Cylinder { radius, z_min, z_max, phi_max } => {
                 one(Cylinder::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
+            }
+            ShapeKind::Cone { radius, height, phi_max } => {
+                one(Cone::new(transform, reverse, *radius, *height, *phi_max).into())
+            }
+            ShapeKind::Paraboloid { radius, z_min, z_max, phi_max } => {
+                one(Paraboloid::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
+            }
+            ShapeKind::Hyperboloid { ends, phi_max } => {
+                one(Hyperboloid::new(transform, reverse, *ends, *phi_max).into())
             }
             ShapeKind::Disk { height, radius, inner_radius, phi_max } => {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
