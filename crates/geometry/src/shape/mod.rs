@@ -16,6 +16,8 @@
 mod bilinear_patch;
 mod cylinder;
 mod disk;
+mod implicit;
+mod level;
 mod plane;
 mod quadric;
 mod sphere;
@@ -24,6 +26,7 @@ mod triangle;
 pub use bilinear_patch::BilinearPatch;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use implicit::{Formula, FormulaError, Implicit};
 pub use plane::Plane;
 pub use sphere::Sphere;
 pub use triangle::Triangle;
@@ -104,6 +107,8 @@ pub enum Shape {
     Disk(Box<Disk>),
     /// Infinite plane.
     Plane(Box<Plane>),
+    /// Surface given by a formula.
+    Implicit(Box<Implicit>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
@@ -117,6 +122,7 @@ macro_rules! each_shape {
             Shape::Cylinder($shape) => $result,
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
+            Shape::Implicit($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
         }
@@ -132,7 +138,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Disk Plane BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Disk Plane Implicit BilinearPatch Triangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -153,12 +159,13 @@ impl Shape {
             Self::Cylinder(shape) => shape.surface(ray, hit),
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
+            Self::Implicit(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
         }
     }
 
-    /// The area; infinite for the plane. Approximate where a quadric's transform is no similarity, and for
+    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where a quadric's transform is no similarity, and for
     /// bent patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
@@ -182,7 +189,7 @@ impl Shape {
             Self::Sphere(shape) => shape.sample_from(reference, u),
             Self::BilinearPatch(shape) => shape.sample_from(reference, u),
             Self::Triangle(shape) => shape.sample_from(reference, u),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) => None,
+            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) => None,
         };
         match special {
             Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
@@ -199,7 +206,7 @@ impl Shape {
             Self::Sphere(shape) => shape.pdf_from(reference),
             Self::BilinearPatch(shape) => shape.pdf_from(reference, hit.uv),
             Self::Triangle(shape) => shape.pdf_from(reference, wi),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) => None,
+            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) => None,
         };
         let pdf = special.unwrap_or_else(|| {
             let surface = self.surface(&ray, &hit);
@@ -211,7 +218,7 @@ impl Shape {
     /// A cone of all normals, on the side of [`ShapeSample::n`].
     pub fn normal_bounds(&self) -> DirectionCone {
         match self {
-            Self::Sphere(_) | Self::Cylinder(_) => DirectionCone::ENTIRE_SPHERE,
+            Self::Sphere(_) | Self::Cylinder(_) | Self::Implicit(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),
