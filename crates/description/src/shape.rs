@@ -5,7 +5,8 @@ use std::sync::Arc;
 use math::{Normal3, Point2, Point3, Vector3};
 
 use crate::{
-    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, TransformDesc,
+    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, Spanned,
+    TransformDesc,
 };
 
 /// A shape with everything that holds for it.
@@ -106,6 +107,13 @@ pub enum ShapeKind {
     },
     /// The plane z = 0.
     Plane,
+    /// Where a formula is zero.
+    Implicit {
+        /// The formula, of x, y and z.
+        formula: Spanned<String>,
+        /// Two corners of the box that the surface is cut off at.
+        bounds: [Point3; 2],
+    },
     /// Triangles.
     Triangles(MeshDesc),
     /// Bilinear patches.

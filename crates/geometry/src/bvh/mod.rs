@@ -41,7 +41,7 @@ impl Bvh {
 
     /// Bytes of memory taken.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.order)
+        size_of_val(&*self.nodes)
     }
 
     /// The box around everything.

@@ -18,6 +18,8 @@ mod cone;
 mod cylinder;
 mod disk;
 mod hyperboloid;
+mod implicit;
+mod level;
 mod paraboloid;
 mod plane;
 mod quadric;
@@ -29,6 +31,7 @@ pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use hyperboloid::Hyperboloid;
+pub use implicit::{Formula, FormulaError, Implicit};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub use sphere::Sphere;
@@ -116,6 +119,8 @@ pub enum Shape {
     Disk(Box<Disk>),
     /// Infinite plane.
     Plane(Box<Plane>),
+    /// Surface given by a formula.
+    Implicit(Box<Implicit>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
@@ -132,6 +137,7 @@ macro_rules! each_shape {
             Shape::Hyperboloid($shape) => $result,
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
+            Shape::Implicit($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
         }
@@ -147,7 +153,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit BilinearPatch Triangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -171,12 +177,13 @@ impl Shape {
             Self::Hyperboloid(shape) => shape.surface(ray, hit),
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
+            Self::Implicit(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
         }
     }
 
-    /// The area; infinite for the plane. Approximate where a quadric's transform is no similarity, and for
+    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where a quadric's transform is no similarity, and for
     /// bent patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
@@ -233,7 +240,8 @@ impl Shape {
             | Self::Cylinder(_)
             | Self::Cone(_)
             | Self::Paraboloid(_)
-            | Self::Hyperboloid(_) => DirectionCone::ENTIRE_SPHERE,
+            | Self::Hyperboloid(_)
+            | Self::Implicit(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),
