@@ -118,7 +118,8 @@ pub enum ShapeKind {
     Triangles(MeshDesc),
     /// Bilinear patches.
     Patches(PatchMeshDesc),
-    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches). Either may be empty, not both.
+    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which share vertices. There may be
+    /// none of either, not of both.
     PlyMesh {
         /// Its triangles (and larger polygons, cut).
         triangles: MeshDesc,
@@ -126,7 +127,7 @@ pub enum ShapeKind {
         patches: PatchMeshDesc,
         /// A height along the normal by which the surface is moved.
         displacement: Option<FloatParameter>,
-        /// Longest edge of the moved surface in pixels.
+        /// Before it is moved, the surface is cut until its edges are shorter than this, in the world.
         edge_length: f32,
     },
     /// A curve.
