@@ -12,6 +12,7 @@ mod bvh;
 mod mesh;
 mod placement;
 mod shape;
+mod simd;
 mod surface;
 mod watertight;
 mod world;
@@ -20,5 +21,6 @@ pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
     BilinearPatch, Cylinder, Disk, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
+pub use simd::InstructionSet;
 pub use surface::{Shading, SurfacePoint};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};
