@@ -93,7 +93,7 @@ impl Vector<4> for Four {
 
 /// a·b + c, rounded once. The product of two floats is exact in doubles. The sum is rounded there *to odd*: where it is
 /// not exact, its last bit is made 1, so that rounding it again to a float goes as if from the exact sum
-/// ([Boldo and Melquiond 2008]).
+/// ([Boldo 2008]).
 #[inline(always)]
 unsafe fn fused(a: __m128, b: __m128, c: __m128) -> __m128 {
     // SAFETY: every x86-64 processor has SSE2.
