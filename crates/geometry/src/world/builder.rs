@@ -3,6 +3,7 @@
 use super::group::Group;
 use super::{Geometry, GeometryId, GroupId, Instance, InstanceId, Placed, World};
 use crate::bvh::BuildQuality;
+use crate::simd::InstructionSet;
 use rayon::prelude::*;
 
 /// A world in the making.
@@ -71,6 +72,7 @@ impl WorldBuilder {
             members.iter().for_each(|id| group_of[id.0 as usize] = GroupId(group));
         }
         let groups = std::iter::once(top).chain(placed_groups).collect();
-        World { groups, geometries, group_of, instances }
+        let instruction_set = InstructionSet::detect();
+        World { groups, geometries, group_of, instances, instruction_set }
     }
 }

@@ -72,6 +72,7 @@ fn same_primitives(old: &Geometry, new: &Geometry) -> bool {
                 |(old, new): (&crate::Shape, &crate::Shape)| old.bounds().is_some() == new.bounds().is_some();
             old.len() == new.len() && old.iter().zip(new.iter()).all(ends)
         }
+        (Geometry::Curves(old), Geometry::Curves(new)) => old.len() == new.len(),
         _ => false,
     }
 }

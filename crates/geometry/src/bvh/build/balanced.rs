@@ -3,16 +3,24 @@
 use super::bins::{Border, centroids};
 use super::partition::partition;
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Grown, Inner};
+use super::tree::{Blocks, Grown, Inner, Planted};
 
 /// Below this depth, which only sets of wildly different sizes reach, halves are made equal.
 pub(super) const DEEPEST: usize = 48;
 /// Smaller sets are not worth another thread.
 pub(super) const PARALLEL: usize = 4096;
 
+/// Brings references into order and grows a tree over them.
+pub(super) fn plant(mut references: Vec<Reference>, blocks: Blocks) -> Planted {
+    let mut inner = vec![Inner::default(); references.len()];
+    let extent = Extent::around(&references);
+    let tree = grow(&mut references, &mut inner, 0, extent, blocks, 0);
+    Planted { references, inner, tree }
+}
+
 /// Brings the references into order and fills in `inner`, which is as long. `first` is the index of the first
 /// reference.
-pub(super) fn grow(
+fn grow(
     references: &mut [Reference],
     inner: &mut [Inner],
     first: usize,

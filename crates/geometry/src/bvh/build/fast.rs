@@ -8,7 +8,7 @@
 use super::balanced::PARALLEL;
 use super::bins::centroids;
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Grown, Inner};
+use super::tree::{Blocks, Grown, Inner, Planted};
 use math::Vec4;
 use rayon::prelude::*;
 
@@ -21,12 +21,13 @@ const PART: usize = 1 << 16;
 /// Ranges of so many blocks are divided between blocks.
 const FULL_BLOCKS: u32 = 4;
 
-/// Brings the references into order and fills in `inner`, which is as long.
-pub(super) fn grow(references: &mut Vec<Reference>, inner: &mut [Inner], blocks: Blocks) -> Grown {
-    let keys = sorted_keys(references);
-    let place = |key: &u64| references[(key >> BITS) as usize];
-    *references = keys.par_iter().map(place).collect();
-    divide(references, &keys, inner, 0, blocks)
+/// Brings references into order and grows a tree over them.
+pub(super) fn plant(references: Vec<Reference>, blocks: Blocks) -> Planted {
+    let keys = sorted_keys(&references);
+    let references: Vec<_> = keys.par_iter().map(|key| references[(key >> BITS) as usize]).collect();
+    let mut inner = vec![Inner::default(); references.len()];
+    let tree = grow(&references, &keys, &mut inner, 0, blocks);
+    Planted { references, inner, tree }
 }
 
 /// In the order of their codes: the code in the low bits, the index of the reference above.
@@ -106,13 +107,7 @@ fn spread(x: u32) -> u32 {
 }
 
 /// `first` is the index of the first reference.
-fn divide(
-    references: &[Reference],
-    keys: &[u64],
-    inner: &mut [Inner],
-    first: usize,
-    blocks: Blocks,
-) -> Grown {
+fn grow(references: &[Reference], keys: &[u64], inner: &mut [Inner], first: usize, blocks: Blocks) -> Grown {
     let n = keys.len();
     if n <= blocks.width() {
         return Grown::leaf(Extent::around(references), n as u32, blocks);
@@ -121,8 +116,8 @@ fn divide(
     let (left_references, right_references) = references.split_at(middle);
     let (left_keys, right_keys) = keys.split_at(middle);
     let (left_inner, right_inner) = inner.split_at_mut(middle);
-    let mut left = || divide(left_references, left_keys, left_inner, first, blocks);
-    let mut right = || divide(right_references, right_keys, right_inner, first + middle, blocks);
+    let mut left = || grow(left_references, left_keys, left_inner, first, blocks);
+    let mut right = || grow(right_references, right_keys, right_inner, first + middle, blocks);
     let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
     let (grown, node) = Grown::join(&left, &right, first + middle, blocks);
     inner[middle] = node;

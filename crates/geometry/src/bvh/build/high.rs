@@ -11,40 +11,32 @@ use super::bins::Border;
 use super::partition::partition;
 use super::reference::{Extent, Reference};
 use super::spatial::{Corners, Plane};
-use super::tree::{Blocks, Grown, Inner};
+use super::tree::{Blocks, Grown, Inner, Planted};
 
 /// How much overlap, as a part of the surface of everything, is worth a spatial split.
 const OVERLAP: f32 = 1e-5;
 
-/// Gives the tree, its inner nodes, and the references in order, some of them more than once.
-pub(super) fn grow(
-    mut references: Vec<Reference>,
-    corners: &impl Corners,
-    blocks: Blocks,
-) -> (Grown, Vec<Inner>, Vec<Reference>) {
+/// Brings references into order, some of them more than once, and grows a tree over them.
+pub(super) fn plant(mut references: Vec<Reference>, corners: &impl Corners, blocks: Blocks) -> Planted {
     let count = references.len();
-    let room = (2 * count).min(u32::MAX as usize);
     let extent = Extent::around(&references);
-    references.resize(room, Reference::none());
-    let mut inner = vec![Inner::default(); room];
+    references.resize((2 * count).min(u32::MAX as usize), Reference::none());
+    let mut inner = vec![Inner::default(); references.len()];
     let builder = Builder { corners, blocks, least_overlap: OVERLAP * extent.half_area() };
     let tree = builder.grow(Set { references: &mut references, count, extent }, &mut inner, 0, 0);
-    close_gaps(tree, inner, references)
+    close_gaps(Planted { references, inner, tree })
 }
 
 /// Moves everything to the front, where some of the room was not needed.
-fn close_gaps(
-    mut tree: Grown,
-    inner: Vec<Inner>,
-    mut references: Vec<Reference>,
-) -> (Grown, Vec<Inner>, Vec<Reference>) {
+fn close_gaps(planted: Planted) -> Planted {
+    let Planted { mut references, inner, mut tree } = planted;
     let mut used = 0;
-    let mut place = |r: &Reference| {
+    let place = |r: &Reference| {
         let here = used;
         used += !r.is_none() as u32;
         here
     };
-    let places: Vec<u32> = references.iter().map(&mut place).collect();
+    let places: Vec<u32> = references.iter().map(place).collect();
     let place = |border: u32| places[border as usize];
     let mut closed = vec![Inner::default(); used as usize];
     for (mut node, &border) in inner.into_iter().zip(&places).filter(|(node, _)| node.is_used()) {
@@ -53,7 +45,7 @@ fn close_gaps(
     }
     tree.root = place(tree.root);
     references.retain(|r| !r.is_none());
-    (tree, closed, references)
+    Planted { references, inner: closed, tree }
 }
 
 /// References in the first places of some room, and a box around them.

@@ -22,9 +22,8 @@ mod widen;
 use super::node::WideNode;
 use math::Bounds3;
 use rayon::prelude::*;
-use reference::Extent;
 use std::ops::Range;
-use tree::{Blocks, Inner};
+use tree::Blocks;
 
 pub(crate) use reference::Reference;
 pub(super) use refit::refit;
@@ -46,6 +45,8 @@ pub enum BuildQuality {
 pub(crate) struct Built {
     pub nodes: Vec<WideNode>,
     pub bounds: Bounds3,
+    /// How many nodes are above each other.
+    pub depth: usize,
     references: Vec<Reference>,
     blocks: Vec<Range<u32>>,
 }
@@ -59,30 +60,26 @@ impl Built {
 
 /// Builds a tree over references with finite bounds; leaves hold blocks of `width` references, a power of two.
 pub(crate) fn build(
-    mut references: Vec<Reference>,
+    references: Vec<Reference>,
     quality: BuildQuality,
     width: usize,
     corners: impl Corners,
 ) -> Built {
     if references.is_empty() {
-        return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, references, blocks: Vec::new() };
+        return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, depth: 0, references, blocks: Vec::new() };
     }
     let blocks = Blocks::of(width);
-    let (tree, inner);
-    match quality {
-        BuildQuality::Fast => {
-            let mut nodes = vec![Inner::default(); references.len()];
-            tree = fast::grow(&mut references, &mut nodes, blocks);
-            inner = nodes;
-        }
-        BuildQuality::Balanced => {
-            let mut nodes = vec![Inner::default(); references.len()];
-            let extent = Extent::around(&references);
-            tree = balanced::grow(&mut references, &mut nodes, 0, extent, blocks, 0);
-            inner = nodes;
-        }
-        BuildQuality::High => (tree, inner, references) = high::grow(references, &corners, blocks),
+    let planted = match quality {
+        BuildQuality::Fast => fast::plant(references, blocks),
+        BuildQuality::Balanced => balanced::plant(references, blocks),
+        BuildQuality::High => high::plant(references, &corners, blocks),
+    };
+    let wide = widen::widen(&planted, blocks);
+    Built {
+        nodes: wide.nodes,
+        bounds: wide.extent.bounds(),
+        depth: wide.depth,
+        references: planted.references,
+        blocks: wide.blocks,
     }
-    let wide = widen::widen(&references, &inner, &tree, blocks);
-    Built { nodes: wide.nodes, bounds: wide.extent.bounds(), references, blocks: wide.blocks }
 }

@@ -4,7 +4,7 @@
 //! either, and begins where the one before it ends.
 
 use super::reference::Extent;
-use crate::bvh::node::{Child, WIDTH, WideNode};
+use crate::bvh::node::{Child, WideNode};
 use math::Bounds3;
 use rayon::prelude::*;
 
@@ -36,9 +36,8 @@ impl<'a, B: Send> Part<'a, B> {
         let parallel = self.nodes.len() > PARALLEL;
         let root = self.take(self.first_node + 1, self.first_block).nodes;
         let node = &mut root[0];
-        let mut children = [Child::default(); WIDTH];
-        let children = &mut children[..node.len()];
-        children.iter_mut().enumerate().for_each(|(lane, child)| *child = node.child(lane));
+        let children = *node.children();
+        let children = &children[..node.len()];
         let mut all = Extent::EMPTY;
         let mut set = |lane, extent: Extent| {
             node.set_bounds(lane, &extent.bounds());
@@ -46,8 +45,8 @@ impl<'a, B: Send> Part<'a, B> {
         };
         let mut below = Vec::new();
         for (lane, child) in children.iter().enumerate() {
-            if child.blocks > 0 {
-                let leaf = self.take(self.first_node, (child.first + child.blocks) as usize);
+            if child.is_leaf() {
+                let leaf = self.take(self.first_node, child.blocks().end);
                 let boxes = leaf.blocks.iter_mut().map(|block| Extent::from(&renew(block)));
                 set(lane, boxes.fold(Extent::EMPTY, Extent::union));
                 continue;
@@ -55,7 +54,7 @@ impl<'a, B: Send> Part<'a, B> {
             let part = match children.get(lane + 1) {
                 Some(next) => {
                     let end = self.first_block_of(next);
-                    self.take(next.first as usize, end)
+                    self.take(next.index(), end)
                 }
                 None => self.take(self.first_node + self.nodes.len(), self.first_block + self.blocks.len()),
             };
@@ -72,10 +71,10 @@ impl<'a, B: Send> Part<'a, B> {
     /// Where the blocks below a child begin.
     fn first_block_of(&self, child: &Child) -> usize {
         let mut child = *child;
-        while child.blocks == 0 {
-            child = self.nodes[child.first as usize - self.first_node].child(0);
+        while !child.is_leaf() {
+            child = self.nodes[child.index() - self.first_node].children()[0];
         }
-        child.first as usize
+        child.blocks().start
     }
 
     /// Takes the front, up to a node and a block.

@@ -57,14 +57,15 @@ fn walk(built: &Built, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bo
     seen.0[node] += 1;
     let wide: &WideNode = &built.nodes[node];
     for lane in 0..wide.len() {
-        let (child, inside) = (wide.child(lane), wide.bounds(lane));
+        let (child, inside) = (wide.children()[lane], wide.bounds(lane));
         assert!(contains(bounds, &inside));
-        if child.blocks == 0 {
-            walk(built, child.first as usize, seen, &inside);
+        if !child.is_leaf() {
+            walk(built, child.index(), seen, &inside);
+            continue;
         }
-        for block in child.first..child.first + child.blocks {
-            seen.1[block as usize] += 1;
-            let range = built.blocks[block as usize].clone();
+        for block in child.blocks() {
+            seen.1[block] += 1;
+            let range = built.blocks[block].clone();
             for r in &built.references[range.start as usize..range.end as usize] {
                 assert!(contains(&inside, &r.extent().bounds()));
             }
