@@ -83,7 +83,7 @@ impl<C: Corners> Builder<'_, C> {
     fn divide<'a>(&self, set: Set<'a>, depth: usize) -> [Set<'a>; 2] {
         let Set { references, count, extent } = set;
         let used = &mut references[..count];
-        let border = if depth < DEEPEST { Border::best(used, self.blocks) } else { None };
+        let border = if depth < DEEPEST { Border::best(used, &extent, self.blocks) } else { None };
         let Some(border) = border else {
             let (middle, extents) = halve(used);
             return share_room(references, [middle, count - middle], extents);
