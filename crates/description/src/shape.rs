@@ -5,7 +5,8 @@ use std::sync::Arc;
 use math::{Normal3, Point2, Point3, Vector3};
 
 use crate::{
-    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, TransformDesc,
+    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, Spanned,
+    TransformDesc,
 };
 
 /// A shape with everything that holds for it.
@@ -41,7 +42,7 @@ impl From<ShapeKind> for ShapeDesc {
     }
 }
 
-/// The shapes of the format, and an infinite plane. Angles are in degrees.
+/// The shapes of the format, the quadrics of its third version, and an infinite plane. Angles are in degrees.
 #[derive(Clone, Debug)]
 pub enum ShapeKind {
     /// About the origin.
@@ -66,6 +67,33 @@ pub enum ShapeKind {
         /// Sweep about z.
         phi_max: f32,
     },
+    /// From a circle around the z axis in z = 0 to a point on it.
+    Cone {
+        /// Radius of the circle.
+        radius: f32,
+        /// z of the point.
+        height: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// A bowl with its lowest point at the origin, open along z.
+    Paraboloid {
+        /// Radius at the highest z.
+        radius: f32,
+        /// Lowest z.
+        z_min: f32,
+        /// Highest z.
+        z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// What a line sweeps about the z axis.
+    Hyperboloid {
+        /// The ends of the line, of different z.
+        ends: [Point3; 2],
+        /// Sweep about z.
+        phi_max: f32,
+    },
     /// Across the z axis.
     Disk {
         /// Its z.
@@ -79,6 +107,13 @@ pub enum ShapeKind {
     },
     /// The plane z = 0.
     Plane,
+    /// Where a formula is zero.
+    Implicit {
+        /// The formula, of x, y and z.
+        formula: Spanned<String>,
+        /// Two corners of the box that the surface is cut off at.
+        bounds: [Point3; 2],
+    },
     /// Triangles.
     Triangles(MeshDesc),
     /// Bilinear patches.

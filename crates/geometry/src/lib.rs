@@ -13,16 +13,20 @@ mod curve;
 mod mesh;
 mod placement;
 mod shape;
+mod simd;
 mod surface;
 mod tessellation;
 mod watertight;
 mod world;
 
+pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
-    BilinearPatch, Cylinder, Disk, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, Paraboloid, Plane,
+    Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
+pub use simd::InstructionSet;
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

@@ -170,6 +170,14 @@ impl TriangleMesh {
         }
     }
 
+    /// Bytes of memory that the arrays take.
+    pub fn bytes(&self) -> usize {
+        let vectors =
+            [&self.normals, &self.tangents].into_iter().flatten().map(|values| size_of_val(&**values));
+        let uvs = self.uvs.as_ref().map_or(0, |uvs| size_of_val(&**uvs));
+        size_of_val(&*self.positions) + size_of_val(&*self.indices) + vectors.sum::<usize>() + uvs
+    }
+
     /// The box around all vertices that a triangle uses.
     pub fn bounds(&self) -> Bounds3 {
         Bounds3::around((0..self.len()).flat_map(|i| self.corners(i)))

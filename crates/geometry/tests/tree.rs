@@ -60,7 +60,8 @@ proptest! {
         let mut geometries = vec![soup(rng, triangles, |rng| 10f32.powf(between(rng, -4.0, 0.0)))];
         for i in 0..shapes_count {
             let m = Transform::translate(point_in(rng, 1.0)).after(&Transform::scale(Vec3::splat(between(rng, 0.01, 0.5))));
-            geometries.push(shapes(&m).swap_remove(i % 8).1.into());
+            let mut all = shapes(&m);
+            geometries.push(all.swap_remove(i % all.len()).1.into());
         }
         if shapes_count % 4 == 1 {
             geometries.push(Shape::from(Plane::new(&Transform::rotate(1.0, Vec3::new(1.0, 0.3, 0.2)), false)).into());

@@ -99,6 +99,15 @@ impl Curves {
         self.segments.is_empty()
     }
 
+    /// Bytes of memory taken.
+    pub(crate) fn bytes(&self) -> usize {
+        let normals = match &self.profile {
+            CurveProfile::Ribbon(normals) => size_of_val(&**normals),
+            CurveProfile::Flat | CurveProfile::Cylinder => 0,
+        };
+        size_of_val(&*self.segments) + normals
+    }
+
     /// A box around a primitive, in render space.
     pub fn bounds(&self, primitive: u32) -> Bounds3 {
         let (segment, u) = self.part(primitive);

@@ -5,7 +5,7 @@
 //! two corners that face the edge. On the border the weights are those of a cubic B-spline: 1/8, 3/4, 1/8 and
 //! 1/2, 1/2. In the end vertices move on to where they would come after endless levels, by the weight
 //! 1/(n + 3/(8β)), and normals are the cross products of the limit's tangents ([Loop 1987]; [Hoppe 1994];
-//! [Pharr 2018 §3.8]).
+//! [Pharr 2016 §3.8]).
 //!
 //! Three things are as the pbrt format has them. Normals stand on the side from which triangles run clockwise,
 //! and keep the length of the cross product. Tangents are taken between neighbours that are at their limit

@@ -7,14 +7,14 @@ use crate::material::Material;
 use crate::scene::GeometryEntry;
 use crate::texture::{FloatTextureId, Texture};
 use description::{
-    AreaLightDesc, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc, ShapeDesc,
-    ShapeKind, Stated, TransformDesc,
+    AreaLightDesc, Diagnostic, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
+    ShapeDesc, ShapeKind, Span, Spanned, Stated, TransformDesc,
 };
 use geometry::{
-    BilinearPatch, Cylinder, Disk, Geometry, GroupId, Instance, MeshAttributes, Plane, Shape, Sphere,
-    TriangleMesh,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
+    Instance, MeshAttributes, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
-use math::{AnimatedTransform, Bounds2, Transform};
+use math::{AnimatedTransform, Bounds2, Bounds3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
 use std::collections::HashMap;
@@ -184,10 +184,24 @@ impl Compiler<'_> {
             ShapeKind::Cylinder { radius, z_min, z_max, phi_max } => {
                 one(Cylinder::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
             }
+            ShapeKind::Cone { radius, height, phi_max } => {
+                one(Cone::new(transform, reverse, *radius, *height, *phi_max).into())
+            }
+            ShapeKind::Paraboloid { radius, z_min, z_max, phi_max } => {
+                one(Paraboloid::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
+            }
+            ShapeKind::Hyperboloid { ends, phi_max } => {
+                one(Hyperboloid::new(transform, reverse, *ends, *phi_max).into())
+            }
             ShapeKind::Disk { height, radius, inner_radius, phi_max } => {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Implicit { formula, bounds: [min, max] } => {
+                let bounds = Bounds3 { min: *min, max: *max };
+                let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
+                one(Implicit::new(transform, reverse, formula, &bounds).into())
+            }
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
             ShapeKind::PlyMesh { triangles, patches, displacement: Some(height), edge_length } => {
@@ -203,6 +217,30 @@ impl Compiler<'_> {
                 self.loop_subdivision(mesh, *levels, shape, transform).into_iter().collect()
             }
         }
+    }
+
+    /// A formula that is zero somewhere in the box, as far as is known.
+    fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
+        let formula = match Formula::parse(&text.value) {
+            Ok(formula) => formula,
+            Err(FormulaError { place, message, help }) => {
+                // Behind the opening quote.
+                let Span { file, start, end } = text.span;
+                let at = |offset: usize| (start + 1 + offset as u32).min(end);
+                let span = if text.span.is_none() {
+                    text.span
+                } else {
+                    Span::new(file, at(place.start), at(place.end))
+                };
+                self.diagnostics
+                    .push(Diagnostic { help, ..Diagnostic::error("invalid-formula", message, span) });
+                return None;
+            }
+        };
+        if formula.has_no_zero(bounds) {
+            self.warn("empty-shape", "the formula is zero nowhere within its bounds", text.span);
+        }
+        Some(formula)
     }
 
     fn mesh(
@@ -291,6 +329,11 @@ impl Compiler<'_> {
     ) -> Option<LightId> {
         let handle = shape.area_light?;
         let span = shape.origin.span;
+        if matches!(shape.kind, ShapeKind::Implicit { .. }) {
+            let message = "surfaces given by formulas do not emit; drawn without light";
+            self.warn("not-drawn", message, span);
+            return None;
+        }
         let material = self.material_id(shape.material);
         if matches!(self.materials[material.0 as usize].material, Material::Interface) {
             self.warn("light-ignored", "a shape of material `interface` does not emit", span);

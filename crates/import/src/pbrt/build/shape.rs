@@ -8,6 +8,7 @@ use description::{
     CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
     SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
 };
+use math::Vec3;
 use rayon::prelude::*;
 
 use super::{Builder, unknown_reference};
@@ -17,8 +18,21 @@ use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
 
-const TYPES: [&str; 9] =
-    ["sphere", "cylinder", "disk", "plane", "trianglemesh", "bilinearmesh", "plymesh", "curve", "loopsubdiv"];
+const TYPES: [&str; 13] = [
+    "sphere",
+    "cylinder",
+    "cone",
+    "paraboloid",
+    "hyperboloid",
+    "disk",
+    "plane",
+    "trianglemesh",
+    "bilinearmesh",
+    "plymesh",
+    "curve",
+    "loopsubdiv",
+    "implicit",
+];
 
 /// Mesh files by path, each read once; or why it could not be.
 pub(super) type Meshes = HashMap<PathBuf, Result<ShapeKind, String>>;
@@ -117,6 +131,25 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             z_max: reader.float("zmax", 1.0),
             phi_max: reader.positive("phimax", 360.0),
         },
+        "cone" => ShapeKind::Cone {
+            radius: reader.positive("radius", 1.0),
+            height: reader.positive("height", 1.0),
+            phi_max: reader.positive("phimax", 360.0),
+        },
+        "paraboloid" => ShapeKind::Paraboloid {
+            radius: reader.positive("radius", 1.0),
+            z_min: reader.float("zmin", 0.0),
+            z_max: reader.positive("zmax", 1.0),
+            phi_max: reader.positive("phimax", 360.0),
+        },
+        "hyperboloid" => {
+            let ends = [reader.point3("p1", Vec3::ZERO), reader.point3("p2", Vec3::ONE)];
+            if ends[0].z == ends[1].z {
+                reader.refuse("p2", "`p1` and `p2` have the same z: a `disk` draws what such a line sweeps");
+                return None;
+            }
+            ShapeKind::Hyperboloid { ends, phi_max: reader.positive("phimax", 360.0) }
+        }
         "disk" => ShapeKind::Disk {
             height: reader.float("height", 0.0),
             radius: reader.positive("radius", 1.0),
@@ -124,6 +157,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             phi_max: reader.positive("phimax", 360.0),
         },
         "plane" => ShapeKind::Plane,
+        "implicit" => implicit(reader)?,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
         "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
         "plymesh" => mesh_file(reader)?,
@@ -139,6 +173,26 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             return None;
         }
     })
+}
+
+fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
+    let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
+    let Some(formula) = reader.string("f") else {
+        if !reader.has("f") {
+            reader.missing("f");
+        }
+        return None;
+    };
+    match *bounds {
+        [min, max] if min.cmplt(max).all() && min.is_finite() && max.is_finite() => {
+            Some(ShapeKind::Implicit { formula, bounds: [min, max] })
+        }
+        _ => {
+            reader
+                .refuse("bounds", "`bounds` are two corners of a box: the lowest and the highest x, y and z");
+            None
+        }
+    }
 }
 
 /// The indices of a mesh, `N` per face; `default` are those of a mesh of one face, which needs none.
@@ -188,7 +242,7 @@ fn per_vertex<T>(
     values
 }
 
-fn points(reader: &mut Reader) -> Option<Arc<[math::Vec3]>> {
+fn points(reader: &mut Reader) -> Option<Arc<[Vec3]>> {
     let points = reader.points3("P");
     if points.is_none() && !reader.has("P") {
         reader.missing("P");
