@@ -12,6 +12,7 @@ mod bvh;
 mod mesh;
 mod placement;
 mod shape;
+mod sphere_set;
 mod surface;
 mod watertight;
 mod world;
@@ -22,5 +23,6 @@ pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, Paraboloid, Plane,
     Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
+pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

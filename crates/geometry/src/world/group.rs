@@ -1,7 +1,8 @@
-//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
+//! What stands together: triangles and spheres of sets in trees of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
 use super::packet::Packet;
+use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Reference};
 use crate::watertight::Sheared;
@@ -43,6 +44,7 @@ pub(super) struct Trace<'a> {
 pub(super) struct Group {
     triangles: Bvh,
     packets: Vec<Packet>,
+    spheres: Spheres,
     items: Bvh,
     /// In the order of the leaves of `items`.
     item_list: Vec<Item>,
@@ -67,7 +69,7 @@ impl Group {
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(_) => {}
+                Geometry::Mesh(_) | Geometry::Spheres(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -92,19 +94,20 @@ impl Group {
         let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
         let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
-        Self { triangles, packets, items: boxes, item_list, unbounded }
+        let spheres = Spheres::build(members, geometries, quality);
+        Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
     }
 
     /// Bytes of memory that the trees take.
     pub fn bytes(&self) -> usize {
         let packets = size_of_val(&*self.packets);
         let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
-        self.triangles.bytes() + packets + self.items.bytes() + items
+        self.triangles.bytes() + packets + self.spheres.bytes() + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
     pub fn bounds(&self) -> Bounds3 {
-        self.triangles.bounds().union(self.items.bounds())
+        self.triangles.bounds().union(self.spheres.tree.bounds()).union(self.items.bounds())
     }
 
     /// Shows hits to `accept`; breaks when it says stop.
@@ -131,6 +134,7 @@ impl Group {
             trace.stats.primitives += primitives;
             flow?;
         }
+        self.spheres.trace(trace, t_max, accept)?;
         if !self.item_list.is_empty() {
             let mut extents = 0;
             let flow = self.items.traverse(trace.ray, t_max, &mut extents, |blocks, t_max| {
@@ -203,7 +207,7 @@ impl Trace<'_> {
     }
 }
 
-fn judge(hit: Hit, t_max: &mut f32, accept: &mut impl FnMut(Hit) -> Verdict) -> ControlFlow<()> {
+pub(super) fn judge(hit: Hit, t_max: &mut f32, accept: &mut impl FnMut(Hit) -> Verdict) -> ControlFlow<()> {
     match accept(hit) {
         Verdict::Refuse => ControlFlow::Continue(()),
         Verdict::Keep => {

@@ -7,11 +7,13 @@
 mod builder;
 mod group;
 mod packet;
+mod spheres;
 mod stats;
 
 use crate::mesh::TriangleMesh;
 use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
+use crate::sphere_set::SphereSet;
 use crate::surface::SurfacePoint;
 use group::{Group, Trace, Verdict};
 use math::{AnimatedTransform, Bounds3, Ray, Vec2};
@@ -46,6 +48,8 @@ pub enum Geometry {
     Mesh(Arc<TriangleMesh>),
     /// Any other shapes: one quadric, the patches of a bilinear mesh.
     Shapes(Arc<[Shape]>),
+    /// The spheres of a set.
+    Spheres(Arc<SphereSet>),
 }
 
 impl From<TriangleMesh> for Geometry {
@@ -60,12 +64,19 @@ impl From<Shape> for Geometry {
     }
 }
 
+impl From<SphereSet> for Geometry {
+    fn from(set: SphereSet) -> Self {
+        Self::Spheres(Arc::new(set))
+    }
+}
+
 impl Geometry {
     /// How many primitives there are.
     pub fn len(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.len(),
             Self::Shapes(shapes) => shapes.len(),
+            Self::Spheres(set) => set.len(),
         }
     }
 
@@ -79,6 +90,7 @@ impl Geometry {
         match self {
             Self::Mesh(mesh) => mesh.bytes(),
             Self::Shapes(shapes) => size_of_val(&**shapes),
+            Self::Spheres(set) => set.bytes(),
         }
     }
 
@@ -87,6 +99,7 @@ impl Geometry {
         match self {
             Self::Mesh(mesh) => Shape::Triangle(mesh.triangle(primitive as usize)),
             Self::Shapes(shapes) => shapes[primitive as usize].clone(),
+            Self::Spheres(set) => set.sphere(primitive as usize).into(),
         }
     }
 }
@@ -105,8 +118,8 @@ pub struct Instance {
 pub struct Hit {
     /// How far along the ray, in lengths of its direction.
     pub t: f32,
-    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, the parameters (u,
-    /// v) on other shapes.
+    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, nothing on a sphere
+    /// of a set, the parameters (u, v) on other shapes.
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
@@ -238,6 +251,9 @@ impl World {
             Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).surface(ray, hit.uv),
             Geometry::Shapes(shapes) => {
                 shapes[hit.primitive as usize].surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
+            }
+            Geometry::Spheres(set) => {
+                set.sphere(hit.primitive as usize).surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
             }
         }
     }
