@@ -107,6 +107,8 @@ pub enum ShapeKind {
     },
     /// The plane z = 0.
     Plane,
+    /// Many whole spheres.
+    Spheres(SpheresDesc),
     /// Where a formula is zero.
     Implicit {
         /// The formula, of x, y and z.
@@ -118,7 +120,8 @@ pub enum ShapeKind {
     Triangles(MeshDesc),
     /// Bilinear patches.
     Patches(PatchMeshDesc),
-    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches). Either may be empty, not both.
+    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which share vertices. There may be
+    /// none of either, not of both.
     PlyMesh {
         /// Its triangles (and larger polygons, cut).
         triangles: MeshDesc,
@@ -126,7 +129,7 @@ pub enum ShapeKind {
         patches: PatchMeshDesc,
         /// A height along the normal by which the surface is moved.
         displacement: Option<FloatParameter>,
-        /// Longest edge of the moved surface in pixels.
+        /// Before it is moved, the surface is cut until its edges are shorter than this, in the world.
         edge_length: f32,
     },
     /// A curve.
@@ -138,6 +141,15 @@ pub enum ShapeKind {
         /// Times that it is divided.
         levels: i32,
     },
+}
+
+/// Whole spheres, as arrays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpheresDesc {
+    /// Centres.
+    pub centers: Arc<[Point3]>,
+    /// One radius for all, or one for each.
+    pub radii: Arc<[f32]>,
 }
 
 /// Triangles that share vertices. Per-vertex arrays are empty or as long as `positions`.

@@ -35,7 +35,12 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// There are more triangles than an index of 32 bits can tell apart.
+    /// An edge that leads twice from one vertex to the same other, or to itself: three triangles meet there,
+    /// or two that are turned differently.
+    Edge([u32; 2]),
+    /// A vertex at which parts meet that share no edge.
+    Vertex(u32),
+    /// There are too many triangles.
     TooLarge,
 }
 
@@ -48,6 +53,13 @@ impl fmt::Display for MeshError {
             Self::AttributeLength { attribute, values, vertices } => {
                 write!(f, "{values} {attribute} for {vertices} vertices")
             }
+            Self::Edge([a, b]) => {
+                write!(
+                    f,
+                    "the edge from vertex {a} to vertex {b} does not lie between two triangles of like turn"
+                )
+            }
+            Self::Vertex(vertex) => write!(f, "parts of the mesh touch in nothing but vertex {vertex}"),
             Self::TooLarge => write!(f, "too many triangles"),
         }
     }

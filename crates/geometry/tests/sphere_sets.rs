@@ -85,7 +85,7 @@ proptest! {
             prop_assert!(a.n.distance(b.n) < 1e-4 && a.wo == b.wo && a.time == 0.25);
             prop_assert!(a.uv.distance(b.uv) < 1e-3 || b.uv.x < 1e-3 || b.uv.x > 1.0 - 1e-3, "{:?} and {:?}", a.uv, b.uv);
             prop_assert!(a.dpdu.distance(b.dpdu) < 1e-2 * size && a.dpdv.distance(b.dpdv) < 1e-2 * size);
-            prop_assert!((Geometry::from(set.clone()).shape(0).area() / sphere.area() - 1.0).abs() < 1e-4);
+            prop_assert!((Geometry::from(set.clone()).shape(0).expect("a sphere").area() / sphere.area() - 1.0).abs() < 1e-4);
         }
     }
 }

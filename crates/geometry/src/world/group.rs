@@ -79,6 +79,11 @@ impl Group {
                         }
                     }
                 }
+                Geometry::Curves(curves) => {
+                    for i in 0..curves.len() as u32 {
+                        add_item(Item::Shape(id, i), curves.bounds(i));
+                    }
+                }
             }
         }
         for &(id, placed, group) in instances {
@@ -181,10 +186,12 @@ impl Trace<'_> {
         match item {
             Item::Shape(geometry, primitive) => {
                 self.stats.primitives += 1;
-                let Geometry::Shapes(shapes) = self.world.geometry(geometry) else {
-                    return ControlFlow::Continue(());
+                let hit = match self.world.geometry(geometry) {
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, *t_max),
+                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, *t_max),
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
                 };
-                match shapes[primitive as usize].intersect(self.ray, *t_max) {
+                match hit {
                     Some(hit) => judge(
                         Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance },
                         t_max,

@@ -10,6 +10,7 @@ mod packet;
 mod spheres;
 mod stats;
 
+use crate::curve::Curves;
 use crate::mesh::TriangleMesh;
 use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
@@ -50,6 +51,8 @@ pub enum Geometry {
     Shapes(Arc<[Shape]>),
     /// The spheres of a set.
     Spheres(Arc<SphereSet>),
+    /// The parts of curves.
+    Curves(Arc<Curves>),
 }
 
 impl From<TriangleMesh> for Geometry {
@@ -70,6 +73,12 @@ impl From<SphereSet> for Geometry {
     }
 }
 
+impl From<Curves> for Geometry {
+    fn from(curves: Curves) -> Self {
+        Self::Curves(Arc::new(curves))
+    }
+}
+
 impl Geometry {
     /// How many primitives there are.
     pub fn len(&self) -> usize {
@@ -77,6 +86,7 @@ impl Geometry {
             Self::Mesh(mesh) => mesh.len(),
             Self::Shapes(shapes) => shapes.len(),
             Self::Spheres(set) => set.len(),
+            Self::Curves(curves) => curves.len(),
         }
     }
 
@@ -91,15 +101,17 @@ impl Geometry {
             Self::Mesh(mesh) => mesh.bytes(),
             Self::Shapes(shapes) => size_of_val(&**shapes),
             Self::Spheres(set) => set.bytes(),
+            Self::Curves(curves) => curves.bytes(),
         }
     }
 
-    /// One primitive as a shape of its own, as a light wants it.
-    pub fn shape(&self, primitive: u32) -> Shape {
+    /// One primitive as a shape of its own, as a light wants it; `None` of curves, which do not emit.
+    pub fn shape(&self, primitive: u32) -> Option<Shape> {
         match self {
-            Self::Mesh(mesh) => Shape::Triangle(mesh.triangle(primitive as usize)),
-            Self::Shapes(shapes) => shapes[primitive as usize].clone(),
-            Self::Spheres(set) => set.sphere(primitive as usize).into(),
+            Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
+            Self::Shapes(shapes) => Some(shapes[primitive as usize].clone()),
+            Self::Spheres(set) => Some(set.sphere(primitive as usize).into()),
+            Self::Curves(_) => None,
         }
     }
 }
@@ -123,7 +135,7 @@ pub struct Hit {
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
-    /// Which triangle or patch of it.
+    /// Which triangle, patch or part of a curve of it.
     pub primitive: u32,
     /// Through which instance.
     pub instance: Option<InstanceId>,
@@ -254,6 +266,9 @@ impl World {
             }
             Geometry::Spheres(set) => {
                 set.sphere(hit.primitive as usize).surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
+            }
+            Geometry::Curves(curves) => {
+                curves.surface(hit.primitive, ray, &ShapeHit { t: hit.t, uv: hit.uv })
             }
         }
     }

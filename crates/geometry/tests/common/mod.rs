@@ -119,8 +119,7 @@ pub fn shapes(m: &Transform) -> Vec<(&'static str, Shape)> {
         ("triangle", triangle.into()),
     ];
     let centers = [Vec3::new(9.0, 0.0, 0.0), Vec3::new(0.1, -0.2, 0.1)];
-    if let Ok(set) = SphereSet::new(centers.into(), [0.8].into(), m, true) {
-        shapes.push(("sphere of a set", Geometry::from(set).shape(1)));
-    }
+    let set = SphereSet::new(centers.into(), [0.8].into(), m, true).map(Geometry::from);
+    shapes.extend(set.ok().and_then(|set| Some(("sphere of a set", set.shape(1)?))));
     shapes
 }
