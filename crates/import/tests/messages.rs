@@ -204,11 +204,11 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 2 3]"#,
-        "1:41 error[parameter-value] `radius` has 3 values for 2 points in `P`",
+        "1:42 error[parameter-value] `radius` has 3 values for 2 points in `P`",
     ),
     (
         r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 -2]"#,
-        "1:41 error[parameter-value] `radius` 1 is -2; it must be above zero",
+        "1:42 error[parameter-value] `radius` 1 is -2; it must be above zero",
     ),
     (r#"Shape "spheres" "float radius" 2"#, "1:7 error[missing-parameter] `spheres` needs the parameter `P`"),
     (
