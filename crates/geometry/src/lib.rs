@@ -13,6 +13,7 @@ mod curve;
 mod mesh;
 mod placement;
 mod shape;
+mod simd;
 mod sphere_set;
 mod surface;
 mod tessellation;
@@ -26,6 +27,7 @@ pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, Paraboloid, Plane,
     Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
+pub use simd::InstructionSet;
 pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};

@@ -231,3 +231,17 @@ fn any_number_of_threads_builds_the_same_tree() {
     }
     assert_eq!(first, second, "the same boxes and spheres were tested");
 }
+
+#[test]
+fn every_instruction_set_finds_the_same() {
+    let rng = &mut Rng::new(7, 0);
+    let mut world = world([random_set(rng, 20_000, [-3.0, -1.0], &Transform::IDENTITY).into()]);
+    let rays: Vec<Ray> = (0..5000).map(|_| Ray::new(point_in(rng, 2.0), point_in(rng, 1.0), 0.0)).collect();
+    let mut answers = InstructionSet::ALL.into_iter().filter(|set| set.is_available()).map(|set| {
+        world.set_instruction_set(set);
+        rays.iter().map(|ray| nearest(&world, ray)).collect::<Vec<_>>()
+    });
+    let first = answers.next().expect("a set");
+    assert!(first.iter().flatten().count() > 1000);
+    assert!(answers.all(|other| other == first));
+}

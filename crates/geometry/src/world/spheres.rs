@@ -5,13 +5,17 @@
 //! sphere is refused only when that exceeds r + E, or when the range b ± (r + E) lies outside of the ray's; E is above twice the
 //! rounding of m, d, b and the distance, each of which is within a few ε·|m|.
 
-use super::group::{Trace, Verdict, judge};
+#![allow(unsafe_code)]
+
+use super::group::Trace;
+use super::query::Query;
 use super::{Geometry, GeometryId, Hit};
-use crate::bvh::{BuildQuality, Bvh, Reference};
+use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
+use crate::simd::{Simd, Task, Vector};
 use crate::sphere_set::SphereSet;
 use math::{MACHINE_EPSILON, Ray, Vec2, Vec3};
 use rayon::prelude::*;
-use std::ops::ControlFlow;
+use std::ops::Range;
 
 /// All spheres of a group.
 #[derive(Clone, Debug)]
@@ -43,67 +47,114 @@ impl Spheres {
         self.tree.bytes() + size_of_val(&*self.packets)
     }
 
-    /// Shows hits to `accept`; breaks when it says stop. Their parameters are zero: only the surface knows them.
-    pub fn trace(
-        &self,
-        trace: &mut Trace,
-        t_max: &mut f32,
-        accept: &mut impl FnMut(Hit) -> Verdict,
-    ) -> ControlFlow<()> {
+    /// Shows hits to the query; whether it wants no more. Their parameters are zero: only the surface knows
+    /// them.
+    pub fn trace<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
         if self.packets.is_empty() {
-            return ControlFlow::Continue(());
+            return false;
         }
-        let ray = UnitRay::new(trace.ray);
-        let (mut extents, mut primitives) = (0, 0);
-        let flow = self.tree.traverse(trace.ray, t_max, &mut extents, |blocks, t_max| {
-            for packet in &self.packets[blocks] {
-                primitives += packet.len() as u64;
-                let mut candidates = packet.candidates(&ray, *t_max);
-                while candidates != 0 {
-                    let lane = candidates.trailing_zeros() as usize;
-                    candidates &= candidates - 1;
-                    let (center, radius) = packet.sphere(lane);
-                    if let Some(t) = SphereSet::intersect(center, radius, trace.ray, *t_max) {
-                        let (geometry, primitive) = packet.ids[lane];
-                        let geometry = GeometryId(geometry);
-                        let hit = Hit { t, uv: Vec2::ZERO, geometry, primitive, instance: trace.instance };
-                        judge(hit, t_max, accept)?;
-                    }
-                }
-            }
-            ControlFlow::Continue(())
-        });
+        let set = trace.world.instruction_set;
+        // SAFETY: worlds are only given sets that the processor has.
+        let (extents, primitives, stop) = unsafe { set.run(TraceSpheres { spheres: self, trace, query }) };
         trace.stats.extents += extents;
         trace.stats.primitives += primitives;
-        flow
+        stop
     }
 }
 
-/// A ray made ready for many spheres.
-struct UnitRay {
-    o: [f32; 3],
+/// A ray on its way through the spheres of a group.
+struct TraceSpheres<'a, 'b, Q> {
+    spheres: &'a Spheres,
+    trace: &'a Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
+    type Output = (u64, u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { spheres, trace, query } = self;
+        let mut t_max = query.t_max();
+        // SAFETY: the caller promises the instructions.
+        unsafe {
+            let lanes = UnitRay::<S::Eight>::new(trace.ray);
+            let mut leaves = Tests { packets: &spheres.packets, trace, lanes, query, primitives: 0 };
+            let (extents, stop) = if Q::ANY {
+                spheres.tree.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
+            } else {
+                spheres.tree.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
+            };
+            (extents, leaves.primitives, stop)
+        }
+    }
+}
+
+struct Tests<'a, 'b, V, Q> {
+    packets: &'a [Packet],
+    trace: &'a Trace<'b>,
+    lanes: UnitRay<V>,
+    query: &'a mut Q,
+    primitives: u64,
+}
+
+impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Tests<'_, '_, V, Q> {
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        for packet in &self.packets[blocks] {
+            self.primitives += packet.len as u64;
+            let mut candidates = packet.candidates(&self.lanes, *t_max);
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros() as usize % Packet::WIDTH;
+                candidates &= candidates - 1;
+                let (center, radius) = packet.sphere(lane);
+                let Some(t) = SphereSet::intersect(center, radius, self.trace.ray, self.query.end()) else {
+                    continue;
+                };
+                let (geometry, primitive) = packet.ids[lane];
+                let (geometry, instance) = (GeometryId(geometry), self.trace.instance);
+                if self.query.offer(Hit { t, uv: Vec2::ZERO, geometry, primitive, instance }) {
+                    return true;
+                }
+            }
+            *t_max = self.query.t_max();
+        }
+        false
+    }
+}
+
+/// A ray made ready for many spheres, the same in every lane.
+struct UnitRay<V> {
+    o: [V; 3],
     /// Of unit length.
-    d: [f32; 3],
+    d: [V; 3],
     /// The length that it had.
     length: f32,
 }
 
-impl UnitRay {
-    fn new(ray: &Ray) -> Self {
+impl<V: Vector<{ Packet::WIDTH }>> UnitRay<V> {
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
+    #[inline(always)]
+    unsafe fn new(ray: &Ray) -> Self {
         let d = ray.d.as_dvec3();
         let length = d.length();
-        Self { o: ray.o.to_array(), d: (d / length).as_vec3().to_array(), length: length as f32 }
+        // SAFETY: as the caller promises.
+        let lanes = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
+        Self { o: lanes(ray.o), d: lanes((d / length).as_vec3()), length: length as f32 }
     }
 }
 
 /// Spheres of one set or of many, axis by axis.
 #[derive(Clone, Debug)]
-#[repr(align(32))]
+#[repr(C, align(32))]
 struct Packet {
     center: [[f32; Packet::WIDTH]; 3],
     radius: [f32; Packet::WIDTH],
     /// Whose sphere each lane holds: geometry and primitive.
     ids: [(u32, u32); Packet::WIDTH],
+    /// How many lanes are in use.
+    len: u32,
 }
 
 impl Packet {
@@ -116,6 +167,7 @@ impl Packet {
             center: [[f32::NAN; Self::WIDTH]; 3],
             radius: [0.0; Self::WIDTH],
             ids: [(u32::MAX, u32::MAX); Self::WIDTH],
+            len: block.len() as u32,
         };
         for (lane, reference) in block.iter().enumerate() {
             let id = (reference.geometry(), reference.primitive());
@@ -129,36 +181,28 @@ impl Packet {
         packet
     }
 
-    /// How many lanes are in use.
-    fn len(&self) -> usize {
-        self.ids.iter().filter(|id| id.0 != u32::MAX).count()
-    }
-
     #[inline]
     fn sphere(&self, lane: usize) -> (Vec3, f32) {
         (Vec3::from(self.center.map(|axis| axis[lane])), self.radius[lane])
     }
 
-    /// A bit for each sphere that the ray may meet before `t_max`.
-    #[inline]
-    fn candidates(&self, ray: &UnitRay, t_max: f32) -> u32 {
+    /// A bit for each sphere that the ray may meet up to `t_max`.
+    #[inline(always)]
+    fn candidates<V: Vector<{ Self::WIDTH }>>(&self, ray: &UnitRay<V>, t_max: f32) -> u32 {
         const ERROR: f32 = 16.0 * MACHINE_EPSILON;
-        let UnitRay { o, d, length } = ray;
-        let end = t_max * length * (1.0 + ERROR);
-        let mut may_hit = [0u32; Self::WIDTH];
-        for i in 0..Self::WIDTH {
-            let m = [0, 1, 2].map(|axis| self.center[axis][i] - o[axis]);
-            let b = m[0].mul_add(d[0], m[1].mul_add(d[1], m[2] * d[2]));
-            let passing = [0, 1, 2].map(|axis| (-b).mul_add(d[axis], m[axis]));
-            let radius = self.radius[i];
-            let size = m[0].abs() + m[1].abs() + m[2].abs() + radius;
-            let reach = size.mul_add(ERROR, radius);
-            let distance2 =
-                passing[0].mul_add(passing[0], passing[1].mul_add(passing[1], passing[2] * passing[2]));
-            // Squares may underflow.
-            let meets = distance2 <= reach.mul_add(reach, f32::MIN_POSITIVE);
-            may_hit[i] = (meets & (b + reach >= 0.0) & (b - reach <= end)) as u32;
-        }
-        may_hit.iter().enumerate().fold(0, |bits, (i, hit)| bits | hit << i)
+        let end = t_max * ray.length * (1.0 + ERROR);
+        // SAFETY: whoever has `ray` has the instructions.
+        let (splat, load) = (|x| unsafe { V::splat(x) }, |x| unsafe { V::load(x) });
+        let [dx, dy, dz] = ray.d;
+        let [mx, my, mz] = [0, 1, 2].map(|axis| load(&self.center[axis]).sub(ray.o[axis]));
+        let b = mx.mul_add(dx, my.mul_add(dy, mz.mul(dz)));
+        let [px, py, pz] = [b.neg_mul_add(dx, mx), b.neg_mul_add(dy, my), b.neg_mul_add(dz, mz)];
+        let distance2 = px.mul_add(px, py.mul_add(py, pz.mul(pz)));
+        let radius = load(&self.radius);
+        let size = mx.abs().add(my.abs()).add(mz.abs()).add(radius);
+        let reach = size.mul_add(splat(ERROR), radius);
+        // Squares may underflow.
+        let meets = distance2.le(reach.mul_add(reach, splat(f32::MIN_POSITIVE)));
+        meets & splat(0.0).le(b.add(reach)) & b.sub(reach).le(splat(end))
     }
 }
