@@ -8,6 +8,7 @@ mod emission;
 mod lights;
 mod materials;
 mod shapes;
+mod spheres;
 mod tessellation;
 
 use crate::camera;

@@ -197,6 +197,7 @@ impl Compiler<'_> {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Spheres(spheres) => self.spheres(spheres, shape, transform).into_iter().collect(),
             ShapeKind::Implicit { formula, bounds: [min, max] } => {
                 let bounds = Bounds3 { min: *min, max: *max };
                 let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
