@@ -11,6 +11,8 @@ mod jet;
 mod model;
 mod program;
 mod roots;
+#[cfg(test)]
+mod tests;
 
 pub use formula::FormulaError;
 pub(super) use roots::Root;
