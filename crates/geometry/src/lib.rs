@@ -18,8 +18,8 @@ mod world;
 
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
-    BilinearPatch, Cylinder, Disk, Formula, FormulaError, Implicit, Plane, Shape, ShapeHit, ShapeSample,
-    ShapeSampleContext, Sphere, Triangle,
+    BilinearPatch, Cylinder, Disk, Formula, FormulaError, Implicit, Operation, Plane, Shape, ShapeHit,
+    ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle,
 };
 pub use surface::{Shading, SurfacePoint};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

@@ -20,6 +20,7 @@ mod implicit;
 mod level;
 mod plane;
 mod quadric;
+mod solid;
 mod sphere;
 mod triangle;
 
@@ -28,6 +29,7 @@ pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use implicit::{Formula, FormulaError, Implicit};
 pub use plane::Plane;
+pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
@@ -109,6 +111,8 @@ pub enum Shape {
     Plane(Box<Plane>),
     /// Surface given by a formula.
     Implicit(Box<Implicit>),
+    /// Bodies combined.
+    Solid(Box<Solid>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
@@ -123,6 +127,7 @@ macro_rules! each_shape {
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
             Shape::Implicit($shape) => $result,
+            Shape::Solid($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
         }
@@ -138,7 +143,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Disk Plane Implicit BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Disk Plane Implicit Solid BilinearPatch Triangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -160,6 +165,7 @@ impl Shape {
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
             Self::Implicit(shape) => shape.surface(ray, hit),
+            Self::Solid(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
         }
@@ -189,7 +195,7 @@ impl Shape {
             Self::Sphere(shape) => shape.sample_from(reference, u),
             Self::BilinearPatch(shape) => shape.sample_from(reference, u),
             Self::Triangle(shape) => shape.sample_from(reference, u),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) => None,
+            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) | Self::Solid(_) => None,
         };
         match special {
             Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
@@ -206,7 +212,7 @@ impl Shape {
             Self::Sphere(shape) => shape.pdf_from(reference),
             Self::BilinearPatch(shape) => shape.pdf_from(reference, hit.uv),
             Self::Triangle(shape) => shape.pdf_from(reference, wi),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) => None,
+            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) | Self::Solid(_) => None,
         };
         let pdf = special.unwrap_or_else(|| {
             let surface = self.surface(&ray, &hit);
@@ -218,7 +224,9 @@ impl Shape {
     /// A cone of all normals, on the side of [`ShapeSample::n`].
     pub fn normal_bounds(&self) -> DirectionCone {
         match self {
-            Self::Sphere(_) | Self::Cylinder(_) | Self::Implicit(_) => DirectionCone::ENTIRE_SPHERE,
+            Self::Sphere(_) | Self::Cylinder(_) | Self::Implicit(_) | Self::Solid(_) => {
+                DirectionCone::ENTIRE_SPHERE
+            }
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),

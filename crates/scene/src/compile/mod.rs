@@ -7,6 +7,7 @@ mod emission;
 mod lights;
 mod materials;
 mod shapes;
+mod solids;
 
 use crate::camera;
 use crate::light::{AreaEmission, Light, LightId, SceneSphere};
