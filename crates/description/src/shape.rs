@@ -42,7 +42,7 @@ impl From<ShapeKind> for ShapeDesc {
     }
 }
 
-/// The shapes of the format, and an infinite plane. Angles are in degrees.
+/// The shapes of the format, the quadrics of its third version, and an infinite plane. Angles are in degrees.
 #[derive(Clone, Debug)]
 pub enum ShapeKind {
     /// About the origin.
@@ -64,6 +64,33 @@ pub enum ShapeKind {
         z_min: f32,
         /// Highest z.
         z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// From a circle around the z axis in z = 0 to a point on it.
+    Cone {
+        /// Radius of the circle.
+        radius: f32,
+        /// z of the point.
+        height: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// A bowl with its lowest point at the origin, open along z.
+    Paraboloid {
+        /// Radius at the highest z.
+        radius: f32,
+        /// Lowest z.
+        z_min: f32,
+        /// Highest z.
+        z_max: f32,
+        /// Sweep about z.
+        phi_max: f32,
+    },
+    /// What a line sweeps about the z axis.
+    Hyperboloid {
+        /// The ends of the line, of different z.
+        ends: [Point3; 2],
         /// Sweep about z.
         phi_max: f32,
     },
@@ -98,7 +125,8 @@ pub enum ShapeKind {
     Triangles(MeshDesc),
     /// Bilinear patches.
     Patches(PatchMeshDesc),
-    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches). Either may be empty, not both.
+    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which share vertices. There may be
+    /// none of either, not of both.
     PlyMesh {
         /// Its triangles (and larger polygons, cut).
         triangles: MeshDesc,
@@ -106,7 +134,7 @@ pub enum ShapeKind {
         patches: PatchMeshDesc,
         /// A height along the normal by which the surface is moved.
         displacement: Option<FloatParameter>,
-        /// Longest edge of the moved surface in pixels.
+        /// Before it is moved, the surface is cut until its edges are shorter than this, in the world.
         edge_length: f32,
     },
     /// A curve.

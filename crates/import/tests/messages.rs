@@ -203,8 +203,12 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:53 error[parameter-value] `indices` has 3, but there are 3 points in `P`",
     ),
     (
-        r#"Shape "cone""#,
-        "1:7 error[old-name] there is no shape `cone` (there are no cones any more; write a mesh)",
+        r#"Shape "nurbs""#,
+        "1:7 error[old-name] there is no shape `nurbs` (there are no NURBS any more; write a mesh)",
+    ),
+    (
+        r#"Shape "hyperboloid" "point3 p1" [1 0 1] "point3 p2" [0 2 1]"#,
+        "1:41 error[parameter-value] `p1` and `p2` have the same z: a `disk` draws what such a line sweeps",
     ),
     (r#"ObjectInstance "x""#, "1:16 error[unknown-reference] there is no object `x`"),
     (

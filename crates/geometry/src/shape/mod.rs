@@ -14,10 +14,13 @@
 //!   other is out of sight.
 
 mod bilinear_patch;
+mod cone;
 mod cylinder;
 mod disk;
+mod hyperboloid;
 mod implicit;
 mod level;
+mod paraboloid;
 mod plane;
 mod quadric;
 mod solid;
@@ -25,9 +28,12 @@ mod sphere;
 mod triangle;
 
 pub use bilinear_patch::BilinearPatch;
+pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use hyperboloid::Hyperboloid;
 pub use implicit::{Formula, FormulaError, Implicit};
+pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
@@ -105,6 +111,12 @@ pub enum Shape {
     Sphere(Box<Sphere>),
     /// Tube without ends.
     Cylinder(Box<Cylinder>),
+    /// Cone without a base.
+    Cone(Box<Cone>),
+    /// Bowl.
+    Paraboloid(Box<Paraboloid>),
+    /// What a straight line sweeps.
+    Hyperboloid(Box<Hyperboloid>),
     /// Flat disk or ring.
     Disk(Box<Disk>),
     /// Infinite plane.
@@ -124,6 +136,9 @@ macro_rules! each_shape {
         match $self {
             Shape::Sphere($shape) => $result,
             Shape::Cylinder($shape) => $result,
+            Shape::Cone($shape) => $result,
+            Shape::Paraboloid($shape) => $result,
+            Shape::Hyperboloid($shape) => $result,
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
             Shape::Implicit($shape) => $result,
@@ -143,7 +158,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Disk Plane Implicit Solid BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -162,6 +177,9 @@ impl Shape {
         match self {
             Self::Sphere(shape) => shape.surface(ray, hit),
             Self::Cylinder(shape) => shape.surface(ray, hit),
+            Self::Cone(shape) => shape.surface(ray, hit),
+            Self::Paraboloid(shape) => shape.surface(ray, hit),
+            Self::Hyperboloid(shape) => shape.surface(ray, hit),
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
             Self::Implicit(shape) => shape.surface(ray, hit),
@@ -195,7 +213,7 @@ impl Shape {
             Self::Sphere(shape) => shape.sample_from(reference, u),
             Self::BilinearPatch(shape) => shape.sample_from(reference, u),
             Self::Triangle(shape) => shape.sample_from(reference, u),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) | Self::Solid(_) => None,
+            _ => None,
         };
         match special {
             Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
@@ -212,7 +230,7 @@ impl Shape {
             Self::Sphere(shape) => shape.pdf_from(reference),
             Self::BilinearPatch(shape) => shape.pdf_from(reference, hit.uv),
             Self::Triangle(shape) => shape.pdf_from(reference, wi),
-            Self::Cylinder(_) | Self::Disk(_) | Self::Plane(_) | Self::Implicit(_) | Self::Solid(_) => None,
+            _ => None,
         };
         let pdf = special.unwrap_or_else(|| {
             let surface = self.surface(&ray, &hit);
@@ -224,9 +242,13 @@ impl Shape {
     /// A cone of all normals, on the side of [`ShapeSample::n`].
     pub fn normal_bounds(&self) -> DirectionCone {
         match self {
-            Self::Sphere(_) | Self::Cylinder(_) | Self::Implicit(_) | Self::Solid(_) => {
-                DirectionCone::ENTIRE_SPHERE
-            }
+            Self::Sphere(_)
+            | Self::Cylinder(_)
+            | Self::Cone(_)
+            | Self::Paraboloid(_)
+            | Self::Hyperboloid(_)
+            | Self::Implicit(_)
+            | Self::Solid(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),

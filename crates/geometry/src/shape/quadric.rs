@@ -138,6 +138,27 @@ pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     Some(if larger < other { [larger, other] } else { [other, larger] })
 }
 
+/// The roots of x² + y² = q₀ + q₁z + q₂z² along o + t·d: where a ray meets a surface of revolution around the z
+/// axis. One of them is infinite where the ray runs along an asymptote.
+///
+/// The ray is first moved up to `near`, a point amid the part of the surface that counts: its coefficients then have
+/// the size of the surface, however far the origin is. The root of larger size is found first, as in [`roots`].
+pub(super) fn revolved_roots(q: [f64; 3], o: DVec3, d: DVec3, near: DVec3) -> Option<[f64; 2]> {
+    let start = (near - o).dot(d) / d.dot(d);
+    let o = o + d * start;
+    let a = d.x * d.x + d.y * d.y - q[2] * d.z * d.z;
+    let half_b = o.x * d.x + o.y * d.y - (q[2] * o.z + 0.5 * q[1]) * d.z;
+    let c = o.x * o.x + o.y * o.y - (q[2] * o.z + q[1]) * o.z - q[0];
+    let discriminant = half_b * half_b - a * c;
+    if discriminant < 0.0 || discriminant.is_nan() {
+        return None;
+    }
+    let larger = -(half_b + discriminant.sqrt().copysign(half_b));
+    let other = if larger == 0.0 { 0.0 } else { c / larger };
+    let [first, second] = [start + larger / a, start + other];
+    Some(if first < second { [first, second] } else { [second, first] })
+}
+
 /// The root that a hit at `t` was rounded from.
 pub(super) fn unrounded(roots: Option<[f64; 2]>, t: f32) -> f64 {
     let t = t as f64;
@@ -148,6 +169,11 @@ pub(super) fn unrounded(roots: Option<[f64; 2]>, t: f32) -> f64 {
 pub(super) fn phi(p: DVec3) -> f64 {
     let phi = p.y.atan2(p.x);
     if phi < 0.0 { phi + std::f64::consts::TAU } else { phi }
+}
+
+/// The number at a fraction of the way between two others.
+pub(super) fn between([from, to]: [f64; 2], fraction: f64) -> f64 {
+    from + (to - from) * fraction
 }
 
 /// Degrees, kept between none and a full turn, in radians.
@@ -180,6 +206,21 @@ mod tests {
         assert_eq!(roots(o, -DVec3::Z, 1.0), Some([-6.0, -4.0]));
         assert_eq!(roots(DVec3::ZERO, DVec3::X, 2.0), Some([-2.0, 2.0]));
         assert_eq!(roots(o, DVec3::ZERO, 1.0), None);
+    }
+
+    #[test]
+    fn a_surface_of_revolution_has_the_roots_of_its_meridian() {
+        // A cone of 45° met across, along its axis, along its side, and from very far.
+        let cone = |o, d| revolved_roots([0.0, 0.0, 1.0], o, d, DVec3::ZERO);
+        let o = DVec3::new(-4.0, 0.0, 2.0);
+        assert_eq!(cone(o, DVec3::X), Some([2.0, 6.0]));
+        assert_eq!(cone(DVec3::new(1.0, 0.0, -4.0), DVec3::Z), Some([3.0, 5.0]));
+        assert_eq!(cone(o, DVec3::new(1.0, 0.0, 1.0)), Some([1.0, f64::INFINITY]));
+        let [near, _] = cone(o - DVec3::X * 2f64.powi(40), DVec3::X).expect("two roots");
+        assert_eq!(near - 2f64.powi(40), 2.0);
+        assert_eq!(cone(DVec3::Y, DVec3::X).map(|[near, far]| near == far), None);
+        assert_eq!(revolved_roots([1.0, 0.0, 1.0], DVec3::Z, DVec3::Z, DVec3::ZERO), None, "within");
+        assert_eq!(cone(o, DVec3::ZERO), None);
     }
 
     #[test]

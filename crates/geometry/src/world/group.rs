@@ -1,28 +1,26 @@
 //! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
+#![allow(unsafe_code)]
+
 use super::packet::Packet;
+use super::query::Query;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
-use crate::bvh::{Bvh, Primitive};
-use crate::watertight::Sheared;
-use math::{Bounds3, Ray, gamma};
-use std::ops::ControlFlow;
+use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
+use crate::simd::{Simd, Task, Vector};
+use crate::watertight::{Sheared, ShearedLanes};
+use math::{Bounds3, Ray, Vec2, gamma};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Meshes with fewer triangles are not worth another thread.
+const PARALLEL: usize = 4096;
 
 /// Everything in a group but its triangles.
 #[derive(Clone, Copy, Debug)]
 enum Item {
     Shape(GeometryId, u32),
     Instance(InstanceId),
-}
-
-/// What is to be done after a hit.
-pub(super) enum Verdict {
-    /// Forget it.
-    Refuse,
-    /// Look for nearer ones only.
-    Keep,
-    /// Look no further.
-    Stop,
 }
 
 /// A ray on its way through a group.
@@ -50,29 +48,20 @@ impl Group {
         members: &[GeometryId],
         geometries: &[Geometry],
         instances: &[(InstanceId, &Placed, &Group)],
+        quality: BuildQuality,
     ) -> Self {
-        let mut triangles = Vec::new();
-        let mut ids = Vec::new();
         let mut items = Vec::new();
         let mut unbounded = Vec::new();
         let mut boxes = Vec::new();
         let mut add_item = |item, bounds: Bounds3| {
             if is_finite(&bounds) {
-                boxes.push(Primitive { bounds, index: items.len() as u32 });
+                boxes.push(Reference::new(&bounds, 0, items.len() as u32));
                 items.push(item);
             }
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(mesh) => {
-                    for i in 0..mesh.len() {
-                        let bounds = Bounds3::around(mesh.corners(i));
-                        if mesh.corners(i).iter().all(|p| p.is_finite()) {
-                            triangles.push(Primitive { bounds, index: ids.len() as u32 });
-                            ids.push((id.0, i as u32));
-                        }
-                    }
-                }
+                Geometry::Mesh(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -80,6 +69,11 @@ impl Group {
                             Some(bounds) => add_item(item, bounds),
                             None => unbounded.push(item),
                         }
+                    }
+                }
+                Geometry::Curves(curves) => {
+                    for i in 0..curves.len() as u32 {
+                        add_item(Item::Shape(id, i), curves.bounds(i));
                     }
                 }
             }
@@ -92,11 +86,19 @@ impl Group {
                 unbounded.push(Item::Instance(id));
             }
         }
-        let triangles = Bvh::build(triangles, Packet::WIDTH);
-        let packets = pack(&triangles, &ids, geometries);
-        let boxes = Bvh::build(boxes, 1);
-        let item_list = boxes.order().iter().flatten().map(|&i| items[i as usize]).collect();
+        let pack = |block: &[Reference]| packet(block, geometries);
+        let triangles = triangle_references(members, geometries);
+        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
+        let item = |block: &[Reference]| items[block[0].primitive() as usize];
+        let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
         Self { triangles, packets, items: boxes, item_list, unbounded }
+    }
+
+    /// Bytes of memory that the trees take.
+    pub fn bytes(&self) -> usize {
+        let packets = size_of_val(&*self.packets);
+        let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
+        self.triangles.bytes() + packets + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
@@ -104,110 +106,178 @@ impl Group {
         self.triangles.bounds().union(self.items.bounds())
     }
 
-    /// Shows hits to `accept`; breaks when it says stop.
-    pub fn trace<F: FnMut(Hit) -> Verdict>(
-        &self,
-        trace: &mut Trace,
-        t_max: &mut f32,
-        accept: &mut F,
-    ) -> ControlFlow<()> {
+    /// Shows hits to the query; whether it wants no more.
+    pub fn trace<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
+        // Finite directions too short to have an inverse go nowhere.
+        if !(trace.ray.o.is_finite()
+            && trace.ray.d.is_finite()
+            && trace.ray.d.abs().max_element().recip().is_finite())
+        {
+            return false;
+        }
         for &item in &self.unbounded {
-            trace.item(item, t_max, accept)?;
+            if trace.item(item, query) {
+                return true;
+            }
         }
         if !self.packets.is_empty() {
-            let sheared = Sheared::new(trace.ray);
-            let (mut extents, mut primitives) = (0, 0);
-            let flow = self.triangles.traverse(trace.ray, t_max, &mut extents, |blocks, t_max| {
-                for packet in &self.packets[blocks] {
-                    primitives += packet.len as u64;
-                    trace.packet(packet, &sheared, t_max, accept)?;
-                }
-                ControlFlow::Continue(())
-            });
+            let set = trace.world.instruction_set;
+            // SAFETY: worlds are only given sets that the processor has.
+            let (extents, primitives, stop) =
+                unsafe { set.run(TraceTriangles { group: self, trace, query }) };
             trace.stats.extents += extents;
             trace.stats.primitives += primitives;
-            flow?;
+            if stop {
+                return true;
+            }
         }
         if !self.item_list.is_empty() {
-            let mut extents = 0;
-            let flow = self.items.traverse(trace.ray, t_max, &mut extents, |blocks, t_max| {
-                for &item in &self.item_list[blocks] {
-                    trace.item(item, t_max, accept)?;
-                }
-                ControlFlow::Continue(())
-            });
+            let set = trace.world.instruction_set;
+            // SAFETY: worlds are only given sets that the processor has.
+            let (extents, stop) = unsafe { set.run(TraceItems { group: self, trace, query }) };
             trace.stats.extents += extents;
-            flow?;
+            return stop;
         }
-        ControlFlow::Continue(())
+        false
+    }
+}
+
+/// A ray on its way through the triangles of a group.
+struct TraceTriangles<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
+    type Output = (u64, u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { group, trace, query } = self;
+        let sheared = Sheared::new(trace.ray);
+        // SAFETY: the caller promises the instructions.
+        unsafe {
+            let lanes = sheared.lanes::<{ Packet::WIDTH }, S::Four>();
+            let mut t_max = query.t_max();
+            let mut leaves =
+                Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
+            let (extents, stop) = if Q::ANY {
+                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
+            } else {
+                group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
+            };
+            (extents, leaves.primitives, stop)
+        }
+    }
+}
+
+struct Triangles<'a, V, Q> {
+    group: &'a Group,
+    instance: Option<InstanceId>,
+    sheared: &'a Sheared,
+    lanes: ShearedLanes<V>,
+    query: &'a mut Q,
+    primitives: u64,
+}
+
+impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        // SAFETY: the tree was built over these packets.
+        for packet in unsafe { self.group.packets.get_unchecked(blocks) } {
+            self.primitives += packet.len() as u64;
+            let Some(found) = packet.intersect(&self.lanes, *t_max) else { continue };
+            let mut hits = found.hits;
+            while hits != 0 {
+                let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
+                hits &= hits - 1;
+                let (mut t, mut uv) = (found.t[lane], Vec2::new(found.b1[lane], found.b2[lane]));
+                if found.doubts >> lane & 1 != 0 {
+                    let Some(decided) = self.sheared.decide(&packet.triangle(lane)) else { continue };
+                    (t, uv) = decided;
+                }
+                let (geometry, primitive) = packet.id(lane);
+                let geometry = GeometryId(geometry);
+                if self.query.offer(Hit { t, uv, geometry, primitive, instance: self.instance }) {
+                    return true;
+                }
+            }
+            *t_max = self.query.t_max();
+        }
+        false
+    }
+}
+
+/// A ray on its way through the items of a group.
+struct TraceItems<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a mut Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceItems<'_, '_, Q> {
+    type Output = (u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { group, trace, query } = self;
+        let ray = trace.ray;
+        let mut t_max = query.t_max();
+        let mut leaves = Items { group, trace, query };
+        // SAFETY: the caller promises the instructions.
+        unsafe {
+            if Q::ANY {
+                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
+            } else {
+                group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
+            }
+        }
+    }
+}
+
+struct Items<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a mut Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Leaves for Items<'_, '_, Q> {
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        for &item in &self.group.item_list[blocks] {
+            if self.trace.item(item, self.query) {
+                return true;
+            }
+        }
+        *t_max = self.query.t_max();
+        false
     }
 }
 
 impl Trace<'_> {
-    #[inline]
-    fn packet(
-        &self,
-        packet: &Packet,
-        sheared: &Sheared,
-        t_max: &mut f32,
-        accept: &mut impl FnMut(Hit) -> Verdict,
-    ) -> ControlFlow<()> {
-        let mut candidates = packet.candidates(sheared, *t_max);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            if let Some((t, uv)) = sheared.triangle(&packet.triangle(lane), *t_max) {
-                let (geometry, primitive) = packet.ids[lane];
-                let geometry = GeometryId(geometry);
-                judge(Hit { t, uv, geometry, primitive, instance: self.instance }, t_max, accept)?;
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn item<F: FnMut(Hit) -> Verdict>(
-        &mut self,
-        item: Item,
-        t_max: &mut f32,
-        accept: &mut F,
-    ) -> ControlFlow<()> {
+    #[inline(never)]
+    fn item<Q: Query>(&mut self, item: Item, query: &mut Q) -> bool {
         match item {
             Item::Shape(geometry, primitive) => {
                 self.stats.primitives += 1;
-                let Geometry::Shapes(shapes) = self.world.geometry(geometry) else {
-                    return ControlFlow::Continue(());
+                let hit = match self.world.geometry(geometry) {
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
+                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
+                    Geometry::Mesh(_) => None,
                 };
-                match shapes[primitive as usize].intersect(self.ray, *t_max) {
-                    Some(hit) => judge(
-                        Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance },
-                        t_max,
-                        accept,
-                    ),
-                    None => ControlFlow::Continue(()),
-                }
+                hit.is_some_and(|hit| {
+                    query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })
+                })
             }
             Item::Instance(id) => {
                 let placed = &self.world.instances[id.0 as usize];
                 let ray = placed.with_placement(self.ray.time, |placement| placement.ray(self.ray));
-                if !(ray.o.is_finite() && ray.d.is_finite()) {
-                    return ControlFlow::Continue(());
-                }
                 let mut inner =
                     Trace { world: self.world, ray: &ray, instance: Some(id), stats: &mut *self.stats };
-                self.world.groups[placed.group as usize].trace(&mut inner, t_max, accept)
+                self.world.groups[placed.group as usize].trace(&mut inner, query)
             }
         }
-    }
-}
-
-fn judge(hit: Hit, t_max: &mut f32, accept: &mut impl FnMut(Hit) -> Verdict) -> ControlFlow<()> {
-    match accept(hit) {
-        Verdict::Refuse => ControlFlow::Continue(()),
-        Verdict::Keep => {
-            *t_max = hit.t;
-            ControlFlow::Continue(())
-        }
-        Verdict::Stop => ControlFlow::Break(()),
     }
 }
 
@@ -221,16 +291,37 @@ fn placed_bounds(placed: &Placed, bounds: &Bounds3) -> Bounds3 {
     moved.expand(moved.min.abs().max(moved.max.abs()).max_element() * gamma(8))
 }
 
-fn pack(tree: &Bvh, ids: &[(u32, u32)], geometries: &[Geometry]) -> Vec<Packet> {
-    let fill = |block: &[Option<u32>]| {
-        let mut packet = Packet::EMPTY;
-        for &index in block.iter().flatten() {
-            let id = ids[index as usize];
-            if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
-                packet.push(mesh.corners(id.1 as usize), id);
+/// The triangles of all meshes whose corners are finite.
+fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<Reference> {
+    let mut references = Vec::new();
+    for &id in members {
+        if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
+            let reference = |i: usize| {
+                let corners = mesh.corners(i);
+                match corners.iter().all(|p| p.is_finite()) {
+                    true => Reference::new(&Bounds3::around(corners), id.0, i as u32),
+                    false => Reference::none(),
+                }
+            };
+            match mesh.len() {
+                0..PARALLEL => references.extend((0..mesh.len()).map(reference)),
+                n => references.par_extend((0..n).into_par_iter().map(reference)),
             }
         }
-        packet
-    };
-    tree.order().chunks(Packet::WIDTH).map(fill).collect()
+    }
+    if references.iter().any(Reference::is_none) {
+        references.retain(|r| !r.is_none());
+    }
+    references
+}
+
+fn packet(block: &[Reference], geometries: &[Geometry]) -> Packet {
+    let mut packet = Packet::EMPTY;
+    for reference in block {
+        let (geometry, primitive) = (reference.geometry(), reference.primitive());
+        if let Geometry::Mesh(mesh) = &geometries[geometry as usize] {
+            packet.push(mesh.corners(primitive as usize), (geometry, primitive));
+        }
+    }
+    packet
 }

@@ -7,15 +7,18 @@
 mod builder;
 mod group;
 mod packet;
+mod query;
 mod stats;
 
+use crate::curve::Curves;
 use crate::mesh::TriangleMesh;
 use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
+use crate::simd::InstructionSet;
 use crate::surface::SurfacePoint;
-use group::{Group, Trace, Verdict};
+use group::{Group, Trace};
 use math::{AnimatedTransform, Bounds3, Ray, Vec2};
-use std::ops::ControlFlow;
+use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
@@ -46,6 +49,8 @@ pub enum Geometry {
     Mesh(Arc<TriangleMesh>),
     /// Any other shapes: one quadric, the patches of a bilinear mesh.
     Shapes(Arc<[Shape]>),
+    /// The parts of curves.
+    Curves(Arc<Curves>),
 }
 
 impl From<TriangleMesh> for Geometry {
@@ -60,12 +65,19 @@ impl From<Shape> for Geometry {
     }
 }
 
+impl From<Curves> for Geometry {
+    fn from(curves: Curves) -> Self {
+        Self::Curves(Arc::new(curves))
+    }
+}
+
 impl Geometry {
     /// How many primitives there are.
     pub fn len(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.len(),
             Self::Shapes(shapes) => shapes.len(),
+            Self::Curves(curves) => curves.len(),
         }
     }
 
@@ -74,11 +86,21 @@ impl Geometry {
         self.len() == 0
     }
 
-    /// One primitive as a shape of its own, as a light wants it.
-    pub fn shape(&self, primitive: u32) -> Shape {
+    /// Bytes of memory that the primitives take, boxes of their own apart.
+    fn bytes(&self) -> usize {
         match self {
-            Self::Mesh(mesh) => Shape::Triangle(mesh.triangle(primitive as usize)),
-            Self::Shapes(shapes) => shapes[primitive as usize].clone(),
+            Self::Mesh(mesh) => mesh.bytes(),
+            Self::Shapes(shapes) => size_of_val(&**shapes),
+            Self::Curves(curves) => curves.bytes(),
+        }
+    }
+
+    /// One primitive as a shape of its own, as a light wants it; `None` of curves, which do not emit.
+    pub fn shape(&self, primitive: u32) -> Option<Shape> {
+        match self {
+            Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
+            Self::Shapes(shapes) => Some(shapes[primitive as usize].clone()),
+            Self::Curves(_) => None,
         }
     }
 }
@@ -102,7 +124,7 @@ pub struct Hit {
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
-    /// Which triangle or patch of it.
+    /// Which triangle, patch or part of a curve of it.
     pub primitive: u32,
     /// Through which instance.
     pub instance: Option<InstanceId>,
@@ -139,6 +161,7 @@ pub struct World {
     groups: Vec<Group>,
     geometries: Vec<Geometry>,
     instances: Vec<Placed>,
+    instruction_set: InstructionSet,
 }
 
 impl World {
@@ -150,6 +173,12 @@ impl World {
     /// A box around everything but infinite planes; empty when there is nothing.
     pub fn bounds(&self) -> Bounds3 {
         self.groups[0].bounds()
+    }
+
+    /// Bytes of memory that the trees and the meshes take; arrays that meshes share count for each.
+    pub fn bytes(&self) -> usize {
+        let trees: usize = self.groups.iter().map(Group::bytes).sum();
+        trees + self.geometries.iter().map(Geometry::bytes).sum::<usize>()
     }
 
     /// A geometry by its id.
@@ -171,15 +200,9 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> Option<Hit> {
-        let mut nearest = None;
-        let _ = self.trace(ray, t_max, stats, &mut |hit: Hit| {
-            if !filter(&hit, ray) {
-                return Verdict::Refuse;
-            }
-            nearest = Some(hit);
-            Verdict::Keep
-        });
-        nearest
+        let mut query = Nearest::new(ray, t_max, filter);
+        self.trace(ray, &mut query, stats);
+        query.hit
     }
 
     /// Whether anything that `filter` keeps is hit at 0 < t < `t_max`.
@@ -190,23 +213,22 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> bool {
-        let verdict = |hit: Hit| if filter(&hit, ray) { Verdict::Stop } else { Verdict::Refuse };
-        self.trace(ray, t_max, stats, &mut { verdict }).is_break()
+        self.trace(ray, &mut Any::new(ray, t_max, filter), stats)
     }
 
     #[inline]
-    fn trace(
-        &self,
-        ray: &Ray,
-        mut t_max: f32,
-        stats: &mut RayStats,
-        accept: &mut impl FnMut(Hit) -> Verdict,
-    ) -> ControlFlow<()> {
+    fn trace(&self, ray: &Ray, query: &mut impl Query, stats: &mut RayStats) -> bool {
         stats.rays += 1;
-        if !(ray.o.is_finite() && ray.d.is_finite()) {
-            return ControlFlow::Continue(());
-        }
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, &mut t_max, accept)
+        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, query)
+    }
+
+    /// Traces rays with another set of instructions than the best one, which finds the same hits.
+    ///
+    /// # Panics
+    /// When the processor does not have it.
+    pub fn set_instruction_set(&mut self, set: InstructionSet) {
+        assert!(set.is_available(), "this processor has no {set:?}");
+        self.instruction_set = set;
     }
 
     /// What is known of the surface where `ray` met it.
@@ -224,6 +246,9 @@ impl World {
             Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).surface(ray, hit.uv),
             Geometry::Shapes(shapes) => {
                 shapes[hit.primitive as usize].surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
+            }
+            Geometry::Curves(curves) => {
+                curves.surface(hit.primitive, ray, &ShapeHit { t: hit.t, uv: hit.uv })
             }
         }
     }

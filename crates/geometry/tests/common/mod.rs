@@ -99,10 +99,19 @@ pub fn shapes(m: &Transform) -> Vec<(&'static str, Shape)> {
     let triangle = Triangle::new(
         [Vec3::new(-1.0, 0.1, 0.0), Vec3::new(0.7, -0.4, 0.3), Vec3::new(0.2, 0.9, -0.5)].map(|p| m.point(p)),
     );
+    let hyperboloid = |p1: [f32; 3], p2: [f32; 3], phi_max| {
+        Hyperboloid::new(m, false, [p1.into(), p2.into()], phi_max).into()
+    };
     vec![
         ("sphere", Sphere::whole(m, false, 1.0).into()),
         ("part of a sphere", Sphere::new(m, true, 1.0, [-0.6, 0.8], 250.0).into()),
         ("cylinder", Cylinder::new(m, false, 0.7, [-1.0, 0.5], 300.0).into()),
+        ("cone", Cone::new(m, false, 0.9, 1.4, 360.0).into()),
+        ("part of a cone", Cone::new(m, true, 0.8, 0.7, 230.0).into()),
+        ("paraboloid", Paraboloid::new(m, false, 0.9, [0.2, 1.3], 290.0).into()),
+        ("whole bowl", Paraboloid::new(m, true, 1.0, [0.0, 0.8], 360.0).into()),
+        ("hyperboloid", hyperboloid([0.9, 0.1, -0.8], [-0.2, 0.8, 0.9], 360.0)),
+        ("two cones", hyperboloid([0.6, 0.3, 0.7], [-0.4, -0.2, -0.6], 250.0)),
         ("disk", Disk::new(m, false, 0.3, 1.0, 0.0, 360.0).into()),
         ("ring", Disk::new(m, true, -0.3, 1.0, 0.4, 200.0).into()),
         ("rectangle", BilinearPatch::new(rectangle, None, None, m, false).into()),

@@ -11,8 +11,8 @@ use description::{
     ShapeDesc, ShapeKind, Span, Spanned, Stated, TransformDesc,
 };
 use geometry::{
-    BilinearPatch, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Implicit, Instance,
-    MeshAttributes, Plane, Shape, Sphere, TriangleMesh,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
+    Instance, MeshAttributes, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
 use math::{AnimatedTransform, Bounds2, Bounds3, Transform};
 use sampling::PiecewiseConstant2d;
@@ -177,6 +177,15 @@ impl Compiler<'_> {
             ShapeKind::Cylinder { radius, z_min, z_max, phi_max } => {
                 one(Cylinder::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
             }
+            ShapeKind::Cone { radius, height, phi_max } => {
+                one(Cone::new(transform, reverse, *radius, *height, *phi_max).into())
+            }
+            ShapeKind::Paraboloid { radius, z_min, z_max, phi_max } => {
+                one(Paraboloid::new(transform, reverse, *radius, [*z_min, *z_max], *phi_max).into())
+            }
+            ShapeKind::Hyperboloid { ends, phi_max } => {
+                one(Hyperboloid::new(transform, reverse, *ends, *phi_max).into())
+            }
             ShapeKind::Disk { height, radius, inner_radius, phi_max } => {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
@@ -196,22 +205,17 @@ impl Compiler<'_> {
             }
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
-            ShapeKind::PlyMesh { triangles, patches, displacement, .. } => {
-                if displacement.is_some() {
-                    let message = "displacement is not drawn yet; the surface stays as it is";
-                    self.warn("not-drawn", message, shape.origin.parameter("displacement"));
-                }
+            ShapeKind::PlyMesh { triangles, patches, displacement: Some(height), edge_length } => {
+                let height = (height, *edge_length);
+                self.displaced(triangles, patches, height, shape, transform).into_iter().collect()
+            }
+            ShapeKind::PlyMesh { triangles, patches, displacement: None, .. } => {
                 let triangles = self.mesh(triangles, shape, transform);
                 triangles.into_iter().chain(self.patches(patches, shape, transform)).collect()
             }
-            ShapeKind::Curve(_) => {
-                self.warn("not-drawn", "shape `curve` is not drawn yet; left out", shape.origin.span);
-                Vec::new()
-            }
-            ShapeKind::LoopSubdivision { mesh, .. } => {
-                let message = "shape `loopsubdiv` is not drawn yet; drawn as its coarse mesh";
-                self.warn("not-drawn", message, shape.origin.span);
-                self.mesh(mesh, shape, transform).into_iter().collect()
+            ShapeKind::Curve(curve) => self.curve(curve, shape, transform).into_iter().collect(),
+            ShapeKind::LoopSubdivision { mesh, levels } => {
+                self.loop_subdivision(mesh, *levels, shape, transform).into_iter().collect()
             }
         }
     }
@@ -343,7 +347,7 @@ impl Compiler<'_> {
         let shared = Arc::new(emission.clone());
         let first = LightId(self.lights.len() as u32);
         for primitive in 0..geometry.len() as u32 {
-            let part = geometry.shape(primitive);
+            let part = geometry.shape(primitive)?;
             if part.bounds().is_none() {
                 self.error(
                     "infinite-light",

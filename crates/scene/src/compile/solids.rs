@@ -48,13 +48,26 @@ impl Compiler<'_> {
             ShapeKind::Cylinder { radius, z_min, z_max, phi_max } if *phi_max >= 360.0 => {
                 return Some(Solid::cylinder(transform, *radius, [*z_min, *z_max]));
             }
+            ShapeKind::Cone { radius, height, phi_max } if *phi_max >= 360.0 => {
+                return Some(Solid::cone(transform, *radius, *height));
+            }
+            ShapeKind::Paraboloid { radius, z_min, z_max, phi_max } if *phi_max >= 360.0 => {
+                return Some(Solid::paraboloid(transform, *radius, [*z_min, *z_max]));
+            }
+            ShapeKind::Hyperboloid { ends, phi_max } if *phi_max >= 360.0 => {
+                return Some(Solid::hyperboloid(transform, *ends));
+            }
             ShapeKind::Plane => return Some(Solid::below_plane(transform)),
             ShapeKind::Implicit { formula, bounds: [min, max] } => {
                 let bounds = Bounds3 { min: *min, max: *max };
                 return self.formula(formula, &bounds).map(|f| Solid::implicit(transform, f, &bounds));
             }
             ShapeKind::Solid { .. } => return self.combination(shape, transform, assembly),
-            ShapeKind::Sphere { .. } | ShapeKind::Cylinder { .. } => "a shape whose `phimax` is below 360",
+            ShapeKind::Sphere { .. }
+            | ShapeKind::Cylinder { .. }
+            | ShapeKind::Cone { .. }
+            | ShapeKind::Paraboloid { .. }
+            | ShapeKind::Hyperboloid { .. } => "a shape whose `phimax` is below 360",
             ShapeKind::Disk { .. } => "a disk",
             ShapeKind::Triangles(_) | ShapeKind::PlyMesh { .. } | ShapeKind::LoopSubdivision { .. } => {
                 "a mesh"
@@ -64,8 +77,7 @@ impl Compiler<'_> {
         };
         let message = format!("{what} is no body that a solid can be made of");
         let diagnostic = Diagnostic::error("not-closed", message, span);
-        let help =
-            "bodies are spheres and cylinders all the way round, all below a plane, formulas, and solids";
+        let help = "bodies are quadrics that go all the way round, all below a plane, formulas, and solids";
         self.diagnostics.push(diagnostic.with_label(assembly.whole, "the solid").with_help(help));
         None
     }

@@ -128,6 +128,7 @@ pub fn area_lights() -> Vec<Case> {
         ("sphere, both sides", area(sphere(0.8), both_sides)),
         ("cylinder", area(cylinder(0.5, -0.6, 0.9), one_side)),
         ("cylinder, both sides", area(cylinder(0.5, -0.6, 0.9), both_sides)),
+        ("cone", area(ShapeKind::Cone { radius: 0.9, height: 0.4, phi_max: 360.0 }, both_sides)),
         ("disk", area(disk(0.2, 0.9), one_side)),
         ("disk, both sides", area(disk(0.2, 0.9), both_sides)),
         ("disk, reversed", area(disk(0.2, 0.9), |_, shape| shape.reverse_orientation = true)),

@@ -18,8 +18,8 @@ use super::implicit::Formula;
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use extent::Span;
-use math::{Bounds3, Ray, Transform, Vec2};
-use part::Part;
+use math::{Bounds3, Point3, Ray, Transform, Vec2};
+use part::{Part, Profile};
 
 /// How bodies become one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,13 +54,44 @@ impl Solid {
     pub fn sphere(render_from_object: &Transform, radius: f32, z: [f32; 2]) -> Self {
         let radius = f64::from(radius.abs());
         let z = ascending(z).map(|z| z.clamp(-radius, radius));
-        Self::single(Part::revolved(render_from_object, Some([radius * radius, 0.0, -1.0]), z))
+        Self::revolved(render_from_object, [radius * radius, 0.0, -1.0], 0.0, z)
     }
 
     /// The cylinder around the object's z axis between two heights, with its ends.
     pub fn cylinder(render_from_object: &Transform, radius: f32, z: [f32; 2]) -> Self {
         let radius = f64::from(radius);
-        Self::single(Part::revolved(render_from_object, Some([radius * radius, 0.0, 0.0]), ascending(z)))
+        Self::revolved(render_from_object, [radius * radius, 0.0, 0.0], 0.0, ascending(z))
+    }
+
+    /// The cone on the object's xy plane with its point at `height` above it, with its base.
+    pub fn cone(render_from_object: &Transform, radius: f32, height: f32) -> Self {
+        let height = f64::from(height.abs());
+        let slope = f64::from(radius) / height;
+        Self::revolved(render_from_object, [0.0, 0.0, slope * slope], height, [0.0, height])
+    }
+
+    /// What is between two heights of the bowl that opens along the object's z axis and is `radius` wide at the larger of them,
+    /// which must be above 0.
+    pub fn paraboloid(render_from_object: &Transform, radius: f32, z: [f32; 2]) -> Self {
+        let z = ascending(z).map(|z| z.max(0.0));
+        let radius = f64::from(radius);
+        Self::revolved(render_from_object, [0.0, radius * radius / z[1], 0.0], 0.0, z)
+    }
+
+    /// What the surface encloses that the line between two points of different z sweeps around the object's z axis.
+    pub fn hyperboloid(render_from_object: &Transform, ends: [Point3; 2]) -> Self {
+        let [from, to] = ends.map(|p| p.as_dvec3());
+        let (q, e) = (from.truncate(), (to - from).truncate());
+        let squared = e.length_squared();
+        // Where the line is nearest to the axis.
+        let v = if squared == 0.0 { 0.0 } else { -q.dot(e) / squared };
+        let rise = to.z - from.z;
+        let rho = [(q + e * v).length_squared(), 0.0, squared / (rise * rise)];
+        Self::revolved(render_from_object, rho, from.z + rise * v, ascending(ends.map(|p| p.z)))
+    }
+
+    fn revolved(render_from_object: &Transform, rho: [f64; 3], origin: f64, z: [f64; 2]) -> Self {
+        Self::single(Part::revolved(render_from_object, Some(Profile { rho, origin }), z))
     }
 
     /// All that is below the object's xy plane. It has no end.

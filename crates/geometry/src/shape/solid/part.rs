@@ -1,13 +1,12 @@
 //! What solids are made of: bodies with a closed boundary, each in a space of its own.
 //!
-//! A solid of revolution is x² + y² ≤ ρ(z) with ρ(z) = ρ₀ + ρ₁z + ρ₂z² between two heights: ball, cylinder, cone, paraboloid,
-//! hyperboloid, closed by flat ends. Along a ray x² + y² − ρ is a quadratic in t, whose roots are found from the point of the
-//! ray that is nearest to the body. Without ρ there is only what lies between the heights. The body of a formula is where F <
-//! 0 in its box, closed by the sides of the box.
+//! A solid of revolution is a profile x² + y² ≤ ρ(z) between two heights: ball, cylinder, cone, paraboloid, hyperboloid, closed
+//! by flat ends. Without a profile it is all that lies between the heights. The body of a formula is where F < 0 in its box,
+//! closed by the sides of the box.
 
 use super::super::implicit::{Body, Formula, Root, reach};
 use super::super::level::Level;
-use super::super::quadric::Quadric;
+use super::super::quadric::{Quadric, revolved_roots, unrounded};
 use super::extent::{Crossing, Extent, Span};
 use crate::placement::ROUNDING;
 use crate::surface::SurfacePoint;
@@ -39,11 +38,11 @@ impl Part {
         Self { quadric: Quadric::new(render_from_object, render_from_object.swaps_handedness()), kind }
     }
 
-    /// x² + y² ≤ ρ(z) between two heights.
-    pub fn revolved(render_from_object: &Transform, rho: Option<[f64; 3]>, z: [f64; 2]) -> Self {
+    /// A solid of revolution between two heights.
+    pub fn revolved(render_from_object: &Transform, profile: Option<Profile>, z: [f64; 2]) -> Self {
         let far = f64::INFINITY;
         let extent = Extent { min: DVec3::new(-far, -far, z[0]), max: DVec3::new(far, far, z[1]) };
-        Self::new(render_from_object, Kind::Revolved(Revolved { rho, extent }))
+        Self::new(render_from_object, Kind::Revolved(Revolved { profile, extent }))
     }
 
     /// Where a formula is negative inside of a box.
@@ -69,14 +68,14 @@ impl Part {
         match &self.kind {
             Kind::Revolved(revolved) => {
                 let Some(within) = revolved.extent.clip(o, d, range, first + FLAT) else { return };
-                match revolved.rho {
-                    None => spans.push(within),
-                    Some(rho) => spans.extend(revolved.inside(rho, o, d).into_iter().filter_map(|[a, b]| {
-                        let [a, b] = [a, b].map(|t| Crossing { t, face: first + CURVED });
-                        let enter = if a.t > within[0].t { a } else { within[0] };
-                        let leave = if b.t < within[1].t { b } else { within[1] };
-                        (enter.t < leave.t).then_some([enter, leave])
-                    })),
+                let Some(profile) = &revolved.profile else { return spans.push(within) };
+                for [a, b] in revolved.inside(profile, o, d).into_iter().flatten() {
+                    let [a, b] = [a, b].map(|t| Crossing { t, face: first + CURVED });
+                    let enter = if a.t > within[0].t { a } else { within[0] };
+                    let leave = if b.t < within[1].t { b } else { within[1] };
+                    if enter.t < leave.t {
+                        spans.push([enter, leave]);
+                    }
                 }
             }
             Kind::Formula(body) => {
@@ -92,35 +91,32 @@ impl Part {
     /// What is known of the surface where the ray met a face at about `t`.
     pub fn surface(&self, ray: &Ray, t: f32, face: u32) -> SurfacePoint {
         let (o, d) = self.quadric.placement.ray_inward(ray);
-        if face >= FLAT {
-            let axis = ((face - FLAT) / 2) as usize;
-            let is_high = (face - FLAT) % 2 == 1;
-            let extent = self.extent();
-            let at = if is_high { extent.max[axis] } else { extent.min[axis] };
-            let mut p = o + d * ((at - o[axis]) / d[axis]);
-            p[axis] = at;
-            let gradient = if is_high { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
-            let level = Level { p, gradient, hessian: DMat3::ZERO, center: extent.center(), d };
-            return level.surface(&self.quadric, reach(o, d, Root { t: t.into(), error: 0.0 }), ray);
-        }
         match &self.kind {
-            Kind::Revolved(revolved) => {
-                let level = revolved.level(o, d, t);
-                let error = level.p.abs() * ROUNDING;
-                level.surface(&self.quadric, error, ray)
-            }
-            Kind::Formula(body) => {
+            Kind::Revolved(revolved) => match &revolved.profile {
+                Some(profile) if face == CURVED => {
+                    let level = revolved.level(profile, o, d, t);
+                    level.surface(&self.quadric, level.p.abs() * ROUNDING, ray)
+                }
+                _ => self.side(&revolved.extent, o, d, face, ray),
+            },
+            Kind::Formula(body) if face == CURVED => {
                 let root = body.refined(o, d, t);
                 body.level(o + d * root.t, d).surface(&self.quadric, reach(o, d, root), ray)
             }
+            Kind::Formula(body) => self.side(&body.extent, o, d, face, ray),
         }
     }
 
-    fn extent(&self) -> Extent {
-        match &self.kind {
-            Kind::Revolved(revolved) => revolved.extent,
-            Kind::Formula(body) => body.extent,
-        }
+    /// What is known of a side of the box where the ray meets it.
+    fn side(&self, extent: &Extent, o: DVec3, d: DVec3, face: u32, ray: &Ray) -> SurfacePoint {
+        let (axis, is_high) = (((face - FLAT) / 2) as usize, (face - FLAT) % 2 == 1);
+        let at = if is_high { extent.max[axis] } else { extent.min[axis] };
+        let t = (at - o[axis]) / d[axis];
+        let mut p = o + d * t;
+        p[axis] = at;
+        let gradient = if is_high { DVec3::AXES[axis] } else { -DVec3::AXES[axis] };
+        let level = Level { p, gradient, hessian: DMat3::ZERO, center: extent.center(), d };
+        level.surface(&self.quadric, reach(o, d, Root { t, error: 0.0 }), ray)
     }
 }
 
@@ -151,11 +147,36 @@ fn between_roots(body: &Body, o: DVec3, d: DVec3, [enter, leave]: Span, face: u3
     }
 }
 
+/// x² + y² ≤ ρ₀ + ρ₁ζ + ρ₂ζ² with ζ = z − z₀: a profile turned around the z axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Profile {
+    /// ρ by ascending powers.
+    pub rho: [f64; 3],
+    /// z₀; where the profile is thinnest, so that it is known best there.
+    pub origin: f64,
+}
+
+impl Profile {
+    /// ρ(z).
+    fn at(&self, z: f64) -> f64 {
+        let ([r0, r1, r2], z) = (self.rho, z - self.origin);
+        r0 + z * (r1 + z * r2)
+    }
+
+    /// x² + y² − ρ at a point, its gradient and its second derivatives.
+    fn jet(&self, p: DVec3) -> (f64, DVec3, DMat3) {
+        let [_, r1, r2] = self.rho;
+        let gradient = DVec3::new(2.0 * p.x, 2.0 * p.y, -r1 - 2.0 * r2 * (p.z - self.origin));
+        let hessian = DMat3::from_diagonal(DVec3::new(2.0, 2.0, -2.0 * r2));
+        (p.x * p.x + p.y * p.y - self.at(p.z), gradient, hessian)
+    }
+}
+
 /// A solid of revolution around the z axis.
 #[derive(Clone, Debug)]
 struct Revolved {
-    /// ρ(z) by ascending powers; everything where there is none.
-    rho: Option<[f64; 3]>,
+    /// What bounds it across; nothing where there is none.
+    profile: Option<Profile>,
     /// Between its heights.
     extent: Extent,
 }
@@ -164,67 +185,51 @@ impl Revolved {
     /// A box around the body.
     fn hull(&self) -> Extent {
         let Extent { min, max } = self.extent;
-        let Some(rho @ [_, b, c]) = self.rho else { return self.extent };
-        let at = |z: f64| rho_at(rho, z);
-        let top = (-0.5 * b / c).clamp(min.z, max.z);
-        let widest = [min.z, max.z, if top.is_finite() { top } else { max.z }];
-        let r = widest.into_iter().map(at).fold(0.0, f64::max).sqrt();
+        let Some(profile) = self.profile else { return self.extent };
+        let top = profile.origin - 0.5 * profile.rho[1] / profile.rho[2];
+        let widest = [min.z, max.z, if top.is_finite() { top.clamp(min.z, max.z) } else { max.z }];
+        let r = widest.into_iter().map(|z| profile.at(z)).fold(0.0, f64::max).sqrt();
         Extent { min: DVec3::new(-r, -r, min.z), max: DVec3::new(r, r, max.z) }
     }
 
-    /// Where a ray is inside of x² + y² ≤ ρ(z), regardless of heights: one or two stretches.
-    fn inside(&self, [r0, r1, r2]: [f64; 3], o: DVec3, d: DVec3) -> impl IntoIterator<Item = [f64; 2]> {
-        const FAR: f64 = f64::INFINITY;
-        let nearest = (self.extent.center() - o).dot(d) / d.dot(d);
-        let o = o + d * nearest;
-        // a·t² + 2b·t + c ≤ 0.
-        let a = d.x * d.x + d.y * d.y - r2 * d.z * d.z;
-        let b = o.x * d.x + o.y * d.y - (r2 * o.z + 0.5 * r1) * d.z;
-        let c = o.x * o.x + o.y * o.y - rho_at([r0, r1, r2], o.z);
-        let stretches: [Option<[f64; 2]>; 2] = if a == 0.0 {
-            let root = -0.5 * c / b;
-            match (b, c) {
-                (b, _) if b > 0.0 => [Some([-FAR, root]), None],
-                (b, _) if b < 0.0 => [Some([root, FAR]), None],
-                (_, c) if c <= 0.0 => [Some([-FAR, FAR]), None],
-                _ => [None, None],
-            }
-        } else {
-            let discriminant = b * b - a * c;
-            // A ray that only touches is inside nowhere, or everywhere.
-            if discriminant <= 0.0 {
-                [(a < 0.0).then_some([-FAR, FAR]), None]
-            } else {
-                let q = -(b + discriminant.sqrt().copysign(b));
-                let (s, t) = (q / a, c / q);
-                let [first, last] = if s < t { [s, t] } else { [t, s] };
-                if a > 0.0 { [Some([first, last]), None] } else { [Some([-FAR, first]), Some([last, FAR])] }
-            }
-        };
-        stretches.into_iter().flatten().map(move |ends| ends.map(|t| t + nearest))
+    /// Where a ray meets the profile, regardless of heights.
+    fn roots(&self, profile: &Profile, o: DVec3, d: DVec3) -> Option<[f64; 2]> {
+        let origin = DVec3::Z * profile.origin;
+        revolved_roots(profile.rho, o - origin, d, self.extent.center() - origin)
     }
 
-    /// The curved face at the crossing nearest to `t`, put back on the surface.
-    fn level(&self, o: DVec3, d: DVec3, t: f32) -> Level {
-        let rho = self.rho.unwrap_or_default();
-        let rounded = f64::from(t);
-        let roots = self.inside(rho, o, d).into_iter().flatten();
-        let t = roots.min_by(|a, b| (a - rounded).abs().total_cmp(&(b - rounded).abs())).unwrap_or(rounded);
-        let gradient = |p: DVec3| DVec3::new(2.0 * p.x, 2.0 * p.y, -rho[1] - 2.0 * rho[2] * p.z);
-        let mut p = o + d * t;
+    /// Where a ray is inside of the profile, regardless of heights: on up to two stretches.
+    fn inside(&self, profile: &Profile, o: DVec3, d: DVec3) -> [Option<[f64; 2]>; 2] {
+        const FAR: f64 = f64::INFINITY;
+        // How x² + y² − ρ goes far out; along an asymptote that is told by a point of the stretch in question.
+        let curvature = d.x * d.x + d.y * d.y - profile.rho[2] * d.z * d.z;
+        let is_positive =
+            |t: f64| if curvature == 0.0 { profile.jet(o + d * t).0 > 0.0 } else { curvature > 0.0 };
+        match self.roots(profile, o, d) {
+            Some([first, last]) if first < last => {
+                let is_inside = match (first.is_finite(), last.is_finite()) {
+                    (true, true) => curvature > 0.0,
+                    (true, false) => !is_positive(first + 1.0),
+                    _ => !is_positive(last - 1.0),
+                };
+                if is_inside { [Some([first, last]), None] } else { [Some([-FAR, first]), Some([last, FAR])] }
+            }
+            // A ray that only touches is inside nowhere, or everywhere.
+            _ => [(!is_positive(0.0)).then_some([-FAR, FAR]), None],
+        }
+    }
+
+    /// The curved face where the ray meets it nearest to `t`, put back on the surface.
+    fn level(&self, profile: &Profile, o: DVec3, d: DVec3, t: f32) -> Level {
+        let mut p = o + d * unrounded(self.roots(profile, o, d), t);
         for _ in 0..2 {
-            let slope = gradient(p);
-            let height = p.x * p.x + p.y * p.y - rho_at(rho, p.z);
-            let step = slope * (height / slope.length_squared());
+            let (height, gradient, _) = profile.jet(p);
+            let step = gradient * (height / gradient.length_squared());
             if step.is_finite() {
                 p -= step;
             }
         }
-        let hessian = DMat3::from_diagonal(DVec3::new(2.0, 2.0, -2.0 * rho[2]));
-        Level { p, gradient: gradient(p), hessian, center: self.extent.center(), d }
+        let (_, gradient, hessian) = profile.jet(p);
+        Level { p, gradient, hessian, center: self.extent.center(), d }
     }
-}
-
-fn rho_at([r0, r1, r2]: [f64; 3], z: f64) -> f64 {
-    r0 + z * (r1 + z * r2)
 }

@@ -18,9 +18,12 @@ use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
 
-const TYPES: [&str; 11] = [
+const TYPES: [&str; 14] = [
     "sphere",
     "cylinder",
+    "cone",
+    "paraboloid",
+    "hyperboloid",
     "disk",
     "plane",
     "trianglemesh",
@@ -129,6 +132,25 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             z_max: reader.float("zmax", 1.0),
             phi_max: reader.positive("phimax", 360.0),
         },
+        "cone" => ShapeKind::Cone {
+            radius: reader.positive("radius", 1.0),
+            height: reader.positive("height", 1.0),
+            phi_max: reader.positive("phimax", 360.0),
+        },
+        "paraboloid" => ShapeKind::Paraboloid {
+            radius: reader.positive("radius", 1.0),
+            z_min: reader.float("zmin", 0.0),
+            z_max: reader.positive("zmax", 1.0),
+            phi_max: reader.positive("phimax", 360.0),
+        },
+        "hyperboloid" => {
+            let ends = [reader.point3("p1", Vec3::ZERO), reader.point3("p2", Vec3::ONE)];
+            if ends[0].z == ends[1].z {
+                reader.refuse("p2", "`p1` and `p2` have the same z: a `disk` draws what such a line sweeps");
+                return None;
+            }
+            ShapeKind::Hyperboloid { ends, phi_max: reader.positive("phimax", 360.0) }
+        }
         "disk" => ShapeKind::Disk {
             height: reader.float("height", 0.0),
             radius: reader.positive("radius", 1.0),
