@@ -249,14 +249,18 @@ fn rays_inside_do_not_leak() {
             for step in 0..20_000 {
                 let Some(hit) = nearest(&world, &ray) else {
                     // Beside an edge sharper than a right angle, a step inside from one face may end outside of the other.
-                    let is_sharp = matches!(name, "a cone" | "a bowl" | "a waist" | "a lens" | "a bitten ball");
+                    let is_sharp =
+                        !matches!(name, "a cylinder" | "a cut ball" | "a box of planes" | "a cross");
                     assert!(is_sharp, "{name} under transform {i} leaks at step {step}: {ray:?}");
                     past_edges += 1;
                     ray = start(rng);
                     continue;
                 };
                 let surface = world.surface(&ray, &hit);
-                assert!(surface.n.dot(surface.wo) < 0.0, "{name} under transform {i}: the outside of {surface:?}");
+                assert!(
+                    surface.n.dot(surface.wo) < 0.0,
+                    "{name} under transform {i}: the outside of {surface:?}"
+                );
                 ray = surface.spawn_ray(face_forward(direction(rng), -surface.n));
             }
         }
