@@ -41,6 +41,11 @@ impl Quadric {
         Self { placement, flips }
     }
 
+    /// Makes its outside its inside.
+    pub fn turn_round(&mut self) {
+        self.flips = !self.flips;
+    }
+
     pub fn surface(&self, local: &Local, ray: &Ray) -> SurfacePoint {
         let vector = |v: DVec3| self.placement.vector(v);
         let dn = weingarten(local).map(|dn| self.normal_change(local.n, dn));

@@ -8,6 +8,7 @@ mod emission;
 mod lights;
 mod materials;
 mod shapes;
+mod solids;
 mod spheres;
 mod tessellation;
 
