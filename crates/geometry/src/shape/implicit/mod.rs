@@ -167,7 +167,7 @@ impl Body {
         range: [f64; 2],
         wanted: impl FnMut(&Root) -> bool,
     ) -> Option<Root> {
-        if !(range[1] < f64::INFINITY) || d == DVec3::ZERO {
+        if d == DVec3::ZERO || !range[1].is_finite() {
             return None;
         }
         // Counted from the start of the range, where the numbers are small.
