@@ -107,6 +107,8 @@ pub enum ShapeKind {
     },
     /// The plane z = 0.
     Plane,
+    /// Many whole spheres.
+    Spheres(SpheresDesc),
     /// Where a formula is zero.
     Implicit {
         /// The formula, of x, y and z.
@@ -146,6 +148,15 @@ pub enum ShapeKind {
         /// Times that it is divided.
         levels: i32,
     },
+}
+
+/// Whole spheres, as arrays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpheresDesc {
+    /// Centres.
+    pub centers: Arc<[Point3]>,
+    /// One radius for all, or one for each.
+    pub radii: Arc<[f32]>,
 }
 
 /// How bodies are combined.

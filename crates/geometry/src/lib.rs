@@ -14,6 +14,7 @@ mod mesh;
 mod placement;
 mod shape;
 mod simd;
+mod sphere_set;
 mod surface;
 mod tessellation;
 mod watertight;
@@ -27,6 +28,7 @@ pub use shape::{
     Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle,
 };
 pub use simd::InstructionSet;
+pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

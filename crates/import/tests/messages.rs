@@ -203,6 +203,15 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:53 error[parameter-value] `indices` has 3, but there are 3 points in `P`",
     ),
     (
+        r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 2 3]"#,
+        "1:42 error[parameter-value] `radius` has 3 values for 2 points in `P`",
+    ),
+    (
+        r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 -2]"#,
+        "1:42 error[parameter-value] `radius` 1 is -2; it must be above zero",
+    ),
+    (r#"Shape "spheres" "float radius" 2"#, "1:7 error[missing-parameter] `spheres` needs the parameter `P`"),
+    (
         r#"Shape "nurbs""#,
         "1:7 error[old-name] there is no shape `nurbs` (there are no NURBS any more; write a mesh)",
     ),

@@ -35,6 +35,7 @@ pub use hyperboloid::Hyperboloid;
 pub use implicit::{Formula, FormulaError, Implicit};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
+pub(crate) use quadric::first_root;
 pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;

@@ -1,10 +1,11 @@
-//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
+//! What stands together: triangles and spheres of sets in trees of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
 #![allow(unsafe_code)]
 
 use super::packet::Packet;
 use super::query::Query;
+use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
@@ -37,6 +38,7 @@ pub(super) struct Trace<'a> {
 pub(super) struct Group {
     triangles: Bvh,
     packets: Vec<Packet>,
+    spheres: Spheres,
     items: Bvh,
     /// In the order of the leaves of `items`.
     item_list: Vec<Item>,
@@ -61,7 +63,7 @@ impl Group {
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(_) => {}
+                Geometry::Mesh(_) | Geometry::Spheres(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -91,19 +93,20 @@ impl Group {
         let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
         let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
-        Self { triangles, packets, items: boxes, item_list, unbounded }
+        let spheres = Spheres::build(members, geometries, quality);
+        Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
     }
 
     /// Bytes of memory that the trees take.
     pub fn bytes(&self) -> usize {
         let packets = size_of_val(&*self.packets);
         let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
-        self.triangles.bytes() + packets + self.items.bytes() + items
+        self.triangles.bytes() + packets + self.spheres.bytes() + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
     pub fn bounds(&self) -> Bounds3 {
-        self.triangles.bounds().union(self.items.bounds())
+        self.triangles.bounds().union(self.spheres.tree.bounds()).union(self.items.bounds())
     }
 
     /// Shows hits to the query; whether it wants no more.
@@ -130,6 +133,9 @@ impl Group {
             if stop {
                 return true;
             }
+        }
+        if self.spheres.trace(trace, query) {
+            return true;
         }
         if !self.item_list.is_empty() {
             let set = trace.world.instruction_set;
@@ -264,7 +270,7 @@ impl Trace<'_> {
                 let hit = match self.world.geometry(geometry) {
                     Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
                     Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
-                    Geometry::Mesh(_) => None,
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
                 };
                 hit.is_some_and(|hit| {
                     query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })

@@ -9,6 +9,7 @@ mod lights;
 mod materials;
 mod shapes;
 mod solids;
+mod spheres;
 mod tessellation;
 
 use crate::camera;

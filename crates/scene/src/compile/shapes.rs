@@ -1,6 +1,7 @@
 //! Shapes, objects and instances, and the lights that emitting shapes are.
 
 use super::Compiler;
+use super::curves::are_strands;
 use super::solids::Assembly;
 use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
 use crate::material::Material;
@@ -33,8 +34,9 @@ impl Compiler<'_> {
     /// Everything that can be hit.
     pub(super) fn shapes(&mut self) {
         let desc = self.desc;
-        for (_, shape) in desc.shapes.iter() {
-            self.shape(shape);
+        let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape).collect();
+        for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
+            self.shape(run);
         }
         let mut groups = HashMap::new();
         for (_, instance) in desc.instances.iter() {
@@ -91,30 +93,33 @@ impl Compiler<'_> {
     fn object(&mut self, handle: Handle<ObjectDesc>) -> ObjectGroups {
         let mut groups = ObjectGroups { resting: self.world.add_group(), moving: Vec::new() };
         let object = &self.desc.objects[handle];
-        for (_, shape) in object.shapes.iter() {
+        let shapes: Vec<_> = object.shapes.iter().map(|(_, shape)| shape).collect();
+        for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
+            let shape = run[0];
             if shape.area_light.is_some() {
                 let message = "shapes of objects do not emit; drawn without light";
                 self.warn("not-drawn", message, shape.origin.span);
             }
             if shape.world_from_object.is_animated() {
                 let group = self.world.add_group();
-                self.unlit(shape, group, &Transform::IDENTITY);
+                self.unlit(run, group, &Transform::IDENTITY);
                 groups.moving.push((group, shape.world_from_object));
                 continue;
             }
             match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.unlit(shape, groups.resting, &transform),
+                Some(transform) => self.unlit(run, groups.resting, &transform),
                 None => self.singular("shape", &shape.origin),
             }
         }
         groups
     }
 
-    /// A shape of the world: in render space where it rests, in a group of its own where it moves.
-    fn shape(&mut self, shape: &Stated<ShapeDesc>) {
+    /// A shape of the world (or strands): in render space where it rests, in a group of its own where it moves.
+    fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
+        let shape = run[0];
         if !shape.world_from_object.is_animated() {
             return match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.resting(shape, &transform),
+                Some(transform) => self.resting(run, &transform),
                 None => self.singular("shape", &shape.origin),
             };
         }
@@ -125,22 +130,24 @@ impl Compiler<'_> {
             self.warn("not-drawn", "moving shapes do not emit yet; drawn without light", shape.origin.span);
         }
         let group = self.world.add_group();
-        self.unlit(shape, group, &Transform::IDENTITY);
+        self.unlit(run, group, &Transform::IDENTITY);
         self.world.add_instance(Instance { group, render_from_instance });
     }
 
     /// Adds a shape to a group of instances, where nothing emits.
-    fn unlit(&mut self, shape: &Stated<ShapeDesc>, group: GroupId, transform: &Transform) {
+    fn unlit(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
+        let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(shape, transform) {
+        for geometry in self.geometries(run, transform) {
             self.world.add_geometry(group, geometry);
             self.entries.push(GeometryEntry { material, alpha, first_light: None });
         }
     }
 
-    fn resting(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) {
+    fn resting(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) {
+        let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(shape, transform) {
+        for geometry in self.geometries(run, transform) {
             let first_light = self.area_lights(shape, &geometry, alpha);
             self.world.add_geometry(GroupId::TOP, geometry);
             self.entries.push(GeometryEntry { material, alpha, first_light });
@@ -167,7 +174,8 @@ impl Compiler<'_> {
         }
     }
 
-    fn geometries(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) -> Vec<Geometry> {
+    fn geometries(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) -> Vec<Geometry> {
+        let shape = run[0];
         let reverse = shape.reverse_orientation;
         let one = |shape: Shape| vec![Geometry::from(shape)];
         match &shape.kind {
@@ -190,6 +198,7 @@ impl Compiler<'_> {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Spheres(spheres) => self.spheres(spheres, shape, transform).into_iter().collect(),
             ShapeKind::Implicit { formula, bounds: [min, max] } => {
                 let bounds = Bounds3 { min: *min, max: *max };
                 let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
@@ -213,7 +222,7 @@ impl Compiler<'_> {
                 let triangles = self.mesh(triangles, shape, transform);
                 triangles.into_iter().chain(self.patches(patches, shape, transform)).collect()
             }
-            ShapeKind::Curve(curve) => self.curve(curve, shape, transform).into_iter().collect(),
+            ShapeKind::Curve(_) => vec![self.curves(run, transform).into()],
             ShapeKind::LoopSubdivision { mesh, levels } => {
                 self.loop_subdivision(mesh, *levels, shape, transform).into_iter().collect()
             }
@@ -347,7 +356,10 @@ impl Compiler<'_> {
         let shared = Arc::new(emission.clone());
         let first = LightId(self.lights.len() as u32);
         for primitive in 0..geometry.len() as u32 {
-            let part = geometry.shape(primitive)?;
+            let Some(part) = geometry.shape(primitive) else {
+                self.warn("light-ignored", "curves do not emit; drawn without light", span);
+                return None;
+            };
             if part.bounds().is_none() {
                 self.error(
                     "infinite-light",

@@ -68,6 +68,7 @@ impl Compiler<'_> {
             | ShapeKind::Cone { .. }
             | ShapeKind::Paraboloid { .. }
             | ShapeKind::Hyperboloid { .. } => "a shape whose `phimax` is below 360",
+            ShapeKind::Spheres(_) => "a set of spheres",
             ShapeKind::Disk { .. } => "a disk",
             ShapeKind::Triangles(_) | ShapeKind::PlyMesh { .. } | ShapeKind::LoopSubdivision { .. } => {
                 "a mesh"

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use description::{
     CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin,
-    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, Stated,
+    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, SpheresDesc, Stated,
 };
 use math::Vec3;
 use rayon::prelude::*;
@@ -18,8 +18,9 @@ use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
 
-const TYPES: [&str; 14] = [
+const TYPES: [&str; 15] = [
     "sphere",
+    "spheres",
     "cylinder",
     "cone",
     "paraboloid",
@@ -158,6 +159,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             phi_max: reader.positive("phimax", 360.0),
         },
         "plane" => ShapeKind::Plane,
+        "spheres" => ShapeKind::Spheres(spheres(reader)?),
         "implicit" => implicit(reader)?,
         "csg" => solid(reader)?,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
@@ -333,6 +335,24 @@ fn patch_mesh(reader: &mut Reader) -> Option<PatchMeshDesc> {
         indices,
         positions,
     })
+}
+
+fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
+    let centers = points(reader)?;
+    let radii = reader.floats("radius").unwrap_or_else(|| vec![1.0]);
+    let refusal = if radii.len() != 1 && radii.len() != centers.len() {
+        Some(("radius", format!("`radius` has {} values for {} points in `P`", radii.len(), centers.len())))
+    } else if let Some(i) = radii.iter().position(|r| !(*r > 0.0 && r.is_finite())) {
+        Some(("radius", format!("`radius` {i} is {}; it must be above zero", radii[i])))
+    } else {
+        let i = centers.iter().position(|center| !center.is_finite());
+        i.map(|i| ("P", format!("point {i} in `P` is beyond numbers")))
+    };
+    if let Some((name, message)) = refusal {
+        reader.refuse(name, message);
+        return None;
+    }
+    Some(SpheresDesc { centers, radii: radii.into() })
 }
 
 fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
