@@ -30,7 +30,8 @@ use program::Program;
 use roots::Roots;
 use std::sync::Arc;
 
-/// A formula F(x, y, z).
+/// A formula F(x, y, z): numbers, x, y, z, pi, e, + − * / ^, parentheses, and the functions sqrt, abs, sin, cos, tan, exp, log,
+/// min, max and pow.
 #[derive(Clone, Debug)]
 pub struct Formula {
     program: Arc<Program>,
