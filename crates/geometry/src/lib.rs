@@ -31,4 +31,6 @@ pub use simd::InstructionSet;
 pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
-pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};
+pub use world::{
+    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, RefitError, World, WorldBuilder,
+};

@@ -8,6 +8,7 @@ mod builder;
 mod group;
 mod packet;
 mod query;
+mod refit;
 mod spheres;
 mod stats;
 
@@ -24,6 +25,7 @@ use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
+pub use refit::RefitError;
 pub use stats::RayStats;
 
 /// A geometry, counted over the whole world in the order of [`WorldBuilder::add_geometry`].
@@ -168,11 +170,13 @@ impl Placed {
     }
 }
 
-/// Everything that a ray can hit; never changes once built.
+/// Everything that a ray can hit. Geometries may move ([`World::refit`]), but there will never be more or fewer of them.
 #[derive(Clone, Debug)]
 pub struct World {
     groups: Vec<Group>,
     geometries: Vec<Geometry>,
+    /// Where each geometry is.
+    group_of: Vec<GroupId>,
     instances: Vec<Placed>,
     instruction_set: InstructionSet,
 }
