@@ -1,10 +1,11 @@
-//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
+//! What stands together: triangles and spheres of sets in trees of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
 #![allow(unsafe_code)]
 
 use super::packet::Packet;
 use super::query::Query;
+use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
@@ -38,6 +39,7 @@ pub(super) struct Trace<'a> {
 pub(super) struct Group {
     triangles: Bvh,
     packets: Vec<Packet>,
+    spheres: Spheres,
     items: Bvh,
     /// In the order of the leaves of `items`.
     item_list: Vec<Item>,
@@ -62,7 +64,7 @@ impl Group {
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(_) => {}
+                Geometry::Mesh(_) | Geometry::Spheres(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -89,18 +91,20 @@ impl Group {
         }
         let corners = |r: &Reference| match &geometries[r.geometry() as usize] {
             Geometry::Mesh(mesh) => Some(mesh.corners(r.primitive() as usize)),
-            Geometry::Shapes(_) | Geometry::Curves(_) => None,
+            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
         };
         let pack = |block: &[Reference]| packet(block, geometries);
         let triangles = triangle_references(members, geometries);
         let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, corners, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
         let (boxes, item_list) = Bvh::build(boxes, quality, 1, |_| None, item);
-        Self { triangles, packets, items: boxes, item_list, unbounded }
+        let spheres = Spheres::build(members, geometries, quality);
+        Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
     }
 
-    /// Brings the triangles up to date after they have moved, but leaves their tree as it is.
-    pub fn refit_triangles(&mut self, geometries: &[Geometry]) {
+    /// Brings triangles and sets of spheres up to date after they have moved, but leaves their trees as they are.
+    pub fn refit_meshes_and_spheres(&mut self, geometries: &[Geometry]) {
+        self.spheres.refit(geometries);
         self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, geometries));
     }
 
@@ -111,7 +115,7 @@ impl Group {
                 Item::Shape(id, primitive) => match &geometries[id.0 as usize] {
                     Geometry::Shapes(shapes) => shapes[primitive as usize].bounds(),
                     Geometry::Curves(curves) => Some(curves.bounds(primitive)),
-                    Geometry::Mesh(_) => None,
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
                 },
                 Item::Instance(id) => {
                     let placed = &instances[id.0 as usize];
@@ -127,12 +131,12 @@ impl Group {
     pub fn bytes(&self) -> usize {
         let packets = size_of_val(&*self.packets);
         let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
-        self.triangles.bytes() + packets + self.items.bytes() + items
+        self.triangles.bytes() + packets + self.spheres.bytes() + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
     pub fn bounds(&self) -> Bounds3 {
-        self.triangles.bounds().union(self.items.bounds())
+        self.triangles.bounds().union(self.spheres.tree.bounds()).union(self.items.bounds())
     }
 
     /// Shows hits to the query; whether it wants no more.
@@ -159,6 +163,9 @@ impl Group {
             if stop {
                 return true;
             }
+        }
+        if self.spheres.trace(trace, query) {
+            return true;
         }
         if !self.item_list.is_empty() {
             let set = trace.world.instruction_set;
@@ -191,7 +198,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
             let mut t_max = query.t_max();
             let mut leaves =
                 Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY {
+            let (extents, stop) = if Q::ANY && t_max == f32::INFINITY {
                 group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
             } else {
                 group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
@@ -211,6 +218,13 @@ struct Triangles<'a, V, Q> {
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
+    type Block = Packet;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Packet] {
+        &self.group.packets
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         // SAFETY: the tree was built over these packets.
@@ -256,7 +270,7 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
         unsafe {
-            if Q::ANY {
+            if Q::ANY && t_max == f32::INFINITY {
                 group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
             } else {
                 group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
@@ -272,6 +286,13 @@ struct Items<'a, 'b, Q> {
 }
 
 impl<Q: Query> Leaves for Items<'_, '_, Q> {
+    type Block = Item;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Item] {
+        &self.group.item_list
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         for &item in &self.group.item_list[blocks] {
@@ -293,7 +314,7 @@ impl Trace<'_> {
                 let hit = match self.world.geometry(geometry) {
                     Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
                     Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
-                    Geometry::Mesh(_) => None,
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
                 };
                 hit.is_some_and(|hit| {
                     query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })

@@ -53,11 +53,11 @@ impl World {
         let Some((top, placed)) = groups.split_first_mut() else { return Ok(()) };
         let stale = placed.par_iter_mut().zip(&is_stale[1..]).filter(|(_, is_stale)| **is_stale);
         stale.for_each(|(group, _)| {
-            group.refit_triangles(geometries);
+            group.refit_meshes_and_spheres(geometries);
             group.refit_items(geometries, &[], &[]);
         });
         if is_stale[0] {
-            top.refit_triangles(geometries);
+            top.refit_meshes_and_spheres(geometries);
         }
         top.refit_items(geometries, instances, placed);
         Ok(())
@@ -72,6 +72,7 @@ fn same_primitives(old: &Geometry, new: &Geometry) -> bool {
                 |(old, new): (&crate::Shape, &crate::Shape)| old.bounds().is_some() == new.bounds().is_some();
             old.len() == new.len() && old.iter().zip(new.iter()).all(ends)
         }
+        (Geometry::Spheres(old), Geometry::Spheres(new)) => old.len() == new.len(),
         (Geometry::Curves(old), Geometry::Curves(new)) => old.len() == new.len(),
         _ => false,
     }
