@@ -2,7 +2,7 @@
 //!
 //! The bits of a centroid's quantised coordinates, interleaved, are its place on a curve that visits space
 //! octant by octant. Primitives are sorted along the curve, and a range of them is divided where the highest
-//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach et al. 2009]). The
+//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach 2009]). The
 //! smallest ranges are divided so that blocks are full.
 
 use super::balanced::PARALLEL;
