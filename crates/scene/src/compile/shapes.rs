@@ -2,6 +2,7 @@
 
 use super::Compiler;
 use super::curves::are_strands;
+use super::solids::Assembly;
 use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
 use crate::material::Material;
 use crate::scene::GeometryEntry;
@@ -153,7 +154,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn singular(&mut self, what: &str, origin: &Origin) {
+    pub(super) fn singular(&mut self, what: &str, origin: &Origin) {
         self.error("singular-transform", format!("the transform of the {what} has no inverse"), origin.span);
     }
 
@@ -197,10 +198,19 @@ impl Compiler<'_> {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Spheres(spheres) => self.spheres(spheres, shape, transform).into_iter().collect(),
             ShapeKind::Implicit { formula, bounds: [min, max] } => {
                 let bounds = Bounds3 { min: *min, max: *max };
                 let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
                 one(Implicit::new(transform, reverse, formula, &bounds).into())
+            }
+            ShapeKind::Solid { .. } => {
+                let solid = self.solid(shape, transform, &mut Assembly::new(shape.origin.span));
+                let Some(mut solid) = solid else { return Vec::new() };
+                if reverse != transform.swaps_handedness() {
+                    solid.turn_round();
+                }
+                one(solid.into())
             }
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
@@ -220,7 +230,7 @@ impl Compiler<'_> {
     }
 
     /// A formula that is zero somewhere in the box, as far as is known.
-    fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
+    pub(super) fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
         let formula = match Formula::parse(&text.value) {
             Ok(formula) => formula,
             Err(FormulaError { place, message, help }) => {
@@ -329,8 +339,8 @@ impl Compiler<'_> {
     ) -> Option<LightId> {
         let handle = shape.area_light?;
         let span = shape.origin.span;
-        if matches!(shape.kind, ShapeKind::Implicit { .. }) {
-            let message = "surfaces given by formulas do not emit; drawn without light";
+        if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
+            let message = "solids and surfaces given by formulas do not emit; drawn without light";
             self.warn("not-drawn", message, span);
             return None;
         }
