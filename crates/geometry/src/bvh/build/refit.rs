@@ -4,7 +4,7 @@
 //! either, and begins where the one before it ends.
 
 use super::reference::Extent;
-use crate::bvh::node::{Child, WideNode};
+use crate::bvh::node::{Child, WIDTH, WideNode};
 use math::Bounds3;
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ impl<'a, B: Send> Part<'a, B> {
         let parallel = self.nodes.len() > PARALLEL;
         let root = self.take(self.first_node + 1, self.first_block).nodes;
         let node = &mut root[0];
-        let children = in_order(node);
+        let children = &in_order(node)[..node.len()];
         let mut all = Extent::EMPTY;
         let mut set = |lane, extent: Extent| {
             node.set_bounds(lane, &extent.bounds());
@@ -87,10 +87,10 @@ impl<'a, B: Send> Part<'a, B> {
     }
 }
 
-/// The children of a node with their lanes, in the order in which they were written.
-fn in_order(node: &WideNode) -> Vec<(usize, Child)> {
-    let mut children: Vec<_> = node.children()[..node.len()].iter().copied().enumerate().collect();
-    children.sort_by_key(|(_, child)| place(child));
+/// The children of a node with their lanes, in the order in which they were written; unused lanes come last.
+fn in_order(node: &WideNode) -> [(usize, Child); WIDTH] {
+    let mut children = std::array::from_fn(|lane| (lane, node.children()[lane]));
+    children[..node.len()].sort_unstable_by_key(|(_, child)| place(child));
     children
 }
 
