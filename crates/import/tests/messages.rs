@@ -203,6 +203,18 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:53 error[parameter-value] `indices` has 3, but there are 3 points in `P`",
     ),
     (
+        r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 0 4 0 1 1 0 2 1 0 1 2 0] "integer contours" [3 4]"#,
+        "1:66 error[parameter-value] `contours` must divide up the 6 points in `P`",
+    ),
+    (
+        r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 4 4 0 0 4 1]"#,
+        "1:17 error[parameter-value] `P` is no polygon: point 1 is outside of the plane of the others",
+    ),
+    (
+        r#"Shape "polygon" "point3 P" [0 0 0 4 4 0 1 4 0 4 0 0]"#,
+        "1:17 error[parameter-value] `P` is no polygon: the edges that begin with the points 0 and 2 touch or cross",
+    ),
+    (
         r#"Shape "nurbs""#,
         "1:7 error[old-name] there is no shape `nurbs` (there are no NURBS any more; write a mesh)",
     ),

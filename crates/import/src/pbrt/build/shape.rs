@@ -12,13 +12,13 @@ use rayon::prelude::*;
 
 use super::{Builder, unknown_reference};
 use crate::assets::{AssetSource, read_unpacked};
-use crate::mesh::{Format, scene::shape_kind};
+use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
 use math::Vec3;
 
-const TYPES: [&str; 12] = [
+const TYPES: [&str; 13] = [
     "sphere",
     "cylinder",
     "cone",
@@ -27,6 +27,7 @@ const TYPES: [&str; 12] = [
     "disk",
     "plane",
     "trianglemesh",
+    "polygon",
     "bilinearmesh",
     "plymesh",
     "curve",
@@ -157,6 +158,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
         },
         "plane" => ShapeKind::Plane,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
+        "polygon" => ShapeKind::Triangles(polygon(reader)?),
         "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
         "plymesh" => mesh_file(reader)?,
         "curve" => ShapeKind::Curve(curve(reader)?),
@@ -253,6 +255,38 @@ fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc>
         uvs: per_vertex(reader, "uv", vertices, uvs),
         indices,
         positions,
+    })
+}
+
+/// A plane polygon: `contours` counts the points of its outer contour and of each hole.
+fn polygon(reader: &mut Reader) -> Option<MeshDesc> {
+    let positions = points(reader)?;
+    let vertices = positions.len();
+    let counts = reader.integers("contours").unwrap_or_else(|| vec![vertices as i32]);
+    let lengths: Option<Vec<usize>> = counts.iter().map(|&count| usize::try_from(count).ok()).collect();
+    let lengths = lengths.filter(|lengths| {
+        !lengths.is_empty()
+            && lengths.iter().try_fold(0, |sum: usize, &n| sum.checked_add(n)) == Some(vertices)
+    });
+    let Some(lengths) = lengths else {
+        let message = format!("`contours` must divide up the {vertices} points in `P`");
+        reader.refuse(if reader.has("contours") { "contours" } else { "P" }, message);
+        return None;
+    };
+    let indices = match triangulate_contours(&positions, &lengths) {
+        Ok(triangles) => triangles.into(),
+        Err(error) => {
+            reader.refuse("P", format!("`P` is no polygon: {error}"));
+            return None;
+        }
+    };
+    let (normals, uvs) = (reader.normals("N"), reader.points2("uv"));
+    Some(MeshDesc {
+        normals: per_vertex(reader, "N", vertices, normals),
+        uvs: per_vertex(reader, "uv", vertices, uvs),
+        indices,
+        positions,
+        ..MeshDesc::default()
     })
 }
 
