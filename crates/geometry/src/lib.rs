@@ -18,8 +18,8 @@ mod world;
 
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
-    BilinearPatch, Cone, Cylinder, Disk, Hyperboloid, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,
-    ShapeSampleContext, Sphere, Triangle,
+    BilinearPatch, Cone, Cylinder, Disk, Hyperboloid, MovingMesh, MovingTriangle, Paraboloid, Plane, Shape,
+    ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
 pub use surface::{Shading, SurfacePoint};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

@@ -215,6 +215,10 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:17 error[parameter-value] `P` is no polygon: the edges that begin with the points 0 and 2 touch or cross",
     ),
     (
+        r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0 0 0 1] "integer keyframes" 3"#,
+        "1:62 error[parameter-value] the 4 points in `P` are no multiple of 3",
+    ),
+    (
         r#"Shape "nurbs""#,
         "1:7 error[old-name] there is no shape `nurbs` (there are no NURBS any more; write a mesh)",
     ),

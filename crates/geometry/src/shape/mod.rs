@@ -18,6 +18,7 @@ mod cone;
 mod cylinder;
 mod disk;
 mod hyperboloid;
+mod moving_triangle;
 mod paraboloid;
 mod plane;
 mod quadric;
@@ -29,6 +30,7 @@ pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use hyperboloid::Hyperboloid;
+pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub use sphere::Sphere;
@@ -120,6 +122,8 @@ pub enum Shape {
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
     Triangle(Triangle),
+    /// Triangle whose corners move.
+    MovingTriangle(MovingTriangle),
 }
 
 macro_rules! each_shape {
@@ -134,6 +138,7 @@ macro_rules! each_shape {
             Shape::Plane($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
+            Shape::MovingTriangle($shape) => $result,
         }
     };
 }
@@ -147,7 +152,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane BilinearPatch Triangle MovingTriangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -173,10 +178,11 @@ impl Shape {
             Self::Plane(shape) => shape.surface(ray),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
+            Self::MovingTriangle(shape) => shape.surface(ray, hit),
         }
     }
 
-    /// The area; infinite for the plane. Approximate where a quadric's transform is no similarity, and for
+    /// The area; infinite for the plane, and that at the start for what moves. Approximate where a quadric's transform is no similarity, and for
     /// bent patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
@@ -233,7 +239,8 @@ impl Shape {
             | Self::Cylinder(_)
             | Self::Cone(_)
             | Self::Paraboloid(_)
-            | Self::Hyperboloid(_) => DirectionCone::ENTIRE_SPHERE,
+            | Self::Hyperboloid(_)
+            | Self::MovingTriangle(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),

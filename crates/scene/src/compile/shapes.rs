@@ -11,14 +11,16 @@ use description::{
 };
 use geometry::{
     BilinearPatch, Cone, Cylinder, Disk, Geometry, GroupId, Hyperboloid, Instance, MeshAttributes,
-    Paraboloid, Plane, Shape, Sphere, TriangleMesh,
+    MovingMesh, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
-use math::{AnimatedTransform, Bounds2, Transform};
+use math::{AnimatedTransform, Bounds2, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
 use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::sync::Arc;
+
+const MOVING_LIGHT: &str = "moving shapes do not emit yet; drawn without light";
 
 /// Where the shapes of an object are.
 struct ObjectGroups {
@@ -121,7 +123,7 @@ impl Compiler<'_> {
             return self.singular("shape", &shape.origin);
         };
         if shape.area_light.is_some() {
-            self.warn("not-drawn", "moving shapes do not emit yet; drawn without light", shape.origin.span);
+            self.warn("not-drawn", MOVING_LIGHT, shape.origin.span);
         }
         let group = self.world.add_group();
         self.unlit(shape, group, &Transform::IDENTITY);
@@ -220,14 +222,23 @@ impl Compiler<'_> {
         if mesh.indices.is_empty() {
             return None;
         }
-        let attributes = MeshAttributes {
-            normals: given(&mesh.normals),
-            tangents: given(&mesh.tangents),
-            uvs: given(&mesh.uvs),
+        let key = |positions: &Arc<[Point3]>, normals: &Arc<[Normal3]>| {
+            let attributes = MeshAttributes {
+                normals: given(normals),
+                tangents: given(&mesh.tangents),
+                uvs: given(&mesh.uvs),
+            };
+            let (positions, indices) = (positions.clone(), mesh.indices.clone());
+            TriangleMesh::new(positions, indices, attributes, transform, shape.reverse_orientation)
         };
-        let (positions, indices) = (mesh.positions.clone(), mesh.indices.clone());
-        match TriangleMesh::new(positions, indices, attributes, transform, shape.reverse_orientation) {
-            Ok(mesh) => Some(mesh.into()),
+        let later = mesh.later.iter().map(|later| key(&later.positions, &later.normals));
+        let keys = std::iter::once(key(&mesh.positions, &mesh.normals)).chain(later);
+        match keys.collect::<Result<Vec<_>, _>>() {
+            Ok(mut keys) if keys.len() == 1 => keys.pop().map(Geometry::from),
+            Ok(keys) => {
+                let mesh = MovingMesh::new(keys, shape.world_from_object.times);
+                Some(Geometry::Shapes(mesh.triangles().map(Shape::from).collect()))
+            }
             Err(error) => {
                 self.error("invalid-mesh", error.to_string(), shape.origin.span);
                 None
@@ -297,6 +308,10 @@ impl Compiler<'_> {
     ) -> Option<LightId> {
         let handle = shape.area_light?;
         let span = shape.origin.span;
+        if matches!(&shape.kind, ShapeKind::Triangles(mesh) if !mesh.later.is_empty()) {
+            self.warn("not-drawn", MOVING_LIGHT, span);
+            return None;
+        }
         let material = self.material_id(shape.material);
         if matches!(self.materials[material.0 as usize].material, Material::Interface) {
             self.warn("light-ignored", "a shape of material `interface` does not emit", span);

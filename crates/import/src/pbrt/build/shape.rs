@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
-    SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
+    CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, Origin,
+    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
 };
 use rayon::prelude::*;
 
@@ -242,19 +242,36 @@ fn face_indices(reader: &mut Reader, faces: usize) -> Arc<[i32]> {
 
 fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc> {
     let positions = points(reader)?;
-    let indices = indices(reader, positions.len(), [0, 1, 2])?;
     if !with_attributes {
+        let indices = indices(reader, positions.len(), [0, 1, 2])?;
         return Some(MeshDesc { indices, positions, ..MeshDesc::default() });
     }
+    let keys = reader.integer("keyframes", 1, 1..=i32::MAX) as usize;
+    let vertices = positions.len() / keys;
+    if vertices * keys != positions.len() {
+        let message = format!("the {} points in `P` are no multiple of {keys}", positions.len());
+        reader.refuse("keyframes", message);
+        return None;
+    }
+    let indices = indices(reader, vertices, [0, 1, 2])?;
     let (normals, tangents, uvs) = (reader.normals("N"), reader.vectors3("S"), reader.points2("uv"));
-    let vertices = positions.len();
+    // Normals may stay while vertices move.
+    let moving = normals.as_ref().is_some_and(|normals| normals.len() == vertices * keys);
+    let normals = per_vertex(reader, "N", if moving { positions.len() } else { vertices }, normals);
+    let key = |k: usize| MeshKey {
+        positions: positions[k * vertices..][..vertices].into(),
+        normals: if moving { normals[k * vertices..][..vertices].into() } else { normals.clone() },
+    };
+    let later = (1..keys).map(key).collect();
+    let MeshKey { positions, normals } = if keys == 1 { MeshKey { positions, normals } } else { key(0) };
     Some(MeshDesc {
         face_indices: face_indices(reader, indices.len()),
-        normals: per_vertex(reader, "N", vertices, normals),
+        normals,
         tangents: per_vertex(reader, "S", vertices, tangents),
         uvs: per_vertex(reader, "uv", vertices, uvs),
         indices,
         positions,
+        later,
     })
 }
 
