@@ -5,7 +5,8 @@ use std::sync::Arc;
 use math::{Normal3, Point2, Point3, Vector3};
 
 use crate::{
-    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, TransformDesc,
+    AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, Spanned,
+    TransformDesc,
 };
 
 /// A shape with everything that holds for it.
@@ -106,11 +107,19 @@ pub enum ShapeKind {
     },
     /// The plane z = 0.
     Plane,
+    /// Where a formula is zero.
+    Implicit {
+        /// The formula, of x, y and z.
+        formula: Spanned<String>,
+        /// Two corners of the box that the surface is cut off at.
+        bounds: [Point3; 2],
+    },
     /// Triangles.
     Triangles(MeshDesc),
     /// Bilinear patches.
     Patches(PatchMeshDesc),
-    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches). Either may be empty, not both.
+    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which share vertices. There may be
+    /// none of either, not of both.
     PlyMesh {
         /// Its triangles (and larger polygons, cut).
         triangles: MeshDesc,
@@ -118,7 +127,7 @@ pub enum ShapeKind {
         patches: PatchMeshDesc,
         /// A height along the normal by which the surface is moved.
         displacement: Option<FloatParameter>,
-        /// Longest edge of the moved surface in pixels.
+        /// Before it is moved, the surface is cut until its edges are shorter than this, in the world.
         edge_length: f32,
     },
     /// A curve.

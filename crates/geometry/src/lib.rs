@@ -1,4 +1,4 @@
-//! Rays against shapes: meshes, quadrics and patches, the tree over them, and instances.
+//! Rays against shapes: meshes, quadrics, patches and curves, the tree over them, and instances.
 //!
 //! A [`World`] holds everything that a ray can hit. It is asked in two stages: [`World::intersect`] gives a
 //! [`Hit`] (where along the ray, on which primitive), and [`World::surface`] makes of it a [`SurfacePoint`]
@@ -9,17 +9,22 @@
 //! surface again nor passes through it.
 
 mod bvh;
+mod curve;
 mod mesh;
 mod placement;
 mod shape;
 mod surface;
+mod tessellation;
 mod watertight;
 mod world;
 
+pub use bvh::BuildQuality;
+pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
-    BilinearPatch, Cone, Cylinder, Disk, Hyperboloid, MovingMesh, MovingTriangle, Paraboloid, Plane, Shape,
-    ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MovingMesh,
+    MovingTriangle, Paraboloid, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
 pub use surface::{Shading, SurfacePoint};
+pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

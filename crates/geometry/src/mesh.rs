@@ -35,7 +35,12 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// There are more triangles than an index of 32 bits can tell apart.
+    /// An edge that leads twice from one vertex to the same other, or to itself: three triangles meet there,
+    /// or two that are turned differently.
+    Edge([u32; 2]),
+    /// A vertex at which parts meet that share no edge.
+    Vertex(u32),
+    /// There are too many triangles.
     TooLarge,
 }
 
@@ -48,6 +53,13 @@ impl fmt::Display for MeshError {
             Self::AttributeLength { attribute, values, vertices } => {
                 write!(f, "{values} {attribute} for {vertices} vertices")
             }
+            Self::Edge([a, b]) => {
+                write!(
+                    f,
+                    "the edge from vertex {a} to vertex {b} does not lie between two triangles of like turn"
+                )
+            }
+            Self::Vertex(vertex) => write!(f, "parts of the mesh touch in nothing but vertex {vertex}"),
             Self::TooLarge => write!(f, "too many triangles"),
         }
     }
@@ -156,6 +168,14 @@ impl TriangleMesh {
             },
             flips: self.flips,
         }
+    }
+
+    /// Bytes of memory that the arrays take.
+    pub fn bytes(&self) -> usize {
+        let vectors =
+            [&self.normals, &self.tangents].into_iter().flatten().map(|values| size_of_val(&**values));
+        let uvs = self.uvs.as_ref().map_or(0, |uvs| size_of_val(&**uvs));
+        size_of_val(&*self.positions) + size_of_val(&*self.indices) + vectors.sum::<usize>() + uvs
     }
 
     /// The box around all vertices that a triangle uses.

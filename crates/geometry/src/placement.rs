@@ -60,6 +60,12 @@ impl Placement {
         rounded(m.transform_point3(p), spread(error) + doubles)
     }
 
+    /// How far a ball of `radius` reaches along each axis when it is brought out.
+    pub fn ball_extent(&self, radius: f64) -> DVec3 {
+        let row = |axis: usize| self.forward.row(axis).truncate().length();
+        DVec3::new(row(0), row(1), row(2)) * radius
+    }
+
     /// Brings out a direction.
     #[inline]
     pub fn vector(&self, v: DVec3) -> Vec3 {

@@ -14,7 +14,7 @@ fn brute_force(geometries: &[Geometry], ray: &Ray) -> Option<f32> {
     let mut t_max = f32::INFINITY;
     for geometry in geometries {
         for i in 0..geometry.len() as u32 {
-            if let Some(hit) = geometry.shape(i).intersect(ray, t_max) {
+            if let Some(hit) = geometry.shape(i).expect("a shape").intersect(ray, t_max) {
                 t_max = hit.t;
             }
         }

@@ -216,7 +216,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0 0 0 1] "integer keyframes" 3"#,
-        "1:62 error[parameter-value] the 4 points in `P` are no multiple of 3",
+        "1:59 error[parameter-value] the 4 points in `P` are no multiple of 3",
     ),
     (
         r#"Shape "nurbs""#,

@@ -22,7 +22,7 @@ pub use cone::{DirectionCone, bound_subtended_directions};
 pub use error::{Point3Error, offset_ray_origin};
 pub use float::*;
 pub use frame::{Frame, coordinate_system};
-pub use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
+pub use glam::{DMat3, DMat4, DVec3, Mat3, Mat4, Vec2, Vec3, Vec4};
 pub use interval::Interval;
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere, wrap_equal_area_square};
 pub use quadratic::solve_quadratic;

@@ -12,8 +12,9 @@ use description::{
     SceneDesc, Severity, ShapeDesc, ShapeKind, Span, SpectrumDesc, Stated, SubsurfaceScattering,
     TransformDesc,
 };
+use geometry::GeometryId;
 use image::Image;
-use math::{DMat4, DVec3, Ray, Vec3};
+use math::{DMat4, DVec3, Ray, Vec2, Vec3};
 use std::sync::Arc;
 
 fn span(start: u32) -> Span {
@@ -262,32 +263,131 @@ fn materials_that_are_not_drawn_yet_say_what_is_drawn() {
     warns(&desc, "displacement is not drawn yet; the surface stays as it is", 6);
 }
 
-#[test]
-fn shapes_that_are_not_drawn_yet_say_what_is_drawn() {
-    let curve = ShapeKind::Curve(CurveDesc {
-        control_points: [Vec3::ZERO; 4].into(),
+fn curve() -> CurveDesc {
+    CurveDesc {
+        control_points: [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE].into(),
         degree: 3,
         basis: CurveBasis::Bezier,
         profile: CurveProfile::Flat,
         normals: [].into(),
         width: [0.1; 2],
         split_depth: 3,
-    });
-    let loops = ShapeKind::LoopSubdivision { mesh: MeshDesc::default(), levels: 3 };
-    for (kind, message) in [
-        (curve, "shape `curve` is not drawn yet; left out"),
-        (loops, "shape `loopsubdiv` is not drawn yet; drawn as its coarse mesh"),
-    ] {
-        warns(&with(|desc| desc.shapes.push_stated(stated(kind.into(), 4))), message, 4);
     }
-    let displaced = ShapeKind::PlyMesh {
-        triangles: MeshDesc::default(),
-        patches: PatchMeshDesc::default(),
-        displacement: Some(0.1.into()),
-        edge_length: 1.0,
+}
+
+fn invalid(kind: ShapeKind, parameter: &'static str, code: &str, message: &str) {
+    let shape = with_parameter(kind.into(), parameter, 5);
+    check(&with(|desc| desc.shapes.push_stated(shape)), Severity::Error, code, message, 5);
+}
+
+#[test]
+fn curves_are_checked() {
+    let desc = with(|desc| {
+        let light = desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0)));
+        let shape = ShapeDesc { area_light: Some(light), ..ShapeKind::Curve(curve()).into() };
+        desc.shapes.push_stated(stated(shape, 4));
+    });
+    check(&desc, Severity::Warning, "light-ignored", "curves do not emit; drawn without light", 4);
+    assert_eq!(compile(&desc).unwrap().scene.lights().len(), 0);
+    let bare = CurveDesc { profile: CurveProfile::Ribbon, ..curve() };
+    invalid(ShapeKind::Curve(bare), "N", "invalid-curve", "a ribbon of 1 segments needs 2 normals");
+    let linear = stated(ShapeKind::Curve(CurveDesc { degree: 1, ..curve() }).into(), 4);
+    let desc = with(|desc| desc.shapes.push_stated(linear));
+    check(&desc, Severity::Error, "invalid-curve", "a curve of degree 1, not 2 or 3", 4);
+}
+
+#[test]
+fn curves_stand_where_they_are_put() {
+    let desc = with(|desc| {
+        let curve = CurveDesc {
+            control_points: [-3.0, -1.0, 1.0, 3.0].map(|x| Vec3::new(x, 0.0, 0.0)).into(),
+            width: [0.4, 0.2],
+            split_depth: 1,
+            ..curve()
+        };
+        let to = DMat4::from_translation(DVec3::new(0.0, 1.0, 5.0));
+        let world_from_object = TransformDesc::fixed(to);
+        desc.shapes.push(ShapeDesc { world_from_object, ..ShapeKind::Curve(curve).into() });
+    });
+    let scene = compile(&desc).unwrap().scene;
+    let hits = |y: f32, x: f32| {
+        let ray = Ray::new(Vec3::new(x, y, 0.0), Vec3::Z, 0.0);
+        scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).map(|hit| hit.1)
     };
-    let desc = with(|desc| desc.shapes.push_stated(with_parameter(displaced.into(), "displacement", 5)));
-    warns(&desc, "displacement is not drawn yet; the surface stays as it is", 5);
+    assert!((hits(1.0, 0.1).unwrap() - 5.0).abs() < 1e-5);
+    // Half as wide at the end as at the start.
+    assert!(hits(1.19, -2.99).is_some() && hits(1.19, 2.9).is_none() && hits(1.09, 2.9).is_some());
+    assert!(hits(1.0, -3.01).is_none() && hits(1.21, -2.9).is_none());
+}
+
+fn square() -> MeshDesc {
+    MeshDesc {
+        indices: [[0, 1, 2], [0, 2, 3]].into(),
+        positions: [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y].map(|p| p + Vec3::Z).into(),
+        uvs: [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y].into(),
+        ..MeshDesc::default()
+    }
+}
+
+#[test]
+fn subdivision_is_checked_and_bounded() {
+    let of = |indices: &[[u32; 3]], levels| {
+        let mesh = MeshDesc { indices: indices.into(), uvs: [].into(), ..square() };
+        ShapeKind::LoopSubdivision { mesh, levels }
+    };
+    let message = "triangle 0 names vertex 4, which does not exist";
+    invalid(of(&[[0, 1, 4]], 1), "indices", "invalid-mesh", message);
+    let message = "the edge from vertex 1 to vertex 2 does not lie between two triangles of like turn";
+    invalid(of(&[[0, 1, 2], [1, 2, 3]], 1), "indices", "invalid-mesh", message);
+    invalid(of(&[[0, 1, 2]], 13), "levels", "invalid-mesh", "too many triangles");
+    let scene = compile(&with(|desc| desc.shapes.push(of(&[[0, 1, 2], [0, 2, 3]], 2).into()))).unwrap().scene;
+    assert_eq!(scene.world().geometry(GeometryId(0)).len(), 32);
+}
+
+fn displaced(triangles: MeshDesc, edge_length: f32) -> ShapeKind {
+    let patches = PatchMeshDesc {
+        indices: [].into(),
+        positions: triangles.positions.clone(),
+        uvs: triangles.uvs.clone(),
+        ..PatchMeshDesc::default()
+    };
+    ShapeKind::PlyMesh { triangles, patches, displacement: Some(0.25.into()), edge_length }
+}
+
+#[test]
+fn displacement_is_checked_and_bounded() {
+    let bare = displaced(MeshDesc { uvs: [].into(), ..square() }, 1.0);
+    invalid(bare, "displacement", "invalid-mesh", "0 texture coordinates for 4 vertices");
+    invalid(displaced(square(), 1e-5), "edgelength", "invalid-mesh", "too many triangles");
+}
+
+#[test]
+fn displaced_meshes_move_by_their_texture() {
+    // The square is wound to face +z, and moves that way by a quarter; the option doubles the edges.
+    for (scale, triangles) in [(1.0, 16), (2.0, 4)] {
+        let mut desc = with(|desc| desc.shapes.push(displaced(square(), 0.7).into()));
+        desc.options.displacement_edge_scale = scale;
+        let scene = compile(&desc).unwrap().scene;
+        assert_eq!(scene.world().geometry(GeometryId(0)).len(), triangles);
+        let ray = Ray::new(Vec3::new(0.3, 0.4, 0.0), Vec3::Z, 0.0);
+        let (hit, t) = scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).unwrap();
+        assert!((t - 1.25).abs() < 1e-6 && hit.surface.shading.n == Vec3::Z);
+        assert!(hit.surface.uv.distance(Vec2::new(0.3, 0.4)) < 1e-6);
+    }
+    // The same as a quadrilateral.
+    let square = square();
+    let patches = PatchMeshDesc {
+        indices: [[0, 1, 3, 2]].into(),
+        positions: square.positions.clone(),
+        uvs: square.uvs.clone(),
+        ..PatchMeshDesc::default()
+    };
+    let triangles = MeshDesc { indices: [].into(), ..square };
+    let kind = ShapeKind::PlyMesh { triangles, patches, displacement: Some(0.5.into()), edge_length: 0.7 };
+    let scene = compile(&with(|desc| desc.shapes.push(kind.into()))).unwrap().scene;
+    assert_eq!(scene.world().geometry(GeometryId(0)).len(), 16);
+    let ray = Ray::new(Vec3::new(0.6, 0.4, 0.0), Vec3::Z, 0.0);
+    assert!((scene.intersect(&ray, 9.0, &mut RayStats::default()).unwrap().1 - 1.5).abs() < 1e-6);
 }
 
 fn moving() -> TransformDesc {

@@ -21,7 +21,7 @@ fn power_is_what_leaves() {
         if case.name == "disk, image" {
             continue;
         }
-        let shape = case.scene.world().geometry(GeometryId(0)).shape(0);
+        let shape = case.scene.world().geometry(GeometryId(0)).shape(0).unwrap();
         let leaving: Moments = (0..20_000)
             .map(|_| {
                 let s = shape.sample(Vec2::from(random.get_2d())).unwrap();

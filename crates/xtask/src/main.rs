@@ -1,5 +1,7 @@
 //! Chores of the project.
 
+mod bench;
+mod command;
 mod rgb_table;
 mod test;
 mod tidy;
@@ -12,6 +14,8 @@ usage: cargo xtask CHORE
 
   test       everything that must hold: format, house rules, lints, tests, documentation
   tidy       the house rules alone, in a second
+  bench rays [--help | OPTIONS]
+             the ray engine beside Embree, on a million triangles
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -20,6 +24,7 @@ fn main() -> ExitCode {
     let done = match arguments[..] {
         ["test"] => test::run(workspace()),
         ["tidy"] => tidy::run(workspace()),
+        ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

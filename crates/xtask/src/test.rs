@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use super::command::{cargo, succeed};
 use super::tidy;
 
 /// A step that cargo runs.
@@ -41,7 +42,7 @@ pub fn run(root: &Path) -> Result<(), String> {
     install_components(root)?;
     step("house rules", || tidy::run(root))?;
     for Step { name, arguments } in STEPS {
-        step(name, || cargo(root, arguments))?;
+        step(name, || succeed(cargo(root).args(arguments).env("RUSTDOCFLAGS", "-D warnings")))?;
     }
     println!("all tests passed in {:.0} s", start.elapsed().as_secs_f64());
     Ok(())
@@ -59,30 +60,11 @@ fn step(name: &str, work: impl FnOnce() -> Result<(), String>) -> Result<(), Str
 /// Adds the formatter and the linter where Rust was installed without them.
 fn install_components(root: &Path) -> Result<(), String> {
     for (command, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
-        let found = Command::new(cargo_path()).args([command, "--version"]).output();
+        let found = cargo(root).args([command, "--version"]).output();
         if !found.is_ok_and(|output| output.status.success()) {
             println!("== installing {component}");
             succeed(Command::new("rustup").args(["component", "add", component]).current_dir(root))?;
         }
     }
     Ok(())
-}
-
-fn cargo(root: &Path, arguments: &[&str]) -> Result<(), String> {
-    let mut command = Command::new(cargo_path());
-    succeed(command.args(arguments).env("RUSTDOCFLAGS", "-D warnings").current_dir(root))
-}
-
-/// The cargo that runs this program, so that one toolchain does all.
-fn cargo_path() -> String {
-    std::env::var("CARGO").unwrap_or_else(|_| "cargo".into())
-}
-
-/// Runs a command to its end.
-fn succeed(command: &mut Command) -> Result<(), String> {
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(format!("{command:?} ended with {status}")),
-        Err(error) => Err(format!("{command:?} did not start: {error}")),
-    }
 }

@@ -1,46 +1,47 @@
 //! A tree of boxes over anything that has bounds.
 //!
-//! Three things are kept apart: how to split is [`split`]'s affair, what a node is [`node`]'s, and what a
+//! Three things are kept apart: how to split is [`build`]'s affair, what a node is [`node`]'s, and what a
 //! leaf tests is left to the caller. A leaf is a range of *blocks*, each of a fixed number of primitives, so
-//! that a caller may test a block at once. [`Bvh::order`] says which primitive stands at each place.
+//! that a caller may test a block at once.
 //!
 //! Children are visited front to back. The tree depends on the primitives alone, never on the number of
 //! threads that built it.
 
+mod build;
 mod node;
-mod split;
 
 use math::{Bounds3, Ray};
 use node::{Child, Slabs, WideNode};
+use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 
-pub(crate) use split::Primitive;
+pub use build::BuildQuality;
+pub(crate) use build::Reference;
 
 /// The tree.
 #[derive(Clone, Debug)]
 pub(crate) struct Bvh {
     nodes: Vec<WideNode>,
-    order: Vec<Option<u32>>,
     bounds: Bounds3,
 }
 
 impl Bvh {
-    /// Builds over primitives with finite bounds; leaves hold blocks of `block` primitives.
-    pub fn build(mut primitives: Vec<Primitive>, block: usize) -> Self {
-        let mut bvh = Self { nodes: Vec::new(), order: Vec::new(), bounds: Bounds3::EMPTY };
-        if primitives.is_empty() {
-            return bvh;
-        }
-        let tree = split::split(&mut primitives, block);
-        bvh.bounds = tree.bounds();
-        bvh.nodes.push(WideNode::EMPTY);
-        node::widen(&tree, &primitives, block, &mut bvh.nodes, &mut bvh.order, 0);
-        bvh
+    /// Builds over references with finite bounds; leaves hold blocks of `width` references, a power of two. `block`
+    /// makes a block of its references.
+    pub fn build<B: Send>(
+        references: Vec<Reference>,
+        quality: BuildQuality,
+        width: usize,
+        block: impl Fn(&[Reference]) -> B + Sync + Send,
+    ) -> (Self, Vec<B>) {
+        let built = build::build(references, quality, width);
+        let blocks = built.blocks().map(block).collect();
+        (Self { bounds: built.bounds, nodes: built.nodes }, blocks)
     }
 
-    /// Which primitive stands at each place of the blocks; `None` fills up a block.
-    pub fn order(&self) -> &[Option<u32>] {
-        &self.order
+    /// Bytes of memory taken.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes)
     }
 
     /// The box around everything.

@@ -1,12 +1,10 @@
 //! Nodes of eight children, whose boxes are tested together.
 //!
-//! A binary tree is flattened by opening, of the children of a node, the one with the largest surface until
-//! there are eight ([Wald et al. 2008]). The slab test is the one of [`Bounds3::intersect`], with one
+//! The idea is that of [Wald et al. 2008]. The slab test is the one of [`Bounds3::intersect`], with one
 //! difference: it widens boxes by what the watertight triangle test may err. That test rounds vertices after
 //! moving them to the ray's origin, so that it may meet a triangle that the exact ray misses by γ(8) times
 //! the distance; a box that is not as generous would let such a ray slip through a closed surface.
 
-use super::split::{Primitive, Tree};
 use math::{Bounds3, Ray, gamma};
 
 /// Children of a node.
@@ -81,7 +79,7 @@ impl WideNode {
         Child { first: self.first[lane], blocks: self.blocks[lane] as u32 }
     }
 
-    fn push(&mut self, bounds: &Bounds3, child: Child) {
+    pub fn push(&mut self, bounds: &Bounds3, child: Child) {
         let lane = self.len();
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.min[axis];
@@ -114,48 +112,5 @@ impl WideNode {
             hits |= ((near[lane] <= far[lane]) as u32) << lane;
         }
         (near, hits & ((1 << self.len) - 1))
-    }
-}
-
-/// Writes the node at `at`, and all below it, for a binary tree over `primitives`.
-pub(crate) fn widen(
-    tree: &Tree,
-    primitives: &[Primitive],
-    block: usize,
-    nodes: &mut Vec<WideNode>,
-    order: &mut Vec<Option<u32>>,
-    at: usize,
-) {
-    let mut children = vec![tree];
-    while children.len() < WIDTH {
-        let area = |i: usize| children[i].bounds().surface_area();
-        let inner = (0..children.len()).filter(|&i| matches!(children[i], Tree::Inner { .. }));
-        let Some(i) = inner.max_by(|&a, &b| area(a).total_cmp(&area(b))) else { break };
-        if let Tree::Inner { children: pair, .. } = children[i] {
-            children[i] = &pair[0];
-            children.push(&pair[1]);
-        }
-    }
-    let mut node = WideNode::EMPTY;
-    let mut below = Vec::new();
-    for child in children {
-        match child {
-            Tree::Leaf { bounds, range } => {
-                let first = (order.len() / block) as u32;
-                order.extend(primitives[range.clone()].iter().map(|p| Some(p.index)));
-                order.resize(order.len().next_multiple_of(block), None);
-                node.push(bounds, Child { first, blocks: (order.len() / block) as u32 - first });
-            }
-            Tree::Inner { bounds, .. } => {
-                let first = nodes.len();
-                nodes.push(WideNode::EMPTY);
-                node.push(bounds, Child { first: first as u32, blocks: 0 });
-                below.push((child, first));
-            }
-        }
-    }
-    nodes[at] = node;
-    for (child, at) in below {
-        widen(child, primitives, block, nodes, order, at);
     }
 }

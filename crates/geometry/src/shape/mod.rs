@@ -18,6 +18,8 @@ mod cone;
 mod cylinder;
 mod disk;
 mod hyperboloid;
+mod implicit;
+mod level;
 mod moving_triangle;
 mod paraboloid;
 mod plane;
@@ -30,6 +32,7 @@ pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use hyperboloid::Hyperboloid;
+pub use implicit::{Formula, FormulaError, Implicit};
 pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
@@ -118,6 +121,8 @@ pub enum Shape {
     Disk(Box<Disk>),
     /// Infinite plane.
     Plane(Box<Plane>),
+    /// Surface given by a formula.
+    Implicit(Box<Implicit>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
@@ -136,6 +141,7 @@ macro_rules! each_shape {
             Shape::Hyperboloid($shape) => $result,
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
+            Shape::Implicit($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
             Shape::MovingTriangle($shape) => $result,
@@ -152,7 +158,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane BilinearPatch Triangle MovingTriangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit BilinearPatch Triangle MovingTriangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -176,13 +182,14 @@ impl Shape {
             Self::Hyperboloid(shape) => shape.surface(ray, hit),
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
+            Self::Implicit(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
             Self::MovingTriangle(shape) => shape.surface(ray, hit),
         }
     }
 
-    /// The area; infinite for the plane, and that at the start for what moves. Approximate where a quadric's transform is no similarity, and for
+    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where a quadric's transform is no similarity, and for
     /// bent patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
@@ -240,6 +247,7 @@ impl Shape {
             | Self::Cone(_)
             | Self::Paraboloid(_)
             | Self::Hyperboloid(_)
+            | Self::Implicit(_)
             | Self::MovingTriangle(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),

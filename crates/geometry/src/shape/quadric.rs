@@ -38,8 +38,7 @@ impl Quadric {
 
     pub fn surface(&self, local: &Local, ray: &Ray) -> SurfacePoint {
         let vector = |v: DVec3| self.placement.vector(v);
-        let side = if self.flips { -1.0 } else { 1.0 };
-        let dn = weingarten(local).map(|dn| self.placement.normal_change(local.n, dn) * side);
+        let dn = weingarten(local).map(|dn| self.normal_change(local.n, dn));
         SurfacePoint::new(
             self.point(local.p),
             self.normal(local.n),
@@ -59,6 +58,12 @@ impl Quadric {
     pub fn normal(&self, n: DVec3) -> Normal3 {
         let n = self.placement.unit_normal(n);
         if self.flips { -n } else { n }
+    }
+
+    /// The change of the unit normal in render space, on the shape's outside, from that of the unit normal in object space.
+    pub fn normal_change(&self, n: DVec3, dn: DVec3) -> Normal3 {
+        let change = self.placement.normal_change(n, dn);
+        if self.flips { -change } else { change }
     }
 
     /// A sample at a point with unit normal `n` that has the density `pdf` per area of object space.

@@ -2,6 +2,7 @@
 
 use super::group::Group;
 use super::{Geometry, GeometryId, GroupId, Instance, InstanceId, Placed, World};
+use crate::bvh::BuildQuality;
 use rayon::prelude::*;
 
 /// A world in the making.
@@ -10,12 +11,18 @@ pub struct WorldBuilder {
     groups: Vec<Vec<GeometryId>>,
     geometries: Vec<Geometry>,
     instances: Vec<Instance>,
+    quality: BuildQuality,
 }
 
 impl Default for WorldBuilder {
     /// A world with the top group alone.
     fn default() -> Self {
-        Self { groups: vec![Vec::new()], geometries: Vec::new(), instances: Vec::new() }
+        Self {
+            groups: vec![Vec::new()],
+            geometries: Vec::new(),
+            instances: Vec::new(),
+            quality: BuildQuality::default(),
+        }
     }
 }
 
@@ -41,18 +48,24 @@ impl WorldBuilder {
         InstanceId(self.instances.len() as u32 - 1)
     }
 
+    /// How much time the trees are worth.
+    pub fn quality(mut self, quality: BuildQuality) -> Self {
+        self.quality = quality;
+        self
+    }
+
     /// Builds all trees, in parallel. The result does not depend on the number of threads.
     pub fn build(self) -> World {
-        let Self { groups, geometries, instances } = self;
+        let Self { groups, geometries, instances, quality } = self;
         let instances: Vec<Placed> = instances.into_iter().map(Placed::new).collect();
         let placed_groups: Vec<Group> =
-            groups[1..].par_iter().map(|members| Group::build(members, &geometries, &[])).collect();
+            groups[1..].par_iter().map(|members| Group::build(members, &geometries, &[], quality)).collect();
         let places: Vec<_> = instances
             .iter()
             .zip(0..)
             .map(|(placed, id)| (InstanceId(id), placed, &placed_groups[placed.group as usize - 1]))
             .collect();
-        let top = Group::build(&groups[0], &geometries, &places);
+        let top = Group::build(&groups[0], &geometries, &places, quality);
         let groups = std::iter::once(top).chain(placed_groups).collect();
         World { groups, geometries, instances }
     }

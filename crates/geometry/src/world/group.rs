@@ -3,10 +3,14 @@
 
 use super::packet::Packet;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
-use crate::bvh::{Bvh, Primitive};
+use crate::bvh::{BuildQuality, Bvh, Reference};
 use crate::watertight::Sheared;
 use math::{Bounds3, Ray, gamma};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
+
+/// Meshes with fewer triangles are not worth another thread.
+const PARALLEL: usize = 4096;
 
 /// Everything in a group but its triangles.
 #[derive(Clone, Copy, Debug)]
@@ -50,29 +54,20 @@ impl Group {
         members: &[GeometryId],
         geometries: &[Geometry],
         instances: &[(InstanceId, &Placed, &Group)],
+        quality: BuildQuality,
     ) -> Self {
-        let mut triangles = Vec::new();
-        let mut ids = Vec::new();
         let mut items = Vec::new();
         let mut unbounded = Vec::new();
         let mut boxes = Vec::new();
         let mut add_item = |item, bounds: Bounds3| {
             if is_finite(&bounds) {
-                boxes.push(Primitive { bounds, index: items.len() as u32 });
+                boxes.push(Reference::new(&bounds, 0, items.len() as u32));
                 items.push(item);
             }
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(mesh) => {
-                    for i in 0..mesh.len() {
-                        let bounds = Bounds3::around(mesh.corners(i));
-                        if mesh.corners(i).iter().all(|p| p.is_finite()) {
-                            triangles.push(Primitive { bounds, index: ids.len() as u32 });
-                            ids.push((id.0, i as u32));
-                        }
-                    }
-                }
+                Geometry::Mesh(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -80,6 +75,11 @@ impl Group {
                             Some(bounds) => add_item(item, bounds),
                             None => unbounded.push(item),
                         }
+                    }
+                }
+                Geometry::Curves(curves) => {
+                    for i in 0..curves.len() as u32 {
+                        add_item(Item::Shape(id, i), curves.bounds(i));
                     }
                 }
             }
@@ -92,11 +92,19 @@ impl Group {
                 unbounded.push(Item::Instance(id));
             }
         }
-        let triangles = Bvh::build(triangles, Packet::WIDTH);
-        let packets = pack(&triangles, &ids, geometries);
-        let boxes = Bvh::build(boxes, 1);
-        let item_list = boxes.order().iter().flatten().map(|&i| items[i as usize]).collect();
+        let pack = |block: &[Reference]| packet(block, geometries);
+        let triangles = triangle_references(members, geometries);
+        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
+        let item = |block: &[Reference]| items[block[0].primitive() as usize];
+        let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
         Self { triangles, packets, items: boxes, item_list, unbounded }
+    }
+
+    /// Bytes of memory that the trees take.
+    pub fn bytes(&self) -> usize {
+        let packets = size_of_val(&*self.packets);
+        let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
+        self.triangles.bytes() + packets + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
@@ -174,10 +182,12 @@ impl Trace<'_> {
         match item {
             Item::Shape(geometry, primitive) => {
                 self.stats.primitives += 1;
-                let Geometry::Shapes(shapes) = self.world.geometry(geometry) else {
-                    return ControlFlow::Continue(());
+                let hit = match self.world.geometry(geometry) {
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, *t_max),
+                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, *t_max),
+                    Geometry::Mesh(_) => None,
                 };
-                match shapes[primitive as usize].intersect(self.ray, *t_max) {
+                match hit {
                     Some(hit) => judge(
                         Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance },
                         t_max,
@@ -221,16 +231,37 @@ fn placed_bounds(placed: &Placed, bounds: &Bounds3) -> Bounds3 {
     moved.expand(moved.min.abs().max(moved.max.abs()).max_element() * gamma(8))
 }
 
-fn pack(tree: &Bvh, ids: &[(u32, u32)], geometries: &[Geometry]) -> Vec<Packet> {
-    let fill = |block: &[Option<u32>]| {
-        let mut packet = Packet::EMPTY;
-        for &index in block.iter().flatten() {
-            let id = ids[index as usize];
-            if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
-                packet.push(mesh.corners(id.1 as usize), id);
+/// The triangles of all meshes whose corners are finite.
+fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<Reference> {
+    let mut references = Vec::new();
+    for &id in members {
+        if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
+            let reference = |i: usize| {
+                let corners = mesh.corners(i);
+                match corners.iter().all(|p| p.is_finite()) {
+                    true => Reference::new(&Bounds3::around(corners), id.0, i as u32),
+                    false => Reference::none(),
+                }
+            };
+            match mesh.len() {
+                0..PARALLEL => references.extend((0..mesh.len()).map(reference)),
+                n => references.par_extend((0..n).into_par_iter().map(reference)),
             }
         }
-        packet
-    };
-    tree.order().chunks(Packet::WIDTH).map(fill).collect()
+    }
+    if references.iter().any(Reference::is_none) {
+        references.retain(|r| !r.is_none());
+    }
+    references
+}
+
+fn packet(block: &[Reference], geometries: &[Geometry]) -> Packet {
+    let mut packet = Packet::EMPTY;
+    for reference in block {
+        let (geometry, primitive) = (reference.geometry(), reference.primitive());
+        if let Geometry::Mesh(mesh) = &geometries[geometry as usize] {
+            packet.push(mesh.corners(primitive as usize), (geometry, primitive));
+        }
+    }
+    packet
 }

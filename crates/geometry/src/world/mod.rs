@@ -9,6 +9,7 @@ mod group;
 mod packet;
 mod stats;
 
+use crate::curve::Curves;
 use crate::mesh::TriangleMesh;
 use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
@@ -46,6 +47,8 @@ pub enum Geometry {
     Mesh(Arc<TriangleMesh>),
     /// Any other shapes: one quadric, the patches of a bilinear mesh.
     Shapes(Arc<[Shape]>),
+    /// The parts of curves.
+    Curves(Arc<Curves>),
 }
 
 impl From<TriangleMesh> for Geometry {
@@ -60,12 +63,19 @@ impl From<Shape> for Geometry {
     }
 }
 
+impl From<Curves> for Geometry {
+    fn from(curves: Curves) -> Self {
+        Self::Curves(Arc::new(curves))
+    }
+}
+
 impl Geometry {
     /// How many primitives there are.
     pub fn len(&self) -> usize {
         match self {
             Self::Mesh(mesh) => mesh.len(),
             Self::Shapes(shapes) => shapes.len(),
+            Self::Curves(curves) => curves.len(),
         }
     }
 
@@ -74,11 +84,21 @@ impl Geometry {
         self.len() == 0
     }
 
-    /// One primitive as a shape of its own, as a light wants it.
-    pub fn shape(&self, primitive: u32) -> Shape {
+    /// Bytes of memory that the primitives take, boxes of their own apart.
+    fn bytes(&self) -> usize {
         match self {
-            Self::Mesh(mesh) => Shape::Triangle(mesh.triangle(primitive as usize)),
-            Self::Shapes(shapes) => shapes[primitive as usize].clone(),
+            Self::Mesh(mesh) => mesh.bytes(),
+            Self::Shapes(shapes) => size_of_val(&**shapes),
+            Self::Curves(curves) => curves.bytes(),
+        }
+    }
+
+    /// One primitive as a shape of its own, as a light wants it; `None` of curves, which do not emit.
+    pub fn shape(&self, primitive: u32) -> Option<Shape> {
+        match self {
+            Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
+            Self::Shapes(shapes) => Some(shapes[primitive as usize].clone()),
+            Self::Curves(_) => None,
         }
     }
 }
@@ -102,7 +122,7 @@ pub struct Hit {
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
-    /// Which triangle or patch of it.
+    /// Which triangle, patch or part of a curve of it.
     pub primitive: u32,
     /// Through which instance.
     pub instance: Option<InstanceId>,
@@ -150,6 +170,12 @@ impl World {
     /// A box around everything but infinite planes; empty when there is nothing.
     pub fn bounds(&self) -> Bounds3 {
         self.groups[0].bounds()
+    }
+
+    /// Bytes of memory that the trees and the meshes take; arrays that meshes share count for each.
+    pub fn bytes(&self) -> usize {
+        let trees: usize = self.groups.iter().map(Group::bytes).sum();
+        trees + self.geometries.iter().map(Geometry::bytes).sum::<usize>()
     }
 
     /// A geometry by its id.
@@ -224,6 +250,9 @@ impl World {
             Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).surface(ray, hit.uv),
             Geometry::Shapes(shapes) => {
                 shapes[hit.primitive as usize].surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
+            }
+            Geometry::Curves(curves) => {
+                curves.surface(hit.primitive, ray, &ShapeHit { t: hit.t, uv: hit.uv })
             }
         }
     }

@@ -3,10 +3,12 @@
 //! All mistakes come out at once, with the spans of what is to blame; what can be described but not yet drawn is a warning that says
 //! what is drawn instead.
 
+mod curves;
 mod emission;
 mod lights;
 mod materials;
 mod shapes;
+mod tessellation;
 
 use crate::camera;
 use crate::light::{AreaEmission, Light, LightId, SceneSphere};

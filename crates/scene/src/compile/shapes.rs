@@ -6,14 +6,14 @@ use crate::material::Material;
 use crate::scene::GeometryEntry;
 use crate::texture::{FloatTextureId, Texture};
 use description::{
-    AreaLightDesc, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc, ShapeDesc,
-    ShapeKind, Stated, TransformDesc,
+    AreaLightDesc, Diagnostic, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
+    ShapeDesc, ShapeKind, Span, Spanned, Stated, TransformDesc,
 };
 use geometry::{
-    BilinearPatch, Cone, Cylinder, Disk, Geometry, GroupId, Hyperboloid, Instance, MeshAttributes,
-    MovingMesh, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
+    Instance, MeshAttributes, MovingMesh, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
-use math::{AnimatedTransform, Bounds2, Normal3, Point3, Transform};
+use math::{AnimatedTransform, Bounds2, Bounds3, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
 use std::collections::HashMap;
@@ -191,26 +191,50 @@ impl Compiler<'_> {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Implicit { formula, bounds: [min, max] } => {
+                let bounds = Bounds3 { min: *min, max: *max };
+                let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
+                one(Implicit::new(transform, reverse, formula, &bounds).into())
+            }
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
-            ShapeKind::PlyMesh { triangles, patches, displacement, .. } => {
-                if displacement.is_some() {
-                    let message = "displacement is not drawn yet; the surface stays as it is";
-                    self.warn("not-drawn", message, shape.origin.parameter("displacement"));
-                }
+            ShapeKind::PlyMesh { triangles, patches, displacement: Some(height), edge_length } => {
+                let height = (height, *edge_length);
+                self.displaced(triangles, patches, height, shape, transform).into_iter().collect()
+            }
+            ShapeKind::PlyMesh { triangles, patches, displacement: None, .. } => {
                 let triangles = self.mesh(triangles, shape, transform);
                 triangles.into_iter().chain(self.patches(patches, shape, transform)).collect()
             }
-            ShapeKind::Curve(_) => {
-                self.warn("not-drawn", "shape `curve` is not drawn yet; left out", shape.origin.span);
-                Vec::new()
-            }
-            ShapeKind::LoopSubdivision { mesh, .. } => {
-                let message = "shape `loopsubdiv` is not drawn yet; drawn as its coarse mesh";
-                self.warn("not-drawn", message, shape.origin.span);
-                self.mesh(mesh, shape, transform).into_iter().collect()
+            ShapeKind::Curve(curve) => self.curve(curve, shape, transform).into_iter().collect(),
+            ShapeKind::LoopSubdivision { mesh, levels } => {
+                self.loop_subdivision(mesh, *levels, shape, transform).into_iter().collect()
             }
         }
+    }
+
+    /// A formula that is zero somewhere in the box, as far as is known.
+    fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
+        let formula = match Formula::parse(&text.value) {
+            Ok(formula) => formula,
+            Err(FormulaError { place, message, help }) => {
+                // Behind the opening quote.
+                let Span { file, start, end } = text.span;
+                let at = |offset: usize| (start + 1 + offset as u32).min(end);
+                let span = if text.span.is_none() {
+                    text.span
+                } else {
+                    Span::new(file, at(place.start), at(place.end))
+                };
+                self.diagnostics
+                    .push(Diagnostic { help, ..Diagnostic::error("invalid-formula", message, span) });
+                return None;
+            }
+        };
+        if formula.has_no_zero(bounds) {
+            self.warn("empty-shape", "the formula is zero nowhere within its bounds", text.span);
+        }
+        Some(formula)
     }
 
     fn mesh(
@@ -312,6 +336,11 @@ impl Compiler<'_> {
             self.warn("not-drawn", MOVING_LIGHT, span);
             return None;
         }
+        if matches!(shape.kind, ShapeKind::Implicit { .. }) {
+            let message = "surfaces given by formulas do not emit; drawn without light";
+            self.warn("not-drawn", message, span);
+            return None;
+        }
         let material = self.material_id(shape.material);
         if matches!(self.materials[material.0 as usize].material, Material::Interface) {
             self.warn("light-ignored", "a shape of material `interface` does not emit", span);
@@ -324,7 +353,7 @@ impl Compiler<'_> {
         let shared = Arc::new(emission.clone());
         let first = LightId(self.lights.len() as u32);
         for primitive in 0..geometry.len() as u32 {
-            let part = geometry.shape(primitive);
+            let part = geometry.shape(primitive)?;
             if part.bounds().is_none() {
                 self.error(
                     "infinite-light",

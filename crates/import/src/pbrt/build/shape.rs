@@ -8,6 +8,7 @@ use description::{
     CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, Origin,
     PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
 };
+use math::Vec3;
 use rayon::prelude::*;
 
 use super::{Builder, unknown_reference};
@@ -16,9 +17,8 @@ use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
-use math::Vec3;
 
-const TYPES: [&str; 13] = [
+const TYPES: [&str; 14] = [
     "sphere",
     "cylinder",
     "cone",
@@ -32,6 +32,7 @@ const TYPES: [&str; 13] = [
     "plymesh",
     "curve",
     "loopsubdiv",
+    "implicit",
 ];
 
 /// Mesh files by path, each read once; or why it could not be.
@@ -157,6 +158,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             phi_max: reader.positive("phimax", 360.0),
         },
         "plane" => ShapeKind::Plane,
+        "implicit" => implicit(reader)?,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
         "polygon" => ShapeKind::Triangles(polygon(reader)?),
         "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
@@ -173,6 +175,26 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             return None;
         }
     })
+}
+
+fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
+    let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
+    let Some(formula) = reader.string("f") else {
+        if !reader.has("f") {
+            reader.missing("f");
+        }
+        return None;
+    };
+    match *bounds {
+        [min, max] if min.cmplt(max).all() && min.is_finite() && max.is_finite() => {
+            Some(ShapeKind::Implicit { formula, bounds: [min, max] })
+        }
+        _ => {
+            reader
+                .refuse("bounds", "`bounds` are two corners of a box: the lowest and the highest x, y and z");
+            None
+        }
+    }
 }
 
 /// The indices of a mesh, `N` per face; `default` are those of a mesh of one face, which needs none.
@@ -222,7 +244,7 @@ fn per_vertex<T>(
     values
 }
 
-fn points(reader: &mut Reader) -> Option<Arc<[math::Vec3]>> {
+fn points(reader: &mut Reader) -> Option<Arc<[Vec3]>> {
     let points = reader.points3("P");
     if points.is_none() && !reader.has("P") {
         reader.missing("P");

@@ -1,0 +1,62 @@
+//! How primitives are divided.
+//!
+//! Every builder brings references to primitives into an order and grows a binary tree over them ([`tree`]);
+//! what becomes a wide node is then decided for all of them alike ([`widen`]).
+//!
+//! Memory for n primitives, beyond what is kept: 32 n bytes of references and 20 n of binary nodes, both
+//! given back when the blocks are made; `high` takes half as much again.
+
+mod balanced;
+mod bins;
+mod partition;
+mod reference;
+mod tree;
+mod widen;
+
+use super::node::WideNode;
+use math::Bounds3;
+use rayon::prelude::*;
+use std::ops::Range;
+use tree::{Blocks, Inner};
+
+pub(crate) use reference::{Extent, Reference};
+
+/// How much time a tree is worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum BuildQuality {
+    /// For what is built anew for each picture.
+    Fast,
+    /// For nearly everything.
+    #[default]
+    Balanced,
+    /// For pictures that take long.
+    High,
+}
+
+/// A tree, and what its leaves hold.
+pub(crate) struct Built {
+    pub nodes: Vec<WideNode>,
+    pub bounds: Bounds3,
+    references: Vec<Reference>,
+    blocks: Vec<Range<u32>>,
+}
+
+impl Built {
+    /// What each block of the leaves is made of, in order.
+    pub fn blocks(&self) -> impl IndexedParallelIterator<Item = &[Reference]> {
+        self.blocks.par_iter().map(|r| &self.references[r.start as usize..r.end as usize])
+    }
+}
+
+/// Builds a tree over references with finite bounds; leaves hold blocks of `width` references, a power of two.
+pub(crate) fn build(mut references: Vec<Reference>, _quality: BuildQuality, width: usize) -> Built {
+    if references.is_empty() {
+        return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, references, blocks: Vec::new() };
+    }
+    let blocks = Blocks::of(width);
+    let mut inner = vec![Inner::default(); references.len()];
+    let extent = Extent::around(&references);
+    let tree = balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0);
+    let wide = widen::widen(&references, &inner, &tree, blocks);
+    Built { nodes: wide.nodes, bounds: wide.extent.bounds(), references, blocks: wide.blocks }
+}

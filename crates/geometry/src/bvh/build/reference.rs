@@ -1,0 +1,145 @@
+//! Boxes as the builders see them.
+
+use math::{Bounds3, Vec4};
+use rayon::prelude::*;
+
+/// A box as (low, −high): the union of two boxes is then a minimum, twice. The lanes w mean nothing here; a
+/// [`Reference`] keeps its ids in them.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+pub(crate) struct Extent {
+    low: Vec4,
+    minus_high: Vec4,
+}
+
+impl Extent {
+    /// The box that holds nothing.
+    pub const EMPTY: Self = Self { low: Vec4::INFINITY, minus_high: Vec4::INFINITY };
+
+    /// The box around one point.
+    #[inline]
+    pub fn point(p: Vec4) -> Self {
+        Self { low: p, minus_high: -p }
+    }
+
+    /// The smallest box around both.
+    #[inline]
+    pub fn union(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), minus_high: self.minus_high.min(other.minus_high) }
+    }
+
+    /// What both share.
+    #[inline]
+    pub fn intersection(self, other: Self) -> Self {
+        Self { low: self.low.max(other.low), minus_high: self.minus_high.max(other.minus_high) }
+    }
+
+    /// The box around all references.
+    pub fn around(references: &[Reference]) -> Self {
+        let serial = |part: &[Reference]| part.iter().fold(Self::EMPTY, |all, r| all.union(r.extent()));
+        in_parts(references, serial, Self::union)
+    }
+
+    /// The lower ends along all axes.
+    #[inline]
+    pub fn low(&self) -> Vec4 {
+        self.low
+    }
+
+    /// The upper ends along all axes.
+    #[inline]
+    pub fn high(&self) -> Vec4 {
+        -self.minus_high
+    }
+
+    /// Twice the middle; beyond floats where the box is.
+    #[inline]
+    pub fn doubled_centroid(&self) -> Vec4 {
+        self.low - self.minus_high
+    }
+
+    /// Half of the surface area; NaN or infinite for the empty box.
+    #[inline]
+    pub fn half_area(&self) -> f32 {
+        let d = self.high() - self.low;
+        d.x * (d.y + d.z) + d.y * d.z
+    }
+
+    pub fn bounds(&self) -> Bounds3 {
+        Bounds3 { min: self.low.truncate(), max: self.high().truncate() }
+    }
+}
+
+impl From<&Bounds3> for Extent {
+    #[inline]
+    fn from(b: &Bounds3) -> Self {
+        Self { low: b.min.extend(0.0), minus_high: (-b.max).extend(0.0) }
+    }
+}
+
+/// A primitive to be put into a tree: its box, and what it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reference(Extent);
+
+impl Reference {
+    /// What [`Reference::primitive`] says of a place that is not in use.
+    const NOTHING: u32 = u32::MAX;
+
+    /// Not in use.
+    pub fn none() -> Self {
+        Self::with_ids(Extent::EMPTY, Self::NOTHING, Self::NOTHING)
+    }
+
+    #[inline]
+    pub fn new(bounds: &Bounds3, geometry: u32, primitive: u32) -> Self {
+        Self::with_ids(bounds.into(), geometry, primitive)
+    }
+
+    #[inline]
+    fn with_ids(extent: Extent, geometry: u32, primitive: u32) -> Self {
+        let Extent { mut low, mut minus_high } = extent;
+        (low.w, minus_high.w) = (f32::from_bits(geometry), f32::from_bits(primitive));
+        Self(Extent { low, minus_high })
+    }
+
+    /// The same primitive, of which only what lies in `extent` counts.
+    #[inline]
+    pub fn within(&self, extent: Extent) -> Self {
+        Self::with_ids(extent, self.geometry(), self.primitive())
+    }
+
+    #[inline]
+    pub fn extent(&self) -> Extent {
+        self.0
+    }
+
+    #[inline]
+    pub fn geometry(&self) -> u32 {
+        self.0.low.w.to_bits()
+    }
+
+    #[inline]
+    pub fn primitive(&self) -> u32 {
+        self.0.minus_high.w.to_bits()
+    }
+
+    #[inline]
+    pub fn is_none(&self) -> bool {
+        self.primitive() == Self::NOTHING
+    }
+}
+
+/// Larger sets are worked on in parts of a quarter of this, by many threads.
+pub(super) const PARALLEL_SET: usize = 1 << 16;
+
+/// Folds a set. The result does not depend on the parts as long as `merge` is associative.
+pub(super) fn in_parts<T: Send>(
+    references: &[Reference],
+    serial: impl Fn(&[Reference]) -> T + Sync + Send,
+    merge: impl Fn(T, T) -> T + Sync + Send,
+) -> T {
+    if references.len() < PARALLEL_SET {
+        return serial(references);
+    }
+    references.par_chunks(PARALLEL_SET / 4).map(&serial).reduce_with(merge).unwrap_or_else(|| serial(&[]))
+}

@@ -1,0 +1,178 @@
+//! The binary tree that every builder grows, and how it is best cut into wide nodes.
+//!
+//! The tree stands over an array of references; each inner node divides a range of them in two. A place in
+//! the array can only be a border once, so that an inner node is stored at the index of its border, and
+//! threads that work on different ranges write to different parts of one array.
+//!
+//! A wide node takes the place of a connected part of the binary tree with at most [`WIDTH`] branches. Which
+//! parts are cheapest to trace is found from the leaves upwards: the cost C(n, i) of representing what is
+//! below n by at most i children of some wide node is
+//!   C(n, 1) = min(A·blocks (if that is a leaf), A·c + min_k C(l, k) + C(r, WIDTH − k)),
+//!   C(n, i) = min(C(n, i − 1), min_k C(l, k) + C(r, i − k))
+//! with the area A of its box and the cost c of a wide node, where the test of a block costs 1 ([Ylitie et
+//! al. 2017 §3.1]).
+
+use super::reference::Extent;
+use crate::bvh::node::WIDTH;
+
+/// What the test of a wide node costs, where testing a block of primitives costs 1.
+const NODE_COST: f32 = 1.0;
+/// Leaves have at most this many blocks.
+const LARGEST_LEAF: u32 = 4;
+
+/// Primitives are tested in blocks of a power of two.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blocks {
+    log2: u32,
+}
+
+impl Blocks {
+    pub fn of(width: usize) -> Self {
+        Self { log2: width.ilog2() }
+    }
+
+    pub fn width(&self) -> usize {
+        1 << self.log2
+    }
+
+    /// How many blocks hold so many primitives.
+    #[inline]
+    pub fn count(&self, primitives: u32) -> u32 {
+        (primitives + (1 << self.log2) - 1) >> self.log2
+    }
+}
+
+/// An inner node of the binary tree. It is stored where its right half begins.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Inner {
+    /// Borders at which the halves are divided in turn; 0 where a half is not.
+    pub halves: [u32; 2],
+    /// Three bits for each number of branches i from 2: how many the left half gets, 0 to do with i − 1.
+    /// Bit 0 says that, as one branch, this is a leaf; the bits above all others how many the left half gets of a
+    /// wide node here.
+    plan: u32,
+    /// What there is below this if it becomes a wide node.
+    pub below: Size,
+}
+
+/// How much a tree becomes: wide nodes, and blocks of primitives.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Size {
+    pub nodes: u32,
+    pub blocks: u32,
+}
+
+impl Size {
+    pub fn plus(self, other: Self) -> Self {
+        Self { nodes: self.nodes + other.nodes, blocks: self.blocks + other.blocks }
+    }
+}
+
+/// What this node is as seen from above.
+pub(super) enum Cut {
+    Leaf,
+    Node,
+    /// Left and right half take so many branches.
+    Opened([usize; 2]),
+}
+
+impl Inner {
+    /// What becomes of this node when it may take `branches`.
+    #[inline]
+    pub fn cut(&self, mut branches: usize) -> Cut {
+        while branches > 1 {
+            let left = (self.plan >> (3 * (branches - 1))) as usize & 7;
+            if left > 0 {
+                return Cut::Opened([left, branches - left]);
+            }
+            branches -= 1;
+        }
+        if self.plan & 1 == 1 { Cut::Leaf } else { Cut::Node }
+    }
+
+    /// How this node as a wide node shares its branches.
+    #[inline]
+    pub fn open(&self) -> [usize; 2] {
+        let left = (self.plan >> (3 * WIDTH)) as usize;
+        [left, WIDTH - left]
+    }
+
+    /// How much a wide node here becomes.
+    pub fn as_node(&self) -> Size {
+        Size { nodes: self.below.nodes + 1, ..self.below }
+    }
+}
+
+/// A tree over a range.
+#[derive(Clone, Copy)]
+pub(super) struct Grown {
+    /// Border of its root; 0 for a leaf.
+    pub root: u32,
+    pub count: u32,
+    pub extent: Extent,
+    /// C(n, i + 1).
+    cost: [f32; WIDTH],
+    /// What it becomes as so many branches.
+    size: [Size; WIDTH],
+}
+
+impl Grown {
+    pub fn leaf(extent: Extent, count: u32, blocks: Blocks) -> Self {
+        let cost = extent.half_area() * blocks.count(count) as f32;
+        let size = Size { nodes: 0, blocks: blocks.count(count) };
+        Self { root: 0, count, extent, cost: [cost; WIDTH], size: [size; WIDTH] }
+    }
+
+    /// Joins two neighbours at `border`.
+    pub fn join(left: &Self, right: &Self, border: usize, blocks: Blocks) -> (Self, Inner) {
+        let extent = left.extent.union(right.extent);
+        let count = left.count + right.count;
+        // By i − 1: the cost of sharing i branches between the halves, and how many the left one gets.
+        let mut shared = [(f32::INFINITY, 1); WIDTH];
+        for branches in 2..=WIDTH {
+            let best = &mut shared[branches - 1];
+            for k in 1..branches {
+                let cost = left.cost[k - 1] + right.cost[branches - k - 1];
+                if cost < best.0 {
+                    *best = (cost, k);
+                }
+            }
+        }
+        let size_of = |left_share: usize, branches: usize| {
+            left.size[left_share - 1].plus(right.size[branches - left_share - 1])
+        };
+        let (opened, left_share) = shared[WIDTH - 1];
+        let below = size_of(left_share, WIDTH);
+        let mut plan = (left_share as u32) << (3 * WIDTH);
+        let as_node = extent.half_area() * NODE_COST + opened;
+        let as_leaf = extent.half_area() * blocks.count(count) as f32;
+        let is_leaf = blocks.count(count) <= LARGEST_LEAF && as_leaf <= as_node;
+        let (one, one_size) = if is_leaf {
+            plan |= 1;
+            (as_leaf, Size { nodes: 0, blocks: blocks.count(count) })
+        } else {
+            (as_node, Size { nodes: below.nodes + 1, ..below })
+        };
+        let mut cost = [one; WIDTH];
+        let mut size = [one_size; WIDTH];
+        for i in 1..WIDTH {
+            let (opened, left_share) = shared[i];
+            if opened > cost[i - 1] {
+                (cost[i], size[i]) = (cost[i - 1], size[i - 1]);
+            } else {
+                plan |= (left_share as u32) << (3 * i);
+                (cost[i], size[i]) = (opened, size_of(left_share, i + 1));
+            }
+        }
+        let inner = Inner { halves: [left.root, right.root], plan, below };
+        (Self { root: border as u32, count, extent, cost, size }, inner)
+    }
+
+    /// How much a wide node over this becomes.
+    pub fn as_node(&self, inner: &[Inner]) -> Size {
+        match self.root {
+            0 => Size { nodes: 1, ..self.size[0] },
+            root => inner[root as usize].as_node(),
+        }
+    }
+}

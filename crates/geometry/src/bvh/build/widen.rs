@@ -1,0 +1,156 @@
+//! From the binary tree to wide nodes.
+//!
+//! Nodes are written parent first, then the subtrees one after another, each as a whole; so are the blocks of
+//! the leaves, those right below a node before those further down. The sizes of subtrees are known before, so
+//! that threads can write to parts of one array.
+
+use super::reference::{Extent, Reference};
+use super::tree::{Blocks, Cut, Grown, Inner, Size};
+use crate::bvh::node::{Child, WIDTH, WideNode};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Smaller ranges are not worth another thread.
+const PARALLEL: u32 = 4096;
+
+/// Wide nodes, and which references make each block.
+pub(super) struct Wide {
+    pub nodes: Vec<WideNode>,
+    pub blocks: Vec<Range<u32>>,
+    pub extent: Extent,
+}
+
+/// Cuts a binary tree over at least one reference.
+pub(super) fn widen(references: &[Reference], inner: &[Inner], tree: &Grown, blocks: Blocks) -> Wide {
+    let whole = Branch { range: 0..references.len() as u32, root: tree.root };
+    let size = tree.as_node(inner);
+    let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];
+    let mut list = vec![0..0; size.blocks as usize];
+    let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
+    let extent = Writer { references, inner, blocks }.write(&whole, part);
+    Wide { nodes, blocks: list, extent }
+}
+
+/// A range of references, and the border that divides it; 0 for a leaf.
+#[derive(Clone, Default)]
+struct Branch {
+    range: Range<u32>,
+    root: u32,
+}
+
+impl Branch {
+    fn len(&self) -> u32 {
+        self.range.end - self.range.start
+    }
+}
+
+/// What stands below a wide node, in the order of the references.
+#[derive(Default)]
+struct Branches {
+    list: [Branch; WIDTH],
+    len: usize,
+}
+
+impl Branches {
+    fn below(inner: &[Inner], node: &Branch) -> Self {
+        let mut branches = Self::default();
+        match node.root {
+            0 => branches.push(node.clone()),
+            root => branches.open(inner, node, inner[root as usize].open()),
+        }
+        branches
+    }
+
+    fn open(&mut self, inner: &[Inner], node: &Branch, shares: [usize; 2]) {
+        let border = node.root;
+        let ranges = [node.range.start..border, border..node.range.end];
+        let halves = inner[border as usize].halves;
+        for ((range, root), share) in ranges.into_iter().zip(halves).zip(shares) {
+            let half = Branch { range, root };
+            match root {
+                0 => self.push(half),
+                _ => match inner[root as usize].cut(share) {
+                    Cut::Leaf => self.push(Branch { root: 0, ..half }),
+                    Cut::Node => self.push(half),
+                    Cut::Opened(shares) => self.open(inner, &half, shares),
+                },
+            }
+        }
+    }
+
+    fn push(&mut self, branch: Branch) {
+        self.list[self.len] = branch;
+        self.len += 1;
+    }
+
+    fn list(&self) -> &[Branch] {
+        &self.list[..self.len]
+    }
+}
+
+/// The part of the arrays that a subtree goes to.
+struct Part<'a> {
+    nodes: &'a mut [WideNode],
+    first_node: u32,
+    blocks: &'a mut [Range<u32>],
+    first_block: u32,
+}
+
+impl Part<'_> {
+    /// Takes so much from the front.
+    fn take(&mut self, size: Size) -> Self {
+        let (nodes, later_nodes) = std::mem::take(&mut self.nodes).split_at_mut(size.nodes as usize);
+        let (blocks, later_blocks) = std::mem::take(&mut self.blocks).split_at_mut(size.blocks as usize);
+        let taken = Self { nodes, blocks, ..*self };
+        self.nodes = later_nodes;
+        self.blocks = later_blocks;
+        self.first_node += size.nodes;
+        self.first_block += size.blocks;
+        taken
+    }
+}
+
+struct Writer<'a> {
+    references: &'a [Reference],
+    inner: &'a [Inner],
+    blocks: Blocks,
+}
+
+impl Writer<'_> {
+    /// Writes a node and all below it; gives the box around it.
+    fn write(&self, node: &Branch, mut part: Part) -> Extent {
+        let branches = Branches::below(self.inner, node);
+        let mut wide = WideNode::EMPTY;
+        let mut all = Extent::EMPTY;
+        let mut add = |extent: Extent, child| {
+            wide.push(&extent.bounds(), child);
+            all = all.union(extent);
+        };
+        let here = part.take(Size { nodes: 1, blocks: 0 });
+        for leaf in branches.list().iter().filter(|branch| branch.root == 0) {
+            let count = self.blocks.count(leaf.len());
+            let mine = part.take(Size { nodes: 0, blocks: count });
+            let starts = leaf.range.clone().step_by(self.blocks.width());
+            for (block, start) in mine.blocks.iter_mut().zip(starts) {
+                *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
+            }
+            let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
+            add(Extent::around(references), Child { first: mine.first_block, blocks: count });
+        }
+        let mut below = Vec::new();
+        for branch in branches.list().iter().filter(|branch| branch.root > 0) {
+            let mine = part.take(self.inner[branch.root as usize].as_node());
+            let child = Child { first: mine.first_node, blocks: 0 };
+            if node.len() > PARALLEL {
+                below.push((branch, mine, child));
+            } else {
+                add(self.write(branch, mine), child);
+            }
+        }
+        let written = |(branch, mine, child)| (self.write(branch, mine), child);
+        let extents: Vec<(Extent, Child)> = below.into_par_iter().map(written).collect();
+        extents.into_iter().for_each(|(extent, child)| add(extent, child));
+        here.nodes[0] = wide;
+        all
+    }
+}

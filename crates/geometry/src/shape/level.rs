@@ -1,0 +1,76 @@
+//! A point of a surface that is given as F(x, y, z) = 0 in object space.
+//!
+//! The normal is n = ∇F/|∇F|; along a tangent v it changes by (H·v − n·(n·H·v))/|∇F|, with H the second derivatives of F. The
+//! parameters are the spherical angles around a centre, u = φ/2π and v = 1 − θ/π, as on a whole sphere. Their gradients in
+//! space give the tangents: ∂p/∂u is at right angles to n and ∇v, and ∇u·∂p/∂u = 1.
+
+use super::quadric::Quadric;
+use crate::surface::{SurfacePoint, any_tangents};
+use math::{DMat3, DVec3, Ray, Vec2};
+use std::f64::consts::{PI, TAU};
+
+/// A point of a surface, and how the surface goes on from there.
+pub(super) struct Level {
+    pub p: DVec3,
+    pub gradient: DVec3,
+    pub hessian: DMat3,
+    /// Around what the parameters turn.
+    pub center: DVec3,
+    /// Along what the ray came.
+    pub d: DVec3,
+}
+
+impl Level {
+    /// (u, v).
+    pub fn parameters(&self) -> Vec2 {
+        let q = self.p - self.center;
+        let (u, v) = (q.y.atan2(q.x) / TAU, 1.0 - q.x.hypot(q.y).atan2(q.z) / PI);
+        Vec2::new((if u < 0.0 { u + 1.0 } else { u }) as f32, v as f32)
+    }
+
+    /// Unit normal; towards where the ray came from at points that have no normal.
+    pub fn normal(&self) -> DVec3 {
+        let length = self.gradient.length();
+        if length > 0.0 && length.is_finite() {
+            self.gradient / length
+        } else {
+            (-self.d).normalize_or(DVec3::Z)
+        }
+    }
+
+    /// ∂p/∂u and ∂p/∂v.
+    fn tangents(&self, n: DVec3) -> [DVec3; 2] {
+        let q = self.p - self.center;
+        let radius = q.length();
+        let across = f64::max(q.x.hypot(q.y), 1e-5 * radius);
+        let (cos, sin) = if q.x == 0.0 && q.y == 0.0 { (1.0, 0.0) } else { (q.x / across, q.y / across) };
+        let grad_u = DVec3::new(-sin, cos, 0.0) / (across * TAU);
+        let grad_v = DVec3::new(-q.z * cos, -q.z * sin, across) / (radius * radius * PI);
+        let determinant = n.dot(grad_u.cross(grad_v));
+        // Seen from the centre edge-on, a surface has no such tangents.
+        if determinant.abs() > 1e-3 * grad_u.length() * grad_v.length() {
+            [grad_v.cross(n) / determinant, n.cross(grad_u) / determinant]
+        } else {
+            any_tangents(n.as_vec3()).map(|tangent| tangent.as_dvec3())
+        }
+    }
+
+    /// As seen from outside. The point is within `error` of the surface.
+    pub fn surface(&self, quadric: &Quadric, error: DVec3, ray: &Ray) -> SurfacePoint {
+        let n = self.normal();
+        let tangents = self.tangents(n);
+        let change = |v: DVec3| {
+            let h = self.hessian * v;
+            let dn = (h - n * n.dot(h)) / self.gradient.length();
+            quadric.normal_change(n, if dn.is_finite() { dn } else { DVec3::ZERO })
+        };
+        SurfacePoint::new(
+            quadric.placement.point(self.p, error),
+            quadric.normal(n),
+            self.parameters(),
+            tangents.map(|v| quadric.placement.vector(v)),
+            tangents.map(change),
+            ray,
+        )
+    }
+}
