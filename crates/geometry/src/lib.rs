@@ -13,6 +13,7 @@ mod curve;
 mod mesh;
 mod placement;
 mod shape;
+mod simd;
 mod surface;
 mod tessellation;
 mod watertight;
@@ -25,6 +26,7 @@ pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MovingMesh,
     MovingTriangle, Paraboloid, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
 };
+pub use simd::InstructionSet;
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};

@@ -6,46 +6,94 @@
 //! from the same numbers and get opposite signs, so that no ray slips between ([Woop et al. 2013]; [Pharr
 //! 2023 §6.5.3]).
 //!
-//! What floats cannot tell is decided in doubles: on which side of an edge the ray passes when an edge
-//! function vanishes, and whether a hit nearer than the rounding error of its distance lies before or behind
-//! the origin. A hit is thus lost neither on edges nor in corners.
+//! Several triangles are tested at once, a lane for each. What floats cannot tell is decided in doubles, lane
+//! by lane: on which side of an edge the ray passes when an edge function vanishes, and whether a hit nearer
+//! than the rounding error of its distance lies before or behind the origin. A hit is thus lost neither on
+//! edges nor in corners.
 
+#![allow(unsafe_code)]
+
+use crate::simd::{Lanes, Vector};
 use math::{Ray, Vec2, Vec3, difference_of_products, gamma};
 
 /// Edge functions below this may owe their sign to underflow.
 const VANISHING: f32 = 1e-30;
+/// Sums of edge functions below this may have lost too much of them to tell distances.
+const TINY: f32 = 1e-20;
 
 /// A ray made ready for many triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sheared {
     /// The axis that the ray mostly follows comes last.
-    pub axes: [usize; 3],
+    axes: [usize; 3],
     /// −d_x/d_z, −d_y/d_z and 1/d_z in permuted axes.
-    pub shear: [f32; 3],
-    pub o: Vec3,
+    shear: [f32; 3],
+    o: Vec3,
     d: Vec3,
 }
 
+/// The same in every lane, axes permuted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShearedLanes<V> {
+    axes: [usize; 3],
+    shear: [V; 3],
+    o: [V; 3],
+}
+
+/// What the lanes found: which are hit, and which of these are in doubt and have yet to be decided by
+/// [`Sheared::decide`]. The other arrays tell of the hits without doubt.
+pub(crate) struct LaneHits<const N: usize> {
+    pub hits: u32,
+    pub doubts: u32,
+    pub t: [f32; N],
+    pub b1: [f32; N],
+    pub b2: [f32; N],
+}
+
 impl Sheared {
-    #[inline]
+    #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
+        const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
         let size = ray.d.abs();
-        let z = if size.x > size.y && size.x > size.z {
-            0
-        } else if size.y > size.z {
-            1
-        } else {
-            2
-        };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
-        let d = axes.map(|a| ray.d[a]);
+        let x_leads = (size.x > size.y) & (size.x > size.z);
+        let axes = AXES[if x_leads { 0 } else { 2 - (size.y > size.z) as usize }];
+        let d = ray.d.to_array();
+        let d = axes.map(|a| d[a]);
         Self { axes, shear: [-d[0] / d[2], -d[1] / d[2], 1.0 / d[2]], o: ray.o, d: ray.d }
+    }
+
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
+    #[inline(always)]
+    pub unsafe fn lanes<const N: usize, V: Vector<N>>(&self) -> ShearedLanes<V> {
+        let o = self.o.to_array();
+        // SAFETY: as the caller promises.
+        unsafe {
+            ShearedLanes {
+                axes: self.axes,
+                shear: self.shear.map(|x| V::splat(x)),
+                o: self.axes.map(|a| V::splat(o[a])),
+            }
+        }
     }
 
     /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
     /// and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
+        let one = corners.map(|p| p.to_array().map(|x| [x]));
+        // SAFETY: every processor has single floats.
+        let found = unsafe { self.lanes::<1, Lanes<1>>().intersect(&one, Lanes([t_max])) }?;
+        if found.doubts != 0 {
+            return self.decide(corners).filter(|hit| hit.0 < t_max);
+        }
+        (found.t[0] < t_max).then(|| (found.t[0], Vec2::new(found.b1[0], found.b2[0])))
+    }
+
+    /// A hit in doubt, with the help of doubles.
+    #[cold]
+    #[inline(never)]
+    pub fn decide(&self, corners: &[Vec3; 3]) -> Option<(f32, Vec2)> {
         let [ax, ay, az] = self.axes;
         let [sx, sy, sz] = self.shear;
         let sheared = |p: Vec3| {
@@ -65,18 +113,17 @@ impl Sheared {
             return None;
         }
         let inverse = 1.0 / determinant;
-        let mut t = weighted(e, [a[2], b[2], c[2]]) * inverse;
-        if t >= t_max || t.is_nan() {
+        let mut t = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2] * c[2])) * inverse;
+        if !t.is_finite() {
             return None;
         }
         if t <= distance_error([a, b, c], e, inverse) {
-            t = self.exact_distance(corners).filter(|t| *t < t_max)?;
+            t = self.exact_distance(corners)?;
         }
         Some((t, Vec2::new(e[1] * inverse, e[2] * inverse)))
     }
 
     /// t > 0 where the ray meets the triangle's plane, in doubles.
-    #[cold]
     fn exact_distance(&self, corners: &[Vec3; 3]) -> Option<f32> {
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let n = (b - a).cross(c - a);
@@ -85,16 +132,79 @@ impl Sheared {
     }
 }
 
-/// e₀z₀ + e₁z₁ + e₂z₂: the distance before division by the determinant.
-#[inline(always)]
-pub(crate) fn weighted(e: [f32; 3], z: [f32; 3]) -> f32 {
-    e[0].mul_add(z[0], e[1].mul_add(z[1], e[2] * z[2]))
-}
-
-/// Whether the sign of an edge function is beyond doubt.
-#[inline(always)]
-pub(crate) fn is_vanishing(e: f32) -> bool {
-    e.abs() < VANISHING
+impl<V> ShearedLanes<V> {
+    /// Tests a triangle in each lane, given corner by corner and axis by axis, for hits at 0 < t ≤ `t_max`.
+    ///
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
+    #[inline(always)]
+    pub unsafe fn intersect<const N: usize>(
+        &self,
+        corners: &[[[f32; N]; 3]; 3],
+        t_max: V,
+    ) -> Option<LaneHits<N>>
+    where
+        V: Vector<N>,
+    {
+        let [ax, ay, az] = self.axes;
+        let [sx, sy, sz] = self.shear;
+        let [ox, oy, oz] = self.o;
+        // SAFETY: axes are below 3; the rest as the caller promises.
+        let sheared = |corner: &[[f32; N]; 3]| unsafe {
+            let x = V::load(corner.get_unchecked(ax)).sub(ox);
+            let y = V::load(corner.get_unchecked(ay)).sub(oy);
+            let z = V::load(corner.get_unchecked(az)).sub(oz);
+            [sx.mul_add(z, x), sy.mul_add(z, y), z.mul(sz)]
+        };
+        let [a, b, c] = [sheared(&corners[0]), sheared(&corners[1]), sheared(&corners[2])];
+        let edge = |p: [V; 3], q: [V; 3]| {
+            let yx = p[1].mul(q[0]);
+            // SAFETY: as the caller promises.
+            let negative = unsafe { V::splat(0.0) }.sub(yx);
+            let difference = p[0].mul_add(q[1], negative);
+            difference.add(p[1].neg_mul_add(q[0], yx))
+        };
+        let e = [edge(b, c), edge(c, a), edge(a, b)];
+        // SAFETY: as the caller promises.
+        let (zero, vanishing) = unsafe { (V::splat(0.0), V::splat(VANISHING)) };
+        let lowest = e[0].min(e[1]).min(e[2]);
+        let highest = e[0].max(e[1]).max(e[2]);
+        let inside = zero.sub(vanishing).le(lowest) | highest.le(vanishing);
+        if inside == 0 {
+            return None;
+        }
+        let determinant = e[0].add(e[1]).add(e[2]);
+        // SAFETY: as the caller promises.
+        let (one, tiny) = unsafe { (V::splat(1.0), V::splat(TINY)) };
+        let inverse = one.div(determinant);
+        let t = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2].mul(c[2]))).mul(inverse);
+        let candidates = inside & (t.le(t_max) | determinant.abs().lt(tiny));
+        if candidates == 0 {
+            return None;
+        }
+        let unsure = e[0].abs().min(e[1].abs()).min(e[2].abs()).lt(vanishing) | determinant.abs().lt(tiny);
+        // The error of t, as `distance_error` bounds it.
+        let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
+        let [x, y, z] = [largest(0), largest(1), largest(2)];
+        // SAFETY: as the caller promises.
+        let [g2, g3, g5] = [2, 3, 5].map(|n| unsafe { V::splat(gamma(n)) });
+        let [dx, dy, dz] = [g5.mul(x.add(z)), g5.mul(y.add(z)), g3.mul(z)];
+        let de = g2.mul(x).mul_add(y, dy.mul_add(x, dx.mul(y)));
+        let e_max = lowest.abs().max(highest.abs());
+        let error = g3.mul(e_max).mul_add(z, de.add(de).mul_add(z, dz.mul(e_max))).mul(inverse.abs());
+        let error = error.add(error).add(error);
+        let behind = t.add(error).lt(zero);
+        let before = error.lt(t);
+        let hits = candidates & (unsure | !behind);
+        let doubts = hits & (unsure | !before);
+        (hits != 0).then(|| LaneHits {
+            hits,
+            doubts,
+            t: t.store(),
+            b1: e[1].mul(inverse).store(),
+            b2: e[2].mul(inverse).store(),
+        })
+    }
 }
 
 #[inline]
@@ -102,7 +212,6 @@ fn edge(a: [f32; 3], b: [f32; 3]) -> f32 {
     difference_of_products(a[0], b[1], a[1], b[0])
 }
 
-#[cold]
 fn exact_edge(a: [f32; 3], b: [f32; 3]) -> f32 {
     let e = a[0] as f64 * b[1] as f64 - a[1] as f64 * b[0] as f64;
     // Rounding to floats must not make nothing of a sign.
@@ -110,7 +219,6 @@ fn exact_edge(a: [f32; 3], b: [f32; 3]) -> f32 {
 }
 
 /// A bound of the error of t ([Pharr 2023 §6.8.7]).
-#[inline]
 fn distance_error(corners: [[f32; 3]; 3], e: [f32; 3], inverse: f32) -> f32 {
     let largest = |v: [f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
     let [x, y, z] = [0, 1, 2].map(|axis| largest(corners.map(|c| c[axis])));

@@ -1,56 +1,110 @@
 //! Nodes of eight children, whose boxes are tested together.
 //!
-//! The idea is that of [Wald et al. 2008]. The slab test is the one of [`Bounds3::intersect`], with one
-//! difference: it widens boxes by what the watertight triangle test may err. That test rounds vertices after
-//! moving them to the ray's origin, so that it may meet a triangle that the exact ray misses by γ(8) times
-//! the distance; a box that is not as generous would let such a ray slip through a closed surface.
+//! The idea is that of [Wald et al. 2008]. A ray enters a slab at t = p·(1/d) − o/d, which is one fused product;
+//! everything but the plane p is known beforehand. Boxes are widened by what that rounds, and by what the
+//! watertight triangle test may err: that test rounds vertices after moving them to the ray's origin, so that it
+//! may meet a triangle that the exact ray misses by γ(8) times the distance; a box that is not as generous would
+//! let such a ray slip through a closed surface.
 
-use math::{Bounds3, Ray, gamma};
+#![allow(unsafe_code)]
+
+use crate::simd::Vector;
+use math::{Bounds3, Ray, Vec3, gamma};
 
 /// Children of a node.
 pub(crate) const WIDTH: usize = 8;
 
-/// A child: blocks of primitives, or (when there are none) the node `first`.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Child {
-    pub first: u32,
-    pub blocks: u32,
+/// A child in 32 bits: a node, or a range of blocks of primitives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Child(pub u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    const BLOCK_BITS: u32 = 4;
+    /// The most blocks that a leaf may hold.
+    pub const MAX_BLOCKS: usize = (1 << Self::BLOCK_BITS) - 1;
+    /// A leaf without blocks.
+    pub const NOTHING: Self = Self(Self::LEAF);
+
+    /// The node at an index.
+    pub fn node(index: usize) -> Self {
+        assert!(index < Self::LEAF as usize, "too many nodes for an index of 31 bits");
+        Self(index as u32)
+    }
+
+    /// Blocks `first` to `first + blocks`.
+    pub fn leaf(first: usize, blocks: usize) -> Self {
+        assert!(
+            first < (1 << (31 - Self::BLOCK_BITS)) - 1 && blocks <= Self::MAX_BLOCKS,
+            "too many primitives"
+        );
+        Self(Self::LEAF | (first as u32) << Self::BLOCK_BITS | blocks as u32)
+    }
+
+    #[inline(always)]
+    pub fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    /// Where the node is.
+    #[inline(always)]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// Which blocks the leaf holds.
+    #[inline(always)]
+    pub fn blocks(self) -> std::ops::Range<usize> {
+        let first = ((self.0 & !Self::LEAF) >> Self::BLOCK_BITS) as usize;
+        first..first + (self.0 as usize & Self::MAX_BLOCKS)
+    }
 }
 
 /// A node: the six planes of each child's box (low x, y, z, high x, y, z), and where the children are.
 #[derive(Clone, Debug)]
-#[repr(align(64))]
+#[repr(C, align(64))]
 pub(crate) struct WideNode {
     planes: [[f32; WIDTH]; 6],
-    first: [u32; WIDTH],
-    blocks: [u8; WIDTH],
-    len: u8,
+    children: [Child; WIDTH],
+    len: u32,
 }
 
-/// A ray made ready for many boxes.
-pub(crate) struct Slabs {
-    /// Which plane is met first, and which last, along each axis.
-    planes: [[usize; 2]; 3],
-    /// The origin, moved forth and back so that boxes seem wider.
-    origins: [[f32; 2]; 3],
-    /// 1/d; the second a little longer, to cover the rounding of the test.
-    inverse: [[f32; 2]; 3],
+/// A ray made ready for many boxes, the same in every lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Slabs<V> {
+    /// Which plane is met first along each axis; the other is met last.
+    first: [usize; 3],
+    inverse: [V; 3],
+    /// o/d, with the origin moved forth so that boxes seem to begin earlier, and back so that they seem to
+    /// end later.
+    near: [V; 3],
+    far: [V; 3],
 }
 
-impl Slabs {
-    pub fn new(ray: &Ray, bounds: &Bounds3) -> Self {
-        let reach = (bounds.min - ray.o).abs().max((bounds.max - ray.o).abs()).max_element();
-        let slack = reach * gamma(8);
-        let inverse = ray.d.recip();
-        let backwards = [0, 1, 2].map(|axis| inverse[axis] < 0.0);
-        Self {
-            planes: [0, 1, 2].map(|axis| if backwards[axis] { [axis + 3, axis] } else { [axis, axis + 3] }),
-            origins: [0, 1, 2].map(|axis| {
-                let slack = if backwards[axis] { -slack } else { slack };
-                [ray.o[axis] + slack, ray.o[axis] - slack]
-            }),
-            inverse: [0, 1, 2].map(|axis| [inverse[axis], inverse[axis] * (1.0 + 2.0 * gamma(3))]),
-        }
+impl<V: Vector<WIDTH>> Slabs<V> {
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
+    #[inline(always)]
+    pub unsafe fn new(ray: &Ray, bounds: &Bounds3) -> Self {
+        let slack = Self::slack(ray, bounds);
+        // A ray along a slab is in it or not for all its length; a direction that is just not along it says
+        // the same within the slack, and has an inverse.
+        let least = ray.d.abs().max_element() * 1e-12;
+        let d = Vec3::select(ray.d.abs().cmplt(Vec3::splat(least)), Vec3::splat(least), ray.d);
+        let inverse = d.recip();
+        let shift = Vec3::splat(slack).copysign(inverse);
+        let near = ((ray.o + shift) * inverse).to_array();
+        let far = ((ray.o - shift) * inverse).to_array();
+        let inverse = inverse.to_array();
+        let first = [0, 1, 2].map(|axis| axis + 3 * (inverse[axis] < 0.0) as usize);
+        // SAFETY: as the caller promises.
+        let splat = |v: [f32; 3]| v.map(|x| unsafe { V::splat(x) });
+        Self { first, inverse: splat(inverse), near: splat(near), far: splat(far) }
+    }
+
+    #[inline(always)]
+    fn slack(ray: &Ray, bounds: &Bounds3) -> f32 {
+        (bounds.min.abs().max(bounds.max.abs()) + ray.o.abs()).max_element() * gamma(8)
     }
 }
 
@@ -64,53 +118,54 @@ impl WideNode {
             [f32::NEG_INFINITY; WIDTH],
             [f32::NEG_INFINITY; WIDTH],
         ],
-        first: [0; WIDTH],
-        blocks: [0; WIDTH],
+        children: [Child::NOTHING; WIDTH],
         len: 0,
     };
 
-    #[inline]
+    /// How many children there are.
+    #[inline(always)]
     pub fn len(&self) -> usize {
         self.len as usize
     }
 
-    #[inline]
-    pub fn child(&self, lane: usize) -> Child {
-        Child { first: self.first[lane], blocks: self.blocks[lane] as u32 }
+    /// The children, filled up with [`Child::NOTHING`].
+    #[inline(always)]
+    pub fn children(&self) -> &[Child; WIDTH] {
+        &self.children
     }
 
+    /// Adds a child.
     pub fn push(&mut self, bounds: &Bounds3, child: Child) {
         let lane = self.len();
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.min[axis];
             self.planes[axis + 3][lane] = bounds.max[axis];
         }
-        self.first[lane] = child.first;
-        self.blocks[lane] = child.blocks as u8;
+        self.children[lane] = child;
         self.len += 1;
     }
 
-    /// Where the ray enters each box, and a bit for each box that it enters before `t_max`.
-    /// Comparisons keep the old value beside a NaN, which 0 · ∞ makes when the ray runs along a slab.
-    #[inline]
-    pub fn intersect(&self, ray: &Slabs, t_max: f32) -> ([f32; WIDTH], u32) {
-        let mut near = [0f32; WIDTH];
-        let mut far = [t_max; WIDTH];
+    /// Where the ray enters each box, and a bit for each box that it enters up to `t_max`.
+    /// Comparisons keep the old value beside a NaN, which numbers beyond floats make.
+    #[inline(always)]
+    pub fn intersect<V: Vector<WIDTH>>(&self, ray: &Slabs<V>, t_max: V, zero: V) -> (V, u32) {
+        let mut near = zero;
+        let mut far = t_max;
         for axis in 0..3 {
-            let [first, last] = ray.planes[axis].map(|plane| &self.planes[plane]);
-            let [o_near, o_far] = ray.origins[axis];
-            let [inverse_near, inverse_far] = ray.inverse[axis];
-            for lane in 0..WIDTH {
-                let enter = (first[lane] - o_near) * inverse_near;
-                let leave = (last[lane] - o_far) * inverse_far;
-                near[lane] = if enter > near[lane] { enter } else { near[lane] };
-                far[lane] = if leave < far[lane] { leave } else { far[lane] };
-            }
+            let first = ray.first[axis];
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `ray` has the
+            // instructions.
+            let [enter, leave] = unsafe {
+                let first_plane = V::load(self.planes.get_unchecked(first));
+                let last_plane = V::load(self.planes.get_unchecked(2 * axis + 3 - first));
+                [
+                    first_plane.mul_sub_loosely(ray.inverse[axis], ray.near[axis]),
+                    last_plane.mul_sub_loosely(ray.inverse[axis], ray.far[axis]),
+                ]
+            };
+            near = enter.max(near);
+            far = leave.min(far);
         }
-        let mut hits = 0;
-        for lane in 0..WIDTH {
-            hits |= ((near[lane] <= far[lane]) as u32) << lane;
-        }
-        (near, hits & ((1 << self.len) - 1))
+        (near, near.le(far))
     }
 }

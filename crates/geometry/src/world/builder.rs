@@ -3,6 +3,7 @@
 use super::group::Group;
 use super::{Geometry, GeometryId, GroupId, Instance, InstanceId, Placed, World};
 use crate::bvh::BuildQuality;
+use crate::simd::InstructionSet;
 use rayon::prelude::*;
 
 /// A world in the making.
@@ -67,6 +68,6 @@ impl WorldBuilder {
             .collect();
         let top = Group::build(&groups[0], &geometries, &places, quality);
         let groups = std::iter::once(top).chain(placed_groups).collect();
-        World { groups, geometries, instances }
+        World { groups, geometries, instances, instruction_set: InstructionSet::detect() }
     }
 }

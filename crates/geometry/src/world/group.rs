@@ -1,13 +1,17 @@
 //! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
+#![allow(unsafe_code)]
+
 use super::packet::Packet;
+use super::query::Query;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
-use crate::bvh::{BuildQuality, Bvh, Reference};
-use crate::watertight::Sheared;
-use math::{Bounds3, Ray, gamma};
+use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
+use crate::simd::{Simd, Task, Vector};
+use crate::watertight::{Sheared, ShearedLanes};
+use math::{Bounds3, Ray, Vec2, gamma};
 use rayon::prelude::*;
-use std::ops::ControlFlow;
+use std::ops::Range;
 
 /// Meshes with fewer triangles are not worth another thread.
 const PARALLEL: usize = 4096;
@@ -17,16 +21,6 @@ const PARALLEL: usize = 4096;
 enum Item {
     Shape(GeometryId, u32),
     Instance(InstanceId),
-}
-
-/// What is to be done after a hit.
-pub(super) enum Verdict {
-    /// Forget it.
-    Refuse,
-    /// Look for nearer ones only.
-    Keep,
-    /// Look no further.
-    Stop,
 }
 
 /// A ray on its way through a group.
@@ -112,112 +106,178 @@ impl Group {
         self.triangles.bounds().union(self.items.bounds())
     }
 
-    /// Shows hits to `accept`; breaks when it says stop.
-    pub fn trace<F: FnMut(Hit) -> Verdict>(
-        &self,
-        trace: &mut Trace,
-        t_max: &mut f32,
-        accept: &mut F,
-    ) -> ControlFlow<()> {
+    /// Shows hits to the query; whether it wants no more.
+    pub fn trace<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
+        // Finite directions too short to have an inverse go nowhere.
+        if !(trace.ray.o.is_finite()
+            && trace.ray.d.is_finite()
+            && trace.ray.d.abs().max_element().recip().is_finite())
+        {
+            return false;
+        }
         for &item in &self.unbounded {
-            trace.item(item, t_max, accept)?;
+            if trace.item(item, query) {
+                return true;
+            }
         }
         if !self.packets.is_empty() {
-            let sheared = Sheared::new(trace.ray);
-            let (mut extents, mut primitives) = (0, 0);
-            let flow = self.triangles.traverse(trace.ray, t_max, &mut extents, |blocks, t_max| {
-                for packet in &self.packets[blocks] {
-                    primitives += packet.len as u64;
-                    trace.packet(packet, &sheared, t_max, accept)?;
-                }
-                ControlFlow::Continue(())
-            });
+            let set = trace.world.instruction_set;
+            // SAFETY: worlds are only given sets that the processor has.
+            let (extents, primitives, stop) =
+                unsafe { set.run(TraceTriangles { group: self, trace, query }) };
             trace.stats.extents += extents;
             trace.stats.primitives += primitives;
-            flow?;
+            if stop {
+                return true;
+            }
         }
         if !self.item_list.is_empty() {
-            let mut extents = 0;
-            let flow = self.items.traverse(trace.ray, t_max, &mut extents, |blocks, t_max| {
-                for &item in &self.item_list[blocks] {
-                    trace.item(item, t_max, accept)?;
-                }
-                ControlFlow::Continue(())
-            });
+            let set = trace.world.instruction_set;
+            // SAFETY: worlds are only given sets that the processor has.
+            let (extents, stop) = unsafe { set.run(TraceItems { group: self, trace, query }) };
             trace.stats.extents += extents;
-            flow?;
+            return stop;
         }
-        ControlFlow::Continue(())
+        false
+    }
+}
+
+/// A ray on its way through the triangles of a group.
+struct TraceTriangles<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
+    type Output = (u64, u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { group, trace, query } = self;
+        let sheared = Sheared::new(trace.ray);
+        // SAFETY: the caller promises the instructions.
+        unsafe {
+            let lanes = sheared.lanes::<{ Packet::WIDTH }, S::Four>();
+            let mut t_max = query.t_max();
+            let mut leaves =
+                Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
+            let (extents, stop) = if Q::ANY {
+                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
+            } else {
+                group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
+            };
+            (extents, leaves.primitives, stop)
+        }
+    }
+}
+
+struct Triangles<'a, V, Q> {
+    group: &'a Group,
+    instance: Option<InstanceId>,
+    sheared: &'a Sheared,
+    lanes: ShearedLanes<V>,
+    query: &'a mut Q,
+    primitives: u64,
+}
+
+impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        // SAFETY: the tree was built over these packets.
+        for packet in unsafe { self.group.packets.get_unchecked(blocks) } {
+            self.primitives += packet.len() as u64;
+            let Some(found) = packet.intersect(&self.lanes, *t_max) else { continue };
+            let mut hits = found.hits;
+            while hits != 0 {
+                let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
+                hits &= hits - 1;
+                let (mut t, mut uv) = (found.t[lane], Vec2::new(found.b1[lane], found.b2[lane]));
+                if found.doubts >> lane & 1 != 0 {
+                    let Some(decided) = self.sheared.decide(&packet.triangle(lane)) else { continue };
+                    (t, uv) = decided;
+                }
+                let (geometry, primitive) = packet.id(lane);
+                let geometry = GeometryId(geometry);
+                if self.query.offer(Hit { t, uv, geometry, primitive, instance: self.instance }) {
+                    return true;
+                }
+            }
+            *t_max = self.query.t_max();
+        }
+        false
+    }
+}
+
+/// A ray on its way through the items of a group.
+struct TraceItems<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a mut Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceItems<'_, '_, Q> {
+    type Output = (u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { group, trace, query } = self;
+        let ray = trace.ray;
+        let mut t_max = query.t_max();
+        let mut leaves = Items { group, trace, query };
+        // SAFETY: the caller promises the instructions.
+        unsafe {
+            if Q::ANY {
+                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
+            } else {
+                group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
+            }
+        }
+    }
+}
+
+struct Items<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a mut Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Leaves for Items<'_, '_, Q> {
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        for &item in &self.group.item_list[blocks] {
+            if self.trace.item(item, self.query) {
+                return true;
+            }
+        }
+        *t_max = self.query.t_max();
+        false
     }
 }
 
 impl Trace<'_> {
-    #[inline]
-    fn packet(
-        &self,
-        packet: &Packet,
-        sheared: &Sheared,
-        t_max: &mut f32,
-        accept: &mut impl FnMut(Hit) -> Verdict,
-    ) -> ControlFlow<()> {
-        let mut candidates = packet.candidates(sheared, *t_max);
-        while candidates != 0 {
-            let lane = candidates.trailing_zeros() as usize;
-            candidates &= candidates - 1;
-            if let Some((t, uv)) = sheared.triangle(&packet.triangle(lane), *t_max) {
-                let (geometry, primitive) = packet.ids[lane];
-                let geometry = GeometryId(geometry);
-                judge(Hit { t, uv, geometry, primitive, instance: self.instance }, t_max, accept)?;
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn item<F: FnMut(Hit) -> Verdict>(
-        &mut self,
-        item: Item,
-        t_max: &mut f32,
-        accept: &mut F,
-    ) -> ControlFlow<()> {
+    #[inline(never)]
+    fn item<Q: Query>(&mut self, item: Item, query: &mut Q) -> bool {
         match item {
             Item::Shape(geometry, primitive) => {
                 self.stats.primitives += 1;
                 let hit = match self.world.geometry(geometry) {
-                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, *t_max),
-                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, *t_max),
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
+                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
                     Geometry::Mesh(_) => None,
                 };
-                match hit {
-                    Some(hit) => judge(
-                        Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance },
-                        t_max,
-                        accept,
-                    ),
-                    None => ControlFlow::Continue(()),
-                }
+                hit.is_some_and(|hit| {
+                    query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })
+                })
             }
             Item::Instance(id) => {
                 let placed = &self.world.instances[id.0 as usize];
                 let ray = placed.with_placement(self.ray.time, |placement| placement.ray(self.ray));
-                if !(ray.o.is_finite() && ray.d.is_finite()) {
-                    return ControlFlow::Continue(());
-                }
                 let mut inner =
                     Trace { world: self.world, ray: &ray, instance: Some(id), stats: &mut *self.stats };
-                self.world.groups[placed.group as usize].trace(&mut inner, t_max, accept)
+                self.world.groups[placed.group as usize].trace(&mut inner, query)
             }
         }
-    }
-}
-
-fn judge(hit: Hit, t_max: &mut f32, accept: &mut impl FnMut(Hit) -> Verdict) -> ControlFlow<()> {
-    match accept(hit) {
-        Verdict::Refuse => ControlFlow::Continue(()),
-        Verdict::Keep => {
-            *t_max = hit.t;
-            ControlFlow::Continue(())
-        }
-        Verdict::Stop => ControlFlow::Break(()),
     }
 }
 

@@ -7,16 +7,18 @@
 mod builder;
 mod group;
 mod packet;
+mod query;
 mod stats;
 
 use crate::curve::Curves;
 use crate::mesh::TriangleMesh;
 use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
+use crate::simd::InstructionSet;
 use crate::surface::SurfacePoint;
-use group::{Group, Trace, Verdict};
+use group::{Group, Trace};
 use math::{AnimatedTransform, Bounds3, Ray, Vec2};
-use std::ops::ControlFlow;
+use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
@@ -159,6 +161,7 @@ pub struct World {
     groups: Vec<Group>,
     geometries: Vec<Geometry>,
     instances: Vec<Placed>,
+    instruction_set: InstructionSet,
 }
 
 impl World {
@@ -197,15 +200,9 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> Option<Hit> {
-        let mut nearest = None;
-        let _ = self.trace(ray, t_max, stats, &mut |hit: Hit| {
-            if !filter(&hit, ray) {
-                return Verdict::Refuse;
-            }
-            nearest = Some(hit);
-            Verdict::Keep
-        });
-        nearest
+        let mut query = Nearest::new(ray, t_max, filter);
+        self.trace(ray, &mut query, stats);
+        query.hit
     }
 
     /// Whether anything that `filter` keeps is hit at 0 < t < `t_max`.
@@ -216,23 +213,22 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> bool {
-        let verdict = |hit: Hit| if filter(&hit, ray) { Verdict::Stop } else { Verdict::Refuse };
-        self.trace(ray, t_max, stats, &mut { verdict }).is_break()
+        self.trace(ray, &mut Any::new(ray, t_max, filter), stats)
     }
 
     #[inline]
-    fn trace(
-        &self,
-        ray: &Ray,
-        mut t_max: f32,
-        stats: &mut RayStats,
-        accept: &mut impl FnMut(Hit) -> Verdict,
-    ) -> ControlFlow<()> {
+    fn trace(&self, ray: &Ray, query: &mut impl Query, stats: &mut RayStats) -> bool {
         stats.rays += 1;
-        if !(ray.o.is_finite() && ray.d.is_finite()) {
-            return ControlFlow::Continue(());
-        }
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, &mut t_max, accept)
+        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, query)
+    }
+
+    /// Traces rays with another set of instructions than the best one, which finds the same hits.
+    ///
+    /// # Panics
+    /// When the processor does not have it.
+    pub fn set_instruction_set(&mut self, set: InstructionSet) {
+        assert!(set.is_available(), "this processor has no {set:?}");
+        self.instruction_set = set;
     }
 
     /// What is known of the surface where `ray` met it.

@@ -37,6 +37,8 @@ pub enum BuildQuality {
 pub(crate) struct Built {
     pub nodes: Vec<WideNode>,
     pub bounds: Bounds3,
+    /// How many nodes are above each other.
+    pub depth: usize,
     references: Vec<Reference>,
     blocks: Vec<Range<u32>>,
 }
@@ -51,12 +53,18 @@ impl Built {
 /// Builds a tree over references with finite bounds; leaves hold blocks of `width` references, a power of two.
 pub(crate) fn build(mut references: Vec<Reference>, _quality: BuildQuality, width: usize) -> Built {
     if references.is_empty() {
-        return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, references, blocks: Vec::new() };
+        return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, depth: 0, references, blocks: Vec::new() };
     }
     let blocks = Blocks::of(width);
     let mut inner = vec![Inner::default(); references.len()];
     let extent = Extent::around(&references);
     let tree = balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0);
     let wide = widen::widen(&references, &inner, &tree, blocks);
-    Built { nodes: wide.nodes, bounds: wide.extent.bounds(), references, blocks: wide.blocks }
+    Built {
+        nodes: wide.nodes,
+        bounds: wide.extent.bounds(),
+        depth: wide.depth,
+        references,
+        blocks: wide.blocks,
+    }
 }

@@ -18,6 +18,8 @@ pub(super) struct Wide {
     pub nodes: Vec<WideNode>,
     pub blocks: Vec<Range<u32>>,
     pub extent: Extent,
+    /// How many nodes are above each other.
+    pub depth: usize,
 }
 
 /// Cuts a binary tree over at least one reference.
@@ -27,8 +29,8 @@ pub(super) fn widen(references: &[Reference], inner: &[Inner], tree: &Grown, blo
     let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];
     let mut list = vec![0..0; size.blocks as usize];
     let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
-    let extent = Writer { references, inner, blocks }.write(&whole, part);
-    Wide { nodes, blocks: list, extent }
+    let (extent, depth) = Writer { references, inner, blocks }.write(&whole, part);
+    Wide { nodes, blocks: list, extent, depth }
 }
 
 /// A range of references, and the border that divides it; 0 for a leaf.
@@ -117,14 +119,15 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Writes a node and all below it; gives the box around it.
-    fn write(&self, node: &Branch, mut part: Part) -> Extent {
+    /// Writes a node and all below it; gives the box around it, and how many nodes are above each other.
+    fn write(&self, node: &Branch, mut part: Part) -> (Extent, usize) {
         let branches = Branches::below(self.inner, node);
         let mut wide = WideNode::EMPTY;
-        let mut all = Extent::EMPTY;
-        let mut add = |extent: Extent, child| {
+        let (mut all, mut deepest) = (Extent::EMPTY, 0);
+        let mut add = |(extent, depth): (Extent, usize), child| {
             wide.push(&extent.bounds(), child);
             all = all.union(extent);
+            deepest = deepest.max(depth);
         };
         let here = part.take(Size { nodes: 1, blocks: 0 });
         for leaf in branches.list().iter().filter(|branch| branch.root == 0) {
@@ -135,12 +138,12 @@ impl Writer<'_> {
                 *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
             }
             let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
-            add(Extent::around(references), Child { first: mine.first_block, blocks: count });
+            add((Extent::around(references), 0), Child::leaf(mine.first_block as usize, count as usize));
         }
         let mut below = Vec::new();
         for branch in branches.list().iter().filter(|branch| branch.root > 0) {
             let mine = part.take(self.inner[branch.root as usize].as_node());
-            let child = Child { first: mine.first_node, blocks: 0 };
+            let child = Child::node(mine.first_node as usize);
             if node.len() > PARALLEL {
                 below.push((branch, mine, child));
             } else {
@@ -148,9 +151,9 @@ impl Writer<'_> {
             }
         }
         let written = |(branch, mine, child)| (self.write(branch, mine), child);
-        let extents: Vec<(Extent, Child)> = below.into_par_iter().map(written).collect();
-        extents.into_iter().for_each(|(extent, child)| add(extent, child));
+        let written: Vec<_> = below.into_par_iter().map(written).collect();
+        written.into_iter().for_each(|(written, child)| add(written, child));
         here.nodes[0] = wide;
-        all
+        (all, deepest + 1)
     }
 }

@@ -1,0 +1,196 @@
+//! Rays on their way through a tree.
+//!
+//! Towards the nearest hit, children are visited front to back: the nearest at once, the others from a stack,
+//! where each waits with the distance of its box, so that it is passed over when something nearer was hit in
+//! the meantime. Towards any hit, order does not matter.
+
+#![allow(unsafe_code)]
+
+use super::node::{Child, Slabs, WIDTH, WideNode};
+use super::{Bvh, MAX_DEPTH};
+use crate::simd::{Simd, Vector};
+use math::Ray;
+use std::mem::MaybeUninit;
+use std::ops::Range;
+
+/// What stands in the leaves of a tree.
+pub(crate) trait Leaves {
+    /// Tests blocks for hits up to `t_max`, and lowers it to the nearest. Whether to look no further.
+    ///
+    /// # Safety
+    /// The blocks must be those of a leaf, and the processor must have the instructions that the leaves were
+    /// made ready for.
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool;
+}
+
+/// Each node on the way down leaves at most all children but one waiting; and below all lies [`Waiting::END`].
+const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+
+/// A child, and above it the bits of its distance, so that what is nearer is less.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Waiting(u64);
+
+impl Waiting {
+    /// Not a leaf that there can be.
+    const END: Self = Self(u32::MAX as u64);
+
+    #[inline(always)]
+    fn new(near: f32, child: Child) -> Self {
+        Self((near.to_bits() as u64) << 32 | child.0 as u64)
+    }
+
+    #[inline(always)]
+    fn near(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
+}
+
+impl Bvh {
+    /// Shows `leaves` the blocks that the ray may meet up to `t_max`, the nearest first, or with `ANY` in no
+    /// order. Returns the number of boxes tested, and whether `leaves` broke off. The ray must be finite.
+    ///
+    /// # Safety
+    /// The processor must have the instructions of the set.
+    #[inline(always)]
+    pub unsafe fn traverse<S: Simd, const ANY: bool>(
+        &self,
+        ray: &Ray,
+        t_max: &mut f32,
+        leaves: &mut impl Leaves,
+    ) -> (u64, bool) {
+        let mut extents = 0;
+        // Negative and NaN ends leave nothing to be hit; nor has a ray without length anywhere to go.
+        if self.nodes.is_empty() || t_max.is_nan() || *t_max < 0.0 {
+            return (extents, false);
+        }
+        // SAFETY: the caller promises the instructions. Children were made by `Child::node` and `Child::leaf` for nodes and
+        // blocks that there are, and the tree is not deeper than what the stack was measured for: `Bvh::build` saw to both.
+        unsafe {
+            let slabs = Slabs::<S::Eight>::new(ray, &self.bounds);
+            let zero = S::Eight::splat(0.0);
+            let nodes = self.nodes.as_ptr();
+            let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
+            let mut top = stack.as_mut_ptr().cast::<Waiting>();
+            *top = Waiting::END;
+            top = top.add(1);
+            let mut next = Child::node(0);
+            loop {
+                while !next.is_leaf() {
+                    let node: &WideNode = &*nodes.add(next.index());
+                    extents += node.len() as u64;
+                    let (near, hits) = node.intersect(&slabs, S::Eight::splat(*t_max), zero);
+                    if hits == 0 {
+                        next = pop(&mut top, *t_max);
+                        continue;
+                    }
+                    next = if ANY {
+                        choose_any(node, hits, &mut top)
+                    } else {
+                        choose_nearest::<S>(node, near, hits, &mut top)
+                    };
+                }
+                if next == Waiting::END.child() {
+                    return (extents, false);
+                }
+                if leaves.test(next.blocks(), t_max) {
+                    return (extents, true);
+                }
+                next = pop(&mut top, *t_max);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+unsafe fn pop(top: &mut *mut Waiting, t_max: f32) -> Child {
+    loop {
+        // SAFETY: the end lies below everything, and is never passed over.
+        let waiting = unsafe {
+            *top = top.sub(1);
+            **top
+        };
+        if waiting.near() <= t_max.to_bits() {
+            return waiting.child();
+        }
+    }
+}
+
+#[inline(always)]
+unsafe fn push(top: &mut *mut Waiting, waiting: Waiting) {
+    // SAFETY: the stack has room for the deepest tree.
+    unsafe {
+        **top = waiting;
+        *top = top.add(1);
+    }
+}
+
+/// Takes any child that is hit, and leaves the others waiting.
+#[inline(always)]
+unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting) -> Child {
+    loop {
+        let lane = hits.trailing_zeros() as usize;
+        hits &= hits - 1;
+        // SAFETY: bits of `hits` are lanes.
+        let child = unsafe { *node.children().get_unchecked(lane) };
+        if hits == 0 {
+            return child;
+        }
+        // SAFETY: one of at most seven.
+        unsafe { push(top, Waiting::new(0.0, child)) };
+    }
+}
+
+/// Takes the nearest child that is hit, and leaves the others waiting in order.
+#[inline(always)]
+unsafe fn choose_nearest<S: Simd>(
+    node: &WideNode,
+    near: S::Eight,
+    mut hits: u32,
+    top: &mut *mut Waiting,
+) -> Child {
+    // SAFETY: bits of `hits` are lanes.
+    let child = |lane: usize| unsafe { *node.children().get_unchecked(lane) };
+    let lane = hits.trailing_zeros() as usize;
+    hits &= hits - 1;
+    if hits == 0 {
+        return child(lane);
+    }
+    let near = near.store();
+    // SAFETY: bits of `hits` are lanes.
+    let waiting = |lane: usize| unsafe { Waiting::new(*near.get_unchecked(lane), child(lane)) };
+    let a = waiting(lane);
+    let lane = hits.trailing_zeros() as usize;
+    hits &= hits - 1;
+    let b = waiting(lane);
+    let (mut nearest, other) = (a.min(b), a.max(b));
+    // SAFETY: a node leaves at most seven children waiting.
+    unsafe {
+        if hits == 0 {
+            push(top, other);
+            return nearest.child();
+        }
+        let floor = *top;
+        push(top, other);
+        while hits != 0 {
+            let lane = hits.trailing_zeros() as usize;
+            hits &= hits - 1;
+            let c = waiting(lane);
+            let other = c.max(nearest);
+            nearest = c.min(nearest);
+            // Sink below those that are nearer.
+            let mut at = *top;
+            while at > floor && *at.sub(1) < other {
+                *at = *at.sub(1);
+                at = at.sub(1);
+            }
+            *at = other;
+            *top = top.add(1);
+        }
+    }
+    nearest.child()
+}

@@ -1,0 +1,93 @@
+//! What is asked of a ray: its nearest hit, or whether it hits anything.
+//!
+//! The answer does not depend on the order in which hits are offered: of those at the same distance, the
+//! nearest is the one whose instance, geometry and primitive come first.
+
+use super::Hit;
+use math::Ray;
+
+/// A question to which hits are offered.
+pub(super) trait Query {
+    /// Whether any hit is as good as the nearest.
+    const ANY: bool;
+
+    /// Hits beyond are of no interest.
+    fn t_max(&self) -> f32;
+
+    /// Hits from here on are of no interest.
+    fn end(&self) -> f32;
+
+    /// Takes note of a hit; whether the question is answered.
+    fn offer(&mut self, hit: Hit) -> bool;
+}
+
+/// The nearest hit that the filter keeps.
+pub(super) struct Nearest<'a, F> {
+    ray: &'a Ray,
+    filter: &'a F,
+    t_max: f32,
+    pub hit: Option<Hit>,
+}
+
+impl<'a, F: Fn(&Hit, &Ray) -> bool> Nearest<'a, F> {
+    pub fn new(ray: &'a Ray, t_max: f32, filter: &'a F) -> Self {
+        Self { ray, filter, t_max, hit: None }
+    }
+}
+
+impl<F: Fn(&Hit, &Ray) -> bool> Query for Nearest<'_, F> {
+    const ANY: bool = false;
+
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.t_max
+    }
+
+    fn end(&self) -> f32 {
+        if self.hit.is_some() { self.t_max.next_up() } else { self.t_max }
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit) -> bool {
+        let precedes = |other: &Hit| {
+            (hit.instance, hit.geometry, hit.primitive) < (other.instance, other.geometry, other.primitive)
+        };
+        let is_nearer = hit.t < self.t_max || hit.t == self.t_max && self.hit.as_ref().is_some_and(precedes);
+        if is_nearer && (self.filter)(&hit, self.ray) {
+            self.t_max = hit.t;
+            self.hit = Some(hit);
+        }
+        false
+    }
+}
+
+/// Whether there is a hit that the filter keeps.
+pub(super) struct Any<'a, F> {
+    ray: &'a Ray,
+    filter: &'a F,
+    t_max: f32,
+}
+
+impl<'a, F: Fn(&Hit, &Ray) -> bool> Any<'a, F> {
+    pub fn new(ray: &'a Ray, t_max: f32, filter: &'a F) -> Self {
+        Self { ray, filter, t_max }
+    }
+}
+
+impl<F: Fn(&Hit, &Ray) -> bool> Query for Any<'_, F> {
+    const ANY: bool = true;
+
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.t_max
+    }
+
+    fn end(&self) -> f32 {
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit) -> bool {
+        hit.t < self.t_max && (self.filter)(&hit, self.ray)
+    }
+}
