@@ -235,6 +235,8 @@ pub struct ObjectDesc {
     pub name: String,
     /// Its shapes, in the object's space.
     pub shapes: Arena<ShapeDesc>,
+    /// Instances of other objects in it, up to eight levels deep.
+    pub instances: Arena<InstanceDesc>,
 }
 
 /// An object, drawn.
@@ -242,6 +244,6 @@ pub struct ObjectDesc {
 pub struct InstanceDesc {
     /// Which one.
     pub object: Handle<ObjectDesc>,
-    /// From the object's space to the world.
+    /// From the object's space to the world (for an instance in an object: to the space of that).
     pub world_from_object: TransformDesc,
 }

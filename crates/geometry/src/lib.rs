@@ -29,4 +29,6 @@ pub use shape::{
 pub use simd::InstructionSet;
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
-pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};
+pub use world::{
+    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, InstancePath, RayStats, World, WorldBuilder,
+};

@@ -104,3 +104,40 @@ fn normals_move_with_their_vertices() {
         assert!(surface.shading.n.distance(Vec3::new(x, 0.0, 1.0).normalize()) < 1e-6, "at {time}");
     }
 }
+
+/// A transform that turns, moves and stretches over the shutter's time.
+fn moving_transform(rng: &mut Rng) -> AnimatedTransform {
+    let mut key = || {
+        let m = Transform::translate(point_in(rng, 0.8))
+            .after(&Transform::rotate(between(rng, 0.0, 2.5), direction(rng)))
+            .after(&Transform::scale(Vec3::new(1.0, between(rng, 0.6, 1.3), 1.1)));
+        m.matrix().as_dmat4()
+    };
+    AnimatedTransform::new(key(), key(), [0.1, 0.7]).expect("keys with inverses")
+}
+
+#[test]
+fn what_is_placed_in_motion_is_at_each_moment_where_its_transforms_are() {
+    let rng = &mut Rng::new(3, 0);
+    for levels in 1..=3 {
+        let motions: Vec<AnimatedTransform> = (0..levels).map(|_| moving_transform(rng)).collect();
+        // The ball's own vertices move too.
+        let build = |geometry: Geometry, place: &dyn Fn(&AnimatedTransform) -> AnimatedTransform| {
+            let mut builder = World::builder();
+            let mut group = builder.add_group();
+            builder.add_geometry(group, geometry);
+            for (level, motion) in motions.iter().enumerate() {
+                let outer = if level + 1 == levels { GroupId::TOP } else { builder.add_group() };
+                builder.add_instance(outer, Instance { group, render_from_instance: place(motion) });
+                group = outer;
+            }
+            builder.build()
+        };
+        let (poses, moving) = (poses(), build(moving_ball(), &AnimatedTransform::clone));
+        for frame in 0..25 {
+            let time = frame as f32 / 24.0;
+            let still = build(pose_at(&poses, time).into(), &|motion| motion.at(time).into());
+            agree(&format!("{levels} levels"), &moving, &still, time, rng);
+        }
+    }
+}

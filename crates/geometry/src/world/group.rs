@@ -5,7 +5,7 @@
 
 use super::packet::Packet;
 use super::query::Query;
-use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
+use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
@@ -28,8 +28,8 @@ pub(super) struct Trace<'a> {
     pub world: &'a World,
     /// In the space of the group.
     pub ray: &'a Ray,
-    /// Through which instance it came.
-    pub instance: Option<InstanceId>,
+    /// Through which instances it came.
+    pub instance: InstancePath,
     pub stats: &'a mut RayStats,
 }
 
@@ -162,7 +162,9 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
             let mut t_max = query.t_max();
             let mut leaves =
                 Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY {
+            let (extents, stop) = if !trace.world.extents {
+                (0, leaves.test(0..group.packets.len(), &mut t_max))
+            } else if Q::ANY {
                 group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
             } else {
                 group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
@@ -174,7 +176,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
 
 struct Triangles<'a, V, Q> {
     group: &'a Group,
-    instance: Option<InstanceId>,
+    instance: InstancePath,
     sheared: &'a Sheared,
     lanes: ShearedLanes<V>,
     query: &'a mut Q,
@@ -222,12 +224,14 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> Self::Output {
         let Self { group, trace, query } = self;
-        let ray = trace.ray;
+        let (ray, extents) = (trace.ray, trace.world.extents);
         let mut t_max = query.t_max();
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
         unsafe {
-            if Q::ANY {
+            if !extents {
+                (0, leaves.test(0..group.item_list.len(), &mut t_max))
+            } else if Q::ANY {
                 group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
             } else {
                 group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
@@ -273,8 +277,8 @@ impl Trace<'_> {
             Item::Instance(id) => {
                 let placed = &self.world.instances[id.0 as usize];
                 let ray = placed.with_placement(self.ray.time, |placement| placement.ray(self.ray));
-                let mut inner =
-                    Trace { world: self.world, ray: &ray, instance: Some(id), stats: &mut *self.stats };
+                let instance = self.instance.into(id);
+                let mut inner = Trace { world: self.world, ray: &ray, instance, stats: &mut *self.stats };
                 self.world.groups[placed.group as usize].trace(&mut inner, query)
             }
         }

@@ -1,12 +1,13 @@
 //! Everything that a ray can hit.
 //!
 //! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`]
-//! places another group in it, at rest or moving. A shape that moves is an instance of a group with that
-//! shape alone.
+//! places another group in it, or in a group that is placed itself, at rest or moving. A shape that moves is
+//! an instance of a group with that shape alone.
 
 mod builder;
 mod group;
 mod packet;
+mod path;
 mod query;
 mod stats;
 
@@ -22,6 +23,7 @@ use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
+pub use path::InstancePath;
 pub use stats::RayStats;
 
 /// A geometry, counted over the whole world in the order of [`WorldBuilder::add_geometry`].
@@ -105,12 +107,12 @@ impl Geometry {
     }
 }
 
-/// A group placed in the top group.
+/// A group placed in another.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// What is placed.
     pub group: GroupId,
-    /// Where.
+    /// Where: from its own space to that of the group it is placed in.
     pub render_from_instance: AnimatedTransform,
 }
 
@@ -126,8 +128,8 @@ pub struct Hit {
     pub geometry: GeometryId,
     /// Which triangle, patch or part of a curve of it.
     pub primitive: u32,
-    /// Through which instance.
-    pub instance: Option<InstanceId>,
+    /// Through which instances.
+    pub instance: InstancePath,
 }
 
 /// An instance made ready for rays.
@@ -162,6 +164,8 @@ pub struct World {
     geometries: Vec<Geometry>,
     instances: Vec<Placed>,
     instruction_set: InstructionSet,
+    /// Whether rays are tested against extents first.
+    extents: bool,
 }
 
 impl World {
@@ -219,7 +223,7 @@ impl World {
     #[inline]
     fn trace(&self, ray: &Ray, query: &mut impl Query, stats: &mut RayStats) -> bool {
         stats.rays += 1;
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, query)
+        self.groups[0].trace(&mut Trace { world: self, ray, instance: InstancePath::TOP, stats }, query)
     }
 
     /// Traces rays with another set of instructions than the best one, which finds the same hits.
@@ -233,10 +237,14 @@ impl World {
 
     /// What is known of the surface where `ray` met it.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        match hit.instance {
-            None => self.surface_in_group(ray, hit),
-            Some(id) => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
-                self.surface_in_group(&placement.ray(ray), hit).placed(placement, ray)
+        self.surface_within(hit.instance.ids(), ray, hit)
+    }
+
+    fn surface_within(&self, path: &[InstanceId], ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match path {
+            [] => self.surface_in_group(ray, hit),
+            [id, inner @ ..] => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
+                self.surface_within(inner, &placement.ray(ray), hit).placed(placement, ray)
             }),
         }
     }

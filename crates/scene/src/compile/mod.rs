@@ -7,6 +7,7 @@ mod curves;
 mod emission;
 mod lights;
 mod materials;
+mod objects;
 mod shapes;
 mod tessellation;
 
@@ -15,7 +16,7 @@ use crate::light::{AreaEmission, Light, LightId, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, Scene, SceneOptions};
 use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
-use description::{Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter};
+use description::{AcceleratorDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter};
 use geometry::{World, WorldBuilder};
 use math::DMat4;
 
@@ -39,7 +40,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         render_from_world,
         diagnostics,
         textures,
-        world: World::builder(),
+        world: World::builder().extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),

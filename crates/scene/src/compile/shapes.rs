@@ -1,4 +1,4 @@
-//! Shapes, objects and instances, and the lights that emitting shapes are.
+//! Shapes, and the lights that emitting shapes are.
 
 use super::Compiler;
 use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
@@ -6,8 +6,8 @@ use crate::material::Material;
 use crate::scene::GeometryEntry;
 use crate::texture::{FloatTextureId, Texture};
 use description::{
-    AreaLightDesc, Diagnostic, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
-    ShapeDesc, ShapeKind, Span, Spanned, Stated, TransformDesc,
+    AreaLightDesc, Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind,
+    Span, Spanned, Stated, TransformDesc,
 };
 use geometry::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
@@ -16,19 +16,10 @@ use geometry::{
 use math::{AnimatedTransform, Bounds2, Bounds3, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
-use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
 const MOVING_LIGHT: &str = "moving shapes do not emit yet; drawn without light";
-
-/// Where the shapes of an object are.
-struct ObjectGroups {
-    /// Those that rest, together, in render space.
-    resting: GroupId,
-    /// Those that move, each by itself and in its own space, which moves so in the object.
-    moving: Vec<(GroupId, TransformDesc)>,
-}
 
 impl Compiler<'_> {
     /// Everything that can be hit.
@@ -37,12 +28,7 @@ impl Compiler<'_> {
         for (_, shape) in desc.shapes.iter() {
             self.shape(shape);
         }
-        let mut groups = HashMap::new();
-        for (_, instance) in desc.instances.iter() {
-            let object = instance.object;
-            let groups = groups.entry(object.index()).or_insert_with(|| self.object(object));
-            self.instance(instance, groups);
-        }
+        self.instances();
     }
 
     /// What every area light emits, on whatever shape; `None` where that makes no sense.
@@ -65,52 +51,6 @@ impl Compiler<'_> {
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
     }
 
-    fn instance(&mut self, instance: &Stated<InstanceDesc>, groups: &ObjectGroups) {
-        let place = instance.world_from_object;
-        let Some(render_from_instance) = self.instance_motion(&place) else {
-            return self.singular("instance", &instance.origin);
-        };
-        self.world.add_instance(Instance { group: groups.resting, render_from_instance });
-        for (group, shape) in &groups.moving {
-            let times = if shape.is_animated() { shape.times } else { place.times };
-            let (start, end) = (place.start * shape.start, place.end * shape.end);
-            if let Some(render_from_instance) = self.motion(&TransformDesc { start, end, times }) {
-                self.world.add_instance(Instance { group: *group, render_from_instance });
-            }
-        }
-    }
-
-    /// How an instance moves whose shapes already stand in render space. Its transform is brought there before the moments
-    /// between start and end are found: of a turn they depend on the place of the origin, and this is that of the format.
-    fn instance_motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
-        let world_from_render = self.render_from_world.inverse();
-        let moved = |world_from_object| self.render_from_world * world_from_object * world_from_render;
-        AnimatedTransform::new(moved(t.start), moved(t.end), t.times)
-    }
-
-    /// The groups of an object's shapes.
-    fn object(&mut self, handle: Handle<ObjectDesc>) -> ObjectGroups {
-        let mut groups = ObjectGroups { resting: self.world.add_group(), moving: Vec::new() };
-        let object = &self.desc.objects[handle];
-        for (_, shape) in object.shapes.iter() {
-            if shape.area_light.is_some() {
-                let message = "shapes of objects do not emit; drawn without light";
-                self.warn("not-drawn", message, shape.origin.span);
-            }
-            if shape.world_from_object.is_animated() {
-                let group = self.world.add_group();
-                self.unlit(shape, group, &Transform::IDENTITY);
-                groups.moving.push((group, shape.world_from_object));
-                continue;
-            }
-            match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.unlit(shape, groups.resting, &transform),
-                None => self.singular("shape", &shape.origin),
-            }
-        }
-        groups
-    }
-
     /// A shape of the world: in render space where it rests, in a group of its own where it moves.
     fn shape(&mut self, shape: &Stated<ShapeDesc>) {
         if !shape.world_from_object.is_animated() {
@@ -119,19 +59,27 @@ impl Compiler<'_> {
                 None => self.singular("shape", &shape.origin),
             };
         }
-        let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
-            return self.singular("shape", &shape.origin);
-        };
         if shape.area_light.is_some() {
             self.warn("not-drawn", MOVING_LIGHT, shape.origin.span);
         }
+        if let Some(instance) = self.moving(shape) {
+            self.world.add_instance(GroupId::TOP, instance);
+        }
+    }
+
+    /// A shape that moves: the instance of a group of its own.
+    pub(super) fn moving(&mut self, shape: &Stated<ShapeDesc>) -> Option<Instance> {
+        let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
+            self.singular("shape", &shape.origin);
+            return None;
+        };
         let group = self.world.add_group();
         self.unlit(shape, group, &Transform::IDENTITY);
-        self.world.add_instance(Instance { group, render_from_instance });
+        Some(Instance { group, render_from_instance })
     }
 
     /// Adds a shape to a group of instances, where nothing emits.
-    fn unlit(&mut self, shape: &Stated<ShapeDesc>, group: GroupId, transform: &Transform) {
+    pub(super) fn unlit(&mut self, shape: &Stated<ShapeDesc>, group: GroupId, transform: &Transform) {
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
         for geometry in self.geometries(shape, transform) {
             self.world.add_geometry(group, geometry);
@@ -148,7 +96,7 @@ impl Compiler<'_> {
         }
     }
 
-    fn singular(&mut self, what: &str, origin: &Origin) {
+    pub(super) fn singular(&mut self, what: &str, origin: &Origin) {
         self.error("singular-transform", format!("the transform of the {what} has no inverse"), origin.span);
     }
 

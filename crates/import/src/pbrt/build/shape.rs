@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, Origin,
+    Arena, CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, Origin,
     PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
 };
 use math::Vec3;
@@ -16,7 +16,7 @@ use crate::assets::{AssetSource, read_unpacked};
 use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
-use crate::pbrt::statement::{ShapeStatement, Statements};
+use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
 
 const TYPES: [&str; 14] = [
     "sphere",
@@ -100,15 +100,26 @@ impl Builder<'_> {
                     built.shapes.push_stated(shape);
                 }
             }
+            self.instances(object.instances, &table, &mut built.instances);
             desc.objects.push_stated(Stated::new(built, Origin::new(span)));
         }
-        for instance in statements.instances.drain(..) {
-            let Some(&object) = table.get(&instance.object.value) else {
-                unknown_reference(&mut self.report, "object", &instance.object, None, &table);
+        let instances = std::mem::take(&mut statements.instances);
+        self.instances(instances, &table, &mut desc.instances);
+    }
+
+    fn instances(
+        &mut self,
+        statements: Vec<InstanceStatement>,
+        objects: &HashMap<String, Handle<ObjectDesc>>,
+        instances: &mut Arena<InstanceDesc>,
+    ) {
+        for instance in statements {
+            let Some(&object) = objects.get(&instance.object.value) else {
+                unknown_reference(&mut self.report, "object", &instance.object, None, objects);
                 continue;
             };
             let built = InstanceDesc { object, world_from_object: instance.world_from_object };
-            desc.instances.push_stated(Stated::new(built, Origin::new(instance.span)));
+            instances.push_stated(Stated::new(built, Origin::new(instance.span)));
         }
     }
 }
