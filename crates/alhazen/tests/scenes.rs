@@ -59,7 +59,7 @@ fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
     desc.accelerator = AcceleratorDesc::None.into();
     let mut job = Job::compile(&desc).expect("a scene").job;
     let outcome = job.render(&Control::default()).expect("nobody cancels it");
-    assert_eq!(outcome.rays.extents, 0);
+    assert_eq!(outcome.stats.extents, 0);
     job.picture().values().collect()
 }
 
