@@ -269,6 +269,8 @@ mod tests {
             "maxdepth=3",
             "--set",
             "filter=box",
+            "--accelerator",
+            "none",
             "--spp",
             "4",
             "--resolution",
@@ -285,6 +287,7 @@ mod tests {
         let render = render(&arguments).unwrap();
         let expected = Overrides {
             integrator: Some("path".into()),
+            accelerator: Some("none".into()),
             settings: vec![("maxdepth".into(), "3".into()), ("filter".into(), "box".into())],
             samples_per_pixel: Some(4),
             resolution: Some([64, 32]),

@@ -14,6 +14,7 @@ mod mesh;
 mod placement;
 mod shape;
 mod simd;
+mod sphere_set;
 mod surface;
 mod tessellation;
 mod watertight;
@@ -24,9 +25,11 @@ pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MovingMesh,
-    MovingTriangle, Paraboloid, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
+    MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid,
+    Sphere, Triangle,
 };
 pub use simd::InstructionSet;
+pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{

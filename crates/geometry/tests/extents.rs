@@ -7,6 +7,11 @@ use common::*;
 use math::*;
 use sampling::Rng;
 
+fn spheres(centers: Vec<Vec3>, m: &Transform) -> Geometry {
+    let radii = vec![0.15; centers.len()].into();
+    SphereSet::new(centers.into(), radii, m, false).expect("a set").into()
+}
+
 /// Some of everything, also placed, also placed within what is placed, also moving.
 fn builder(rng: &mut Rng) -> WorldBuilder {
     let mut builder = World::builder();
@@ -18,6 +23,8 @@ fn builder(rng: &mut Rng) -> WorldBuilder {
         for (_, shape) in shapes(&m) {
             builder.add_geometry(group, shape);
         }
+        let centers: Vec<Vec3> = (0..30).map(|_| point_in(rng, 1.5)).collect();
+        builder.add_geometry(group, spheres(centers, &m));
         let keys = vec![ball(5, 0.1, &m), ball(5, 0.4, &Transform::translate(Vec3::Z).after(&m))];
         let moving = MovingMesh::new(keys, [0.0, 1.0]).triangles().map(Shape::from).collect();
         builder.add_geometry(group, Geometry::Shapes(moving));

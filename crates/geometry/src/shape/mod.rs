@@ -24,6 +24,7 @@ mod moving_triangle;
 mod paraboloid;
 mod plane;
 mod quadric;
+mod solid;
 mod sphere;
 mod triangle;
 
@@ -36,6 +37,8 @@ pub use implicit::{Formula, FormulaError, Implicit};
 pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
+pub(crate) use quadric::first_root;
+pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
@@ -123,6 +126,8 @@ pub enum Shape {
     Plane(Box<Plane>),
     /// Surface given by a formula.
     Implicit(Box<Implicit>),
+    /// Bodies combined.
+    Solid(Box<Solid>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
@@ -142,6 +147,7 @@ macro_rules! each_shape {
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
             Shape::Implicit($shape) => $result,
+            Shape::Solid($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
             Shape::MovingTriangle($shape) => $result,
@@ -158,7 +164,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit BilinearPatch Triangle MovingTriangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle MovingTriangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -183,6 +189,7 @@ impl Shape {
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
             Self::Implicit(shape) => shape.surface(ray, hit),
+            Self::Solid(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
             Self::MovingTriangle(shape) => shape.surface(ray, hit),
@@ -248,6 +255,7 @@ impl Shape {
             | Self::Paraboloid(_)
             | Self::Hyperboloid(_)
             | Self::Implicit(_)
+            | Self::Solid(_)
             | Self::MovingTriangle(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),

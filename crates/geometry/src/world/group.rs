@@ -1,10 +1,11 @@
-//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
+//! What stands together: triangles and spheres of sets in trees of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
 #![allow(unsafe_code)]
 
 use super::packet::Packet;
 use super::query::Query;
+use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
@@ -37,6 +38,7 @@ pub(super) struct Trace<'a> {
 pub(super) struct Group {
     triangles: Bvh,
     packets: Vec<Packet>,
+    spheres: Spheres,
     items: Bvh,
     /// In the order of the leaves of `items`.
     item_list: Vec<Item>,
@@ -61,7 +63,7 @@ impl Group {
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(_) => {}
+                Geometry::Mesh(_) | Geometry::Spheres(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -91,19 +93,20 @@ impl Group {
         let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
         let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
-        Self { triangles, packets, items: boxes, item_list, unbounded }
+        let spheres = Spheres::build(members, geometries, quality);
+        Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
     }
 
     /// Bytes of memory that the trees take.
     pub fn bytes(&self) -> usize {
         let packets = size_of_val(&*self.packets);
         let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
-        self.triangles.bytes() + packets + self.items.bytes() + items
+        self.triangles.bytes() + packets + self.spheres.bytes() + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
     pub fn bounds(&self) -> Bounds3 {
-        self.triangles.bounds().union(self.items.bounds())
+        self.triangles.bounds().union(self.spheres.tree.bounds()).union(self.items.bounds())
     }
 
     /// Shows hits to the query; whether it wants no more.
@@ -130,6 +133,9 @@ impl Group {
             if stop {
                 return true;
             }
+        }
+        if self.spheres.trace(trace, query) {
+            return true;
         }
         if !self.item_list.is_empty() {
             let set = trace.world.instruction_set;
@@ -162,13 +168,8 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
             let mut t_max = query.t_max();
             let mut leaves =
                 Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
-            let (extents, stop) = if !trace.world.extents {
-                (0, leaves.test(0..group.packets.len(), &mut t_max))
-            } else if Q::ANY {
-                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
-            } else {
-                group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
-            };
+            let all = trace.all(group.packets.len());
+            let (extents, stop) = visit::<S, Q>(&group.triangles, all, trace.ray, &mut t_max, &mut leaves);
             (extents, leaves.primitives, stop)
         }
     }
@@ -224,19 +225,11 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> Self::Output {
         let Self { group, trace, query } = self;
-        let (ray, extents) = (trace.ray, trace.world.extents);
+        let (ray, all) = (trace.ray, trace.all(group.item_list.len()));
         let mut t_max = query.t_max();
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
-        unsafe {
-            if !extents {
-                (0, leaves.test(0..group.item_list.len(), &mut t_max))
-            } else if Q::ANY {
-                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
-            } else {
-                group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
-            }
-        }
+        unsafe { visit::<S, Q>(&group.items, all, ray, &mut t_max, &mut leaves) }
     }
 }
 
@@ -259,7 +252,35 @@ impl<Q: Query> Leaves for Items<'_, '_, Q> {
     }
 }
 
+/// Shows `leaves` the blocks of a tree that the ray may meet, or `all` without a look at the tree. Returns the number of
+/// boxes tested, and whether `leaves` broke off.
+///
+/// # Safety
+/// The blocks must be those of the tree, and the processor must have the instructions of the set.
+#[inline(always)]
+pub(super) unsafe fn visit<S: Simd, Q: Query>(
+    tree: &Bvh,
+    all: Option<Range<usize>>,
+    ray: &Ray,
+    t_max: &mut f32,
+    leaves: &mut impl Leaves,
+) -> (u64, bool) {
+    // SAFETY: the caller promises the blocks and the instructions.
+    unsafe {
+        match all {
+            Some(blocks) => (0, leaves.test(blocks, t_max)),
+            None if Q::ANY => tree.traverse::<S, true>(ray, t_max, leaves),
+            None => tree.traverse::<S, false>(ray, t_max, leaves),
+        }
+    }
+}
+
 impl Trace<'_> {
+    /// All of so many blocks, where rays are not tested against extents.
+    pub fn all(&self, blocks: usize) -> Option<Range<usize>> {
+        (!self.world.extents).then_some(0..blocks)
+    }
+
     #[inline(never)]
     fn item<Q: Query>(&mut self, item: Item, query: &mut Q) -> bool {
         match item {
@@ -268,7 +289,7 @@ impl Trace<'_> {
                 let hit = match self.world.geometry(geometry) {
                     Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
                     Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
-                    Geometry::Mesh(_) => None,
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
                 };
                 hit.is_some_and(|hit| {
                     query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })

@@ -9,6 +9,8 @@ mod lights;
 mod materials;
 mod objects;
 mod shapes;
+mod solids;
+mod spheres;
 mod tessellation;
 
 use crate::camera;

@@ -4,6 +4,7 @@
 //! within it, and so is another object. Motions at several levels are found each for itself and then combined.
 
 use super::Compiler;
+use super::curves::are_strands;
 use description::{Handle, InstanceDesc, ObjectDesc, Stated, TransformDesc};
 use geometry::{GroupId, Instance, InstancePath};
 use math::{AnimatedTransform, Transform};
@@ -83,22 +84,22 @@ impl Compiler<'_> {
             inner.extend(self.instance(instance, objects));
         }
         objects.open.pop();
-        for (_, shape) in object.shapes.iter().filter(|(_, shape)| shape.world_from_object.is_animated()) {
-            inner.extend(self.moving(shape).map(|instance| (instance, 1)));
+        let shapes: Vec<_> = object.shapes.iter().map(|(_, shape)| shape).collect();
+        let (moving, resting): (Vec<_>, Vec<_>) =
+            shapes.chunk_by(|a, b| are_strands(a, b)).partition(|run| run[0].world_from_object.is_animated());
+        for run in moving {
+            inner.extend(self.moving(run).map(|instance| (instance, 1)));
         }
         let group = self.world.add_group();
-        for (_, shape) in object.shapes.iter() {
-            if shape.area_light.is_some() {
-                let message = "shapes of objects do not emit; drawn without light";
-                self.warn("not-drawn", message, shape.origin.span);
+        for run in resting {
+            match Transform::from_f64(self.render_from_world * run[0].world_from_object.start) {
+                Some(transform) => self.unlit(run, group, &transform),
+                None => self.singular("shape", &run[0].origin),
             }
-            if shape.world_from_object.is_animated() {
-                continue;
-            }
-            match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.unlit(shape, group, &transform),
-                None => self.singular("shape", &shape.origin),
-            }
+        }
+        for shape in shapes.iter().filter(|shape| shape.area_light.is_some()) {
+            let message = "shapes of objects do not emit; drawn without light";
+            self.warn("not-drawn", message, shape.origin.span);
         }
         let levels = inner.iter().map(|(_, levels)| *levels).max().unwrap_or(0);
         for (instance, _) in inner {

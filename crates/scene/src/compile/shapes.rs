@@ -1,6 +1,8 @@
 //! Shapes, and the lights that emitting shapes are.
 
 use super::Compiler;
+use super::curves::are_strands;
+use super::solids::Assembly;
 use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
 use crate::material::Material;
 use crate::scene::GeometryEntry;
@@ -25,8 +27,9 @@ impl Compiler<'_> {
     /// Everything that can be hit.
     pub(super) fn shapes(&mut self) {
         let desc = self.desc;
-        for (_, shape) in desc.shapes.iter() {
-            self.shape(shape);
+        let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape).collect();
+        for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
+            self.shape(run);
         }
         self.instances();
     }
@@ -51,45 +54,49 @@ impl Compiler<'_> {
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
     }
 
-    /// A shape of the world: in render space where it rests, in a group of its own where it moves.
-    fn shape(&mut self, shape: &Stated<ShapeDesc>) {
+    /// A shape of the world (or strands): in render space where it rests, in a group of its own where it moves.
+    fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
+        let shape = run[0];
         if !shape.world_from_object.is_animated() {
             return match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.resting(shape, &transform),
+                Some(transform) => self.resting(run, &transform),
                 None => self.singular("shape", &shape.origin),
             };
         }
         if shape.area_light.is_some() {
             self.warn("not-drawn", MOVING_LIGHT, shape.origin.span);
         }
-        if let Some(instance) = self.moving(shape) {
+        if let Some(instance) = self.moving(run) {
             self.world.add_instance(GroupId::TOP, instance);
         }
     }
 
-    /// A shape that moves: the instance of a group of its own.
-    pub(super) fn moving(&mut self, shape: &Stated<ShapeDesc>) -> Option<Instance> {
+    /// A shape (or strands) that moves: the instance of a group of its own.
+    pub(super) fn moving(&mut self, run: &[&Stated<ShapeDesc>]) -> Option<Instance> {
+        let shape = run[0];
         let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
             self.singular("shape", &shape.origin);
             return None;
         };
         let group = self.world.add_group();
-        self.unlit(shape, group, &Transform::IDENTITY);
+        self.unlit(run, group, &Transform::IDENTITY);
         Some(Instance { group, render_from_instance })
     }
 
     /// Adds a shape to a group of instances, where nothing emits.
-    pub(super) fn unlit(&mut self, shape: &Stated<ShapeDesc>, group: GroupId, transform: &Transform) {
+    pub(super) fn unlit(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
+        let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(shape, transform) {
+        for geometry in self.geometries(run, transform) {
             self.world.add_geometry(group, geometry);
             self.entries.push(GeometryEntry { material, alpha, first_light: None });
         }
     }
 
-    fn resting(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) {
+    fn resting(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) {
+        let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(shape, transform) {
+        for geometry in self.geometries(run, transform) {
             let first_light = self.area_lights(shape, &geometry, alpha);
             self.world.add_geometry(GroupId::TOP, geometry);
             self.entries.push(GeometryEntry { material, alpha, first_light });
@@ -116,7 +123,8 @@ impl Compiler<'_> {
         }
     }
 
-    fn geometries(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) -> Vec<Geometry> {
+    fn geometries(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) -> Vec<Geometry> {
+        let shape = run[0];
         let reverse = shape.reverse_orientation;
         let one = |shape: Shape| vec![Geometry::from(shape)];
         match &shape.kind {
@@ -139,10 +147,19 @@ impl Compiler<'_> {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Spheres(spheres) => self.spheres(spheres, shape, transform).into_iter().collect(),
             ShapeKind::Implicit { formula, bounds: [min, max] } => {
                 let bounds = Bounds3 { min: *min, max: *max };
                 let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
                 one(Implicit::new(transform, reverse, formula, &bounds).into())
+            }
+            ShapeKind::Solid { .. } => {
+                let solid = self.solid(shape, transform, &mut Assembly::new(shape.origin.span));
+                let Some(mut solid) = solid else { return Vec::new() };
+                if reverse != transform.swaps_handedness() {
+                    solid.turn_round();
+                }
+                one(solid.into())
             }
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
@@ -154,7 +171,7 @@ impl Compiler<'_> {
                 let triangles = self.mesh(triangles, shape, transform);
                 triangles.into_iter().chain(self.patches(patches, shape, transform)).collect()
             }
-            ShapeKind::Curve(curve) => self.curve(curve, shape, transform).into_iter().collect(),
+            ShapeKind::Curve(_) => vec![self.curves(run, transform).into()],
             ShapeKind::LoopSubdivision { mesh, levels } => {
                 self.loop_subdivision(mesh, *levels, shape, transform).into_iter().collect()
             }
@@ -162,7 +179,7 @@ impl Compiler<'_> {
     }
 
     /// A formula that is zero somewhere in the box, as far as is known.
-    fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
+    pub(super) fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
         let formula = match Formula::parse(&text.value) {
             Ok(formula) => formula,
             Err(FormulaError { place, message, help }) => {
@@ -284,8 +301,8 @@ impl Compiler<'_> {
             self.warn("not-drawn", MOVING_LIGHT, span);
             return None;
         }
-        if matches!(shape.kind, ShapeKind::Implicit { .. }) {
-            let message = "surfaces given by formulas do not emit; drawn without light";
+        if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
+            let message = "solids and surfaces given by formulas do not emit; drawn without light";
             self.warn("not-drawn", message, span);
             return None;
         }
@@ -301,7 +318,10 @@ impl Compiler<'_> {
         let shared = Arc::new(emission.clone());
         let first = LightId(self.lights.len() as u32);
         for primitive in 0..geometry.len() as u32 {
-            let part = geometry.shape(primitive)?;
+            let Some(part) = geometry.shape(primitive) else {
+                self.warn("light-ignored", "curves do not emit; drawn without light", span);
+                return None;
+            };
             if part.bounds().is_none() {
                 self.error(
                     "infinite-light",

@@ -51,7 +51,6 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
 fn check_file(path: &str, text: &str) -> Vec<Finding> {
     let mut findings = Vec::new();
     let code = rust::layers(text).code;
-    let outside = |folders: &[&str]| !folders.iter().any(|folder| path.starts_with(folder));
     each_word(&code, &NOWHERE, |line, word, instead| {
         findings.push(Finding::new(path, line, format!("`{}`: {instead}", word.trim())));
     });

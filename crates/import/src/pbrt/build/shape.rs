@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    Arena, CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, Origin,
-    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
+    Arena, CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, MeshKey,
+    ObjectDesc, Origin, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, SpheresDesc,
+    Stated,
 };
 use math::Vec3;
 use rayon::prelude::*;
@@ -18,8 +19,9 @@ use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
 
-const TYPES: [&str; 14] = [
+const TYPES: [&str; 16] = [
     "sphere",
+    "spheres",
     "cylinder",
     "cone",
     "paraboloid",
@@ -33,6 +35,7 @@ const TYPES: [&str; 14] = [
     "curve",
     "loopsubdiv",
     "implicit",
+    "csg",
 ];
 
 /// Mesh files by path, each read once; or why it could not be.
@@ -87,8 +90,8 @@ impl Builder<'_> {
 
     /// Builds all objects and instances.
     pub(super) fn objects(&mut self, statements: &mut Statements, desc: &mut SceneDesc) {
-        let table = self.table("object", &statements.objects, |object| Some(&object.name));
-        for object in statements.objects.drain(..) {
+        for (index, object) in statements.objects.drain(..).enumerate() {
+            self.complete_objects = index;
             let Spanned { value: name, span } = object.name;
             let mut built = ObjectDesc { name, ..ObjectDesc::default() };
             for mut shape in object.shapes {
@@ -100,22 +103,17 @@ impl Builder<'_> {
                     built.shapes.push_stated(shape);
                 }
             }
-            self.instances(object.instances, &table, &mut built.instances);
+            self.instances(object.instances, &mut built.instances);
             desc.objects.push_stated(Stated::new(built, Origin::new(span)));
         }
         let instances = std::mem::take(&mut statements.instances);
-        self.instances(instances, &table, &mut desc.instances);
+        self.instances(instances, &mut desc.instances);
     }
 
-    fn instances(
-        &mut self,
-        statements: Vec<InstanceStatement>,
-        objects: &HashMap<String, Handle<ObjectDesc>>,
-        instances: &mut Arena<InstanceDesc>,
-    ) {
+    fn instances(&mut self, statements: Vec<InstanceStatement>, instances: &mut Arena<InstanceDesc>) {
         for instance in statements {
-            let Some(&object) = objects.get(&instance.object.value) else {
-                unknown_reference(&mut self.report, "object", &instance.object, None, objects);
+            let Some(&object) = self.objects.get(&instance.object.value) else {
+                unknown_reference(&mut self.report, "object", &instance.object, None, &self.objects);
                 continue;
             };
             let built = InstanceDesc { object, world_from_object: instance.world_from_object };
@@ -169,7 +167,9 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             phi_max: reader.positive("phimax", 360.0),
         },
         "plane" => ShapeKind::Plane,
+        "spheres" => ShapeKind::Spheres(spheres(reader)?),
         "implicit" => implicit(reader)?,
+        "csg" => solid(reader)?,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
         "polygon" => ShapeKind::Triangles(polygon(reader)?),
         "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
@@ -205,6 +205,46 @@ fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
                 .refuse("bounds", "`bounds` are two corners of a box: the lowest and the highest x, y and z");
             None
         }
+    }
+}
+
+fn solid(reader: &mut Reader) -> Option<ShapeKind> {
+    let known = [
+        ("union", SolidOperation::Union),
+        ("intersection", SolidOperation::Intersection),
+        ("difference", SolidOperation::Difference),
+    ];
+    let operation = reader.choice("operation", SolidOperation::Union, &known);
+    let names = reader.strings("operands").unwrap_or_default();
+    for name in ["operation", "operands"] {
+        if !reader.has(name) {
+            reader.missing(name);
+            return None;
+        }
+    }
+    if names.len() < 2 {
+        reader.refuse("operands", "a solid is made of two objects or more");
+        return None;
+    }
+    let operands: Vec<_> = names.iter().filter_map(|name| operand(reader.builder, name)).collect();
+    (operands.len() == names.len()).then_some(ShapeKind::Solid { operation, operands })
+}
+
+/// An object that may be a part of a solid here: one that is complete.
+fn operand(builder: &mut Builder, name: &Spanned<String>) -> Option<Spanned<Handle<ObjectDesc>>> {
+    match builder.objects.get(&name.value) {
+        None => {
+            unknown_reference(&mut builder.report, "object", name, None, &builder.objects);
+            None
+        }
+        Some(object) if object.index() >= builder.complete_objects => {
+            let message = format!("the object `{}` is not complete here", name.value);
+            let help = "a solid inside of an object is made of objects that end before that begins";
+            let diagnostic = Diagnostic::error("unknown-reference", message, name.span);
+            builder.report.push(diagnostic.with_help(help));
+            None
+        }
+        Some(&object) => Some(Spanned::new(object, name.span)),
     }
 }
 
@@ -353,6 +393,24 @@ fn patch_mesh(reader: &mut Reader) -> Option<PatchMeshDesc> {
         indices,
         positions,
     })
+}
+
+fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
+    let centers = points(reader)?;
+    let radii = reader.floats("radius").unwrap_or_else(|| vec![1.0]);
+    let refusal = if radii.len() != 1 && radii.len() != centers.len() {
+        Some(("radius", format!("`radius` has {} values for {} points in `P`", radii.len(), centers.len())))
+    } else if let Some(i) = radii.iter().position(|r| !(*r > 0.0 && r.is_finite())) {
+        Some(("radius", format!("`radius` {i} is {}; it must be above zero", radii[i])))
+    } else {
+        let i = centers.iter().position(|center| !center.is_finite());
+        i.map(|i| ("P", format!("point {i} in `P` is beyond numbers")))
+    };
+    if let Some((name, message)) = refusal {
+        reader.refuse(name, message);
+        return None;
+    }
+    Some(SpheresDesc { centers, radii: radii.into() })
 }
 
 fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
