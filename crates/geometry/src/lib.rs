@@ -33,5 +33,6 @@ pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{
-    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, InstancePath, RayStats, World, WorldBuilder,
+    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, InstancePath, RayStats, RefitError, World,
+    WorldBuilder,
 };

@@ -105,8 +105,13 @@ impl WorldBuilder {
                 groups[i] = Some(group);
             }
         }
+        let mut group_of = vec![GroupId::TOP; geometries.len()];
+        for (group, members) in (0..).zip(&members) {
+            members.geometries.iter().for_each(|id| group_of[id.0 as usize] = GroupId(group));
+        }
         let groups = groups.into_iter().flatten().collect();
-        World { groups, geometries, instances, instruction_set: InstructionSet::detect(), extents }
+        let instruction_set = InstructionSet::detect();
+        World { groups, geometries, group_of, instances, instruction_set, extents }
     }
 }
 

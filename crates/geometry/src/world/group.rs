@@ -10,7 +10,7 @@ use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStat
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
-use math::{Bounds3, Ray, Vec2, gamma};
+use math::{Bounds3, Ray, Vec2, Vec3, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -88,13 +88,47 @@ impl Group {
                 unbounded.push(Item::Instance(id));
             }
         }
+        let corners = |r: &Reference| match &geometries[r.geometry() as usize] {
+            Geometry::Mesh(mesh) => Some(mesh.corners(r.primitive() as usize)),
+            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
+        };
         let pack = |block: &[Reference]| packet(block, geometries);
         let triangles = triangle_references(members, geometries);
-        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
+        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, corners, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
-        let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
+        let (boxes, item_list) = Bvh::build(boxes, quality, 1, |_| None, item);
         let spheres = Spheres::build(members, geometries, quality);
         Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
+    }
+
+    /// Brings triangles and sets of spheres up to date after they have moved, but leaves their trees as they are.
+    pub fn refit_meshes_and_spheres(&mut self, geometries: &[Geometry]) {
+        self.spheres.refit(geometries);
+        self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, geometries));
+    }
+
+    /// The same for all else. `placed_groups` begin with the first one below the top group.
+    pub fn refit_items(&mut self, geometries: &[Geometry], instances: &[Placed], placed_groups: &[Group]) {
+        self.items.refit(&mut self.item_list, |&mut item| {
+            let bounds = match item {
+                Item::Shape(id, primitive) => match &geometries[id.0 as usize] {
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].bounds(),
+                    Geometry::Curves(curves) => Some(curves.bounds(primitive)),
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
+                },
+                Item::Instance(id) => {
+                    let placed = &instances[id.0 as usize];
+                    let bounds = placed_groups[placed.group as usize - 1].bounds();
+                    (!bounds.is_empty()).then(|| placed_bounds(placed, &bounds))
+                }
+            };
+            bounds.filter(is_finite).unwrap_or(Bounds3::EMPTY)
+        });
+    }
+
+    /// Whether other groups are placed in it.
+    pub fn has_instances(&self) -> bool {
+        self.item_list.iter().any(|item| matches!(item, Item::Instance(_)))
     }
 
     /// Bytes of memory that the trees take.
@@ -185,6 +219,13 @@ struct Triangles<'a, V, Q> {
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
+    type Block = Packet;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Packet] {
+        &self.group.packets
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         // SAFETY: the tree was built over these packets.
@@ -240,6 +281,13 @@ struct Items<'a, 'b, Q> {
 }
 
 impl<Q: Query> Leaves for Items<'_, '_, Q> {
+    type Block = Item;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Item] {
+        &self.group.item_list
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         for &item in &self.group.item_list[blocks] {
@@ -269,7 +317,7 @@ pub(super) unsafe fn visit<S: Simd, Q: Query>(
     unsafe {
         match all {
             Some(blocks) => (0, leaves.test(blocks, t_max)),
-            None if Q::ANY => tree.traverse::<S, true>(ray, t_max, leaves),
+            None if Q::ANY && *t_max == f32::INFINITY => tree.traverse::<S, true>(ray, t_max, leaves),
             None => tree.traverse::<S, false>(ray, t_max, leaves),
         }
     }
@@ -349,4 +397,23 @@ fn packet(block: &[Reference], geometries: &[Geometry]) -> Packet {
         }
     }
     packet
+}
+
+/// Fetches the corners of all triangles again. Nothing hits those that are not finite.
+fn renew_packet(packet: &mut Packet, geometries: &[Geometry]) -> Bounds3 {
+    let mut renewed = Packet::EMPTY;
+    let mut bounds = Bounds3::EMPTY;
+    for id in (0..packet.len()).map(|lane| packet.id(lane)) {
+        if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
+            let corners = mesh.corners(id.1 as usize);
+            if corners.iter().all(|p| p.is_finite()) {
+                bounds = bounds.union(Bounds3::around(corners));
+                renewed.push(corners, id);
+            } else {
+                renewed.push([Vec3::NAN; 3], id);
+            }
+        }
+    }
+    *packet = renewed;
+    bounds
 }

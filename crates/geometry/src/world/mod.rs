@@ -9,6 +9,7 @@ mod group;
 mod packet;
 mod path;
 mod query;
+mod refit;
 mod spheres;
 mod stats;
 
@@ -26,6 +27,7 @@ use std::sync::Arc;
 
 pub use builder::WorldBuilder;
 pub use path::InstancePath;
+pub use refit::RefitError;
 pub use stats::RayStats;
 
 /// A geometry, counted over the whole world in the order of [`WorldBuilder::add_geometry`].
@@ -170,11 +172,13 @@ impl Placed {
     }
 }
 
-/// Everything that a ray can hit; never changes once built.
+/// Everything that a ray can hit. Geometries may move ([`World::refit`]), but there will never be more or fewer of them.
 #[derive(Clone, Debug)]
 pub struct World {
     groups: Vec<Group>,
     geometries: Vec<Geometry>,
+    /// Where each geometry is.
+    group_of: Vec<GroupId>,
     instances: Vec<Placed>,
     instruction_set: InstructionSet,
     /// Whether rays are tested against extents first.

@@ -13,7 +13,7 @@ use super::{Geometry, GeometryId, Hit};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::sphere_set::SphereSet;
-use math::{MACHINE_EPSILON, Ray, Vec2, Vec3};
+use math::{Bounds3, MACHINE_EPSILON, Ray, Vec2, Vec3};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -38,8 +38,13 @@ impl Spheres {
             }
         }
         let pack = |block: &[Reference]| Packet::new(block, geometries);
-        let (tree, packets) = Bvh::build(references, quality, Packet::WIDTH, pack);
+        let (tree, packets) = Bvh::build(references, quality, Packet::WIDTH, |_| None, pack);
         Self { tree, packets }
+    }
+
+    /// Brings packets and boxes up to date after spheres have moved or grown.
+    pub fn refit(&mut self, geometries: &[Geometry]) {
+        self.tree.refit(&mut self.packets, |packet| packet.renew(geometries));
     }
 
     /// Bytes of memory that tree and packets take.
@@ -96,6 +101,13 @@ struct Tests<'a, 'b, V, Q> {
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Tests<'_, '_, V, Q> {
+    type Block = Packet;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Packet] {
+        self.packets
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         for packet in &self.packets[blocks] {
@@ -166,16 +178,28 @@ impl Packet {
             ids: [(u32::MAX, u32::MAX); Self::WIDTH],
             len: block.len() as u32,
         };
-        for (lane, reference) in block.iter().enumerate() {
-            let id = (reference.geometry(), reference.primitive());
-            if let Geometry::Spheres(set) = &geometries[id.0 as usize] {
-                let center = set.center(id.1 as usize);
-                (0..3).for_each(|axis| packet.center[axis][lane] = center[axis]);
-                packet.radius[lane] = set.radius(id.1 as usize);
-                packet.ids[lane] = id;
-            }
+        for (id, reference) in packet.ids.iter_mut().zip(block) {
+            *id = (reference.geometry(), reference.primitive());
         }
+        packet.renew(geometries);
         packet
+    }
+
+    /// Takes the spheres from their sets again; gives the box around them. Spheres that are not finite are met by nothing.
+    fn renew(&mut self, geometries: &[Geometry]) -> Bounds3 {
+        let mut all = Bounds3::EMPTY;
+        for lane in 0..self.len as usize {
+            let (geometry, primitive) = self.ids[lane];
+            let Geometry::Spheres(set) = &geometries[geometry as usize] else { continue };
+            let primitive = primitive as usize;
+            let bounds = set.bounds(primitive);
+            let finite = bounds.min.is_finite() && bounds.max.is_finite();
+            let center = if finite { set.center(primitive) } else { Vec3::NAN };
+            (0..3).for_each(|axis| self.center[axis][lane] = center[axis]);
+            self.radius[lane] = set.radius(primitive);
+            all = if finite { all.union(bounds) } else { all };
+        }
+        all
     }
 
     #[inline]
