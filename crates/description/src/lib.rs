@@ -29,7 +29,7 @@ mod texture;
 mod transform;
 
 pub use self::image::ImageDesc;
-pub use accelerator::{AcceleratorDesc, BvhSplit};
+pub use accelerator::{AcceleratorDesc, BuildQualityDesc, BvhSplit};
 pub use arena::{Arena, Handle, Origin, Stated};
 pub use camera::{
     ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc,

@@ -62,6 +62,25 @@ fn settings_before_the_world() {
 }
 
 #[test]
+fn the_quality_of_the_tree() {
+    use description::BuildQualityDesc::{Balanced, Fast, High};
+    for (parameters, quality) in [
+        ("", Balanced),
+        (r#""string splitmethod" "hlbvh""#, Fast),
+        (r#""string splitmethod" "middle""#, Balanced),
+        (r#""string splitmethod" "hlbvh" "string quality" "high""#, High),
+        (r#""string quality" "fast""#, Fast),
+    ] {
+        let desc = read(&format!(r#"Accelerator "bvh" {parameters} WorldBegin"#));
+        assert_eq!(desc.accelerator.quality(), quality, "{parameters}");
+    }
+    let mut desc = read(r#"Accelerator "kdtree" WorldBegin"#);
+    assert_eq!(desc.accelerator.quality(), Balanced);
+    desc.accelerator.set_quality(High);
+    assert_eq!(desc.accelerator.quality(), High);
+}
+
+#[test]
 fn what_is_left_out_has_the_default_of_the_format() {
     let desc = read("WorldBegin");
     assert_eq!((desc.film.resolution, desc.sampler.pixel_samples), ([1280, 720], 16));

@@ -13,6 +13,7 @@ use crate::watertight::{Sheared, ShearedLanes};
 use math::{Bounds3, Ray, Vec2, Vec3, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Meshes with fewer triangles are not worth another thread.
 const PARALLEL: usize = 4096;
@@ -367,13 +368,16 @@ fn placed_bounds(placed: &Placed, bounds: &Bounds3) -> Bounds3 {
 /// The triangles of all meshes whose corners are finite.
 fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<Reference> {
     let mut references = Vec::new();
+    let some_are_missing = AtomicBool::new(false);
     for &id in members {
         if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
             let reference = |i: usize| {
                 let corners = mesh.corners(i);
-                match corners.iter().all(|p| p.is_finite()) {
-                    true => Reference::new(&Bounds3::around(corners), id.0, i as u32),
-                    false => Reference::none(),
+                if corners.iter().all(|p| p.is_finite()) {
+                    Reference::new(&Bounds3::around(corners), id.0, i as u32)
+                } else {
+                    some_are_missing.store(true, Ordering::Relaxed);
+                    Reference::none()
                 }
             };
             match mesh.len() {
@@ -382,7 +386,7 @@ fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<R
             }
         }
     }
-    if references.iter().any(Reference::is_none) {
+    if some_are_missing.into_inner() {
         references.retain(|r| !r.is_none());
     }
     references

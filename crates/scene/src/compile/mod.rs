@@ -18,8 +18,10 @@ use crate::light::{AreaEmission, Light, LightId, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, Scene, SceneOptions};
 use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
-use description::{AcceleratorDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter};
-use geometry::{World, WorldBuilder};
+use description::{
+    AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
+};
+use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
 
 /// A scene, and what had to be left out of it.
@@ -42,7 +44,13 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         render_from_world,
         diagnostics,
         textures,
-        world: World::builder().extents(*desc.accelerator != AcceleratorDesc::None),
+        world: World::builder()
+            .quality(match desc.accelerator.quality() {
+                BuildQualityDesc::Fast => BuildQuality::Fast,
+                BuildQualityDesc::Balanced => BuildQuality::Balanced,
+                BuildQualityDesc::High => BuildQuality::High,
+            })
+            .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),

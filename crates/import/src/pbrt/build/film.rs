@@ -1,8 +1,8 @@
 //! Options, film, filter and accelerator.
 
 use description::{
-    AcceleratorDesc, BvhSplit, Diagnostic, FilmDesc, FilmKind, FilterDesc, GBufferSpace, OptionsDesc,
-    RenderSpace, SensorDesc, Span, Spanned, Stated,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, Diagnostic, FilmDesc, FilmKind, FilterDesc, GBufferSpace,
+    OptionsDesc, RenderSpace, SensorDesc, Span, Spanned, Stated,
 };
 
 use super::Builder;
@@ -201,6 +201,15 @@ fn accelerator(reader: &mut Reader) -> Option<AcceleratorDesc> {
                     ("hlbvh", BvhSplit::Hlbvh),
                     ("middle", BvhSplit::Middle),
                     ("equal", BvhSplit::Equal),
+                ],
+            ),
+            quality: reader.choice(
+                "quality",
+                None,
+                &[
+                    ("fast", Some(BuildQualityDesc::Fast)),
+                    ("balanced", Some(BuildQualityDesc::Balanced)),
+                    ("high", Some(BuildQualityDesc::High)),
                 ],
             ),
         },
