@@ -243,7 +243,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"ObjectBegin "b" ObjectEnd ObjectBegin "a" Shape "csg" "string operation" "union" "string operands" ["a" "b"] ObjectEnd"#,
-        "1:103 error[unknown-reference] the object `a` is not complete here (a solid inside of an object is made of objects that end before that begins)",
+        "1:101 error[unknown-reference] the object `a` is not complete here (a solid inside of an object is made of objects that end before that begins)",
     ),
     (
         r#"Shape "csg" "string operands" ["a" "b"]"#,

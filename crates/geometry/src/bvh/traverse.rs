@@ -2,7 +2,9 @@
 //!
 //! Towards the nearest hit, children are visited front to back: the nearest at once, the others from a stack,
 //! where each waits with the distance of its box, so that it is passed over when something nearer was hit in
-//! the meantime. Towards any hit, order does not matter.
+//! the meantime. Towards any hit, order is only a guess of where one is found soon: near the origin when the ray ends
+//! somewhere, for it was made to end at what it may see; where the builder put leaves with few large primitives when it
+//! does not. What waits is asked for from memory at once.
 
 #![allow(unsafe_code)]
 
@@ -15,6 +17,12 @@ use std::ops::Range;
 
 /// What stands in the leaves of a tree.
 pub(crate) trait Leaves {
+    /// What a block is made of.
+    type Block;
+
+    /// All blocks.
+    fn blocks(&self) -> &[Self::Block];
+
     /// Tests blocks for hits up to `t_max`, and lowers it to the nearest. Whether to look no further.
     ///
     /// # Safety
@@ -52,7 +60,7 @@ impl Waiting {
 
 impl Bvh {
     /// Shows `leaves` the blocks that the ray may meet up to `t_max`, the nearest first, or with `ANY` in no
-    /// order. Returns the number of boxes tested, and whether `leaves` broke off. The ray must be finite.
+    /// order of distance. Returns the number of boxes tested, and whether `leaves` broke off. The ray must be finite.
     ///
     /// # Safety
     /// The processor must have the instructions of the set.
@@ -88,10 +96,11 @@ impl Bvh {
                         next = pop(&mut top, *t_max);
                         continue;
                     }
+                    let ahead = |child| self.prefetch::<S, _>(leaves, child);
                     next = if ANY {
-                        choose_any(node, hits, &mut top)
+                        choose_any(node, hits, &mut top, ahead)
                     } else {
-                        choose_nearest::<S>(node, near, hits, &mut top)
+                        choose_nearest::<S>(node, near, hits, &mut top, ahead)
                     };
                 }
                 if next == Waiting::END.child() {
@@ -102,6 +111,17 @@ impl Bvh {
                 }
                 next = pop(&mut top, *t_max);
             }
+        }
+    }
+
+    /// Asks for a node or a block.
+    #[inline(always)]
+    fn prefetch<S: Simd, L: Leaves>(&self, leaves: &L, child: Child) {
+        let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
+        let block = leaves.blocks().as_ptr().wrapping_add(child.blocks().start).cast::<u8>();
+        let at = if child.is_leaf() { block } else { node };
+        for line in 0..size_of::<WideNode>() / 64 {
+            S::prefetch(at.wrapping_add(64 * line));
         }
     }
 }
@@ -129,17 +149,17 @@ unsafe fn push(top: &mut *mut Waiting, waiting: Waiting) {
     }
 }
 
-/// Takes any child that is hit, and leaves the others waiting.
+/// Takes the last child that is hit, and leaves the others waiting.
 #[inline(always)]
-unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting) -> Child {
+unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahead: impl Fn(Child)) -> Child {
     loop {
-        let lane = hits.trailing_zeros() as usize;
-        hits &= hits - 1;
         // SAFETY: bits of `hits` are lanes.
-        let child = unsafe { *node.children().get_unchecked(lane) };
+        let child = unsafe { *node.children().get_unchecked(hits.trailing_zeros() as usize) };
+        hits &= hits - 1;
         if hits == 0 {
             return child;
         }
+        ahead(child);
         // SAFETY: one of at most seven.
         unsafe { push(top, Waiting::new(0.0, child)) };
     }
@@ -152,6 +172,7 @@ unsafe fn choose_nearest<S: Simd>(
     near: S::Eight,
     mut hits: u32,
     top: &mut *mut Waiting,
+    ahead: impl Fn(Child),
 ) -> Child {
     // SAFETY: bits of `hits` are lanes.
     let child = |lane: usize| unsafe { *node.children().get_unchecked(lane) };
@@ -168,6 +189,8 @@ unsafe fn choose_nearest<S: Simd>(
     hits &= hits - 1;
     let b = waiting(lane);
     let (mut nearest, other) = (a.min(b), a.max(b));
+    ahead(nearest.child());
+    ahead(other.child());
     // SAFETY: a node leaves at most seven children waiting.
     unsafe {
         if hits == 0 {
@@ -180,6 +203,7 @@ unsafe fn choose_nearest<S: Simd>(
             let lane = hits.trailing_zeros() as usize;
             hits &= hits - 1;
             let c = waiting(lane);
+            ahead(c.child());
             let other = c.max(nearest);
             nearest = c.min(nearest);
             // Sink below those that are nearer.

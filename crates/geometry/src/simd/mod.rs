@@ -65,6 +65,10 @@ pub(crate) trait Vector<const N: usize>: Copy {
 pub(crate) trait Simd: Copy {
     type Four: Vector<4>;
     type Eight: Vector<8>;
+
+    /// Asks for the line of the cache around an address, which need not be one, soon to be read.
+    #[inline(always)]
+    fn prefetch(_: *const u8) {}
 }
 
 /// Something that is written for all sets.

@@ -197,7 +197,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
             let mut t_max = query.t_max();
             let mut leaves =
                 Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY {
+            let (extents, stop) = if Q::ANY && t_max == f32::INFINITY {
                 group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
             } else {
                 group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
@@ -217,6 +217,13 @@ struct Triangles<'a, V, Q> {
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
+    type Block = Packet;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Packet] {
+        &self.group.packets
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         // SAFETY: the tree was built over these packets.
@@ -262,7 +269,7 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
         unsafe {
-            if Q::ANY {
+            if Q::ANY && t_max == f32::INFINITY {
                 group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
             } else {
                 group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
@@ -278,6 +285,13 @@ struct Items<'a, 'b, Q> {
 }
 
 impl<Q: Query> Leaves for Items<'_, '_, Q> {
+    type Block = Item;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Item] {
+        &self.group.item_list
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         for &item in &self.group.item_list[blocks] {

@@ -104,6 +104,13 @@ struct Tests<'a, 'b, V, Q> {
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Tests<'_, '_, V, Q> {
+    type Block = Packet;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Packet] {
+        self.packets
+    }
+
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         for packet in &self.packets[blocks] {

@@ -30,7 +30,8 @@ use program::Program;
 use roots::Roots;
 use std::sync::Arc;
 
-/// A formula F(x, y, z).
+/// A formula F(x, y, z): numbers, x, y, z, pi, e, + − * / ^, parentheses, and the functions sqrt, abs, sin, cos, tan, exp, log,
+/// min, max and pow.
 #[derive(Clone, Debug)]
 pub struct Formula {
     program: Arc<Program>,
@@ -167,7 +168,7 @@ impl Body {
         range: [f64; 2],
         wanted: impl FnMut(&Root) -> bool,
     ) -> Option<Root> {
-        if !(range[1] < f64::INFINITY) || d == DVec3::ZERO {
+        if d == DVec3::ZERO || !range[1].is_finite() {
             return None;
         }
         // Counted from the start of the range, where the numbers are small.

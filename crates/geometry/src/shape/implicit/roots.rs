@@ -30,7 +30,7 @@ const RESOLUTION: f64 = 1.0 / (1u64 << 36) as f64;
 /// The same for roots that only touch.
 const TOUCH: f64 = 1.0 / (1u64 << 27) as f64;
 /// A new evaluation pays once the error is this part of the polynomial.
-const WORN: f64 = 1.0 / 1024.0;
+const WORN: f64 = 1.0 / 16.0;
 
 /// The zeros of a formula along a ray, one after the other.
 pub(super) struct Roots<'a, const N: usize> {

@@ -179,6 +179,8 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
     })
 }
 
+/// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it is negative; what it may say
+/// is told by `geometry::Formula`. `"point3 bounds"`: two corners of the box at which the surface is cut off, ±2 if absent.
 fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
     let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
     let Some(formula) = reader.string("f") else {
@@ -199,6 +201,9 @@ fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
     }
 }
 
+/// `"string operation"`: `union`, `intersection`, or `difference` (the first without all others). `"string operands"`: names of
+/// objects, all shapes of which are one body; they are placed as an instance of the object would be, and their materials count
+/// for nothing here.
 fn solid(reader: &mut Reader) -> Option<ShapeKind> {
     let known = [
         ("union", SolidOperation::Union),
