@@ -45,7 +45,7 @@ fn spheres_hit(c: &mut Criterion) {
     let rays: Vec<Ray> = pairs(16_384).map(|(o, p)| Ray::new(middle + o, p - o, 0.0)).collect();
     let mut group = c.benchmark_group("closest hit");
     group.throughput(Throughput::Elements(rays.len() as u64));
-    let closest = |ray: &Ray| closest(&world, &BenchRay { ray: *ray, t_max: f32::INFINITY });
+    let closest = |ray: &Ray| closest(&world, &(*ray, f32::INFINITY));
     group.bench_function("spheres", |b| b.iter(|| rays.iter().filter_map(closest).count()));
 }
 
