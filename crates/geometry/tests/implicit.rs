@@ -101,7 +101,7 @@ fn a_sphere_by_formula_is_the_sphere() {
     let rng = &mut Rng::new(2, 0);
     let turn = Transform::translate(Vec3::new(3.0, -2.0, 1.0))
         .after(&Transform::rotate(0.7, Vec3::new(0.3, 1.0, -0.2)));
-    for m in [turn.clone(), turn.after(&Transform::scale(Vec3::new(0.6, 1.3, -0.9)))] {
+    for m in [turn, turn.after(&Transform::scale(Vec3::new(0.6, 1.3, -0.9)))] {
         for reverse in [false, true] {
             let formula = formula("x^2 + y^2 + z^2 - 1");
             let implicit = Shape::from(Implicit::new(&m, reverse, formula, &cube_of(1.5)));
