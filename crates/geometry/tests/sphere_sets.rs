@@ -214,6 +214,27 @@ fn sets_stand_in_instances_and_beside_others() {
 }
 
 #[test]
+fn sets_that_moved_are_hit_where_they_are() {
+    let rng = &mut Rng::new(8, 0);
+    let old = random_set(rng, 5000, [-3.0, -1.0], &Transform::IDENTITY);
+    let mut world = world([old.into()]);
+    let new = random_set(rng, 5000, [-3.0, -1.0], &Transform::IDENTITY);
+    world.refit([(GeometryId(0), new.clone().into())]).expect("the same primitives");
+    let rebuilt = common::world([new.into()]);
+    let mut hits = 0;
+    for _ in 0..5000 {
+        let ray = Ray::new(point_in(rng, 2.0), direction(rng), 0.0);
+        let hit = nearest(&world, &ray);
+        hits += hit.is_some() as u32;
+        assert_eq!(hit, nearest(&rebuilt, &ray));
+    }
+    assert!(hits > 1000, "{hits}");
+    let fewer = random_set(rng, 4999, [-3.0, -1.0], &Transform::IDENTITY);
+    let refused = world.refit([(GeometryId(0), fewer.into())]);
+    assert_eq!(refused, Err(RefitError::Different(GeometryId(0))));
+}
+
+#[test]
 fn any_number_of_threads_builds_the_same_tree() {
     let build = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
