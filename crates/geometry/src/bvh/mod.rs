@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 pub use build::BuildQuality;
 pub(crate) use build::Reference;
-pub(crate) use traverse::Leaves;
+pub(crate) use traverse::{Leaves, Walk};
 
 /// The most nodes above each other that a tree may have, for which rays have room to remember where to return.
 const MAX_DEPTH: usize = 96;

@@ -80,7 +80,6 @@ impl Bvh {
         // blocks that there are, and the tree is not deeper than what the stack was measured for: `Bvh::build` saw to both.
         unsafe {
             let slabs = Slabs::<S::Eight>::new(ray, &self.bounds);
-            let zero = S::Eight::splat(0.0);
             let nodes = self.nodes.as_ptr();
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
@@ -89,19 +88,10 @@ impl Bvh {
             let mut next = Child::node(0);
             loop {
                 while !next.is_leaf() {
-                    let node: &WideNode = &*nodes.add(next.index());
+                    let node = &*nodes.add(next.index());
                     extents += node.len() as u64;
-                    let (near, hits) = node.intersect(&slabs, S::Eight::splat(*t_max), zero);
-                    if hits == 0 {
-                        next = pop(&mut top, *t_max);
-                        continue;
-                    }
                     let ahead = |child| self.prefetch::<S, _>(leaves, child);
-                    next = if ANY {
-                        choose_any(node, hits, &mut top, ahead)
-                    } else {
-                        choose_nearest::<S>(node, near, hits, &mut top, ahead)
-                    };
+                    next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, ahead);
                 }
                 if next == Waiting::END.child() {
                     return (extents, false);
@@ -122,6 +112,100 @@ impl Bvh {
         let at = if child.is_leaf() { block } else { node };
         for line in 0..size_of::<WideNode>() / 64 {
             S::prefetch(at.wrapping_add(64 * line));
+        }
+    }
+}
+
+/// A ray that passes a tree step by step, so that others can take steps while it waits for memory.
+pub(crate) struct Walk<S: Simd> {
+    slabs: Slabs<S::Eight>,
+    t_max: f32,
+    /// Whether the order of distance matters.
+    in_order: bool,
+    next: Child,
+    waiting: usize,
+    stack: [MaybeUninit<Waiting>; STACK],
+    /// The number of boxes tested.
+    pub extents: u64,
+}
+
+impl<S: Simd> Walk<S> {
+    /// A walk that is over.
+    ///
+    /// # Safety
+    /// The processor must have the instructions of the set.
+    #[inline(always)]
+    pub unsafe fn new(tree: &Bvh, ray: &Ray) -> Self {
+        let mut stack = [const { MaybeUninit::uninit() }; STACK];
+        stack[0] = MaybeUninit::new(Waiting::END);
+        // SAFETY: as the caller promises.
+        let slabs = unsafe { Slabs::new(ray, &tree.bounds) };
+        Self { slabs, t_max: 0.0, in_order: true, next: Waiting::END.child(), waiting: 1, stack, extents: 0 }
+    }
+
+    /// Puts a finite ray before the tree.
+    #[inline(always)]
+    pub fn start(&mut self, tree: &Bvh, ray: &Ray, t_max: f32, in_order: bool) {
+        if tree.nodes.is_empty() || t_max.is_nan() || t_max < 0.0 {
+            return;
+        }
+        // SAFETY: who has a walk has the instructions.
+        self.slabs = unsafe { Slabs::new(ray, &tree.bounds) };
+        self.t_max = t_max;
+        self.in_order = in_order;
+        self.next = Child::node(0);
+        self.waiting = 1;
+    }
+
+    /// Passes one node or leaf, and asks for the next. Whether that was the last.
+    ///
+    /// # Safety
+    /// The tree must be the one before which the ray was put.
+    #[inline(always)]
+    pub unsafe fn step(&mut self, tree: &Bvh, leaves: &mut impl Leaves) -> bool {
+        // SAFETY: as in `Bvh::traverse`.
+        unsafe {
+            let bottom = self.stack.as_mut_ptr().cast::<Waiting>();
+            let mut top = bottom.add(self.waiting);
+            if self.next.is_leaf() {
+                if self.next == Waiting::END.child() || leaves.test(self.next.blocks(), &mut self.t_max) {
+                    return true;
+                }
+                self.next = pop(&mut top, self.t_max);
+            } else {
+                let node = tree.nodes.get_unchecked(self.next.index());
+                self.extents += node.len() as u64;
+                self.next = if self.in_order {
+                    descend::<S, false>(node, &self.slabs, self.t_max, &mut top, |_| ())
+                } else {
+                    descend::<S, true>(node, &self.slabs, self.t_max, &mut top, |_| ())
+                };
+            }
+            self.waiting = top.offset_from_unsigned(bottom);
+            tree.prefetch::<S, _>(leaves, self.next);
+            false
+        }
+    }
+}
+
+/// Passes a node: gives the child to be visited next, and leaves others waiting.
+#[inline(always)]
+unsafe fn descend<S: Simd, const ANY: bool>(
+    node: &WideNode,
+    slabs: &Slabs<S::Eight>,
+    t_max: f32,
+    top: &mut *mut Waiting,
+    ahead: impl Fn(Child),
+) -> Child {
+    // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the tree.
+    unsafe {
+        let (near, hits) = node.intersect(slabs, S::Eight::splat(t_max), S::Eight::splat(0.0));
+        if hits == 0 {
+            pop(top, t_max)
+        } else if ANY {
+            choose_any(node, hits, top, ahead)
+        } else {
+            choose_nearest::<S>(node, near, hits, top, ahead)
         }
     }
 }
