@@ -12,6 +12,7 @@ mod traverse;
 
 use math::Bounds3;
 use node::WideNode;
+pub(crate) use node::WIDTH;
 use rayon::prelude::*;
 
 pub use build::BuildQuality;

@@ -31,8 +31,9 @@ pub(crate) trait Leaves {
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool;
 }
 
-/// Each node on the way down leaves at most all children but one waiting; and below all lies [`Waiting::END`].
-const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+/// Each node on the way down leaves at most all children but one waiting, the last one perhaps all; and below all lies
+/// [`Waiting::END`].
+const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 2;
 
 /// A child, and above it the bits of its distance, so that what is nearer is less.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -100,6 +101,57 @@ impl Bvh {
                     return (extents, true);
                 }
                 next = pop(&mut top, *t_max);
+            }
+        }
+    }
+
+    /// Takes eight rays through the tree together. `test` is given blocks and the end of each ray, which it may lower: below
+    /// zero when the ray is to go no further. Returns the number of boxes tested. The rays must be finite and have the
+    /// same signs.
+    ///
+    /// # Safety
+    /// The processor must have the instructions of the set.
+    #[inline(always)]
+    pub unsafe fn traverse_together<S: Simd>(
+        &self,
+        rays: &[Ray; WIDTH],
+        t_max: &mut [f32; WIDTH],
+        mut test: impl FnMut(Range<usize>, &mut [f32; WIDTH]),
+    ) -> u64 {
+        let mut extents = 0;
+        if self.nodes.is_empty() {
+            return extents;
+        }
+        // SAFETY: as in `traverse`.
+        unsafe {
+            let slabs = Slabs::<S::Eight>::each(rays, &self.bounds);
+            let zero = S::Eight::splat(0.0);
+            let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
+            let mut top = stack.as_mut_ptr().cast::<Waiting>();
+            push(&mut top, Waiting::END);
+            let mut next = Child::node(0);
+            loop {
+                if next == Waiting::END.child() {
+                    return extents;
+                }
+                if next.is_leaf() {
+                    test(next.blocks(), t_max);
+                } else {
+                    let node = self.nodes.get_unchecked(next.index());
+                    let ends = S::Eight::load(t_max);
+                    let floor = top;
+                    for lane in 0..node.len() {
+                        let (near, hits) = node.intersect_rays(lane, &slabs, ends, zero);
+                        extents += WIDTH as u64;
+                        if hits != 0 {
+                            let nearest = near.store().into_iter().fold(f32::INFINITY, f32::min);
+                            let child = *node.children().get_unchecked(lane);
+                            sink(&mut top, floor, Waiting::new(nearest, child));
+                        }
+                    }
+                }
+                let furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
+                next = pop(&mut top, furthest);
             }
         }
     }
@@ -233,6 +285,21 @@ unsafe fn push(top: &mut *mut Waiting, waiting: Waiting) {
     }
 }
 
+/// Pushes, and sinks below those above `floor` that are nearer.
+#[inline(always)]
+unsafe fn sink(top: &mut *mut Waiting, floor: *mut Waiting, waiting: Waiting) {
+    // SAFETY: the stack has room for the deepest tree, and `floor` lies in it.
+    unsafe {
+        let mut at = *top;
+        while at > floor && *at.sub(1) < waiting {
+            *at = *at.sub(1);
+            at = at.sub(1);
+        }
+        *at = waiting;
+        *top = top.add(1);
+    }
+}
+
 /// Takes the last child that is hit, and leaves the others waiting.
 #[inline(always)]
 unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahead: impl Fn(Child)) -> Child {
@@ -290,14 +357,7 @@ unsafe fn choose_nearest<S: Simd>(
             ahead(c.child());
             let other = c.max(nearest);
             nearest = c.min(nearest);
-            // Sink below those that are nearer.
-            let mut at = *top;
-            while at > floor && *at.sub(1) < other {
-                *at = *at.sub(1);
-                at = at.sub(1);
-            }
-            *at = other;
-            *top = top.add(1);
+            sink(top, floor, other);
         }
     }
     nearest.child()

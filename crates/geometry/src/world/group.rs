@@ -9,7 +9,7 @@ use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
-use math::{Bounds3, Ray, Vec2, gamma};
+use math::{Bounds3, Ray, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -142,6 +142,11 @@ impl Group {
         stop
     }
 
+    /// The triangles, as leaves hold them.
+    pub fn packets(&self) -> &[Packet] {
+        &self.packets
+    }
+
     /// The tree of triangles.
     pub fn triangles(&self) -> &Bvh {
         &self.triangles
@@ -218,14 +223,8 @@ impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
                 hits &= hits - 1;
-                let (mut t, mut uv) = (found.t[lane], Vec2::new(found.b1[lane], found.b2[lane]));
-                if found.doubts >> lane & 1 != 0 {
-                    let Some(decided) = self.sheared.decide(&packet.triangle(lane)) else { continue };
-                    (t, uv) = decided;
-                }
-                let (geometry, primitive) = packet.id(lane);
-                let geometry = GeometryId(geometry);
-                if self.query.offer(Hit { t, uv, geometry, primitive, instance: self.instance }) {
+                let Some(hit) = packet.hit(lane, &found, lane, self.sheared, self.instance) else { continue };
+                if self.query.offer(hit) {
                     return true;
                 }
             }
