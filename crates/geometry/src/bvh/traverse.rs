@@ -144,9 +144,10 @@ impl Bvh {
                         let (near, hits) = node.intersect_rays(lane, &slabs, ends, zero);
                         extents += WIDTH as u64;
                         if hits != 0 {
-                            let nearest = near.store().into_iter().fold(f32::INFINITY, f32::min);
+                            // As whole numbers, of which many are compared at once.
+                            let nearest = near.store().map(f32::to_bits).into_iter().fold(u32::MAX, u32::min);
                             let child = *node.children().get_unchecked(lane);
-                            sink(&mut top, floor, Waiting::new(nearest, child));
+                            sink(&mut top, floor, Waiting::new(f32::from_bits(nearest), child));
                         }
                     }
                 }
