@@ -11,8 +11,8 @@ mod node;
 mod traverse;
 
 use math::Bounds3;
-use node::WideNode;
 pub(crate) use node::WIDTH;
+use node::WideNode;
 use rayon::prelude::*;
 
 pub use build::BuildQuality;

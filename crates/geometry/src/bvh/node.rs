@@ -127,7 +127,8 @@ impl SlabsOfOne {
         // A ray along a slab is in it or not for all its length; a direction that is just not along it says
         // the same within the slack, and has an inverse.
         let least = ray.d.abs().max_element() * 1e-12;
-        let d = Vec3::select(ray.d.abs().cmplt(Vec3::splat(least)), Vec3::splat(least).copysign(ray.d), ray.d);
+        let d =
+            Vec3::select(ray.d.abs().cmplt(Vec3::splat(least)), Vec3::splat(least).copysign(ray.d), ray.d);
         let inverse = d.recip();
         let shift = Vec3::splat(slack).copysign(inverse);
         let near = ((ray.o + shift) * inverse).to_array();
@@ -182,7 +183,13 @@ impl WideNode {
 
     /// Where each ray enters the box of a child, and a bit for each that does up to its `t_max`.
     #[inline(always)]
-    pub fn intersect_rays<V: Vector<WIDTH>>(&self, lane: usize, rays: &Slabs<V>, t_max: V, zero: V) -> (V, u32) {
+    pub fn intersect_rays<V: Vector<WIDTH>>(
+        &self,
+        lane: usize,
+        rays: &Slabs<V>,
+        t_max: V,
+        zero: V,
+    ) -> (V, u32) {
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = rays.first[axis];

@@ -139,12 +139,7 @@ impl<'a> SideBySide<'a> {
     /// # Safety
     /// The processor must have the instructions of the set.
     #[inline(always)]
-    unsafe fn trace<S: Simd, Q: Query>(
-        &self,
-        world: &World,
-        queries: &mut [Q; WIDTH],
-        stats: &mut RayStats,
-    ) {
+    unsafe fn trace<S: Simd, Q: Query>(&self, world: &World, queries: &mut [Q; WIDTH], stats: &mut RayStats) {
         let group = &world.groups[0];
         let rays = self.rays.each_ref().map(|(ray, _)| *ray);
         let mut t_max = self.rays.each_ref().map(|(_, t_max)| *t_max);

@@ -182,8 +182,14 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
         unsafe {
             let lanes = sheared.lanes::<{ Packet::WIDTH }, S::Four>();
             let mut t_max = query.t_max();
-            let mut leaves =
-                Triangles { group, instance: trace.instance, sheared: &sheared, lanes: &lanes, query, primitives: 0 };
+            let mut leaves = Triangles {
+                group,
+                instance: trace.instance,
+                sheared: &sheared,
+                lanes: &lanes,
+                query,
+                primitives: 0,
+            };
             let (extents, stop) = if in_order::<Q>(t_max) {
                 group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
             } else {

@@ -2,19 +2,19 @@
 
 #![allow(unsafe_code)]
 
-use crate::simd::Vector;
 use super::{GeometryId, Hit, InstanceId};
+use crate::simd::Vector;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use math::{Vec2, Vec3};
 
 /// Triangles of one geometry or of many, corner by corner, axis by axis.
 #[derive(Clone, Debug)]
-#[repr(C, align(64))]
+#[repr(C, align(16))]
 pub(crate) struct Packet {
     corners: [[[f32; Packet::WIDTH]; 3]; 3],
     /// Whose triangle each lane holds: geometry and primitive.
-    ids: [(u32, u32); Packet::WIDTH],
-    len: u32,
+    geometries: [u32; Packet::WIDTH],
+    primitives: [u32; Packet::WIDTH],
 }
 
 impl Packet {
@@ -22,8 +22,11 @@ impl Packet {
     pub const WIDTH: usize = 4;
 
     /// Unused lanes hold a triangle that nothing hits.
-    pub const EMPTY: Self =
-        Self { corners: [[[f32::NAN; Self::WIDTH]; 3]; 3], ids: [(u32::MAX, u32::MAX); Self::WIDTH], len: 0 };
+    pub const EMPTY: Self = Self {
+        corners: [[[f32::NAN; Self::WIDTH]; 3]; 3],
+        geometries: [u32::MAX; Self::WIDTH],
+        primitives: [u32::MAX; Self::WIDTH],
+    };
 
     pub fn push(&mut self, corners: [Vec3; 3], id: (u32, u32)) {
         let lane = self.len();
@@ -32,14 +35,13 @@ impl Packet {
                 lanes[axis][lane] = corner[axis];
             }
         }
-        self.ids[lane] = id;
-        self.len += 1;
+        (self.geometries[lane], self.primitives[lane]) = id;
     }
 
     /// How many lanes are in use.
     #[inline(always)]
     pub fn len(&self) -> usize {
-        self.len as usize
+        self.geometries.iter().map(|&id| (id != u32::MAX) as usize).sum()
     }
 
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
@@ -86,7 +88,7 @@ impl Packet {
         if found.doubts >> of & 1 != 0 {
             (t, uv) = ray.decide(&self.triangle(lane))?;
         }
-        let (geometry, primitive) = self.ids[lane];
-        Some(Hit { t, uv, geometry: GeometryId(geometry), primitive, instance })
+        let (geometry, primitive) = (GeometryId(self.geometries[lane]), self.primitives[lane]);
+        Some(Hit { t, uv, geometry, primitive, instance })
     }
 }
