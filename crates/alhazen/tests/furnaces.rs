@@ -56,6 +56,8 @@ const BLACK_WALL: &str = "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\n\
 
 const SPHERE: &str = "Shape \"sphere\" \"float radius\" 2\n";
 
+const SPHERES: &str = "Shape \"spheres\" \"point3 P\" [0 0 0  1 0 -1  0 -1.5 1] \"float radius\" [2 1.5 1]\n";
+
 const BOX: &str = "Shape \"trianglemesh\"\n\
     \"point3 P\" [-1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1  -1 -1 1  1 -1 1  -1 1 1  1 1 1]\n\
     \"integer indices\" [0 1 3 0 3 2  4 5 7 4 7 6  0 1 5 0 5 4  2 3 7 2 7 6  0 2 6 0 6 4  1 3 7 1 7 5]\n";
@@ -73,6 +75,7 @@ fn walls() -> Vec<(&'static str, String)> {
     let turned = "Rotate 33 1 2 3 Scale 1.5 2 1.1\n";
     vec![
         ("a sphere", format!("{WALL}{SPHERE}")),
+        ("a set of spheres", format!("{WALL}Rotate 33 1 2 3 Scale 1.5 1.5 1.5\n{SPHERES}")),
         ("a box of triangles", format!("{WALL}{turned}{BOX}")),
         ("a box of patches", format!("{WALL}{turned}{PATCHES}")),
         ("a drum", format!("{WALL}Rotate 33 1 2 3\n{DRUM}")),
@@ -99,6 +102,7 @@ fn no_pixel_of_a_closed_furnace_leaks() {
 /// Instances of glass, mirrors and white things in front of the camera.
 fn things() -> Vec<(&'static str, String)> {
     let ball = "Translate 0.4 -0.2 1 Shape \"sphere\" \"float radius\" 0.4\n";
+    let balls = "Shape \"spheres\" \"point3 P\" [0.4 -0.2 1  -0.5 0.1 1.4  0.2 0.4 1.2] \"float radius\" [0.4 0.3 0.2]\n";
     let cube = format!("Translate 0.4 -0.2 1.2 Rotate 33 1 2 3 Scale 0.3 0.3 0.3\n{BOX}");
     let drop = format!(
         "ObjectBegin \"drop\"\n{ball}ObjectEnd\nScale 1 1.5 1 Translate 0 0.1 0.3 ObjectInstance \"drop\"\n"
@@ -110,6 +114,7 @@ fn things() -> Vec<(&'static str, String)> {
         ("a glass ball", format!("{glass}{ball}")),
         ("an instance of glass", format!("{glass}{drop}")),
         ("a soap bubble", format!("{pane}{ball}")),
+        ("a set of glass balls", format!("{glass}{balls}")),
         ("a white ball", format!("{white}{ball}")),
         ("a white cube", format!("{white}{cube}")),
     ]

@@ -27,6 +27,16 @@ fn a_wrong_scene_is_shown_with_carets() {
 }
 
 #[test]
+fn a_wrong_formula_is_shown_with_a_caret_in_it() {
+    let folder = Folder::new("formula");
+    folder.write("scene.pbrt", &SCENE.replace("\"sphere\"", "\"implicit\" \"string f\" \"x^2 + ln(y) - 1\""));
+    let err = folder.alhazen(&["render", "scene.pbrt"]).expect(1).err;
+    for part in ["scene.pbrt:10:38", "there is no `ln` in formulas", "did you mean `log`?"] {
+        assert!(err.contains(part), "no `{part}` in {err}");
+    }
+}
+
+#[test]
 fn scene_check_tells_without_rendering() {
     let folder = Folder::with_scene("check");
     let right = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(0);

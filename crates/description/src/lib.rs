@@ -51,7 +51,7 @@ pub use sampler::{Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
 pub use shape::{
     CurveBasis, CurveDesc, CurveProfile, InstanceDesc, MeshDesc, ObjectDesc, PatchMeshDesc, ShapeDesc,
-    ShapeKind,
+    ShapeKind, SolidOperation, SpheresDesc,
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use texture::{

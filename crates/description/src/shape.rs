@@ -107,12 +107,21 @@ pub enum ShapeKind {
     },
     /// The plane z = 0.
     Plane,
+    /// Many whole spheres.
+    Spheres(SpheresDesc),
     /// Where a formula is zero.
     Implicit {
         /// The formula, of x, y and z.
         formula: Spanned<String>,
         /// Two corners of the box that the surface is cut off at.
         bounds: [Point3; 2],
+    },
+    /// What bodies make together. Every shape of an operand is a body, closed where it is cut off; several are one body.
+    Solid {
+        /// How they are combined.
+        operation: SolidOperation,
+        /// The bodies. Those of a shape in an object are objects before it, so that no solid is a part of itself.
+        operands: Vec<Spanned<Handle<ObjectDesc>>>,
     },
     /// Triangles.
     Triangles(MeshDesc),
@@ -139,6 +148,26 @@ pub enum ShapeKind {
         /// Times that it is divided.
         levels: i32,
     },
+}
+
+/// Whole spheres, as arrays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SpheresDesc {
+    /// Centres.
+    pub centers: Arc<[Point3]>,
+    /// One radius for all, or one for each.
+    pub radii: Arc<[f32]>,
+}
+
+/// How bodies are combined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolidOperation {
+    /// What is in any of them.
+    Union,
+    /// What is in all of them.
+    Intersection,
+    /// What is in the first and in no other.
+    Difference,
 }
 
 /// Triangles that share vertices. Per-vertex arrays are empty or as long as `positions`.

@@ -14,6 +14,7 @@ mod mesh;
 mod placement;
 mod shape;
 mod simd;
+mod sphere_set;
 mod surface;
 mod tessellation;
 mod watertight;
@@ -23,10 +24,13 @@ pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
-    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, Paraboloid, Plane,
-    Shape, ShapeHit, ShapeSample, ShapeSampleContext, Sphere, Triangle,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, Operation, Paraboloid,
+    Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle,
 };
 pub use simd::InstructionSet;
+pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
-pub use world::{Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, World, WorldBuilder};
+pub use world::{
+    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, RefitError, World, WorldBuilder,
+};

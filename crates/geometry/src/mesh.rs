@@ -105,11 +105,7 @@ impl TriangleMesh {
             ("tangents", tangents.as_ref().map(|a| a.len())),
             ("texture coordinates", uvs.as_ref().map(|a| a.len())),
         ];
-        for (attribute, length) in lengths {
-            if let Some(values) = length.filter(|&n| n != vertices) {
-                return Err(MeshError::AttributeLength { attribute, values, vertices });
-            }
-        }
+        check_lengths(vertices, lengths)?;
         let moved = !render_from_object.is_identity();
         let turn = if reverse_orientation { -1.0 } else { 1.0 };
         Ok(Self {
@@ -136,6 +132,20 @@ impl TriangleMesh {
             uvs,
             flips: reverse_orientation != render_from_object.swaps_handedness(),
         })
+    }
+
+    /// The same triangles with their vertices elsewhere, and with other shading normals (of any length, towards the
+    /// outside), all in render space. Texture coordinates stay; tangents, which would have to turn, do not.
+    pub fn moved(
+        &self,
+        positions: Arc<[Point3]>,
+        normals: Option<Arc<[Normal3]>>,
+    ) -> Result<Self, MeshError> {
+        let vertices = self.positions.len();
+        let lengths = [("positions", Some(positions.len())), ("normals", normals.as_ref().map(|a| a.len()))];
+        check_lengths(vertices, lengths)?;
+        let (indices, uvs) = (self.indices.clone(), self.uvs.clone());
+        Ok(Self { positions, indices, normals, tangents: None, uvs, flips: self.flips })
     }
 
     /// How many triangles there are.
@@ -181,5 +191,17 @@ impl TriangleMesh {
     /// The box around all vertices that a triangle uses.
     pub fn bounds(&self) -> Bounds3 {
         Bounds3::around((0..self.len()).flat_map(|i| self.corners(i)))
+    }
+}
+
+/// Whether all that is given has one value per vertex.
+fn check_lengths(
+    vertices: usize,
+    lengths: impl IntoIterator<Item = (&'static str, Option<usize>)>,
+) -> Result<(), MeshError> {
+    let wrong = lengths.into_iter().find_map(|(name, n)| n.filter(|&n| n != vertices).map(|n| (name, n)));
+    match wrong {
+        Some((attribute, values)) => Err(MeshError::AttributeLength { attribute, values, vertices }),
+        None => Ok(()),
     }
 }

@@ -4,7 +4,7 @@
 //! each other to a few parts in 10¹⁶. Going out and coming back then costs only the rounding to floats, |x|·ε
 //! per coordinate, whatever the matrix is.
 
-use math::{DMat4, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec3};
+use math::{DMat3, DMat4, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec3};
 
 /// How large the rounding of a short chain of double operations is beside the numbers that went in.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -21,6 +21,15 @@ impl Placement {
     pub fn new(transform: &Transform) -> Self {
         let forward = transform.matrix().as_dmat4();
         Self { forward, inverse: forward.inverse() }
+    }
+
+    /// At `center`, turned by an orthonormal matrix.
+    pub fn rigid(turn: DMat3, center: DVec3) -> Self {
+        let back = turn.transpose();
+        Self {
+            forward: DMat4::from_mat3_translation(turn, center),
+            inverse: DMat4::from_mat3_translation(back, back * -center),
+        }
     }
 
     /// Origin and direction of an outer ray as seen from the thing placed; t keeps its meaning.

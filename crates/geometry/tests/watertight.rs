@@ -26,10 +26,13 @@ fn closed_worlds(rng: &mut Rng, m: &Transform) -> Vec<World> {
     let inner = groups.add_group();
     groups.add_geometry(inner, cube(&Transform::rotate(between(rng, 0.0, 6.0), direction(rng))));
     groups.add_instance(Instance { group: inner, render_from_instance: (*m).into() });
+    let rounded = Formula::parse("x^4 + y^4 + z^4 - 1").expect("a formula");
+    let bounds = Bounds3 { min: Vec3::splat(-1.5), max: Vec3::splat(1.5) };
     vec![
         world([cube(m).into()]),
         world([ball(40, 0.2, m).into()]),
         world([Shape::from(Sphere::whole(m, false, 1.0)).into()]),
+        world([Shape::from(Implicit::new(m, false, rounded, &bounds)).into()]),
         groups.build(),
     ]
 }

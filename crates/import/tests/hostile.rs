@@ -23,6 +23,8 @@ AttributeBegin
 AttributeEnd
 ObjectBegin "o" Shape "sphere" ObjectEnd
 ObjectInstance "o"
+Shape "implicit" "string f" "max(x^2 - y, sin(3*z)) / 2" "point3 bounds" [-1 -1 -1 1 1 1]
+Shape "csg" "string operation" "difference" "string operands" ["o" "o"]
 LightSource "infinite" "spectrum L" [400 1 700 2]
 "#;
 

@@ -203,6 +203,15 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:53 error[parameter-value] `indices` has 3, but there are 3 points in `P`",
     ),
     (
+        r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 2 3]"#,
+        "1:42 error[parameter-value] `radius` has 3 values for 2 points in `P`",
+    ),
+    (
+        r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 -2]"#,
+        "1:42 error[parameter-value] `radius` 1 is -2; it must be above zero",
+    ),
+    (r#"Shape "spheres" "float radius" 2"#, "1:7 error[missing-parameter] `spheres` needs the parameter `P`"),
+    (
         r#"Shape "nurbs""#,
         "1:7 error[old-name] there is no shape `nurbs` (there are no NURBS any more; write a mesh)",
     ),
@@ -214,6 +223,31 @@ const IN_WORLD: &[(&str, &str)] = &[
     (
         r#"ObjectBegin "x" AreaLightSource "diffuse" Shape "sphere" ObjectEnd"#,
         "1:43 warning[ignored] shapes of an object do not shine: its area light is left out",
+    ),
+    (r#"Shape "implicit""#, "1:7 error[missing-parameter] `implicit` needs the parameter `f`"),
+    (
+        r#"Shape "implicit" "string f" "x" "point3 bounds" [1 1 1 0 0 0]"#,
+        "1:33 error[parameter-value] `bounds` are two corners of a box: the lowest and the highest x, y and z",
+    ),
+    (
+        r#"ObjectBegin "a" Shape "sphere" ObjectEnd Shape "csg" "string operation" "union" "string operands" "a""#,
+        "1:81 error[parameter-value] a solid is made of two objects or more",
+    ),
+    (
+        r#"ObjectBegin "a" Shape "sphere" ObjectEnd Shape "csg" "string operation" "minus" "string operands" ["a" "a"]"#,
+        "1:73 error[unknown-choice] `operation` cannot be `minus` (known here: `union`, `intersection`, `difference`)",
+    ),
+    (
+        r#"ObjectBegin "ball" Shape "sphere" ObjectEnd Shape "csg" "string operation" "union" "string operands" ["ball" "bal"]"#,
+        "1:110 error[unknown-reference] there is no object `bal` (did you mean `ball`?)",
+    ),
+    (
+        r#"ObjectBegin "b" ObjectEnd ObjectBegin "a" Shape "csg" "string operation" "union" "string operands" ["a" "b"] ObjectEnd"#,
+        "1:101 error[unknown-reference] the object `a` is not complete here (a solid inside of an object is made of objects that end before that begins)",
+    ),
+    (
+        r#"Shape "csg" "string operands" ["a" "b"]"#,
+        "1:7 error[missing-parameter] `csg` needs the parameter `operation`",
     ),
     ("WorldEnd", "1:1 warning[deprecated] `WorldEnd` is not needed any more: the world ends with the file"),
 ];

@@ -291,9 +291,8 @@ fn curves_are_checked() {
     assert_eq!(compile(&desc).unwrap().scene.lights().len(), 0);
     let bare = CurveDesc { profile: CurveProfile::Ribbon, ..curve() };
     invalid(ShapeKind::Curve(bare), "N", "invalid-curve", "a ribbon of 1 segments needs 2 normals");
-    let linear = stated(ShapeKind::Curve(CurveDesc { degree: 1, ..curve() }).into(), 4);
-    let desc = with(|desc| desc.shapes.push_stated(linear));
-    check(&desc, Severity::Error, "invalid-curve", "a curve of degree 1, not 2 or 3", 4);
+    let linear = CurveDesc { degree: 1, ..curve() };
+    invalid(ShapeKind::Curve(linear), "degree", "invalid-curve", "a curve of degree 1, not 2 or 3");
 }
 
 #[test]
@@ -318,6 +317,28 @@ fn curves_stand_where_they_are_put() {
     // Half as wide at the end as at the start.
     assert!(hits(1.19, -2.99).is_some() && hits(1.19, 2.9).is_none() && hits(1.09, 2.9).is_some());
     assert!(hits(1.0, -3.01).is_none() && hits(1.21, -2.9).is_none());
+}
+
+#[test]
+fn strands_become_one_geometry() {
+    let shape = |curve: CurveDesc| ShapeDesc::from(ShapeKind::Curve(curve));
+    let ribbon = || CurveDesc { profile: CurveProfile::Ribbon, normals: [Vec3::Z; 2].into(), ..curve() };
+    let desc = with(|desc| {
+        desc.shapes.push(shape(curve()));
+        desc.shapes.push(shape(CurveDesc { width: [0.3; 2], degree: 2, ..curve() }));
+        desc.shapes.push(shape(CurveDesc { basis: CurveBasis::BSpline, ..curve() }));
+        desc.shapes.push(ShapeDesc { reverse_orientation: true, ..shape(curve()) });
+        desc.shapes.push(ShapeDesc { alpha: Some(0.5.into()), ..shape(curve()) });
+        desc.shapes.push(ShapeDesc { world_from_object: moving(), ..shape(curve()) });
+        desc.shapes.push(ShapeDesc { world_from_object: moving(), ..shape(curve()) });
+        desc.shapes.push(shape(ribbon()));
+        desc.shapes.push(shape(ribbon()));
+        desc.shapes.push(shape(CurveDesc { split_depth: 0, ..ribbon() }));
+    });
+    let scene = compile(&desc).unwrap().scene;
+    // The four points are one segment of degree 3, or one of degree 2 and a point that is left over.
+    let parts: Vec<_> = (0..6).map(|id| scene.world().geometry(GeometryId(id)).len()).collect();
+    assert_eq!(parts, [24, 8, 8, 16, 16, 1]);
 }
 
 fn square() -> MeshDesc {

@@ -16,6 +16,7 @@ use node::WideNode;
 use rayon::prelude::*;
 
 pub use build::BuildQuality;
+use build::Corners;
 pub(crate) use build::Reference;
 pub(crate) use traverse::{Leaves, Walk};
 
@@ -36,12 +37,18 @@ impl Bvh {
         references: Vec<Reference>,
         quality: BuildQuality,
         width: usize,
+        corners: impl Corners,
         block: impl Fn(&[Reference]) -> B + Sync + Send,
     ) -> (Self, Vec<B>) {
-        let built = build::build(references, quality, width);
+        let built = build::build(references, quality, width, corners);
         assert!(built.depth <= MAX_DEPTH, "splits halve sets that are deep");
         let blocks = built.blocks().map(block).collect();
         (Self { bounds: built.bounds, nodes: built.nodes }, blocks)
+    }
+
+    /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its box.
+    pub fn refit<B: Send>(&mut self, blocks: &mut [B], renew: impl Fn(&mut B) -> Bounds3 + Sync) {
+        self.bounds = build::refit(&mut self.nodes, blocks, &renew);
     }
 
     /// Bytes of memory taken.

@@ -173,12 +173,22 @@ impl WideNode {
     /// Adds a child.
     pub fn push(&mut self, bounds: &Bounds3, child: Child) {
         let lane = self.len();
+        self.set_bounds(lane, bounds);
+        self.children[lane] = child;
+        self.len += 1;
+    }
+
+    pub fn set_bounds(&mut self, lane: usize, bounds: &Bounds3) {
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.min[axis];
             self.planes[axis + 3][lane] = bounds.max[axis];
         }
-        self.children[lane] = child;
-        self.len += 1;
+    }
+
+    #[cfg(test)]
+    pub fn bounds(&self, lane: usize) -> Bounds3 {
+        let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
+        Bounds3 { min: corner(0), max: corner(3) }
     }
 
     /// Where each ray enters the box of a child, and a bit for each that does up to its `t_max`.

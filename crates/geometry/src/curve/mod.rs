@@ -130,7 +130,6 @@ impl Curves {
         let y = z.cross(points[3] - points[0]).try_normalize().unwrap_or_else(|| across(z));
         let x = y.cross(z);
         let points = points.map(|p| p - o).map(|p| DVec3::new(x.dot(p), y.dot(p), z.dot(p)));
-        let depth = depth(&points, segment.width.into_iter().fold(0.0, f32::max).into())?;
         let mut search = Search {
             segment,
             facing: &|u| self.ribbon_normal(primitive, u).map_or(1.0, |n| n.dot(z).abs()),
@@ -138,7 +137,9 @@ impl Curves {
             t_max,
             hit: None,
         };
-        search.descend(&points, u, depth);
+        if search.is_near(&points, u) {
+            search.descend(&points, u, depth(&points, segment.width.into_iter().fold(0.0, f32::max).into()));
+        }
         search.hit
     }
 
@@ -223,25 +224,29 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn descend(&mut self, p: &Cubic, [u0, u1]: [f64; 2], depth: i32) {
+    /// Whether the ray passes within half the width of the box of the control points; never where there is no width.
+    fn is_near(&self, p: &Cubic, [u0, u1]: [f64; 2]) -> bool {
         let radius = 0.5 * self.segment.width_at(u0).max(self.segment.width_at(u1));
         let (low, high) = (p[0].min(p[1]).min(p[2].min(p[3])), p[0].max(p[1]).max(p[2].max(p[3])));
-        let is_near = low.x <= radius
+        radius > 0.0
+            && low.x <= radius
             && high.x >= -radius
             && low.y <= radius
             && high.y >= -radius
             && high.z >= 0.0
-            && low.z <= f64::from(self.t_max) * self.length;
-        if !is_near {
-            return;
-        }
+            && low.z <= f64::from(self.t_max) * self.length
+    }
+
+    fn descend(&mut self, p: &Cubic, [u0, u1]: [f64; 2], depth: i32) {
         if depth == 0 {
             return self.meet(p, [u0, u1]);
         }
         let middle = 0.5 * (u0 + u1);
-        let [first, second] = halves(p);
-        self.descend(&first, [u0, middle], depth - 1);
-        self.descend(&second, [middle, u1], depth - 1);
+        for (half, u) in halves(p).iter().zip([[u0, middle], [middle, u1]]) {
+            if self.is_near(half, u) {
+                self.descend(half, u, depth - 1);
+            }
+        }
     }
 
     /// The hit on a part that is nearly straight.
@@ -269,12 +274,11 @@ impl Search<'_> {
     }
 }
 
-/// How often a curve is halved; `None` where it has no width.
-fn depth(p: &Cubic, width: f64) -> Option<i32> {
+/// How often a curve is halved.
+fn depth(p: &Cubic, width: f64) -> i32 {
     let bend = |i: usize| (p[i] - p[i + 1] * 2.0 + p[i + 2]).abs().max_element();
-    let bend = bend(0).max(bend(1));
-    let ratio = std::f64::consts::SQRT_2 * 6.0 * bend / (8.0 * FLATNESS * width);
-    (width > 0.0).then(|| (ratio.log2().floor() as i32 / 2).clamp(0, DEEPEST))
+    let ratio = std::f64::consts::SQRT_2 * 6.0 * bend(0).max(bend(1)) / (8.0 * FLATNESS * width);
+    (ratio.log2().floor() as i32 / 2).clamp(0, DEEPEST)
 }
 
 /// A unit vector at right angles to a unit vector.

@@ -28,14 +28,11 @@ impl Level {
         Vec2::new((if u < 0.0 { u + 1.0 } else { u }) as f32, v as f32)
     }
 
-    /// Unit normal; towards where the ray came from at points that have no normal.
+    /// Unit normal. Where the gradient vanishes, its direction just before the point, which is that of −H·d; where there is none
+    /// either, back along the ray.
     pub fn normal(&self) -> DVec3 {
-        let length = self.gradient.length();
-        if length > 0.0 && length.is_finite() {
-            self.gradient / length
-        } else {
-            (-self.d).normalize_or(DVec3::Z)
-        }
+        let candidates = [self.gradient, -(self.hessian * self.d), -self.d];
+        candidates.into_iter().find_map(DVec3::try_normalize).unwrap_or(DVec3::Z)
     }
 
     /// ∂p/∂u and ∂p/∂v.

@@ -23,6 +23,7 @@ mod level;
 mod paraboloid;
 mod plane;
 mod quadric;
+mod solid;
 mod sphere;
 mod triangle;
 
@@ -34,6 +35,8 @@ pub use hyperboloid::Hyperboloid;
 pub use implicit::{Formula, FormulaError, Implicit};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
+pub(crate) use quadric::first_root;
+pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
@@ -121,6 +124,8 @@ pub enum Shape {
     Plane(Box<Plane>),
     /// Surface given by a formula.
     Implicit(Box<Implicit>),
+    /// Bodies combined.
+    Solid(Box<Solid>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
@@ -138,6 +143,7 @@ macro_rules! each_shape {
             Shape::Disk($shape) => $result,
             Shape::Plane($shape) => $result,
             Shape::Implicit($shape) => $result,
+            Shape::Solid($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
         }
@@ -153,7 +159,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -178,6 +184,7 @@ impl Shape {
             Self::Disk(shape) => shape.surface(ray),
             Self::Plane(shape) => shape.surface(ray),
             Self::Implicit(shape) => shape.surface(ray, hit),
+            Self::Solid(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
         }
@@ -241,7 +248,8 @@ impl Shape {
             | Self::Cone(_)
             | Self::Paraboloid(_)
             | Self::Hyperboloid(_)
-            | Self::Implicit(_) => DirectionCone::ENTIRE_SPHERE,
+            | Self::Implicit(_)
+            | Self::Solid(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),

@@ -36,6 +36,16 @@ impl Quadric {
         }
     }
 
+    /// Where it is placed; `flips` turns its outside in.
+    pub fn placed(placement: Placement, flips: bool) -> Self {
+        Self { placement, flips }
+    }
+
+    /// Makes its outside its inside.
+    pub fn turn_round(&mut self) {
+        self.flips = !self.flips;
+    }
+
     pub fn surface(&self, local: &Local, ray: &Ray) -> SurfacePoint {
         let vector = |v: DVec3| self.placement.vector(v);
         let dn = weingarten(local).map(|dn| self.normal_change(local.n, dn));
@@ -152,6 +162,12 @@ pub(super) fn revolved_roots(q: [f64; 3], o: DVec3, d: DVec3, near: DVec3) -> Op
     let other = if larger == 0.0 { 0.0 } else { c / larger };
     let [first, second] = [start + larger / a, start + other];
     Some(if first < second { [first, second] } else { [second, first] })
+}
+
+/// The first of these roots at 0 < t < `t_max`.
+#[inline]
+pub(crate) fn first_root(o: DVec3, d: DVec3, radius: f64, t_max: f32) -> Option<f32> {
+    roots(o, d, radius)?.into_iter().filter(|&t| t > 0.0).map(|t| t as f32).find(|&t| t < t_max)
 }
 
 /// The root that a hit at `t` was rounded from.

@@ -8,6 +8,7 @@
 
 use super::quadric::{Local, Quadric, first_hit, phi, roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::placement::Placement;
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Ray, Transform, Vec2};
 use std::f64::consts::{PI, TAU};
@@ -57,6 +58,15 @@ impl Sphere {
         Self::new(render_from_object, reverse_orientation, radius, [-radius, radius], 360.0)
     }
 
+    /// A whole sphere of a rigid placement.
+    pub(crate) fn ball(placement: Placement, flips: bool, radius: f32) -> Self {
+        let radius = radius as f64;
+        let ball = Some((placement.center(), radius));
+        let quadric = Quadric::placed(placement, flips);
+        let area = (4.0 * PI * radius * radius) as f32;
+        Self { quadric, radius, z: [-radius, radius], theta: [PI, 0.0], phi_max: TAU, ball, area }
+    }
+
     pub(super) fn bounds(&self) -> Option<Bounds3> {
         let r = self.radius;
         Some(self.quadric.bounds(DVec3::new(-r, -r, self.z[0]), DVec3::new(r, r, self.z[1])))
@@ -72,7 +82,7 @@ impl Sphere {
         })
     }
 
-    pub(super) fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
+    pub(crate) fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         let r = self.radius;
         let mut p = (o + d * unrounded(roots(o, d, r), hit.t)).normalize_or(DVec3::Z) * r;

@@ -68,7 +68,8 @@ struct Dicer<'a> {
 impl Dicer<'_> {
     fn dice(mut self) -> Result<MeshArrays, MeshError> {
         let mut pending = std::mem::take(&mut self.mesh.indices);
-        if self.least(&pending) > MOST_TRIANGLES as f64 {
+        // Edges are never shorter than nothing, or than NaN.
+        if !(self.edge_length > 0.0 && self.least(&pending) <= MOST_TRIANGLES as f64) {
             return Err(MeshError::TooLarge);
         }
         while let Some(corners) = pending.pop() {

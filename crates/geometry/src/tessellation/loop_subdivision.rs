@@ -3,12 +3,13 @@
 //! Each level cuts every triangle into four. A vertex with n neighbours moves to (1 − nβ)·v + β·Σ neighbours,
 //! β = 3/16 for n = 3 and 3/(8n) otherwise; a new vertex on an edge stands at 3/8 of its ends and 1/8 of the
 //! two corners that face the edge. On the border the weights are those of a cubic B-spline: 1/8, 3/4, 1/8 and
-//! 1/2, 1/2. In the end vertices move on to where they would come after endless levels (weights 1/(n +
-//! 3/(8β)), and 1/5 on the border), and normals are the cross products of the limit's tangents ([Loop 1987];
-//! [Hoppe 1994]; [Pharr 2016 §3.8]).
+//! 1/2, 1/2. In the end vertices move on to where they would come after endless levels, by the weight
+//! 1/(n + 3/(8β)), and normals are the cross products of the limit's tangents ([Loop 1987]; [Hoppe 1994];
+//! [Pharr 2016 §3.8]).
 //!
-//! As in pbrt, normals stand on the side from which triangles run clockwise, and have the length of that
-//! cross product.
+//! Three things are as the pbrt format has them. Normals stand on the side from which triangles run clockwise,
+//! and keep the length of the cross product. Tangents are taken between neighbours that are at their limit
+//! already. On the border that last move is by 1/5, where the limit of a B-spline would want 1/6.
 //!
 //! Connectivity is kept by half-edges: number 3f + k leads from corner k of triangle f to the next; its twin
 //! leads back. Twins of a level follow from those of the level before.

@@ -67,7 +67,12 @@ impl WorldBuilder {
             .map(|(placed, id)| (InstanceId(id), placed, &placed_groups[placed.group as usize - 1]))
             .collect();
         let top = Group::build(&groups[0], &geometries, &places, quality);
+        let mut group_of = vec![GroupId::TOP; geometries.len()];
+        for (group, members) in (0..).zip(&groups) {
+            members.iter().for_each(|id| group_of[id.0 as usize] = GroupId(group));
+        }
         let groups = std::iter::once(top).chain(placed_groups).collect();
-        World { groups, geometries, instances, instruction_set: InstructionSet::detect() }
+        let instruction_set = InstructionSet::detect();
+        World { groups, geometries, group_of, instances, instruction_set }
     }
 }

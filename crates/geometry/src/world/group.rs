@@ -1,15 +1,16 @@
-//! What stands together: triangles in a tree of packets, other shapes and instances in a tree of single
+//! What stands together: triangles and spheres of sets in trees of packets, other shapes and instances in a tree of single
 //! items, and whatever has no bounds in a list.
 
 #![allow(unsafe_code)]
 
 use super::packet::Packet;
 use super::query::Query;
+use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
-use math::{Bounds3, Ray, gamma};
+use math::{Bounds3, Ray, Vec3, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -37,6 +38,7 @@ pub(super) struct Trace<'a> {
 pub(super) struct Group {
     triangles: Bvh,
     packets: Vec<Packet>,
+    spheres: Spheres,
     items: Bvh,
     /// In the order of the leaves of `items`.
     item_list: Vec<Item>,
@@ -61,7 +63,7 @@ impl Group {
         };
         for &id in members {
             match &geometries[id.0 as usize] {
-                Geometry::Mesh(_) => {}
+                Geometry::Mesh(_) | Geometry::Spheres(_) => {}
                 Geometry::Shapes(shapes) => {
                     for (i, shape) in shapes.iter().enumerate() {
                         let item = Item::Shape(id, i as u32);
@@ -86,24 +88,54 @@ impl Group {
                 unbounded.push(Item::Instance(id));
             }
         }
+        let corners = |r: &Reference| match &geometries[r.geometry() as usize] {
+            Geometry::Mesh(mesh) => Some(mesh.corners(r.primitive() as usize)),
+            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
+        };
         let pack = |block: &[Reference]| packet(block, geometries);
         let triangles = triangle_references(members, geometries);
-        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, pack);
+        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, corners, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
-        let (boxes, item_list) = Bvh::build(boxes, quality, 1, item);
-        Self { triangles, packets, items: boxes, item_list, unbounded }
+        let (boxes, item_list) = Bvh::build(boxes, quality, 1, |_| None, item);
+        let spheres = Spheres::build(members, geometries, quality);
+        Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
+    }
+
+    /// Brings triangles and sets of spheres up to date after they have moved, but leaves their trees as they are.
+    pub fn refit_meshes_and_spheres(&mut self, geometries: &[Geometry]) {
+        self.spheres.refit(geometries);
+        self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, geometries));
+    }
+
+    /// The same for all else. `placed_groups` are those below the top group.
+    pub fn refit_items(&mut self, geometries: &[Geometry], instances: &[Placed], placed_groups: &[Group]) {
+        self.items.refit(&mut self.item_list, |&mut item| {
+            let bounds = match item {
+                Item::Shape(id, primitive) => match &geometries[id.0 as usize] {
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].bounds(),
+                    Geometry::Curves(curves) => Some(curves.bounds(primitive)),
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
+                },
+                Item::Instance(id) => {
+                    let placed = &instances[id.0 as usize];
+                    let bounds = placed_groups[placed.group as usize - 1].bounds();
+                    (!bounds.is_empty()).then(|| placed_bounds(placed, &bounds))
+                }
+            };
+            bounds.filter(is_finite).unwrap_or(Bounds3::EMPTY)
+        });
     }
 
     /// Bytes of memory that the trees take.
     pub fn bytes(&self) -> usize {
         let packets = size_of_val(&*self.packets);
         let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
-        self.triangles.bytes() + packets + self.items.bytes() + items
+        self.triangles.bytes() + packets + self.spheres.bytes() + self.items.bytes() + items
     }
 
     /// A box around all that has bounds.
     pub fn bounds(&self) -> Bounds3 {
-        self.triangles.bounds().union(self.items.bounds())
+        self.triangles.bounds().union(self.spheres.tree.bounds()).union(self.items.bounds())
     }
 
     /// Shows hits to the query; whether it wants no more.
@@ -131,6 +163,9 @@ impl Group {
             if trace.item(item, query) {
                 return true;
             }
+        }
+        if self.spheres.trace(trace, query) {
+            return true;
         }
         if self.item_list.is_empty() {
             return false;
@@ -302,7 +337,7 @@ impl Trace<'_> {
                 let hit = match self.world.geometry(geometry) {
                     Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
                     Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
-                    Geometry::Mesh(_) => None,
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
                 };
                 hit.is_some_and(|hit| {
                     query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })
@@ -362,4 +397,23 @@ fn packet(block: &[Reference], geometries: &[Geometry]) -> Packet {
         }
     }
     packet
+}
+
+/// Fetches the corners of all triangles again. Nothing hits those that are not finite.
+fn renew_packet(packet: &mut Packet, geometries: &[Geometry]) -> Bounds3 {
+    let mut renewed = Packet::EMPTY;
+    let mut bounds = Bounds3::EMPTY;
+    for id in (0..packet.len()).map(|lane| packet.id(lane)) {
+        if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
+            let corners = mesh.corners(id.1 as usize);
+            if corners.iter().all(|p| p.is_finite()) {
+                bounds = bounds.union(Bounds3::around(corners));
+                renewed.push(corners, id);
+            } else {
+                renewed.push([Vec3::NAN; 3], id);
+            }
+        }
+    }
+    *packet = renewed;
+    bounds
 }

@@ -9,6 +9,8 @@ mod builder;
 mod group;
 mod packet;
 mod query;
+mod refit;
+mod spheres;
 mod stats;
 
 use crate::curve::Curves;
@@ -16,6 +18,7 @@ use crate::mesh::TriangleMesh;
 use crate::placement::Placement;
 use crate::shape::{Shape, ShapeHit};
 use crate::simd::InstructionSet;
+use crate::sphere_set::SphereSet;
 use crate::surface::SurfacePoint;
 use group::{Group, Trace};
 use math::{AnimatedTransform, Bounds3, Ray, Vec2};
@@ -23,6 +26,7 @@ use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
+pub use refit::RefitError;
 pub use stats::RayStats;
 
 /// A geometry, counted over the whole world in the order of [`WorldBuilder::add_geometry`].
@@ -50,6 +54,8 @@ pub enum Geometry {
     Mesh(Arc<TriangleMesh>),
     /// Any other shapes: one quadric, the patches of a bilinear mesh.
     Shapes(Arc<[Shape]>),
+    /// The spheres of a set.
+    Spheres(Arc<SphereSet>),
     /// The parts of curves.
     Curves(Arc<Curves>),
 }
@@ -66,6 +72,12 @@ impl From<Shape> for Geometry {
     }
 }
 
+impl From<SphereSet> for Geometry {
+    fn from(set: SphereSet) -> Self {
+        Self::Spheres(Arc::new(set))
+    }
+}
+
 impl From<Curves> for Geometry {
     fn from(curves: Curves) -> Self {
         Self::Curves(Arc::new(curves))
@@ -78,6 +90,7 @@ impl Geometry {
         match self {
             Self::Mesh(mesh) => mesh.len(),
             Self::Shapes(shapes) => shapes.len(),
+            Self::Spheres(set) => set.len(),
             Self::Curves(curves) => curves.len(),
         }
     }
@@ -92,6 +105,7 @@ impl Geometry {
         match self {
             Self::Mesh(mesh) => mesh.bytes(),
             Self::Shapes(shapes) => size_of_val(&**shapes),
+            Self::Spheres(set) => set.bytes(),
             Self::Curves(curves) => curves.bytes(),
         }
     }
@@ -101,6 +115,7 @@ impl Geometry {
         match self {
             Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
             Self::Shapes(shapes) => Some(shapes[primitive as usize].clone()),
+            Self::Spheres(set) => Some(set.sphere(primitive as usize).into()),
             Self::Curves(_) => None,
         }
     }
@@ -120,8 +135,8 @@ pub struct Instance {
 pub struct Hit {
     /// How far along the ray, in lengths of its direction.
     pub t: f32,
-    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, the parameters (u,
-    /// v) on other shapes.
+    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, nothing on a sphere
+    /// of a set, the parameters (u, v) on other shapes.
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
@@ -156,11 +171,13 @@ impl Placed {
     }
 }
 
-/// Everything that a ray can hit; never changes once built.
+/// Everything that a ray can hit. Geometries may move ([`World::refit`]), but there will never be more or fewer of them.
 #[derive(Clone, Debug)]
 pub struct World {
     groups: Vec<Group>,
     geometries: Vec<Geometry>,
+    /// Where each geometry is.
+    group_of: Vec<GroupId>,
     instances: Vec<Placed>,
     instruction_set: InstructionSet,
 }
@@ -246,6 +263,9 @@ impl World {
             Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).surface(ray, hit.uv),
             Geometry::Shapes(shapes) => {
                 shapes[hit.primitive as usize].surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
+            }
+            Geometry::Spheres(set) => {
+                set.sphere(hit.primitive as usize).surface(ray, &ShapeHit { t: hit.t, uv: hit.uv })
             }
             Geometry::Curves(curves) => {
                 curves.surface(hit.primitive, ray, &ShapeHit { t: hit.t, uv: hit.uv })

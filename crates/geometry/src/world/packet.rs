@@ -12,7 +12,7 @@ use math::{Vec2, Vec3};
 #[repr(C, align(16))]
 pub(crate) struct Packet {
     corners: [[[f32; Packet::WIDTH]; 3]; 3],
-    /// Whose triangle each lane holds: geometry and primitive.
+    /// Whose triangle each lane holds; no geometry where it is not in use.
     geometries: [u32; Packet::WIDTH],
     primitives: [u32; Packet::WIDTH],
 }
@@ -42,6 +42,12 @@ impl Packet {
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.geometries.iter().map(|&id| (id != u32::MAX) as usize).sum()
+    }
+
+    /// Whose triangle a lane holds: geometry and primitive.
+    #[inline(always)]
+    pub fn id(&self, lane: usize) -> (u32, u32) {
+        (self.geometries[lane], self.primitives[lane])
     }
 
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
@@ -88,7 +94,7 @@ impl Packet {
         if found.doubts >> of & 1 != 0 {
             (t, uv) = ray.decide(&self.triangle(lane))?;
         }
-        let (geometry, primitive) = (GeometryId(self.geometries[lane]), self.primitives[lane]);
-        Some(Hit { t, uv, geometry, primitive, instance })
+        let (geometry, primitive) = self.id(lane);
+        Some(Hit { t, uv, geometry: GeometryId(geometry), primitive, instance })
     }
 }

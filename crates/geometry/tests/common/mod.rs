@@ -102,7 +102,7 @@ pub fn shapes(m: &Transform) -> Vec<(&'static str, Shape)> {
     let hyperboloid = |p1: [f32; 3], p2: [f32; 3], phi_max| {
         Hyperboloid::new(m, false, [p1.into(), p2.into()], phi_max).into()
     };
-    vec![
+    let mut shapes: Vec<(&str, Shape)> = vec![
         ("sphere", Sphere::whole(m, false, 1.0).into()),
         ("part of a sphere", Sphere::new(m, true, 1.0, [-0.6, 0.8], 250.0).into()),
         ("cylinder", Cylinder::new(m, false, 0.7, [-1.0, 0.5], 300.0).into()),
@@ -117,5 +117,9 @@ pub fn shapes(m: &Transform) -> Vec<(&'static str, Shape)> {
         ("rectangle", BilinearPatch::new(rectangle, None, None, m, false).into()),
         ("bent patch", BilinearPatch::new(bent, None, None, m, true).into()),
         ("triangle", triangle.into()),
-    ]
+    ];
+    let centers = [Vec3::new(9.0, 0.0, 0.0), Vec3::new(0.1, -0.2, 0.1)];
+    let set = SphereSet::new(centers.into(), [0.8].into(), m, true).map(Geometry::from);
+    shapes.extend(set.ok().and_then(|set| Some(("sphere of a set", set.shape(1)?))));
+    shapes
 }

@@ -8,6 +8,8 @@ mod emission;
 mod lights;
 mod materials;
 mod shapes;
+mod solids;
+mod spheres;
 mod tessellation;
 
 use crate::camera;

@@ -1,6 +1,8 @@
 //! Shapes, objects and instances, and the lights that emitting shapes are.
 
 use super::Compiler;
+use super::curves::are_strands;
+use super::solids::Assembly;
 use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
 use crate::material::Material;
 use crate::scene::GeometryEntry;
@@ -32,8 +34,9 @@ impl Compiler<'_> {
     /// Everything that can be hit.
     pub(super) fn shapes(&mut self) {
         let desc = self.desc;
-        for (_, shape) in desc.shapes.iter() {
-            self.shape(shape);
+        let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape).collect();
+        for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
+            self.shape(run);
         }
         let mut groups = HashMap::new();
         for (_, instance) in desc.instances.iter() {
@@ -90,30 +93,33 @@ impl Compiler<'_> {
     fn object(&mut self, handle: Handle<ObjectDesc>) -> ObjectGroups {
         let mut groups = ObjectGroups { resting: self.world.add_group(), moving: Vec::new() };
         let object = &self.desc.objects[handle];
-        for (_, shape) in object.shapes.iter() {
+        let shapes: Vec<_> = object.shapes.iter().map(|(_, shape)| shape).collect();
+        for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
+            let shape = run[0];
             if shape.area_light.is_some() {
                 let message = "shapes of objects do not emit; drawn without light";
                 self.warn("not-drawn", message, shape.origin.span);
             }
             if shape.world_from_object.is_animated() {
                 let group = self.world.add_group();
-                self.unlit(shape, group, &Transform::IDENTITY);
+                self.unlit(run, group, &Transform::IDENTITY);
                 groups.moving.push((group, shape.world_from_object));
                 continue;
             }
             match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.unlit(shape, groups.resting, &transform),
+                Some(transform) => self.unlit(run, groups.resting, &transform),
                 None => self.singular("shape", &shape.origin),
             }
         }
         groups
     }
 
-    /// A shape of the world: in render space where it rests, in a group of its own where it moves.
-    fn shape(&mut self, shape: &Stated<ShapeDesc>) {
+    /// A shape of the world (or strands): in render space where it rests, in a group of its own where it moves.
+    fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
+        let shape = run[0];
         if !shape.world_from_object.is_animated() {
             return match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.resting(shape, &transform),
+                Some(transform) => self.resting(run, &transform),
                 None => self.singular("shape", &shape.origin),
             };
         }
@@ -124,29 +130,31 @@ impl Compiler<'_> {
             self.warn("not-drawn", "moving shapes do not emit yet; drawn without light", shape.origin.span);
         }
         let group = self.world.add_group();
-        self.unlit(shape, group, &Transform::IDENTITY);
+        self.unlit(run, group, &Transform::IDENTITY);
         self.world.add_instance(Instance { group, render_from_instance });
     }
 
     /// Adds a shape to a group of instances, where nothing emits.
-    fn unlit(&mut self, shape: &Stated<ShapeDesc>, group: GroupId, transform: &Transform) {
+    fn unlit(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
+        let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(shape, transform) {
+        for geometry in self.geometries(run, transform) {
             self.world.add_geometry(group, geometry);
             self.entries.push(GeometryEntry { material, alpha, first_light: None });
         }
     }
 
-    fn resting(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) {
+    fn resting(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) {
+        let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(shape, transform) {
+        for geometry in self.geometries(run, transform) {
             let first_light = self.area_lights(shape, &geometry, alpha);
             self.world.add_geometry(GroupId::TOP, geometry);
             self.entries.push(GeometryEntry { material, alpha, first_light });
         }
     }
 
-    fn singular(&mut self, what: &str, origin: &Origin) {
+    pub(super) fn singular(&mut self, what: &str, origin: &Origin) {
         self.error("singular-transform", format!("the transform of the {what} has no inverse"), origin.span);
     }
 
@@ -166,7 +174,8 @@ impl Compiler<'_> {
         }
     }
 
-    fn geometries(&mut self, shape: &Stated<ShapeDesc>, transform: &Transform) -> Vec<Geometry> {
+    fn geometries(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) -> Vec<Geometry> {
+        let shape = run[0];
         let reverse = shape.reverse_orientation;
         let one = |shape: Shape| vec![Geometry::from(shape)];
         match &shape.kind {
@@ -189,10 +198,19 @@ impl Compiler<'_> {
                 one(Disk::new(transform, reverse, *height, *radius, *inner_radius, *phi_max).into())
             }
             ShapeKind::Plane => one(Plane::new(transform, reverse).into()),
+            ShapeKind::Spheres(spheres) => self.spheres(spheres, shape, transform).into_iter().collect(),
             ShapeKind::Implicit { formula, bounds: [min, max] } => {
                 let bounds = Bounds3 { min: *min, max: *max };
                 let Some(formula) = self.formula(formula, &bounds) else { return Vec::new() };
                 one(Implicit::new(transform, reverse, formula, &bounds).into())
+            }
+            ShapeKind::Solid { .. } => {
+                let solid = self.solid(shape, transform, &mut Assembly::new(shape.origin.span));
+                let Some(mut solid) = solid else { return Vec::new() };
+                if reverse != transform.swaps_handedness() {
+                    solid.turn_round();
+                }
+                one(solid.into())
             }
             ShapeKind::Triangles(mesh) => self.mesh(mesh, shape, transform).into_iter().collect(),
             ShapeKind::Patches(patches) => self.patches(patches, shape, transform).into_iter().collect(),
@@ -204,7 +222,7 @@ impl Compiler<'_> {
                 let triangles = self.mesh(triangles, shape, transform);
                 triangles.into_iter().chain(self.patches(patches, shape, transform)).collect()
             }
-            ShapeKind::Curve(curve) => self.curve(curve, shape, transform).into_iter().collect(),
+            ShapeKind::Curve(_) => vec![self.curves(run, transform).into()],
             ShapeKind::LoopSubdivision { mesh, levels } => {
                 self.loop_subdivision(mesh, *levels, shape, transform).into_iter().collect()
             }
@@ -212,7 +230,7 @@ impl Compiler<'_> {
     }
 
     /// A formula that is zero somewhere in the box, as far as is known.
-    fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
+    pub(super) fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
         let formula = match Formula::parse(&text.value) {
             Ok(formula) => formula,
             Err(FormulaError { place, message, help }) => {
@@ -321,8 +339,8 @@ impl Compiler<'_> {
     ) -> Option<LightId> {
         let handle = shape.area_light?;
         let span = shape.origin.span;
-        if matches!(shape.kind, ShapeKind::Implicit { .. }) {
-            let message = "surfaces given by formulas do not emit; drawn without light";
+        if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
+            let message = "solids and surfaces given by formulas do not emit; drawn without light";
             self.warn("not-drawn", message, span);
             return None;
         }
@@ -338,7 +356,10 @@ impl Compiler<'_> {
         let shared = Arc::new(emission.clone());
         let first = LightId(self.lights.len() as u32);
         for primitive in 0..geometry.len() as u32 {
-            let part = geometry.shape(primitive)?;
+            let Some(part) = geometry.shape(primitive) else {
+                self.warn("light-ignored", "curves do not emit; drawn without light", span);
+                return None;
+            };
             if part.bounds().is_none() {
                 self.error(
                     "infinite-light",

@@ -3,16 +3,24 @@
 use super::bins::{Border, centroids};
 use super::partition::partition;
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Grown, Inner};
+use super::tree::{Blocks, Grown, Inner, Planted};
 
 /// Below this depth, which only sets of wildly different sizes reach, halves are made equal.
-const DEEPEST: usize = 48;
+pub(super) const DEEPEST: usize = 48;
 /// Smaller sets are not worth another thread.
-const PARALLEL: usize = 4096;
+pub(super) const PARALLEL: usize = 4096;
+
+/// Brings references into order and grows a tree over them.
+pub(super) fn plant(mut references: Vec<Reference>, blocks: Blocks) -> Planted {
+    let mut inner = vec![Inner::default(); references.len()];
+    let extent = Extent::around(&references);
+    let tree = grow(&mut references, &mut inner, 0, extent, blocks, 0);
+    Planted { references, inner, tree }
+}
 
 /// Brings the references into order and fills in `inner`, which is as long. `first` is the index of the first
 /// reference.
-pub(super) fn grow(
+fn grow(
     references: &mut [Reference],
     inner: &mut [Inner],
     first: usize,
@@ -48,7 +56,7 @@ fn divide(references: &mut [Reference], blocks: Blocks, depth: usize) -> (usize,
 
 /// Two halves of the same length, by centroids along the longest axis.
 #[inline(never)]
-fn halve(references: &mut [Reference]) -> (usize, [Extent; 2]) {
+pub(super) fn halve(references: &mut [Reference]) -> (usize, [Extent; 2]) {
     let middle = references.len() / 2;
     let axis = centroids(references).bounds().longest_axis();
     let key = |r: &Reference| (r.extent().doubled_centroid()[axis], r.geometry(), r.primitive());

@@ -8,8 +8,14 @@
 
 mod balanced;
 mod bins;
+mod fast;
+mod high;
 mod partition;
 mod reference;
+mod refit;
+mod spatial;
+#[cfg(test)]
+mod tests;
 mod tree;
 mod widen;
 
@@ -17,9 +23,11 @@ use super::node::WideNode;
 use math::Bounds3;
 use rayon::prelude::*;
 use std::ops::Range;
-use tree::{Blocks, Inner};
+use tree::Blocks;
 
-pub(crate) use reference::{Extent, Reference};
+pub(crate) use reference::Reference;
+pub(super) use refit::refit;
+pub(crate) use spatial::Corners;
 
 /// How much time a tree is worth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -51,20 +59,27 @@ impl Built {
 }
 
 /// Builds a tree over references with finite bounds; leaves hold blocks of `width` references, a power of two.
-pub(crate) fn build(mut references: Vec<Reference>, _quality: BuildQuality, width: usize) -> Built {
+pub(crate) fn build(
+    references: Vec<Reference>,
+    quality: BuildQuality,
+    width: usize,
+    corners: impl Corners,
+) -> Built {
     if references.is_empty() {
         return Built { nodes: Vec::new(), bounds: Bounds3::EMPTY, depth: 0, references, blocks: Vec::new() };
     }
     let blocks = Blocks::of(width);
-    let mut inner = vec![Inner::default(); references.len()];
-    let extent = Extent::around(&references);
-    let tree = balanced::grow(&mut references, &mut inner, 0, extent, blocks, 0);
-    let wide = widen::widen(&references, &inner, &tree, blocks);
+    let planted = match quality {
+        BuildQuality::Fast => fast::plant(references, blocks),
+        BuildQuality::Balanced => balanced::plant(references, blocks),
+        BuildQuality::High => high::plant(references, &corners, blocks),
+    };
+    let wide = widen::widen(&planted, blocks);
     Built {
         nodes: wide.nodes,
         bounds: wide.extent.bounds(),
         depth: wide.depth,
-        references,
+        references: planted.references,
         blocks: wide.blocks,
     }
 }

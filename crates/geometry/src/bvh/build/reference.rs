@@ -34,6 +34,34 @@ impl Extent {
         Self { low: self.low.max(other.low), minus_high: self.minus_high.max(other.minus_high) }
     }
 
+    /// The part below a plane at right angles to an axis.
+    pub fn below(mut self, axis: usize, at: f32) -> Self {
+        self.minus_high[axis] = self.minus_high[axis].max(-at);
+        self
+    }
+
+    /// The part above it.
+    pub fn above(mut self, axis: usize, at: f32) -> Self {
+        self.low[axis] = self.low[axis].max(at);
+        self
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.low.truncate().cmpgt(self.high().truncate()).any()
+    }
+
+    /// [`Extent::union`] where the other box may have its ends in the wrong order.
+    #[inline]
+    pub fn union_unless_empty(self, other: Self) -> Self {
+        if other.is_empty() { self } else { self.union(other) }
+    }
+
+    /// Half of the surface of what both share.
+    pub fn overlap(&self, other: &Self) -> f32 {
+        let shared = self.intersection(*other);
+        if shared.is_empty() { 0.0 } else { shared.half_area() }
+    }
+
     /// The box around all references.
     pub fn around(references: &[Reference]) -> Self {
         let serial = |part: &[Reference]| part.iter().fold(Self::EMPTY, |all, r| all.union(r.extent()));

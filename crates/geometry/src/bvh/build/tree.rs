@@ -12,7 +12,7 @@
 //! with the area A of its box and the cost c of a wide node, where the test of a block costs 1 ([Ylitie et
 //! al. 2017 §3.1]).
 
-use super::reference::Extent;
+use super::reference::{Extent, Reference};
 use crate::bvh::node::WIDTH;
 
 /// What the test of a wide node costs, where testing a block of primitives costs 1.
@@ -90,6 +90,11 @@ impl Inner {
         if self.plan & 1 == 1 { Cut::Leaf } else { Cut::Node }
     }
 
+    /// Whether a node is stored here.
+    pub fn is_used(&self) -> bool {
+        self.plan != 0
+    }
+
     /// How this node as a wide node shares its branches.
     #[inline]
     pub fn open(&self) -> [usize; 2] {
@@ -101,6 +106,13 @@ impl Inner {
     pub fn as_node(&self) -> Size {
         Size { nodes: self.below.nodes + 1, ..self.below }
     }
+}
+
+/// References in order, and the tree over them.
+pub(super) struct Planted {
+    pub references: Vec<Reference>,
+    pub inner: Vec<Inner>,
+    pub tree: Grown,
 }
 
 /// A tree over a range.

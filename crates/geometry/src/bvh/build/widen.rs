@@ -9,7 +9,7 @@
 //! sum of the areas).
 
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Cut, Grown, Inner, Size};
+use super::tree::{Blocks, Cut, Inner, Planted, Size};
 use crate::bvh::node::{Child, WIDTH, WideNode};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -27,7 +27,8 @@ pub(super) struct Wide {
 }
 
 /// Cuts a binary tree over at least one reference.
-pub(super) fn widen(references: &[Reference], inner: &[Inner], tree: &Grown, blocks: Blocks) -> Wide {
+pub(super) fn widen(planted: &Planted, blocks: Blocks) -> Wide {
+    let Planted { references, inner, tree } = planted;
     let whole = Branch { range: 0..references.len() as u32, root: tree.root };
     let size = tree.as_node(inner);
     let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];

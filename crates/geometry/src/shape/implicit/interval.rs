@@ -104,7 +104,8 @@ impl Interval {
             let (low, high) = (self.low / TAU - turn - 1e-9, self.high / TAU - turn + 1e-9);
             low.ceil() <= high
         };
-        let (a, b) = (f(self.low), f(self.high));
+        let a = f(self.low);
+        let b = if self.low == self.high { a } else { f(self.high) };
         let margin = 4.0 * f64::EPSILON;
         Self {
             low: if holds(crest + 0.5) { -1.0 } else { f64::max(f64::min(a, b) - margin, -1.0) },

@@ -11,12 +11,15 @@ mod jet;
 mod model;
 mod program;
 mod roots;
+#[cfg(test)]
+mod tests;
 
 pub use formula::FormulaError;
 pub(super) use roots::Root;
 
 use super::level::Level;
 use super::quadric::Quadric;
+use super::solid::{Crossing, Extent};
 use super::{ShapeHit, ShapeSample};
 use crate::placement::ROUNDING;
 use crate::surface::SurfacePoint;
@@ -27,7 +30,8 @@ use program::Program;
 use roots::Roots;
 use std::sync::Arc;
 
-/// A formula F(x, y, z).
+/// A formula F(x, y, z): numbers, x, y, z, pi, e, + − * / ^, parentheses, and the functions sqrt, abs, sin, cos, tan, exp, log,
+/// min, max and pow.
 #[derive(Clone, Debug)]
 pub struct Formula {
     program: Arc<Program>,
@@ -101,12 +105,13 @@ impl Implicit {
     }
 
     pub(super) fn bounds(&self) -> Option<Bounds3> {
-        Some(self.quadric.bounds(self.body.min, self.body.max))
+        Some(self.quadric.bounds(self.body.extent.min, self.body.extent.max))
     }
 
     pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
         let (o, d) = self.quadric.placement.ray_inward(ray);
-        let range = self.body.within(o, d, [0.0, t_max.into()])?;
+        let ends = [0.0, t_max.into()].map(|t| Crossing { t, face: 0 });
+        let range = self.body.extent.clip(o, d, ends, 0)?.map(|crossing| crossing.t);
         // A root whose place is not known to be ahead is where the ray started.
         let root = self.body.find(o, d, range, |root| root.t - root.error > 0.0)?;
         let t = root.t as f32;
@@ -142,36 +147,30 @@ pub(super) fn reach(o: DVec3, d: DVec3, root: Root) -> DVec3 {
 #[derive(Clone, Debug)]
 pub(super) struct Body {
     formula: Formula,
-    pub min: DVec3,
-    pub max: DVec3,
+    pub extent: Extent,
 }
 
 impl Body {
     pub fn new(formula: Formula, bounds: &Bounds3) -> Self {
-        Self { formula, min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() }
+        Self { formula, extent: Extent { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() } }
     }
 
-    /// Where in a range the ray is inside of the box.
-    pub fn within(&self, o: DVec3, d: DVec3, [mut near, mut far]: [f64; 2]) -> Option<[f64; 2]> {
-        if d == DVec3::ZERO {
-            return None;
-        }
-        for axis in 0..3 {
-            if d[axis] == 0.0 {
-                if o[axis] < self.min[axis] || o[axis] > self.max[axis] {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = ((self.min[axis] - o[axis]) / d[axis], (self.max[axis] - o[axis]) / d[axis]);
-            near = f64::max(near, f64::min(a, b));
-            far = f64::min(far, f64::max(a, b));
-        }
-        (near < far && far < f64::INFINITY).then_some([near, far])
+    /// Whether a point counts as inside: F < 0.
+    pub fn contains(&self, p: DVec3) -> bool {
+        self.formula.value(p.to_array()) < 0.0
     }
 
     /// The first root in a range for which `wanted` holds.
-    pub fn find(&self, o: DVec3, d: DVec3, range: [f64; 2], wanted: impl Fn(&Root) -> bool) -> Option<Root> {
+    pub fn find(
+        &self,
+        o: DVec3,
+        d: DVec3,
+        range: [f64; 2],
+        wanted: impl FnMut(&Root) -> bool,
+    ) -> Option<Root> {
+        if d == DVec3::ZERO || !range[1].is_finite() {
+            return None;
+        }
         // Counted from the start of the range, where the numbers are small.
         let start = range[0];
         let o = o + d * start;
@@ -196,6 +195,6 @@ impl Body {
     /// What the formula is around a point that a ray along `d` came to.
     pub fn level(&self, p: DVec3, d: DVec3) -> Level {
         let Jet { gradient, hessian, .. } = self.formula.jet(p);
-        Level { p, gradient, hessian, center: 0.5 * (self.min + self.max), d }
+        Level { p, gradient, hessian, center: self.extent.center(), d }
     }
 }

@@ -163,7 +163,7 @@ impl<const N: usize> Mul for Model<N> {
         let mut c = [0.0; N];
         for i in 0..N {
             for j in 0..N - i {
-                c[i + j] += a[i] * b[j];
+                c[i + j] = a[i].mul_add(b[j], c[i + j]);
             }
         }
         // What exceeds the degree: |aᵢ| times the last i of |b|.

@@ -76,7 +76,7 @@ impl Number for f64 {
         if self.is_nan() || self > other { self } else { other }
     }
     fn apply(self, function: Function) -> Self {
-        match function {
+        let value = match function {
             Function::Reciprocal => 1.0 / self,
             Function::Sqrt => self.sqrt(),
             Function::Abs => self.abs(),
@@ -85,7 +85,9 @@ impl Number for f64 {
             Function::Exp => self.exp(),
             Function::Log => self.ln(),
             Function::Real(p) => self.powf(p),
-        }
+        };
+        // There is no value at a pole.
+        if self == 0.0 && value.is_infinite() { f64::NAN } else { value }
     }
 }
 

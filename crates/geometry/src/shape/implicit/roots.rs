@@ -30,7 +30,7 @@ const RESOLUTION: f64 = 1.0 / (1u64 << 36) as f64;
 /// The same for roots that only touch.
 const TOUCH: f64 = 1.0 / (1u64 << 27) as f64;
 /// A new evaluation pays once the error is this part of the polynomial.
-const WORN: f64 = 1.0 / 1024.0;
+const WORN: f64 = 1.0 / 16.0;
 
 /// The zeros of a formula along a ray, one after the other.
 pub(super) struct Roots<'a, const N: usize> {
@@ -98,7 +98,7 @@ impl<'a, const N: usize> Roots<'a, N> {
     fn found(&mut self, [a, b]: [f64; 2]) -> Option<Root> {
         let continues = a <= self.end;
         self.end = b;
-        (!continues).then(|| Root { t: 0.5 * (a + b), error: 0.5 * (b - a) })
+        (!continues).then_some(Root { t: 0.5 * (a + b), error: 0.5 * (b - a) })
     }
 }
 
@@ -186,8 +186,8 @@ fn bernstein<const N: usize>(model: &Model<N>) -> ([f64; N], f64) {
     }
     let control = Basis::<N>::ROWS.map(|row| {
         let mut sum = 0.0;
-        for k in 0..N {
-            sum += row[k] * model.c[k];
+        for (basis, c) in row.iter().zip(model.c) {
+            sum += basis * c;
         }
         sum
     });
@@ -203,7 +203,7 @@ fn clip<const N: usize>(b: &[f64; N], r: f64) -> Option<[f64; 2]> {
     let reach = |from: usize, other: fn(usize) -> usize| {
         let first = b[from];
         let height = first.abs() - r;
-        if !(height > 0.0) {
+        if height.is_nan() || height <= 0.0 {
             return Some(0.0);
         }
         // The steepest way towards zero.

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    Diagnostic, FloatTextureDesc, Handle, MaterialDesc, MediumDesc, Origin, SceneDesc, SourceMap, Span,
-    Spanned, SpectrumDesc, SpectrumTextureDesc, Stated,
+    Diagnostic, FloatTextureDesc, Handle, MaterialDesc, MediumDesc, ObjectDesc, Origin, SceneDesc, SourceMap,
+    Span, Spanned, SpectrumDesc, SpectrumTextureDesc, Stated,
 };
 
 use self::files::ImageRequests;
@@ -61,6 +61,8 @@ pub(crate) fn build(
     desc.lights = statements.lights.drain(..).filter_map(|light| builder.light(light)).collect();
     desc.area_lights = statements.area_lights.drain(..).map(|light| builder.area_light(light)).collect();
     builder.load_meshes(&statements);
+    builder.objects = builder.table("object", &statements.objects, |object| Some(&object.name));
+    builder.complete_objects = statements.objects.len();
     for shape in statements.shapes.drain(..) {
         if let Some(shape) = builder.shape(shape) {
             desc.shapes.push_stated(shape);
@@ -89,6 +91,9 @@ pub(crate) struct Builder<'a> {
     pub(crate) used_attributes: HashSet<Span>,
     images: ImageRequests,
     meshes: shape::Meshes,
+    objects: HashMap<String, Handle<ObjectDesc>>,
+    /// How many objects may be used where the builder is.
+    complete_objects: usize,
 }
 
 impl<'a> Builder<'a> {
@@ -110,6 +115,8 @@ impl<'a> Builder<'a> {
             used_attributes: HashSet::new(),
             images: ImageRequests::default(),
             meshes: HashMap::new(),
+            objects: HashMap::new(),
+            complete_objects: 0,
         };
         builder.materials =
             builder.table("material", &statements.materials, |material: &MaterialStatement| {

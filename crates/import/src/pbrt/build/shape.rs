@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    CurveBasis, CurveDesc, CurveProfile, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
-    SceneDesc, ShapeDesc, ShapeKind, Spanned, Stated,
+    CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin,
+    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, SpheresDesc, Stated,
 };
 use math::Vec3;
 use rayon::prelude::*;
@@ -18,8 +18,9 @@ use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{ShapeStatement, Statements};
 
-const TYPES: [&str; 13] = [
+const TYPES: [&str; 15] = [
     "sphere",
+    "spheres",
     "cylinder",
     "cone",
     "paraboloid",
@@ -32,6 +33,7 @@ const TYPES: [&str; 13] = [
     "curve",
     "loopsubdiv",
     "implicit",
+    "csg",
 ];
 
 /// Mesh files by path, each read once; or why it could not be.
@@ -86,8 +88,8 @@ impl Builder<'_> {
 
     /// Builds all objects and instances.
     pub(super) fn objects(&mut self, statements: &mut Statements, desc: &mut SceneDesc) {
-        let table = self.table("object", &statements.objects, |object| Some(&object.name));
-        for object in statements.objects.drain(..) {
+        for (index, object) in statements.objects.drain(..).enumerate() {
+            self.complete_objects = index;
             let Spanned { value: name, span } = object.name;
             let mut built = ObjectDesc { name, ..ObjectDesc::default() };
             for mut shape in object.shapes {
@@ -102,8 +104,8 @@ impl Builder<'_> {
             desc.objects.push_stated(Stated::new(built, Origin::new(span)));
         }
         for instance in statements.instances.drain(..) {
-            let Some(&object) = table.get(&instance.object.value) else {
-                unknown_reference(&mut self.report, "object", &instance.object, None, &table);
+            let Some(&object) = self.objects.get(&instance.object.value) else {
+                unknown_reference(&mut self.report, "object", &instance.object, None, &self.objects);
                 continue;
             };
             let built = InstanceDesc { object, world_from_object: instance.world_from_object };
@@ -157,7 +159,9 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             phi_max: reader.positive("phimax", 360.0),
         },
         "plane" => ShapeKind::Plane,
+        "spheres" => ShapeKind::Spheres(spheres(reader)?),
         "implicit" => implicit(reader)?,
+        "csg" => solid(reader)?,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
         "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
         "plymesh" => mesh_file(reader)?,
@@ -175,6 +179,8 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
     })
 }
 
+/// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it is negative; what it may say
+/// is told by `geometry::Formula`. `"point3 bounds"`: two corners of the box at which the surface is cut off, ±2 if absent.
 fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
     let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
     let Some(formula) = reader.string("f") else {
@@ -192,6 +198,49 @@ fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
                 .refuse("bounds", "`bounds` are two corners of a box: the lowest and the highest x, y and z");
             None
         }
+    }
+}
+
+/// `"string operation"`: `union`, `intersection`, or `difference` (the first without all others). `"string operands"`: names of
+/// objects, all shapes of which are one body; they are placed as an instance of the object would be, and their materials count
+/// for nothing here.
+fn solid(reader: &mut Reader) -> Option<ShapeKind> {
+    let known = [
+        ("union", SolidOperation::Union),
+        ("intersection", SolidOperation::Intersection),
+        ("difference", SolidOperation::Difference),
+    ];
+    let operation = reader.choice("operation", SolidOperation::Union, &known);
+    let names = reader.strings("operands").unwrap_or_default();
+    for name in ["operation", "operands"] {
+        if !reader.has(name) {
+            reader.missing(name);
+            return None;
+        }
+    }
+    if names.len() < 2 {
+        reader.refuse("operands", "a solid is made of two objects or more");
+        return None;
+    }
+    let operands: Vec<_> = names.iter().filter_map(|name| operand(reader.builder, name)).collect();
+    (operands.len() == names.len()).then_some(ShapeKind::Solid { operation, operands })
+}
+
+/// An object that may be a part of a solid here: one that is complete.
+fn operand(builder: &mut Builder, name: &Spanned<String>) -> Option<Spanned<Handle<ObjectDesc>>> {
+    match builder.objects.get(&name.value) {
+        None => {
+            unknown_reference(&mut builder.report, "object", name, None, &builder.objects);
+            None
+        }
+        Some(object) if object.index() >= builder.complete_objects => {
+            let message = format!("the object `{}` is not complete here", name.value);
+            let help = "a solid inside of an object is made of objects that end before that begins";
+            let diagnostic = Diagnostic::error("unknown-reference", message, name.span);
+            builder.report.push(diagnostic.with_help(help));
+            None
+        }
+        Some(&object) => Some(Spanned::new(object, name.span)),
     }
 }
 
@@ -291,6 +340,24 @@ fn patch_mesh(reader: &mut Reader) -> Option<PatchMeshDesc> {
         indices,
         positions,
     })
+}
+
+fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
+    let centers = points(reader)?;
+    let radii = reader.floats("radius").unwrap_or_else(|| vec![1.0]);
+    let refusal = if radii.len() != 1 && radii.len() != centers.len() {
+        Some(("radius", format!("`radius` has {} values for {} points in `P`", radii.len(), centers.len())))
+    } else if let Some(i) = radii.iter().position(|r| !(*r > 0.0 && r.is_finite())) {
+        Some(("radius", format!("`radius` {i} is {}; it must be above zero", radii[i])))
+    } else {
+        let i = centers.iter().position(|center| !center.is_finite());
+        i.map(|i| ("P", format!("point {i} in `P` is beyond numbers")))
+    };
+    if let Some((name, message)) = refusal {
+        reader.refuse(name, message);
+        return None;
+    }
+    Some(SpheresDesc { centers, radii: radii.into() })
 }
 
 fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {

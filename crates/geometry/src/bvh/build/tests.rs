@@ -1,0 +1,145 @@
+//! What every tree must be, whatever it is built over and however.
+
+use super::{BuildQuality, Built, Reference, build};
+use crate::bvh::node::WideNode;
+use math::{Bounds3, Vec3};
+use sampling::Rng;
+
+const QUALITIES: [BuildQuality; 3] = [BuildQuality::Fast, BuildQuality::Balanced, BuildQuality::High];
+
+fn point(rng: &mut Rng, size: f32) -> Vec3 {
+    (Vec3::new(rng.uniform_f32(), rng.uniform_f32(), rng.uniform_f32()) * 2.0 - 1.0) * size
+}
+
+/// Triangles of many kinds.
+fn inputs() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
+    let rng = &mut Rng::new(11, 0);
+    let mut soup = |n: usize, spread: f32, size: &dyn Fn(&mut Rng, usize) -> f32| -> Vec<[Vec3; 3]> {
+        (0..n)
+            .map(|i| {
+                let (center, size) = (point(rng, spread), size(rng, i));
+                [0; 3].map(|_| center + point(rng, size))
+            })
+            .collect()
+    };
+    let mut inputs = vec![
+        ("one", soup(1, 1.0, &|_, _| 0.1)),
+        ("a block", soup(4, 1.0, &|_, _| 0.1)),
+        ("five", soup(5, 1.0, &|_, _| 0.1)),
+        ("random", soup(20_000, 1.0, &|_, _| 0.02)),
+        ("large", soup(300, 0.1, &|_, _| 10.0)),
+        ("points", soup(3000, 1.0, &|_, _| 0.0)),
+        ("of all sizes", soup(5000, 1.0, &|rng, _| 10f32.powf(rng.uniform_f32() * 60.0 - 30.0))),
+        ("nested", soup(5000, 0.0, &|_, i| 0.99f32.powi(i as i32))),
+        ("beyond floats", soup(500, 2e38, &|_, _| 1e38)),
+    ];
+    let mut clusters = soup(2000, 1e-6, &|_, _| 1e-8);
+    clusters.extend(soup(2000, 1e-6, &|_, _| 1e-8).iter().map(|t| t.map(|p| p + Vec3::splat(1000.0))));
+    inputs.push(("two clusters", clusters));
+    inputs.push(("duplicates", vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 10_000]));
+    let line = |i: usize| Vec3::X * i as f32;
+    inputs.push(("on a line", (0..3000).map(|i| [line(i), line(i + 1), line(i + 2)]).collect()));
+    inputs
+}
+
+fn built(triangles: &[[Vec3; 3]], quality: BuildQuality, width: usize) -> Built {
+    let reference = |(i, t): (usize, &[Vec3; 3])| Reference::new(&Bounds3::around(*t), 7, i as u32);
+    let references = triangles.iter().enumerate().map(reference).collect();
+    build(references, quality, width, |r| Some(triangles[r.primitive() as usize]))
+}
+
+fn contains(outer: &Bounds3, inner: &Bounds3) -> bool {
+    inner.is_empty() || outer.contains(inner.min) && outer.contains(inner.max)
+}
+
+/// Walks a subtree: each node and block is met once, and lies in the box of its parent.
+fn walk(built: &Built, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bounds3) {
+    seen.0[node] += 1;
+    let wide: &WideNode = &built.nodes[node];
+    for lane in 0..wide.len() {
+        let (child, inside) = (wide.children()[lane], wide.bounds(lane));
+        assert!(contains(bounds, &inside));
+        if !child.is_leaf() {
+            walk(built, child.index(), seen, &inside);
+            continue;
+        }
+        for block in child.blocks() {
+            seen.1[block] += 1;
+            let range = built.blocks[block].clone();
+            for r in &built.references[range.start as usize..range.end as usize] {
+                assert!(contains(&inside, &r.extent().bounds()));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_primitive_is_in_the_boxes_above_it() {
+    for (name, triangles) in inputs() {
+        for quality in QUALITIES {
+            for width in [1, 4, 8] {
+                let built = built(&triangles, quality, width);
+                let mut seen = (vec![0; built.nodes.len()], vec![0; built.blocks.len()]);
+                walk(&built, 0, &mut seen, &built.bounds);
+                assert!(seen.0.iter().chain(&seen.1).all(|&n| n == 1), "{name} {quality:?} {width}");
+                let mut parts = vec![Bounds3::EMPTY; triangles.len()];
+                for r in &built.references {
+                    assert_eq!(r.geometry(), 7);
+                    let part = &mut parts[r.primitive() as usize];
+                    *part = part.union(r.extent().bounds());
+                }
+                for (part, triangle) in parts.iter().zip(&triangles) {
+                    assert!(contains(part, &Bounds3::around(*triangle)), "{name} {quality:?} {width}");
+                }
+                let most = if quality == BuildQuality::High { 2 * triangles.len() } else { triangles.len() };
+                assert!(built.references.len() <= most, "{name} {quality:?} {width}");
+                assert!(built.blocks.iter().all(|b| (1..=width).contains(&b.len())));
+            }
+        }
+    }
+}
+
+/// Points of triangles are in the part of some reference, also where they were cut.
+#[test]
+fn cut_triangles_have_no_gaps() {
+    let rng = &mut Rng::new(5, 0);
+    let along = Vec3::new(0.7, 1.0, 0.8);
+    let strip = |i: usize| {
+        let start = Vec3::X * i as f32 * 0.01 + point(rng, 0.01);
+        [start, start + point(rng, 0.01), start + along]
+    };
+    let triangles: Vec<[Vec3; 3]> = (0..500).map(strip).collect();
+    let built = built(&triangles, BuildQuality::High, 4);
+    assert!(built.references.len() > 600, "{} parts of 500 triangles", built.references.len());
+    let mut parts = vec![Vec::new(); triangles.len()];
+    for r in &built.references {
+        parts[r.primitive() as usize].push(r.extent().bounds());
+    }
+    for (parts, [a, b, c]) in parts.iter().zip(&triangles) {
+        for _ in 0..200 {
+            let (u, v) = (rng.uniform_f32(), rng.uniform_f32());
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let p = *a * (1.0 - u - v) + *b * u + *c * v;
+            assert!(parts.iter().any(|part| part.expand(2e-7).contains(p)), "{p} {parts:?}");
+        }
+    }
+}
+
+#[test]
+fn any_number_of_threads_builds_the_same_tree() {
+    let rng = &mut Rng::new(8, 0);
+    let triangles: Vec<[Vec3; 3]> = (0..150_000)
+        .map(|_| {
+            let center = point(rng, 1.0);
+            [0; 3].map(|_| center + point(rng, 0.02))
+        })
+        .collect();
+    for quality in QUALITIES {
+        let bytes = [1, 2, 7].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let built = pool.install(|| built(&triangles, quality, 4));
+            format!("{:?} {:?} {:?}", built.nodes, built.blocks, built.references)
+        });
+        assert!(bytes[0] == bytes[1] && bytes[1] == bytes[2], "{quality:?}");
+    }
+}
