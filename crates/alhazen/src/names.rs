@@ -1,7 +1,8 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
 use description::{
-    BuildQualityDesc, FilterDesc, IntegratorDesc, LightSamplerDesc, Randomization, SamplerKind,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, IntegratorDesc, LightSamplerDesc, Randomization,
+    SamplerKind,
 };
 
 use crate::settings::{light_sampler, max_depth, regularize};
@@ -9,6 +10,12 @@ use crate::settings::{light_sampler, max_depth, regularize};
 /// The names of the algorithms that can be chosen.
 pub const INTEGRATORS: [&str; 7] =
     ["ray-casting", "whitted", "ambient-occlusion", "random-walk", "simple-path", "path", "vol-path"];
+
+/// Acceleration structures that can be chosen.
+pub(crate) const ACCELERATORS: [(&str, AcceleratorDesc); 2] = [
+    ("bvh", AcceleratorDesc::Bvh { max_node_prims: 4, split: BvhSplit::Sah, quality: None }),
+    ("none", AcceleratorDesc::None),
+];
 
 pub(crate) const LIGHT_SAMPLERS: [(&str, LightSamplerDesc); 4] = [
     ("uniform", LightSamplerDesc::Uniform),

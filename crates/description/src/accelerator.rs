@@ -51,6 +51,8 @@ pub enum AcceleratorDesc {
         /// Greatest depth; −1 chooses it from the number of primitives.
         max_depth: i32,
     },
+    /// None: every ray is tested against every primitive, so that one sees what the others save.
+    None,
 }
 
 impl Default for AcceleratorDesc {

@@ -25,14 +25,28 @@ fn bits(hit: Option<Hit>) -> Option<(u32, [u32; 2], GeometryId, u32)> {
 
 fn agree(geometries: Vec<Geometry>, rays: impl IntoIterator<Item = Ray>) {
     let worlds = worlds(geometries);
-    for ray in rays {
-        let expected = bits(nearest(&worlds[0].1, &ray));
-        for (set, world) in &worlds {
-            assert_eq!(bits(nearest(world, &ray)), expected, "{set:?} {ray:?}");
-            let stats = &mut RayStats::default();
-            let hits = world.occluded(&ray, f32::INFINITY, &keep_all, stats);
-            assert_eq!(hits, expected.is_some(), "{set:?} {ray:?}");
+    let rays: Vec<(Ray, f32)> = rays.into_iter().map(|ray| (ray, f32::INFINITY)).collect();
+    let expected: Vec<_> = rays.iter().map(|(ray, _)| bits(nearest(&worlds[0].1, ray))).collect();
+    for (set, world) in &worlds {
+        let [mut alone, mut together] = [RayStats::default(); 2];
+        for ((ray, t_max), expected) in rays.iter().zip(&expected) {
+            let hit = world.intersect(ray, *t_max, &keep_all, &mut alone);
+            assert_eq!(bits(hit), *expected, "{set:?} {ray:?}");
+            for t_max in [*t_max, 1e30] {
+                let hits = world.occluded(ray, t_max, &keep_all, &mut RayStats::default());
+                assert_eq!(hits, hit.is_some_and(|hit| hit.t < t_max), "{set:?} {ray:?} up to {t_max}");
+            }
         }
+        let mut hits = vec![None; rays.len()];
+        let mut occluded = vec![true; rays.len()];
+        world.intersect_batch(&rays, &keep_all, &mut hits, &mut together);
+        world.occluded_batch(&rays, &keep_all, &mut occluded, &mut RayStats::default());
+        for (i, expected) in expected.iter().enumerate() {
+            assert_eq!(bits(hits[i]), *expected, "{set:?} {:?} in a batch", rays[i]);
+            assert_eq!(occluded[i], expected.is_some(), "{set:?} {:?} in a batch", rays[i]);
+        }
+        assert_eq!(together.rays, alone.rays);
+        assert!(together.extents >= alone.extents && together.primitives >= alone.primitives);
     }
 }
 
@@ -85,5 +99,58 @@ fn on_what_is_hostile() {
         let indices = (0..50).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let rays: Vec<_> = (0..300).map(|_| Ray::new(any(rng), any(rng), 0.0)).collect();
         agree(vec![mesh(positions, indices, &Transform::IDENTITY).into()], rays);
+    }
+}
+
+/// Rays from one point to neighbouring ones, which a batch takes through the tree together, and some that are not like
+/// their neighbours.
+#[test]
+fn on_a_picture() {
+    let rng = &mut Rng::new(4, 0);
+    let soup = (0..600).flat_map(|_| {
+        let center = point_in(rng, 1.0);
+        [0; 3].map(|_| center + point_in(rng, 0.1))
+    });
+    let positions = soup.collect();
+    let indices = (0..600).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let m = Transform::translate(Vec3::new(0.1, 0.2, 0.3));
+    let geometries = vec![
+        mesh(positions, indices, &Transform::IDENTITY).into(),
+        ball(30, 0.2, &m).into(),
+        Shape::from(Sphere::whole(&m, false, 0.3)).into(),
+    ];
+    let eye = Vec3::new(0.3, -0.2, 3.0);
+    let mut ray = |i: u32| match i % 100 {
+        77 => Ray::new(point_in(rng, 1.0), direction(rng), 0.0),
+        78 => Ray::new(eye, Vec3::NAN, 0.0),
+        _ => {
+            Ray::new(eye, Vec3::new((i % 150) as f32 / 75.0 - 1.0, (i / 150) as f32 / 75.0 - 1.0, -3.0), 0.0)
+        }
+    };
+    let rays: Vec<_> = (0..150 * 150).map(&mut ray).collect();
+    agree(geometries, rays);
+}
+
+#[test]
+fn filters_are_asked_in_batches_too() {
+    let plane = |z: f32| {
+        mesh(
+            vec![Vec3::new(-9.0, -9.0, z), Vec3::new(9.0, -9.0, z), Vec3::new(0.0, 9.0, z)],
+            vec![[0, 1, 2]],
+            &Transform::IDENTITY,
+        )
+        .into()
+    };
+    let below_four = |hit: &Hit, _: &Ray| hit.geometry.0 < 4;
+    let rays: Vec<_> = (0..64)
+        .map(|i| (Ray::new(Vec3::Z * 20.0, Vec3::new(i as f32 * 1e-3, 0.01, -1.0), 0.0), 40.0))
+        .collect();
+    for (set, world) in worlds((0..10).map(|i| plane(i as f32)).collect()) {
+        let mut hits = vec![None; rays.len()];
+        world.intersect_batch(&rays, &below_four, &mut hits, &mut RayStats::default());
+        assert!(hits.iter().all(|hit| hit.is_some_and(|hit| hit.geometry == GeometryId(3))), "{set:?}");
+        let mut occluded = vec![false; rays.len()];
+        world.occluded_batch(&rays, &|hit, _| hit.geometry.0 > 9, &mut occluded, &mut RayStats::default());
+        assert!(!occluded.contains(&true), "{set:?}");
     }
 }

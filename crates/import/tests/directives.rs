@@ -221,6 +221,31 @@ fn objects_and_instances_have_their_own_transforms() {
 }
 
 #[test]
+fn objects_may_hold_instances_of_objects_that_come_later() {
+    let desc = world(
+        "ObjectBegin \"a\" Translate 1 0 0 ObjectInstance \"b\" ObjectInstance \"b\" ObjectEnd
+        ObjectBegin \"b\" Shape \"sphere\" ObjectEnd ObjectInstance \"a\"",
+    );
+    assert_eq!(desc.instances.len(), 1);
+    let a = &desc.objects[desc.instances.iter().next().unwrap().1.object];
+    assert_eq!((a.shapes.len(), a.instances.len()), (0, 2));
+    let inner = a.instances.iter().next().unwrap().1;
+    assert_eq!(desc.objects[inner.object].name, "b");
+    assert_near(inner.world_from_object.start, DMat4::from_translation(DVec3::X));
+}
+
+#[test]
+fn a_mesh_with_keyframes_has_its_points_divided_up() {
+    let desc = world(
+        "Shape \"trianglemesh\" \"integer keyframes\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1] \"normal N\" [0 0 1 0 0 1 0 0 1]",
+    );
+    let ShapeKind::Triangles(mesh) = &desc.shapes.iter().next().unwrap().1.kind else { panic!() };
+    assert_eq!((mesh.indices.len(), mesh.positions.len(), mesh.later.len()), (1, 3, 1));
+    assert_eq!(mesh.later[0].positions[2], math::Vec3::new(0.0, 1.0, 1.0));
+    assert_eq!(mesh.later[0].normals, mesh.normals);
+}
+
+#[test]
 fn include_shares_the_state_and_import_does_not() {
     let assets = || {
         MemoryAssets::default()

@@ -6,11 +6,11 @@
 use super::packet::Packet;
 use super::query::Query;
 use super::spheres::Spheres;
-use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
+use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
-use math::{Bounds3, Ray, Vec2, Vec3, gamma};
+use math::{Bounds3, Ray, Vec3, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,8 +30,8 @@ pub(super) struct Trace<'a> {
     pub world: &'a World,
     /// In the space of the group.
     pub ray: &'a Ray,
-    /// Through which instance it came.
-    pub instance: Option<InstanceId>,
+    /// Through which instances it came.
+    pub instance: InstancePath,
     pub stats: &'a mut RayStats,
 }
 
@@ -108,7 +108,7 @@ impl Group {
         self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, geometries));
     }
 
-    /// The same for all else. `placed_groups` are those below the top group.
+    /// The same for all else. `placed_groups` begin with the first one below the top group.
     pub fn refit_items(&mut self, geometries: &[Geometry], instances: &[Placed], placed_groups: &[Group]) {
         self.items.refit(&mut self.item_list, |&mut item| {
             let bounds = match item {
@@ -127,6 +127,11 @@ impl Group {
         });
     }
 
+    /// Whether other groups are placed in it.
+    pub fn has_instances(&self) -> bool {
+        self.item_list.iter().any(|item| matches!(item, Item::Instance(_)))
+    }
+
     /// Bytes of memory that the trees take.
     pub fn bytes(&self) -> usize {
         let packets = size_of_val(&*self.packets);
@@ -141,17 +146,8 @@ impl Group {
 
     /// Shows hits to the query; whether it wants no more.
     pub fn trace<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
-        // Finite directions too short to have an inverse go nowhere.
-        if !(trace.ray.o.is_finite()
-            && trace.ray.d.is_finite()
-            && trace.ray.d.abs().max_element().recip().is_finite())
-        {
+        if !goes_somewhere(trace.ray) {
             return false;
-        }
-        for &item in &self.unbounded {
-            if trace.item(item, query) {
-                return true;
-            }
         }
         if !self.packets.is_empty() {
             let set = trace.world.instruction_set;
@@ -164,18 +160,49 @@ impl Group {
                 return true;
             }
         }
+        self.trace_others(trace, query)
+    }
+
+    /// Shows the query all hits but those of triangles; whether it wants no more.
+    pub fn trace_others<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
+        for &item in &self.unbounded {
+            if trace.item(item, query) {
+                return true;
+            }
+        }
         if self.spheres.trace(trace, query) {
             return true;
         }
-        if !self.item_list.is_empty() {
-            let set = trace.world.instruction_set;
-            // SAFETY: worlds are only given sets that the processor has.
-            let (extents, stop) = unsafe { set.run(TraceItems { group: self, trace, query }) };
-            trace.stats.extents += extents;
-            return stop;
+        if self.item_list.is_empty() {
+            return false;
         }
-        false
+        let set = trace.world.instruction_set;
+        // SAFETY: worlds are only given sets that the processor has.
+        let (extents, stop) = unsafe { set.run(TraceItems { group: self, trace, query }) };
+        trace.stats.extents += extents;
+        stop
     }
+
+    /// The triangles, as leaves hold them.
+    pub fn packets(&self) -> &[Packet] {
+        &self.packets
+    }
+
+    /// The tree of triangles.
+    pub fn triangles(&self) -> &Bvh {
+        &self.triangles
+    }
+}
+
+/// Whether a ray can hit anything: directions that are not finite, or too short to have an inverse, lead nowhere.
+pub(super) fn goes_somewhere(ray: &Ray) -> bool {
+    ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
+}
+
+/// Whether a tree is best passed in order of distance.
+#[inline(always)]
+pub(super) fn in_order<Q: Query>(t_max: f32) -> bool {
+    !Q::ANY || t_max < f32::INFINITY
 }
 
 /// A ray on its way through the triangles of a group.
@@ -196,25 +223,30 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
         unsafe {
             let lanes = sheared.lanes::<{ Packet::WIDTH }, S::Four>();
             let mut t_max = query.t_max();
-            let mut leaves =
-                Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY && t_max == f32::INFINITY {
-                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
-            } else {
-                group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
+            let mut leaves = Triangles {
+                group,
+                instance: trace.instance,
+                sheared: &sheared,
+                lanes: &lanes,
+                query,
+                primitives: 0,
             };
+            let all = trace.all(group.packets.len());
+            let (extents, stop) = visit::<S, Q>(&group.triangles, all, trace.ray, &mut t_max, &mut leaves);
             (extents, leaves.primitives, stop)
         }
     }
 }
 
-struct Triangles<'a, V, Q> {
-    group: &'a Group,
-    instance: Option<InstanceId>,
-    sheared: &'a Sheared,
-    lanes: ShearedLanes<V>,
-    query: &'a mut Q,
-    primitives: u64,
+/// The triangles of a group before a ray.
+pub(super) struct Triangles<'a, V, Q> {
+    pub group: &'a Group,
+    pub instance: InstancePath,
+    pub sheared: &'a Sheared,
+    pub lanes: &'a ShearedLanes<V>,
+    pub query: &'a mut Q,
+    /// How many were tested.
+    pub primitives: u64,
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
@@ -230,19 +262,13 @@ impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
         // SAFETY: the tree was built over these packets.
         for packet in unsafe { self.group.packets.get_unchecked(blocks) } {
             self.primitives += packet.len() as u64;
-            let Some(found) = packet.intersect(&self.lanes, *t_max) else { continue };
+            let Some(found) = packet.intersect(self.lanes, *t_max) else { continue };
             let mut hits = found.hits;
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
                 hits &= hits - 1;
-                let (mut t, mut uv) = (found.t[lane], Vec2::new(found.b1[lane], found.b2[lane]));
-                if found.doubts >> lane & 1 != 0 {
-                    let Some(decided) = self.sheared.decide(&packet.triangle(lane)) else { continue };
-                    (t, uv) = decided;
-                }
-                let (geometry, primitive) = packet.id(lane);
-                let geometry = GeometryId(geometry);
-                if self.query.offer(Hit { t, uv, geometry, primitive, instance: self.instance }) {
+                let Some(hit) = packet.hit(lane, &found, lane, self.sheared, self.instance) else { continue };
+                if self.query.offer(hit) {
                     return true;
                 }
             }
@@ -265,17 +291,11 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> Self::Output {
         let Self { group, trace, query } = self;
-        let ray = trace.ray;
+        let (ray, all) = (trace.ray, trace.all(group.item_list.len()));
         let mut t_max = query.t_max();
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
-        unsafe {
-            if Q::ANY && t_max == f32::INFINITY {
-                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
-            } else {
-                group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
-            }
-        }
+        unsafe { visit::<S, Q>(&group.items, all, ray, &mut t_max, &mut leaves) }
     }
 }
 
@@ -305,7 +325,35 @@ impl<Q: Query> Leaves for Items<'_, '_, Q> {
     }
 }
 
+/// Shows `leaves` the blocks of a tree that the ray may meet, or `all` without a look at the tree. Returns the number of
+/// boxes tested, and whether `leaves` broke off.
+///
+/// # Safety
+/// The blocks must be those of the tree, and the processor must have the instructions of the set.
+#[inline(always)]
+pub(super) unsafe fn visit<S: Simd, Q: Query>(
+    tree: &Bvh,
+    all: Option<Range<usize>>,
+    ray: &Ray,
+    t_max: &mut f32,
+    leaves: &mut impl Leaves,
+) -> (u64, bool) {
+    // SAFETY: the caller promises the blocks and the instructions.
+    unsafe {
+        match all {
+            Some(blocks) => (0, leaves.test(blocks, t_max)),
+            None if in_order::<Q>(*t_max) => tree.traverse::<S, false>(ray, t_max, leaves),
+            None => tree.traverse::<S, true>(ray, t_max, leaves),
+        }
+    }
+}
+
 impl Trace<'_> {
+    /// All of so many blocks, where rays are not tested against extents.
+    pub fn all(&self, blocks: usize) -> Option<Range<usize>> {
+        (!self.world.extents).then_some(0..blocks)
+    }
+
     #[inline(never)]
     fn item<Q: Query>(&mut self, item: Item, query: &mut Q) -> bool {
         match item {
@@ -323,8 +371,8 @@ impl Trace<'_> {
             Item::Instance(id) => {
                 let placed = &self.world.instances[id.0 as usize];
                 let ray = placed.with_placement(self.ray.time, |placement| placement.ray(self.ray));
-                let mut inner =
-                    Trace { world: self.world, ray: &ray, instance: Some(id), stats: &mut *self.stats };
+                let instance = self.instance.into(id);
+                let mut inner = Trace { world: self.world, ray: &ray, instance, stats: &mut *self.stats };
                 self.world.groups[placed.group as usize].trace(&mut inner, query)
             }
         }

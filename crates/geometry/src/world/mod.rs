@@ -1,12 +1,14 @@
 //! Everything that a ray can hit.
 //!
 //! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`]
-//! places another group in it, at rest or moving. A shape that moves is an instance of a group with that
-//! shape alone.
+//! places another group in it, or in a group that is placed itself, at rest or moving. A shape that moves is
+//! an instance of a group with that shape alone.
 
+mod batch;
 mod builder;
 mod group;
 mod packet;
+mod path;
 mod query;
 mod refit;
 mod spheres;
@@ -25,6 +27,7 @@ use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
+pub use path::InstancePath;
 pub use refit::RefitError;
 pub use stats::RayStats;
 
@@ -120,12 +123,12 @@ impl Geometry {
     }
 }
 
-/// A group placed in the top group.
+/// A group placed in another.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// What is placed.
     pub group: GroupId,
-    /// Where.
+    /// Where: from its own space to that of the group it is placed in.
     pub render_from_instance: AnimatedTransform,
 }
 
@@ -141,8 +144,8 @@ pub struct Hit {
     pub geometry: GeometryId,
     /// Which triangle, patch or part of a curve of it.
     pub primitive: u32,
-    /// Through which instance.
-    pub instance: Option<InstanceId>,
+    /// Through which instances.
+    pub instance: InstancePath,
 }
 
 /// An instance made ready for rays.
@@ -179,6 +182,8 @@ pub struct World {
     group_of: Vec<GroupId>,
     instances: Vec<Placed>,
     instruction_set: InstructionSet,
+    /// Whether rays are tested against extents first.
+    extents: bool,
 }
 
 impl World {
@@ -217,9 +222,7 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> Option<Hit> {
-        let mut query = Nearest::new(ray, t_max, filter);
-        self.trace(ray, &mut query, stats);
-        query.hit
+        self.trace(ray, Nearest::new(ray, t_max, filter), stats)
     }
 
     /// Whether anything that `filter` keeps is hit at 0 < t < `t_max`.
@@ -230,13 +233,14 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> bool {
-        self.trace(ray, &mut Any::new(ray, t_max, filter), stats)
+        self.trace(ray, Any::new(ray, t_max, filter), stats)
     }
 
     #[inline]
-    fn trace(&self, ray: &Ray, query: &mut impl Query, stats: &mut RayStats) -> bool {
+    fn trace<Q: Query>(&self, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
         stats.rays += 1;
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, query)
+        self.groups[0].trace(&mut Trace { world: self, ray, instance: InstancePath::TOP, stats }, &mut query);
+        query.answer()
     }
 
     /// Traces rays with another set of instructions than the best one, which finds the same hits.
@@ -250,10 +254,14 @@ impl World {
 
     /// What is known of the surface where `ray` met it.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        match hit.instance {
-            None => self.surface_in_group(ray, hit),
-            Some(id) => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
-                self.surface_in_group(&placement.ray(ray), hit).placed(placement, ray)
+        self.surface_within(hit.instance.ids(), ray, hit)
+    }
+
+    fn surface_within(&self, path: &[InstanceId], ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match path {
+            [] => self.surface_in_group(ray, hit),
+            [id, inner @ ..] => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
+                self.surface_within(inner, &placement.ray(ray), hit).placed(placement, ray)
             }),
         }
     }

@@ -2,18 +2,19 @@
 
 #![allow(unsafe_code)]
 
+use super::{GeometryId, Hit, InstancePath};
 use crate::simd::Vector;
-use crate::watertight::{LaneHits, ShearedLanes};
-use math::Vec3;
+use crate::watertight::{LaneHits, Sheared, ShearedLanes};
+use math::{Vec2, Vec3};
 
 /// Triangles of one geometry or of many, corner by corner, axis by axis.
 #[derive(Clone, Debug)]
-#[repr(C, align(64))]
+#[repr(C, align(16))]
 pub(crate) struct Packet {
     corners: [[[f32; Packet::WIDTH]; 3]; 3],
-    /// Whose triangle each lane holds: geometry and primitive.
-    ids: [(u32, u32); Packet::WIDTH],
-    len: u32,
+    /// Whose triangle each lane holds; no geometry where it is not in use.
+    geometries: [u32; Packet::WIDTH],
+    primitives: [u32; Packet::WIDTH],
 }
 
 impl Packet {
@@ -21,8 +22,11 @@ impl Packet {
     pub const WIDTH: usize = 4;
 
     /// Unused lanes hold a triangle that nothing hits.
-    pub const EMPTY: Self =
-        Self { corners: [[[f32::NAN; Self::WIDTH]; 3]; 3], ids: [(u32::MAX, u32::MAX); Self::WIDTH], len: 0 };
+    pub const EMPTY: Self = Self {
+        corners: [[[f32::NAN; Self::WIDTH]; 3]; 3],
+        geometries: [u32::MAX; Self::WIDTH],
+        primitives: [u32::MAX; Self::WIDTH],
+    };
 
     pub fn push(&mut self, corners: [Vec3; 3], id: (u32, u32)) {
         let lane = self.len();
@@ -31,19 +35,19 @@ impl Packet {
                 lanes[axis][lane] = corner[axis];
             }
         }
-        self.ids[lane] = id;
-        self.len += 1;
+        (self.geometries[lane], self.primitives[lane]) = id;
     }
 
     /// How many lanes are in use.
     #[inline(always)]
     pub fn len(&self) -> usize {
-        self.len as usize
+        self.geometries.iter().map(|&id| (id != u32::MAX) as usize).sum()
     }
 
+    /// Whose triangle a lane holds: geometry and primitive.
     #[inline(always)]
     pub fn id(&self, lane: usize) -> (u32, u32) {
-        self.ids[lane]
+        (self.geometries[lane], self.primitives[lane])
     }
 
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
@@ -57,7 +61,40 @@ impl Packet {
         ray: &ShearedLanes<V>,
         t_max: f32,
     ) -> Option<LaneHits<{ Self::WIDTH }>> {
-        // SAFETY: whoever has `ray` has the instructions.
-        unsafe { ray.intersect(&self.corners, V::splat(t_max)) }
+        // SAFETY: corners and axes are below 3, and whoever has `ray` has the instructions.
+        unsafe {
+            let corner = |k: usize, axis: usize| V::load(self.corners.get_unchecked(k).get_unchecked(axis));
+            ray.intersect(corner, V::splat(t_max))
+        }
+    }
+
+    /// Those of several rays that hit one triangle up to `t_max`.
+    #[inline(always)]
+    pub fn intersect_rays<const N: usize, V: Vector<N>>(
+        &self,
+        lane: usize,
+        rays: &ShearedLanes<V>,
+        t_max: V,
+    ) -> Option<LaneHits<N>> {
+        // SAFETY: whoever has `rays` has the instructions.
+        unsafe { rays.intersect(|k, axis| V::splat(self.corners[k][axis][lane]), t_max) }
+    }
+
+    /// What lane `of` of `found` says of the triangle in `lane`: its hit, unless a doubt is decided against it.
+    #[inline(always)]
+    pub fn hit<const N: usize>(
+        &self,
+        lane: usize,
+        found: &LaneHits<N>,
+        of: usize,
+        ray: &Sheared,
+        instance: InstancePath,
+    ) -> Option<Hit> {
+        let (mut t, mut uv) = (found.t[of], Vec2::new(found.b1[of], found.b2[of]));
+        if found.doubts >> of & 1 != 0 {
+            (t, uv) = ray.decide(&self.triangle(lane))?;
+        }
+        let (geometry, primitive) = self.id(lane);
+        Some(Hit { t, uv, geometry: GeometryId(geometry), primitive, instance })
     }
 }

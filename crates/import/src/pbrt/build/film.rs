@@ -220,8 +220,9 @@ fn accelerator(reader: &mut Reader) -> Option<AcceleratorDesc> {
             max_prims: reader.integer("maxprims", 1, 1..=i32::MAX),
             max_depth: reader.integer("maxdepth", -1, -1..=i32::MAX),
         },
+        "none" => AcceleratorDesc::None,
         _ => {
-            reader.unknown_type("accelerator", "accelerator", &["bvh", "kdtree"]);
+            reader.unknown_type("accelerator", "accelerator", &["bvh", "kdtree", "none"]);
             return None;
         }
     })
