@@ -153,7 +153,11 @@ mod tests {
             ]
             .map(|integrator| SceneDesc { integrator: integrator.into(), ..SceneDesc::default() });
             let mut takes = |value| scenes.iter_mut().any(|desc| (setting.apply)(desc, value).is_ok());
-            assert!(["7", "true", "power", "sobol", "box", "fast"].into_iter().any(&mut takes), "{}", setting.name);
+            assert!(
+                ["7", "true", "power", "sobol", "box", "fast"].into_iter().any(&mut takes),
+                "{}",
+                setting.name
+            );
             assert!(!takes("nonsense"), "{}", setting.name);
         }
     }
