@@ -77,13 +77,35 @@ impl Sheared {
         }
     }
 
+    /// Several rays, one in each lane. All must mostly follow the same axis.
+    ///
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
+    #[inline(always)]
+    pub unsafe fn each<const N: usize, V: Vector<N>>(rays: &[Self; N]) -> ShearedLanes<V> {
+        let axes = rays[0].axes;
+        // SAFETY: as the caller promises.
+        unsafe {
+            ShearedLanes {
+                axes,
+                shear: [0, 1, 2].map(|i| V::load(&rays.map(|ray| ray.shear[i]))),
+                o: axes.map(|a| V::load(&rays.map(|ray| ray.o[a]))),
+            }
+        }
+    }
+
+    /// The axis that the ray mostly follows.
+    pub fn axis(&self) -> usize {
+        self.axes[2]
+    }
+
     /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
     /// and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
-        let one = corners.map(|p| p.to_array().map(|x| [x]));
+        let corner = |k: usize, axis: usize| Lanes([corners[k][axis]]);
         // SAFETY: every processor has single floats.
-        let found = unsafe { self.lanes::<1, Lanes<1>>().intersect(&one, Lanes([t_max])) }?;
+        let found = unsafe { self.lanes::<1, Lanes<1>>().intersect(corner, Lanes([t_max])) }?;
         if found.doubts != 0 {
             return self.decide(corners).filter(|hit| hit.0 < t_max);
         }
@@ -133,14 +155,14 @@ impl Sheared {
 }
 
 impl<V> ShearedLanes<V> {
-    /// Tests a triangle in each lane, given corner by corner and axis by axis, for hits at 0 < t ≤ `t_max`.
+    /// Tests for hits at 0 < t ≤ `t_max` in each lane, given the coordinates of the corners: corner 0 to 2, axis 0 to 2.
     ///
     /// # Safety
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
     pub unsafe fn intersect<const N: usize>(
         &self,
-        corners: &[[[f32; N]; 3]; 3],
+        corner: impl Fn(usize, usize) -> V,
         t_max: V,
     ) -> Option<LaneHits<N>>
     where
@@ -149,14 +171,11 @@ impl<V> ShearedLanes<V> {
         let [ax, ay, az] = self.axes;
         let [sx, sy, sz] = self.shear;
         let [ox, oy, oz] = self.o;
-        // SAFETY: axes are below 3; the rest as the caller promises.
-        let sheared = |corner: &[[f32; N]; 3]| unsafe {
-            let x = V::load(corner.get_unchecked(ax)).sub(ox);
-            let y = V::load(corner.get_unchecked(ay)).sub(oy);
-            let z = V::load(corner.get_unchecked(az)).sub(oz);
+        let sheared = |k: usize| {
+            let [x, y, z] = [corner(k, ax).sub(ox), corner(k, ay).sub(oy), corner(k, az).sub(oz)];
             [sx.mul_add(z, x), sy.mul_add(z, y), z.mul(sz)]
         };
-        let [a, b, c] = [sheared(&corners[0]), sheared(&corners[1]), sheared(&corners[2])];
+        let [a, b, c] = [sheared(0), sheared(1), sheared(2)];
         let edge = |p: [V; 3], q: [V; 3]| {
             let yx = p[1].mul(q[0]);
             // SAFETY: as the caller promises.

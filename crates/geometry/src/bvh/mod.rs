@@ -11,13 +11,14 @@ mod node;
 mod traverse;
 
 use math::Bounds3;
+pub(crate) use node::WIDTH;
 use node::WideNode;
 use rayon::prelude::*;
 
 pub use build::BuildQuality;
 use build::Corners;
 pub(crate) use build::Reference;
-pub(crate) use traverse::Leaves;
+pub(crate) use traverse::{Leaves, Walk};
 
 /// The most nodes above each other that a tree may have, for which rays have room to remember where to return.
 const MAX_DEPTH: usize = 96;

@@ -86,20 +86,56 @@ impl<V: Vector<WIDTH>> Slabs<V> {
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
     pub unsafe fn new(ray: &Ray, bounds: &Bounds3) -> Self {
+        let SlabsOfOne { first, inverse, near, far } = SlabsOfOne::new(ray, bounds);
+        // SAFETY: as the caller promises.
+        let splat = |v: [f32; 3]| v.map(|x| unsafe { V::splat(x) });
+        Self { first, inverse: splat(inverse), near: splat(near), far: splat(far) }
+    }
+
+    /// Several rays, one in each lane. All directions must have the same signs.
+    ///
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
+    #[inline(always)]
+    pub unsafe fn each(rays: &[Ray; WIDTH], bounds: &Bounds3) -> Self {
+        let one = rays.each_ref().map(|ray| SlabsOfOne::new(ray, bounds));
+        // SAFETY: as the caller promises.
+        let gather = |f: fn(&SlabsOfOne) -> &[f32; 3]| {
+            [0, 1, 2].map(|axis| unsafe { V::load(&one.each_ref().map(|slabs| f(slabs)[axis])) })
+        };
+        Self {
+            first: one[0].first,
+            inverse: gather(|slabs| &slabs.inverse),
+            near: gather(|slabs| &slabs.near),
+            far: gather(|slabs| &slabs.far),
+        }
+    }
+}
+
+/// The numbers of one ray.
+struct SlabsOfOne {
+    first: [usize; 3],
+    inverse: [f32; 3],
+    near: [f32; 3],
+    far: [f32; 3],
+}
+
+impl SlabsOfOne {
+    #[inline(always)]
+    fn new(ray: &Ray, bounds: &Bounds3) -> Self {
         let slack = Self::slack(ray, bounds);
         // A ray along a slab is in it or not for all its length; a direction that is just not along it says
         // the same within the slack, and has an inverse.
         let least = ray.d.abs().max_element() * 1e-12;
-        let d = Vec3::select(ray.d.abs().cmplt(Vec3::splat(least)), Vec3::splat(least), ray.d);
+        let d =
+            Vec3::select(ray.d.abs().cmplt(Vec3::splat(least)), Vec3::splat(least).copysign(ray.d), ray.d);
         let inverse = d.recip();
         let shift = Vec3::splat(slack).copysign(inverse);
         let near = ((ray.o + shift) * inverse).to_array();
         let far = ((ray.o - shift) * inverse).to_array();
         let inverse = inverse.to_array();
         let first = [0, 1, 2].map(|axis| axis + 3 * (inverse[axis] < 0.0) as usize);
-        // SAFETY: as the caller promises.
-        let splat = |v: [f32; 3]| v.map(|x| unsafe { V::splat(x) });
-        Self { first, inverse: splat(inverse), near: splat(near), far: splat(far) }
+        Self { first, inverse, near, far }
     }
 
     #[inline(always)]
@@ -153,6 +189,35 @@ impl WideNode {
     pub fn bounds(&self, lane: usize) -> Bounds3 {
         let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
         Bounds3 { min: corner(0), max: corner(3) }
+    }
+
+    /// Where each ray enters the box of a child, and a bit for each that does up to its `t_max`.
+    #[inline(always)]
+    pub fn intersect_rays<V: Vector<WIDTH>>(
+        &self,
+        lane: usize,
+        rays: &Slabs<V>,
+        t_max: V,
+        zero: V,
+    ) -> (V, u32) {
+        let (mut near, mut far) = (zero, t_max);
+        for axis in 0..3 {
+            let first = rays.first[axis];
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below 8; whoever has `rays` has the
+            // instructions.
+            let [enter, leave] = unsafe {
+                let first_plane = V::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
+                let last_plane =
+                    V::splat(*self.planes.get_unchecked(2 * axis + 3 - first).get_unchecked(lane));
+                [
+                    first_plane.mul_sub_loosely(rays.inverse[axis], rays.near[axis]),
+                    last_plane.mul_sub_loosely(rays.inverse[axis], rays.far[axis]),
+                ]
+            };
+            near = enter.max(near);
+            far = leave.min(far);
+        }
+        (near, near.le(far))
     }
 
     /// Where the ray enters each box, and a bit for each box that it enters up to `t_max`.

@@ -31,8 +31,9 @@ pub(crate) trait Leaves {
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool;
 }
 
-/// Each node on the way down leaves at most all children but one waiting; and below all lies [`Waiting::END`].
-const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 1;
+/// Each node on the way down leaves at most all children but one waiting, the last one perhaps all; and below all lies
+/// [`Waiting::END`].
+const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 2;
 
 /// A child, and above it the bits of its distance, so that what is nearer is less.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -80,7 +81,6 @@ impl Bvh {
         // blocks that there are, and the tree is not deeper than what the stack was measured for: `Bvh::build` saw to both.
         unsafe {
             let slabs = Slabs::<S::Eight>::new(ray, &self.bounds);
-            let zero = S::Eight::splat(0.0);
             let nodes = self.nodes.as_ptr();
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
@@ -89,19 +89,10 @@ impl Bvh {
             let mut next = Child::node(0);
             loop {
                 while !next.is_leaf() {
-                    let node: &WideNode = &*nodes.add(next.index());
+                    let node = &*nodes.add(next.index());
                     extents += node.len() as u64;
-                    let (near, hits) = node.intersect(&slabs, S::Eight::splat(*t_max), zero);
-                    if hits == 0 {
-                        next = pop(&mut top, *t_max);
-                        continue;
-                    }
                     let ahead = |child| self.prefetch::<S, _>(leaves, child);
-                    next = if ANY {
-                        choose_any(node, hits, &mut top, ahead)
-                    } else {
-                        choose_nearest::<S>(node, near, hits, &mut top, ahead)
-                    };
+                    next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, ahead);
                 }
                 if next == Waiting::END.child() {
                     return (extents, false);
@@ -114,6 +105,57 @@ impl Bvh {
         }
     }
 
+    /// Takes eight rays through the tree together. `test` is given blocks and the end of each ray, which it may lower: below
+    /// zero when the ray is to go no further. Returns the number of boxes tested. The rays must be finite and have the
+    /// same signs.
+    ///
+    /// # Safety
+    /// The processor must have the instructions of the set.
+    #[inline(always)]
+    pub unsafe fn traverse_together<S: Simd>(
+        &self,
+        rays: &[Ray; WIDTH],
+        t_max: &mut [f32; WIDTH],
+        mut test: impl FnMut(Range<usize>, &mut [f32; WIDTH]),
+    ) -> u64 {
+        let mut extents = 0;
+        if self.nodes.is_empty() {
+            return extents;
+        }
+        // SAFETY: as in `traverse`.
+        unsafe {
+            let slabs = Slabs::<S::Eight>::each(rays, &self.bounds);
+            let zero = S::Eight::splat(0.0);
+            let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
+            let mut top = stack.as_mut_ptr().cast::<Waiting>();
+            push(&mut top, Waiting::END);
+            let mut next = Child::node(0);
+            loop {
+                if next == Waiting::END.child() {
+                    return extents;
+                }
+                if next.is_leaf() {
+                    test(next.blocks(), t_max);
+                } else {
+                    let node = self.nodes.get_unchecked(next.index());
+                    let ends = S::Eight::load(t_max);
+                    let floor = top;
+                    for lane in 0..node.len() {
+                        let (near, hits) = node.intersect_rays(lane, &slabs, ends, zero);
+                        extents += WIDTH as u64;
+                        if hits != 0 {
+                            let nearest = near.store().into_iter().fold(f32::INFINITY, f32::min);
+                            let child = *node.children().get_unchecked(lane);
+                            sink(&mut top, floor, Waiting::new(nearest, child));
+                        }
+                    }
+                }
+                let furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
+                next = pop(&mut top, furthest);
+            }
+        }
+    }
+
     /// Asks for a node or a block.
     #[inline(always)]
     fn prefetch<S: Simd, L: Leaves>(&self, leaves: &L, child: Child) {
@@ -122,6 +164,100 @@ impl Bvh {
         let at = if child.is_leaf() { block } else { node };
         for line in 0..size_of::<WideNode>() / 64 {
             S::prefetch(at.wrapping_add(64 * line));
+        }
+    }
+}
+
+/// A ray that passes a tree step by step, so that others can take steps while it waits for memory.
+pub(crate) struct Walk<S: Simd> {
+    slabs: Slabs<S::Eight>,
+    t_max: f32,
+    /// Whether the order of distance matters.
+    in_order: bool,
+    next: Child,
+    waiting: usize,
+    stack: [MaybeUninit<Waiting>; STACK],
+    /// The number of boxes tested.
+    pub extents: u64,
+}
+
+impl<S: Simd> Walk<S> {
+    /// A walk that is over.
+    ///
+    /// # Safety
+    /// The processor must have the instructions of the set.
+    #[inline(always)]
+    pub unsafe fn new(tree: &Bvh, ray: &Ray) -> Self {
+        let mut stack = [const { MaybeUninit::uninit() }; STACK];
+        stack[0] = MaybeUninit::new(Waiting::END);
+        // SAFETY: as the caller promises.
+        let slabs = unsafe { Slabs::new(ray, &tree.bounds) };
+        Self { slabs, t_max: 0.0, in_order: true, next: Waiting::END.child(), waiting: 1, stack, extents: 0 }
+    }
+
+    /// Puts a finite ray before the tree.
+    #[inline(always)]
+    pub fn start(&mut self, tree: &Bvh, ray: &Ray, t_max: f32, in_order: bool) {
+        if tree.nodes.is_empty() || t_max.is_nan() || t_max < 0.0 {
+            return;
+        }
+        // SAFETY: who has a walk has the instructions.
+        self.slabs = unsafe { Slabs::new(ray, &tree.bounds) };
+        self.t_max = t_max;
+        self.in_order = in_order;
+        self.next = Child::node(0);
+        self.waiting = 1;
+    }
+
+    /// Passes one node or leaf, and asks for the next. Whether that was the last.
+    ///
+    /// # Safety
+    /// The tree must be the one before which the ray was put.
+    #[inline(always)]
+    pub unsafe fn step(&mut self, tree: &Bvh, leaves: &mut impl Leaves) -> bool {
+        // SAFETY: as in `Bvh::traverse`.
+        unsafe {
+            let bottom = self.stack.as_mut_ptr().cast::<Waiting>();
+            let mut top = bottom.add(self.waiting);
+            if self.next.is_leaf() {
+                if self.next == Waiting::END.child() || leaves.test(self.next.blocks(), &mut self.t_max) {
+                    return true;
+                }
+                self.next = pop(&mut top, self.t_max);
+            } else {
+                let node = tree.nodes.get_unchecked(self.next.index());
+                self.extents += node.len() as u64;
+                self.next = if self.in_order {
+                    descend::<S, false>(node, &self.slabs, self.t_max, &mut top, |_| ())
+                } else {
+                    descend::<S, true>(node, &self.slabs, self.t_max, &mut top, |_| ())
+                };
+            }
+            self.waiting = top.offset_from_unsigned(bottom);
+            tree.prefetch::<S, _>(leaves, self.next);
+            false
+        }
+    }
+}
+
+/// Passes a node: gives the child to be visited next, and leaves others waiting.
+#[inline(always)]
+unsafe fn descend<S: Simd, const ANY: bool>(
+    node: &WideNode,
+    slabs: &Slabs<S::Eight>,
+    t_max: f32,
+    top: &mut *mut Waiting,
+    ahead: impl Fn(Child),
+) -> Child {
+    // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the tree.
+    unsafe {
+        let (near, hits) = node.intersect(slabs, S::Eight::splat(t_max), S::Eight::splat(0.0));
+        if hits == 0 {
+            pop(top, t_max)
+        } else if ANY {
+            choose_any(node, hits, top, ahead)
+        } else {
+            choose_nearest::<S>(node, near, hits, top, ahead)
         }
     }
 }
@@ -145,6 +281,21 @@ unsafe fn push(top: &mut *mut Waiting, waiting: Waiting) {
     // SAFETY: the stack has room for the deepest tree.
     unsafe {
         **top = waiting;
+        *top = top.add(1);
+    }
+}
+
+/// Pushes, and sinks below those above `floor` that are nearer.
+#[inline(always)]
+unsafe fn sink(top: &mut *mut Waiting, floor: *mut Waiting, waiting: Waiting) {
+    // SAFETY: the stack has room for the deepest tree, and `floor` lies in it.
+    unsafe {
+        let mut at = *top;
+        while at > floor && *at.sub(1) < waiting {
+            *at = *at.sub(1);
+            at = at.sub(1);
+        }
+        *at = waiting;
         *top = top.add(1);
     }
 }
@@ -206,14 +357,7 @@ unsafe fn choose_nearest<S: Simd>(
             ahead(c.child());
             let other = c.max(nearest);
             nearest = c.min(nearest);
-            // Sink below those that are nearer.
-            let mut at = *top;
-            while at > floor && *at.sub(1) < other {
-                *at = *at.sub(1);
-                at = at.sub(1);
-            }
-            *at = other;
-            *top = top.add(1);
+            sink(top, floor, other);
         }
     }
     nearest.child()

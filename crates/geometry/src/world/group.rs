@@ -140,17 +140,8 @@ impl Group {
 
     /// Shows hits to the query; whether it wants no more.
     pub fn trace<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
-        // Finite directions too short to have an inverse go nowhere.
-        if !(trace.ray.o.is_finite()
-            && trace.ray.d.is_finite()
-            && trace.ray.d.abs().max_element().recip().is_finite())
-        {
+        if !goes_somewhere(trace.ray) {
             return false;
-        }
-        for &item in &self.unbounded {
-            if trace.item(item, query) {
-                return true;
-            }
         }
         if !self.packets.is_empty() {
             let set = trace.world.instruction_set;
@@ -163,18 +154,49 @@ impl Group {
                 return true;
             }
         }
+        self.trace_others(trace, query)
+    }
+
+    /// Shows the query all hits but those of triangles; whether it wants no more.
+    pub fn trace_others<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
+        for &item in &self.unbounded {
+            if trace.item(item, query) {
+                return true;
+            }
+        }
         if self.spheres.trace(trace, query) {
             return true;
         }
-        if !self.item_list.is_empty() {
-            let set = trace.world.instruction_set;
-            // SAFETY: worlds are only given sets that the processor has.
-            let (extents, stop) = unsafe { set.run(TraceItems { group: self, trace, query }) };
-            trace.stats.extents += extents;
-            return stop;
+        if self.item_list.is_empty() {
+            return false;
         }
-        false
+        let set = trace.world.instruction_set;
+        // SAFETY: worlds are only given sets that the processor has.
+        let (extents, stop) = unsafe { set.run(TraceItems { group: self, trace, query }) };
+        trace.stats.extents += extents;
+        stop
     }
+
+    /// The triangles, as leaves hold them.
+    pub fn packets(&self) -> &[Packet] {
+        &self.packets
+    }
+
+    /// The tree of triangles.
+    pub fn triangles(&self) -> &Bvh {
+        &self.triangles
+    }
+}
+
+/// Whether a ray can hit anything: directions that are not finite, or too short to have an inverse, lead nowhere.
+pub(super) fn goes_somewhere(ray: &Ray) -> bool {
+    ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
+}
+
+/// Whether a tree is best passed in order of distance.
+#[inline(always)]
+pub(super) fn in_order<Q: Query>(t_max: f32) -> bool {
+    !Q::ANY || t_max < f32::INFINITY
 }
 
 /// A ray on its way through the triangles of a group.
@@ -195,25 +217,33 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
         unsafe {
             let lanes = sheared.lanes::<{ Packet::WIDTH }, S::Four>();
             let mut t_max = query.t_max();
-            let mut leaves =
-                Triangles { group, instance: trace.instance, sheared: &sheared, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY && t_max == f32::INFINITY {
-                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
-            } else {
+            let mut leaves = Triangles {
+                group,
+                instance: trace.instance,
+                sheared: &sheared,
+                lanes: &lanes,
+                query,
+                primitives: 0,
+            };
+            let (extents, stop) = if in_order::<Q>(t_max) {
                 group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
+            } else {
+                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
             };
             (extents, leaves.primitives, stop)
         }
     }
 }
 
-struct Triangles<'a, V, Q> {
-    group: &'a Group,
-    instance: Option<InstanceId>,
-    sheared: &'a Sheared,
-    lanes: ShearedLanes<V>,
-    query: &'a mut Q,
-    primitives: u64,
+/// The triangles of a group before a ray.
+pub(super) struct Triangles<'a, V, Q> {
+    pub group: &'a Group,
+    pub instance: Option<InstanceId>,
+    pub sheared: &'a Sheared,
+    pub lanes: &'a ShearedLanes<V>,
+    pub query: &'a mut Q,
+    /// How many were tested.
+    pub primitives: u64,
 }
 
 impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
@@ -229,19 +259,13 @@ impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
         // SAFETY: the tree was built over these packets.
         for packet in unsafe { self.group.packets.get_unchecked(blocks) } {
             self.primitives += packet.len() as u64;
-            let Some(found) = packet.intersect(&self.lanes, *t_max) else { continue };
+            let Some(found) = packet.intersect(self.lanes, *t_max) else { continue };
             let mut hits = found.hits;
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
                 hits &= hits - 1;
-                let (mut t, mut uv) = (found.t[lane], Vec2::new(found.b1[lane], found.b2[lane]));
-                if found.doubts >> lane & 1 != 0 {
-                    let Some(decided) = self.sheared.decide(&packet.triangle(lane)) else { continue };
-                    (t, uv) = decided;
-                }
-                let (geometry, primitive) = packet.id(lane);
-                let geometry = GeometryId(geometry);
-                if self.query.offer(Hit { t, uv, geometry, primitive, instance: self.instance }) {
+                let Some(hit) = packet.hit(lane, &found, lane, self.sheared, self.instance) else { continue };
+                if self.query.offer(hit) {
                     return true;
                 }
             }
@@ -269,10 +293,10 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
         unsafe {
-            if Q::ANY && t_max == f32::INFINITY {
-                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
-            } else {
+            if in_order::<Q>(t_max) {
                 group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
+            } else {
+                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
             }
         }
     }

@@ -4,6 +4,7 @@
 //! places another group in it, at rest or moving. A shape that moves is an instance of a group with that
 //! shape alone.
 
+mod batch;
 mod builder;
 mod group;
 mod packet;
@@ -217,9 +218,7 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> Option<Hit> {
-        let mut query = Nearest::new(ray, t_max, filter);
-        self.trace(ray, &mut query, stats);
-        query.hit
+        self.trace(ray, Nearest::new(ray, t_max, filter), stats)
     }
 
     /// Whether anything that `filter` keeps is hit at 0 < t < `t_max`.
@@ -230,13 +229,14 @@ impl World {
         filter: &impl Fn(&Hit, &Ray) -> bool,
         stats: &mut RayStats,
     ) -> bool {
-        self.trace(ray, &mut Any::new(ray, t_max, filter), stats)
+        self.trace(ray, Any::new(ray, t_max, filter), stats)
     }
 
     #[inline]
-    fn trace(&self, ray: &Ray, query: &mut impl Query, stats: &mut RayStats) -> bool {
+    fn trace<Q: Query>(&self, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
         stats.rays += 1;
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, query)
+        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, &mut query);
+        query.answer()
     }
 
     /// Traces rays with another set of instructions than the best one, which finds the same hits.

@@ -2,9 +2,10 @@
 
 #![allow(unsafe_code)]
 
+use super::{GeometryId, Hit, InstanceId};
 use crate::simd::Vector;
-use crate::watertight::{LaneHits, ShearedLanes};
-use math::Vec3;
+use crate::watertight::{LaneHits, Sheared, ShearedLanes};
+use math::{Vec2, Vec3};
 
 /// Triangles of one geometry or of many, corner by corner, axis by axis.
 #[derive(Clone, Debug)]
@@ -57,7 +58,40 @@ impl Packet {
         ray: &ShearedLanes<V>,
         t_max: f32,
     ) -> Option<LaneHits<{ Self::WIDTH }>> {
-        // SAFETY: whoever has `ray` has the instructions.
-        unsafe { ray.intersect(&self.corners, V::splat(t_max)) }
+        // SAFETY: corners and axes are below 3, and whoever has `ray` has the instructions.
+        unsafe {
+            let corner = |k: usize, axis: usize| V::load(self.corners.get_unchecked(k).get_unchecked(axis));
+            ray.intersect(corner, V::splat(t_max))
+        }
+    }
+
+    /// Those of several rays that hit one triangle up to `t_max`.
+    #[inline(always)]
+    pub fn intersect_rays<const N: usize, V: Vector<N>>(
+        &self,
+        lane: usize,
+        rays: &ShearedLanes<V>,
+        t_max: V,
+    ) -> Option<LaneHits<N>> {
+        // SAFETY: whoever has `rays` has the instructions.
+        unsafe { rays.intersect(|k, axis| V::splat(self.corners[k][axis][lane]), t_max) }
+    }
+
+    /// What lane `of` of `found` says of the triangle in `lane`: its hit, unless a doubt is decided against it.
+    #[inline(always)]
+    pub fn hit<const N: usize>(
+        &self,
+        lane: usize,
+        found: &LaneHits<N>,
+        of: usize,
+        ray: &Sheared,
+        instance: Option<InstanceId>,
+    ) -> Option<Hit> {
+        let (mut t, mut uv) = (found.t[of], Vec2::new(found.b1[of], found.b2[of]));
+        if found.doubts >> of & 1 != 0 {
+            (t, uv) = ray.decide(&self.triangle(lane))?;
+        }
+        let (geometry, primitive) = self.ids[lane];
+        Some(Hit { t, uv, geometry: GeometryId(geometry), primitive, instance })
     }
 }

@@ -11,6 +11,15 @@ pub(super) trait Query {
     /// Whether any hit is as good as the nearest.
     const ANY: bool;
 
+    /// Whether no more hits are of interest.
+    fn is_answered(&self) -> bool;
+
+    /// What comes of it.
+    type Answer;
+
+    /// The answer, once all hits were offered.
+    fn answer(self) -> Self::Answer;
+
     /// Hits beyond are of no interest.
     fn t_max(&self) -> f32;
 
@@ -26,7 +35,7 @@ pub(super) struct Nearest<'a, F> {
     ray: &'a Ray,
     filter: &'a F,
     t_max: f32,
-    pub hit: Option<Hit>,
+    hit: Option<Hit>,
 }
 
 impl<'a, F: Fn(&Hit, &Ray) -> bool> Nearest<'a, F> {
@@ -37,6 +46,16 @@ impl<'a, F: Fn(&Hit, &Ray) -> bool> Nearest<'a, F> {
 
 impl<F: Fn(&Hit, &Ray) -> bool> Query for Nearest<'_, F> {
     const ANY: bool = false;
+
+    type Answer = Option<Hit>;
+
+    fn is_answered(&self) -> bool {
+        false
+    }
+
+    fn answer(self) -> Option<Hit> {
+        self.hit
+    }
 
     #[inline(always)]
     fn t_max(&self) -> f32 {
@@ -66,16 +85,27 @@ pub(super) struct Any<'a, F> {
     ray: &'a Ray,
     filter: &'a F,
     t_max: f32,
+    found: bool,
 }
 
 impl<'a, F: Fn(&Hit, &Ray) -> bool> Any<'a, F> {
     pub fn new(ray: &'a Ray, t_max: f32, filter: &'a F) -> Self {
-        Self { ray, filter, t_max }
+        Self { ray, filter, t_max, found: false }
     }
 }
 
 impl<F: Fn(&Hit, &Ray) -> bool> Query for Any<'_, F> {
     const ANY: bool = true;
+
+    type Answer = bool;
+
+    fn is_answered(&self) -> bool {
+        self.found
+    }
+
+    fn answer(self) -> bool {
+        self.found
+    }
 
     #[inline(always)]
     fn t_max(&self) -> f32 {
@@ -88,6 +118,7 @@ impl<F: Fn(&Hit, &Ray) -> bool> Query for Any<'_, F> {
 
     #[inline(always)]
     fn offer(&mut self, hit: Hit) -> bool {
-        hit.t < self.t_max && (self.filter)(&hit, self.ray)
+        self.found = hit.t < self.t_max && (self.filter)(&hit, self.ray);
+        self.found
     }
 }

@@ -7,7 +7,7 @@
 
 #![allow(unsafe_code)]
 
-use super::group::Trace;
+use super::group::{Trace, in_order};
 use super::query::Query;
 use super::{Geometry, GeometryId, Hit};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
@@ -85,10 +85,10 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
         unsafe {
             let lanes = UnitRay::<S::Eight>::new(trace.ray);
             let mut leaves = Tests { packets: &spheres.packets, trace, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY {
-                spheres.tree.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
-            } else {
+            let (extents, stop) = if in_order::<Q>(t_max) {
                 spheres.tree.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
+            } else {
+                spheres.tree.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
             };
             (extents, leaves.primitives, stop)
         }
