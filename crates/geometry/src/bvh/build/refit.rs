@@ -37,22 +37,26 @@ impl<'a, B: Send> Part<'a, B> {
         let root = self.take(self.first_node + 1, self.first_block).nodes;
         let node = &mut root[0];
         let children = *node.children();
-        let children = &children[..node.len()];
+        let mut lanes = [0, 1, 2, 3, 4, 5, 6, 7];
+        let lanes = &mut lanes[..node.len()];
+        lanes.sort_unstable_by_key(|&lane: &usize| place(&children[lane]));
         let mut all = Extent::EMPTY;
         let mut set = |lane, extent: Extent| {
             node.set_bounds(lane, &extent.bounds());
             all = all.union(extent);
         };
         let mut below = Vec::new();
-        for (lane, child) in children.iter().enumerate() {
+        for (i, &lane) in lanes.iter().enumerate() {
+            let child = &children[lane];
             if child.is_leaf() {
                 let leaf = self.take(self.first_node, child.blocks().end);
                 let boxes = leaf.blocks.iter_mut().map(|block| Extent::from(&renew(block)));
                 set(lane, boxes.fold(Extent::EMPTY, Extent::union));
                 continue;
             }
-            let part = match children.get(lane + 1) {
-                Some(next) => {
+            let part = match lanes.get(i + 1) {
+                Some(&next) => {
+                    let next = &children[next];
                     let end = self.first_block_of(next);
                     self.take(next.index(), end)
                 }
@@ -72,7 +76,9 @@ impl<'a, B: Send> Part<'a, B> {
     fn first_block_of(&self, child: &Child) -> usize {
         let mut child = *child;
         while !child.is_leaf() {
-            child = self.nodes[child.index() - self.first_node].children()[0];
+            let node = &self.nodes[child.index() - self.first_node];
+            let first = node.children()[..node.len()].iter().min_by_key(|child| place(child));
+            child = *first.expect("invariant: nodes have children");
         }
         child.blocks().start
     }
@@ -85,4 +91,9 @@ impl<'a, B: Send> Part<'a, B> {
         *self = Part { nodes: later_nodes, first_node: node, blocks: later_blocks, first_block: block };
         taken
     }
+}
+
+/// By this the children of a node are in the order in which they were written: leaves first.
+fn place(child: &Child) -> (bool, usize) {
+    if child.is_leaf() { (false, child.blocks().start) } else { (true, child.index()) }
 }
