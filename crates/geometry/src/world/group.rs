@@ -10,7 +10,7 @@ use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
-use math::{Bounds3, Ray, Vec2, Vec3, gamma};
+use math::{Bounds3, Ray, Vec3, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
 
