@@ -38,7 +38,10 @@ pub fn measure(
     let world = building::world(mesh.triangles()?);
     let sets = ray_sets(mesh, width, |ray| closest(&world, ray).map(|hit| (hit.t, hit.primitive as usize)));
     let device = embree.map(|embree| embree.device(1)).transpose()?;
-    let mut engines: Vec<Engine> = vec![("alhazen".to_owned(), Box::new(|set| trace(&world, set)))];
+    let mut engines: Vec<Engine> = vec![
+        ("alhazen".to_owned(), Box::new(|set| trace(&world, set))),
+        ("alhazen, batches".to_owned(), Box::new(|set| trace_batches(&world, set))),
+    ];
     if let Some(device) = &device {
         for (mode, robust) in [("", false), (", robust", true)] {
             let scene = device.prepare(mesh, SceneOptions { quality: Quality::Medium, robust })?.commit();
@@ -111,6 +114,27 @@ pub fn trace(world: &World, set: &RaySet) -> Answer {
                 }
             }
             Query::Any => answer.hits += u64::from(any(world, ray)),
+        }
+    }
+    answer
+}
+
+/// Traces a set through our engine, many rays at a time.
+pub fn trace_batches(world: &World, set: &RaySet) -> Answer {
+    const BATCH: usize = 1024;
+    let mut answer = Answer::default();
+    let stats = &mut RayStats::default();
+    let (mut hits, mut occluded) = (vec![None; BATCH], [false; BATCH]);
+    for rays in set.rays.chunks(BATCH) {
+        match set.query {
+            Query::Closest => {
+                world.intersect_batch(rays, &keep_all, &mut hits[..rays.len()], stats);
+                hits[..rays.len()].iter().flatten().for_each(|hit| answer.add(hit.t));
+            }
+            Query::Any => {
+                world.occluded_batch(rays, &keep_all, &mut occluded[..rays.len()], stats);
+                answer.hits += occluded[..rays.len()].iter().filter(|hit| **hit).count() as u64;
+            }
         }
     }
     answer

@@ -29,7 +29,9 @@ fn a_wrong_scene_is_shown_with_carets() {
 #[test]
 fn a_wrong_formula_is_shown_with_a_caret_in_it() {
     let folder = Folder::new("formula");
-    folder.write("scene.pbrt", &SCENE.replace("\"sphere\"", "\"implicit\" \"string f\" \"x^2 + ln(y) - 1\""));
+    let ball = "Shape \"sphere\" \"float radius\" 1";
+    assert!(SCENE.contains(ball));
+    folder.write("scene.pbrt", &SCENE.replace(ball, "Shape \"implicit\" \"string f\" \"x^2 + ln(y) - 1\""));
     let err = folder.alhazen(&["render", "scene.pbrt"]).expect(1).err;
     for part in ["scene.pbrt:10:38", "there is no `ln` in formulas", "did you mean `log`?"] {
         assert!(err.contains(part), "no `{part}` in {err}");
