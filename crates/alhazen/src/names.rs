@@ -1,12 +1,21 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
-use description::{FilterDesc, IntegratorDesc, LightSamplerDesc, Randomization, SamplerKind};
+use description::{
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, IntegratorDesc, LightSamplerDesc, Randomization,
+    SamplerKind,
+};
 
 use crate::settings::{light_sampler, max_depth, regularize};
 
 /// The names of the algorithms that can be chosen.
 pub const INTEGRATORS: [&str; 7] =
     ["ray-casting", "whitted", "ambient-occlusion", "random-walk", "simple-path", "path", "vol-path"];
+
+/// Acceleration structures that can be chosen.
+pub(crate) const ACCELERATORS: [(&str, AcceleratorDesc); 2] = [
+    ("bvh", AcceleratorDesc::Bvh { max_node_prims: 4, split: BvhSplit::Sah, quality: None }),
+    ("none", AcceleratorDesc::None),
+];
 
 pub(crate) const LIGHT_SAMPLERS: [(&str, LightSamplerDesc); 4] = [
     ("uniform", LightSamplerDesc::Uniform),
@@ -30,6 +39,12 @@ pub(crate) const FILTERS: [(&str, FilterDesc); 5] = [
     ("gaussian", FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 }),
     ("mitchell", FilterDesc::Mitchell { radius: [2.0, 2.0], b: 1.0 / 3.0, c: 1.0 / 3.0 }),
     ("sinc", FilterDesc::LanczosSinc { radius: [4.0, 4.0], tau: 3.0 }),
+];
+
+pub(crate) const QUALITIES: [(&str, BuildQualityDesc); 3] = [
+    ("fast", BuildQualityDesc::Fast),
+    ("balanced", BuildQualityDesc::Balanced),
+    ("high", BuildQualityDesc::High),
 ];
 
 /// The algorithm called `name`, with those settings of `current` that it has too. The format's spelling without hyphens is

@@ -4,7 +4,7 @@ use std::fmt;
 
 use description::SceneDesc;
 
-use crate::names::{INTEGRATORS, integrator_called};
+use crate::names::{ACCELERATORS, INTEGRATORS, integrator_called};
 use crate::settings::{SETTINGS, set_samples_per_pixel};
 
 /// Changes to a scene. `None` leaves what the scene says.
@@ -14,6 +14,8 @@ pub struct Overrides {
     pub integrator: Option<String>,
     /// Settings by their names in [`SETTINGS`], with their values as text.
     pub settings: Vec<(String, String)>,
+    /// The name of the acceleration structure: `bvh` or `none`.
+    pub accelerator: Option<String>,
     /// Samples per pixel.
     pub samples_per_pixel: Option<u32>,
     /// Width and height of the whole image in pixels.
@@ -49,6 +51,14 @@ impl Overrides {
                 ))
             })?;
             desc.integrator.value = changed;
+        }
+        if let Some(name) = &self.accelerator {
+            let called = ACCELERATORS.into_iter().find(|(known, _)| known == name);
+            let (_, changed) = called.ok_or_else(|| {
+                let names = ACCELERATORS.map(|(name, _)| name).join(", ");
+                OverrideError(format!("no accelerator is called `{name}`; there are {names}"))
+            })?;
+            desc.accelerator.value = changed;
         }
         for (name, value) in &self.settings {
             let setting = SETTINGS.iter().find(|setting| setting.name == name).ok_or_else(|| {
@@ -93,7 +103,7 @@ impl Overrides {
 mod tests {
     use super::*;
     use crate::settings::{max_depth, regularize};
-    use description::{FilterDesc, IntegratorDesc, LightSamplerDesc, SamplerKind};
+    use description::{AcceleratorDesc, FilterDesc, IntegratorDesc, LightSamplerDesc, SamplerKind};
 
     fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {
         let mut desc = SceneDesc::default();
@@ -120,6 +130,17 @@ mod tests {
         let integrator = Some("volpath".to_owned());
         let desc = changed(Overrides { integrator, ..Overrides::default() }).unwrap();
         assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath { max_depth: 5, .. }));
+    }
+
+    #[test]
+    fn an_accelerator_is_chosen_by_name() {
+        let with = |name: &str| changed(Overrides { accelerator: Some(name.into()), ..Overrides::default() });
+        assert_eq!(with("none").unwrap().accelerator.value, AcceleratorDesc::None);
+        assert_eq!(with("bvh").unwrap().accelerator.value, AcceleratorDesc::default());
+        assert_eq!(
+            with("grid").unwrap_err().to_string(),
+            "no accelerator is called `grid`; there are bvh, none"
+        );
     }
 
     #[test]

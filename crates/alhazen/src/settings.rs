@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use description::{FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, SamplerKind, SceneDesc, SppmDesc};
 
-use crate::names::{FILTERS, LIGHT_SAMPLERS, SAMPLERS};
+use crate::names::{FILTERS, LIGHT_SAMPLERS, QUALITIES, SAMPLERS};
 
 /// A setting that can be changed by name.
 pub struct Setting {
@@ -16,7 +16,7 @@ pub struct Setting {
 }
 
 /// Everything that [`Overrides`](crate::Overrides) can change by name.
-pub static SETTINGS: [Setting; 15] = [
+pub static SETTINGS: [Setting; 16] = [
     Setting {
         name: "maxdepth",
         help: "most bounces of a path after the camera's ray",
@@ -96,6 +96,14 @@ pub static SETTINGS: [Setting; 15] = [
             | FilterDesc::Mitchell { radius, .. }
             | FilterDesc::LanczosSinc { radius, .. }) = &mut desc.filter.value;
             *radius = [parse(text)?; 2];
+            Ok(())
+        },
+    },
+    Setting {
+        name: "quality",
+        help: "how much time the tree over the scene is worth: fast, balanced or high",
+        apply: |desc, text| {
+            desc.accelerator.value.set_quality(choose(text, &QUALITIES)?);
             Ok(())
         },
     },

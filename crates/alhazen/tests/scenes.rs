@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use alhazen::description::Diagnostic;
+use alhazen::description::{AcceleratorDesc, Diagnostic, SceneDesc};
 use alhazen::import::{Files, Imported, import};
 use alhazen::integrators::Control;
 use alhazen::{CompiledJob, Job, Overrides};
@@ -47,10 +47,20 @@ fn every_scene_is_without_fault_and_shows_something() {
         silent(name, &warnings);
         job.render(&Control::default()).expect("nobody cancels it");
         let values: Vec<f32> = job.picture().values().collect();
+        assert_eq!(values, without_extents(desc), "{name} without extents");
         assert!(values.iter().all(|value| value.is_finite()), "{name} has values that are no numbers");
         assert!(values.iter().any(|&value| value > 0.01), "{name} is black");
         assert_eq!(job.film().rejected().count, 0, "{name} has samples that are no numbers");
     }
+}
+
+/// The picture of a scene where every ray is tested against every primitive.
+fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
+    desc.accelerator = AcceleratorDesc::None.into();
+    let mut job = Job::compile(&desc).expect("a scene").job;
+    let outcome = job.render(&Control::default()).expect("nobody cancels it");
+    assert_eq!(outcome.stats.extents, 0);
+    job.picture().values().collect()
 }
 
 #[test]

@@ -4,16 +4,16 @@ use crate::embree::{Embree, Quality, SceneOptions};
 use crate::mesh::BenchMesh;
 use crate::table::{Table, ratios};
 use crate::timing::Seconds;
-use geometry::{GroupId, TriangleMesh, World};
+use geometry::{Geometry, GroupId, World};
 use std::error::Error;
 
 /// How Embree builds what we build balanced.
 const MEDIUM: SceneOptions = SceneOptions { quality: Quality::Medium, robust: false };
 
-/// A world of one mesh.
-pub fn world(mesh: TriangleMesh) -> World {
+/// A world of one geometry.
+pub fn world(geometry: impl Into<Geometry>) -> World {
     let mut builder = World::builder();
-    builder.add_geometry(GroupId::TOP, mesh);
+    builder.add_geometry(GroupId::TOP, geometry);
     builder.build()
 }
 

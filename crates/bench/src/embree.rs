@@ -50,7 +50,7 @@ struct RtcRayHit {
 
 impl RtcRayHit {
     #[inline]
-    fn new(BenchRay { ray, t_max }: &BenchRay) -> Self {
+    fn new((ray, t_max): &BenchRay) -> Self {
         let ray = RtcRay {
             o: ray.o.to_array(),
             near: 0.0,

@@ -6,8 +6,9 @@
 //!
 //! with a shift s. `blob` is one of 1,046,528 triangles, seen from outside: even, finely tessellated, nothing hidden. `room` is a
 //! closed box with 6 × 6 × 6 of them, 1,028,172 triangles in all, seen from a corner: large and tiny triangles, much that is hidden.
+//! And [`spheres`], at random.
 
-use geometry::{MeshAttributes, MeshError, TriangleMesh};
+use geometry::{MeshAttributes, MeshError, SphereSet, SphereSetError, TriangleMesh};
 use math::{DVec3, Point3, Transform, Vec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -138,6 +139,15 @@ impl Arrays {
     fn finish(self, name: &'static str, view: View, light: [Vec3; 3]) -> BenchMesh {
         BenchMesh { name, positions: self.positions.into(), indices: self.indices.into(), view, light }
     }
+}
+
+/// So many spheres within the unit cube, each as large as to fill a hundredth of what is its share of it.
+pub fn spheres(count: usize) -> Result<SphereSet, SphereSetError> {
+    let random = &mut SplitMix64(7);
+    let point = |_| DVec3::from_array([0; 3].map(|_| random.uniform())).as_vec3();
+    let centers = (0..count).map(point).collect();
+    let radius = (0.01 * 3.0 / (4.0 * PI * count as f64)).cbrt() as f32;
+    SphereSet::new(centers, [radius].into(), &Transform::IDENTITY, false)
 }
 
 /// The radius of a blob in direction `d`.

@@ -11,14 +11,8 @@ use math::{Ray, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// A ray and how far it goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BenchRay {
-    /// From where to where.
-    pub ray: Ray,
-    /// Where it ends.
-    pub t_max: f32,
-}
+/// A ray and where it ends.
+pub type BenchRay = (Ray, f32);
 
 /// What is asked about a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,17 +66,17 @@ pub fn ray_sets(
 ) -> [RaySet; 5] {
     let primary = primary(mesh, width);
     let (mut diffuse, mut shadow) = (Vec::new(), Vec::new());
-    for (pixel, eye_ray) in primary.iter().enumerate() {
-        let Some((t, triangle)) = closest(eye_ray) else { continue };
-        let d = eye_ray.ray.d;
+    for (pixel, &ray) in primary.iter().enumerate() {
+        let Some((t, triangle)) = closest(&ray) else { continue };
+        let Ray { o: eye, d, .. } = ray.0;
         let n = facing_normal(mesh.indices[triangle].map(|i| mesh.positions[i as usize]), d);
         let random = &mut SplitMix64(2 * pixel as u64);
         let [u1, u2, l1, l2] = [0; 4].map(|_| random.uniform() as f32);
-        let o = eye_ray.ray.o + d * t + n * 1e-4;
+        let o = eye + d * t + n * 1e-4;
         let bounce = Ray::new(o, cosine_direction(n, u1, u2), 0.0);
-        diffuse.push(BenchRay { ray: bounce, t_max: f32::INFINITY });
+        diffuse.push((bounce, f32::INFINITY));
         let [corner, a, b] = mesh.light;
-        shadow.push(BenchRay { ray: Ray::new(o, corner + a * l1 + b * l2 - o, 0.0), t_max: 0.999 });
+        shadow.push((Ray::new(o, corner + a * l1 + b * l2 - o, 0.0), 0.999));
     }
     let shuffled = shuffled(diffuse.clone());
     let diffuse: Arc<[BenchRay]> = diffuse.into();
@@ -104,9 +98,7 @@ fn primary(mesh: &BenchMesh, width: usize) -> Vec<BenchRay> {
     let place = |pixel: usize| (2.0 * (pixel as f32 + 0.5) / width as f32 - 1.0) * half;
     let through =
         |pixel: usize| (forward + right * place(pixel % width) - up * place(pixel / width)).normalize();
-    (0..width * width)
-        .map(|pixel| BenchRay { ray: Ray::new(view.eye, through(pixel), 0.0), t_max: f32::INFINITY })
-        .collect()
+    (0..width * width).map(|pixel| (Ray::new(view.eye, through(pixel), 0.0), f32::INFINITY)).collect()
 }
 
 /// The unit normal of a triangle on the side that a ray along `d` comes from.

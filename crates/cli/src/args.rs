@@ -59,6 +59,9 @@ pub struct Render {
     /// The algorithm; see the list below. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
+    /// What spares rays the test of every primitive: bvh, or none, for the same picture without it. [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub accelerator: Option<String>,
     /// Change a setting; see the list below. Can be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
     pub set: Vec<(String, String)>,
@@ -94,6 +97,7 @@ impl Render {
     pub fn overrides(&self) -> Overrides {
         Overrides {
             integrator: self.integrator.clone(),
+            accelerator: self.accelerator.clone(),
             settings: self.set.clone(),
             samples_per_pixel: self.spp,
             resolution: self.resolution,
@@ -265,6 +269,8 @@ mod tests {
             "maxdepth=3",
             "--set",
             "filter=box",
+            "--accelerator",
+            "none",
             "--spp",
             "4",
             "--resolution",
@@ -281,6 +287,7 @@ mod tests {
         let render = render(&arguments).unwrap();
         let expected = Overrides {
             integrator: Some("path".into()),
+            accelerator: Some("none".into()),
             settings: vec![("maxdepth".into(), "3".into()), ("filter".into(), "box".into())],
             samples_per_pixel: Some(4),
             resolution: Some([64, 32]),

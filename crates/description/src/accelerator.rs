@@ -14,6 +14,18 @@ pub enum BvhSplit {
     Equal,
 }
 
+/// How much time a hierarchy is worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BuildQualityDesc {
+    /// Built soonest.
+    Fast,
+    /// Good in little time.
+    #[default]
+    Balanced,
+    /// Traced soonest where triangles are long and thin.
+    High,
+}
+
 /// An acceleration structure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AcceleratorDesc {
@@ -23,6 +35,8 @@ pub enum AcceleratorDesc {
         max_node_prims: i32,
         /// How nodes are split.
         split: BvhSplit,
+        /// How much time it is worth; `None` lets `split` say.
+        quality: Option<BuildQualityDesc>,
     },
     /// A k-d tree.
     KdTree {
@@ -37,10 +51,33 @@ pub enum AcceleratorDesc {
         /// Greatest depth; −1 chooses it from the number of primitives.
         max_depth: i32,
     },
+    /// None: every ray is tested against every primitive, so that one sees what the others save.
+    None,
 }
 
 impl Default for AcceleratorDesc {
     fn default() -> Self {
-        Self::Bvh { max_node_prims: 4, split: BvhSplit::Sah }
+        Self::Bvh { max_node_prims: 4, split: BvhSplit::Sah, quality: None }
+    }
+}
+
+impl AcceleratorDesc {
+    /// How much time the structure is worth: as said, or as what was asked for takes in other programs.
+    pub fn quality(&self) -> BuildQualityDesc {
+        match self {
+            Self::Bvh { quality: Some(quality), .. } => *quality,
+            Self::Bvh { split: BvhSplit::Hlbvh, .. } => BuildQualityDesc::Fast,
+            _ => BuildQualityDesc::Balanced,
+        }
+    }
+
+    /// Asks for a hierarchy of that quality.
+    pub fn set_quality(&mut self, chosen: BuildQualityDesc) {
+        if let Self::KdTree { .. } = self {
+            *self = Self::default();
+        }
+        if let Self::Bvh { quality, .. } = self {
+            *quality = Some(chosen);
+        }
     }
 }

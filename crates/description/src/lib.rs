@@ -29,7 +29,7 @@ mod texture;
 mod transform;
 
 pub use self::image::ImageDesc;
-pub use accelerator::{AcceleratorDesc, BvhSplit};
+pub use accelerator::{AcceleratorDesc, BuildQualityDesc, BvhSplit};
 pub use arena::{Arena, Handle, Origin, Stated};
 pub use camera::{
     ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc,
@@ -50,8 +50,8 @@ pub use options::{OptionsDesc, RenderSpace};
 pub use sampler::{Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
 pub use shape::{
-    CurveBasis, CurveDesc, CurveProfile, InstanceDesc, MeshDesc, ObjectDesc, PatchMeshDesc, ShapeDesc,
-    ShapeKind, SolidOperation, SpheresDesc,
+    CurveBasis, CurveDesc, CurveProfile, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, PatchMeshDesc,
+    ShapeDesc, ShapeKind, SolidOperation, SpheresDesc,
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use texture::{

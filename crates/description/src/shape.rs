@@ -185,6 +185,18 @@ pub struct MeshDesc {
     pub uvs: Arc<[Point2]>,
     /// A number per triangle, as the file gave it; or empty.
     pub face_indices: Arc<[i32]>,
+    /// Where the vertices are later on, at moments evenly spread from the first to the last time of the shape's transform
+    /// (`positions` are those at the first); empty where no vertex moves.
+    pub later: Vec<MeshKey>,
+}
+
+/// The vertices of a mesh at a later moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshKey {
+    /// Vertex positions, as many as at the start.
+    pub positions: Arc<[Point3]>,
+    /// Vertex normals, as many as at the start.
+    pub normals: Arc<[Normal3]>,
 }
 
 /// Bilinear patches that share vertices. Per-vertex arrays are empty or as long as `positions`.
@@ -252,6 +264,8 @@ pub struct ObjectDesc {
     pub name: String,
     /// Its shapes, in the object's space.
     pub shapes: Arena<ShapeDesc>,
+    /// Instances of other objects in it, up to eight levels deep.
+    pub instances: Arena<InstanceDesc>,
 }
 
 /// An object, drawn.
@@ -259,6 +273,6 @@ pub struct ObjectDesc {
 pub struct InstanceDesc {
     /// Which one.
     pub object: Handle<ObjectDesc>,
-    /// From the object's space to the world.
+    /// From the object's space to the world (for an instance in an object: to the space of that).
     pub world_from_object: TransformDesc,
 }

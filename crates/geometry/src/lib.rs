@@ -24,13 +24,15 @@ pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
-    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, Operation, Paraboloid,
-    Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid, Sphere, Triangle,
+    BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MovingMesh,
+    MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid,
+    Sphere, Triangle,
 };
 pub use simd::InstructionSet;
 pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{
-    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, RayStats, RefitError, World, WorldBuilder,
+    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, InstancePath, RayStats, RefitError, World,
+    WorldBuilder,
 };

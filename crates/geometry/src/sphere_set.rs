@@ -127,7 +127,12 @@ impl SphereSet {
     /// A box around a sphere, rounding included.
     #[inline]
     pub fn bounds(&self, sphere: usize) -> Bounds3 {
-        let (center, radius) = (self.center(sphere), self.radius(sphere));
+        Self::bounds_of(self.center(sphere), self.radius(sphere))
+    }
+
+    /// A box around the sphere with this centre and radius.
+    #[inline]
+    pub(crate) fn bounds_of(center: Point3, radius: f32) -> Bounds3 {
         let reach = radius + (center.abs() + radius) * (2.0 * MACHINE_EPSILON);
         Bounds3 { min: center - reach, max: center + reach }
     }

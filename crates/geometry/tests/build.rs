@@ -140,7 +140,9 @@ fn a_refitted_world_equals_a_new_one() {
         let moving = builder.add_geometry(GroupId::TOP, bump(0.2));
         let sphere = builder.add_geometry(GroupId::TOP, place(2.0));
         let at = Transform::translate(Vec3::new(0.0, 2.0, 0.0));
-        builder.add_instance(Instance { group, render_from_instance: at.into() });
+        let outer = builder.add_group();
+        builder.add_instance(outer, Instance { group, render_from_instance: at.into() });
+        builder.add_instance(GroupId::TOP, Instance { group: outer, render_from_instance: at.into() });
         let mut world = builder.clone().build();
         let moved: [(GeometryId, Geometry); 3] =
             [(placed, bump(0.3).into()), (moving, bump(-0.3).into()), (sphere, place(-1.5).into())];
@@ -152,7 +154,9 @@ fn a_refitted_world_equals_a_new_one() {
         again.add_geometry(GroupId::TOP, world.geometry(still).clone());
         again.add_geometry(GroupId::TOP, moved[1].1.clone());
         again.add_geometry(GroupId::TOP, moved[2].1.clone());
-        again.add_instance(Instance { group, render_from_instance: at.into() });
+        let outer = again.add_group();
+        again.add_instance(outer, Instance { group, render_from_instance: at.into() });
+        again.add_instance(GroupId::TOP, Instance { group: outer, render_from_instance: at.into() });
         let again = again.build();
         assert_eq!(world.bounds(), again.bounds());
         let mut hits = 0;

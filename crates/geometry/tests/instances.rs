@@ -14,7 +14,7 @@ fn placed(geometries: impl IntoIterator<Item = Geometry>, motion: AnimatedTransf
     for geometry in geometries {
         builder.add_geometry(group, geometry);
     }
-    builder.add_instance(Instance { group, render_from_instance: motion });
+    builder.add_instance(GroupId::TOP, Instance { group, render_from_instance: motion });
     builder.build()
 }
 
@@ -46,7 +46,7 @@ fn an_instance_equals_what_it_places() {
         }
         hits += 1;
         assert!((a.t - b.t).abs() < 1e-5);
-        assert_eq!((a.instance, b.instance), (None, Some(InstanceId(0))));
+        assert_eq!((a.instance, b.instance.ids()), (InstancePath::TOP, &[InstanceId(0)][..]));
         let (a, b) = (outside.surface(&ray, &a), inside.surface(&ray, &b));
         assert!(a.p.p.distance(b.p.p) < 1e-4 && a.n.distance(b.n) < 1e-3 && a.wo.distance(b.wo) < 1e-5);
         assert!(a.uv.distance(b.uv) < 1e-3);
@@ -193,4 +193,91 @@ fn shading_normals_weigh_by_their_lengths_wherever_they_stand() {
             assert!(found.distance(expected) < 1e-5, "{found} {expected}");
         }
     }
+}
+
+/// A world whose ball is placed through several instances, and the same ball placed at once.
+fn nested(rng: &mut Rng, levels: usize) -> (World, World) {
+    let mut builder = World::builder();
+    let mut group = builder.add_group();
+    builder.add_geometry(group, ball(10, 0.2, &Transform::IDENTITY));
+    let mut all = Transform::IDENTITY;
+    for level in 1..=levels {
+        let m = Transform::translate(point_in(rng, 0.4))
+            .after(&Transform::rotate(between(rng, 0.0, 6.0), direction(rng)))
+            .after(&Transform::scale(Vec3::new(
+                between(rng, 0.8, 1.2),
+                1.0,
+                if level % 3 == 0 { -1.0 } else { 1.1 },
+            )));
+        all = m.after(&all);
+        let outer = if level == levels { GroupId::TOP } else { builder.add_group() };
+        builder.add_instance(outer, Instance { group, render_from_instance: m.into() });
+        group = outer;
+    }
+    (builder.build(), placed([ball(10, 0.2, &Transform::IDENTITY).into()], all.into()))
+}
+
+#[test]
+fn instances_of_instances_stand_where_all_their_transforms_place_them() {
+    let rng = &mut Rng::new(8, 0);
+    for levels in 1..=InstancePath::MOST {
+        let (nested, once) = nested(rng, levels);
+        let mut hits = 0;
+        for _ in 0..1000 {
+            let o = direction(rng) * 9.0;
+            let ray = Ray::new(o, point_in(rng, 1.0) - o, 0.0);
+            let (Some(a), Some(b)) = (nearest(&nested, &ray), nearest(&once, &ray)) else { continue };
+            hits += 1;
+            assert_eq!(a.instance.ids().len(), levels);
+            assert_eq!(a.instance.ids()[0].0 as usize, levels - 1, "the outermost first");
+            assert!((a.t - b.t).abs() < 1e-4, "{a:?} and {b:?}");
+            let (p, q) = (nested.surface(&ray, &a), once.surface(&ray, &b));
+            assert!(p.p.p.distance(q.p.p) < 1e-4, "{p:?} and {q:?}");
+            if a.primitive == b.primitive {
+                assert!(p.n.dot(q.n) > 0.9999 && p.dpdu.distance(q.dpdu) < 1e-3, "{p:?} and {q:?}");
+            }
+            // What leaves to the outside of the ball's box does not meet the same triangle again.
+            let away = nearest(&nested, &p.spawn_ray(face_forward(direction(rng), p.n)));
+            assert!(away.is_none_or(|hit| hit.primitive != a.primitive), "{p:?}");
+        }
+        assert!(hits > 300, "{levels} levels: {hits}");
+    }
+}
+
+#[test]
+fn one_group_stands_in_many_places_of_many() {
+    // A ball at x = 0, 1; those at y = 0, 3; and those again, with the first pair by itself, at z = 0.
+    let mut builder = World::builder();
+    let at = |group, p: Vec3| Instance { group, render_from_instance: Transform::translate(p).into() };
+    let one = builder.add_group();
+    let pair = builder.add_group();
+    let four = builder.add_group();
+    builder.add_instance(four, at(pair, Vec3::ZERO));
+    builder.add_instance(four, at(pair, Vec3::Y * 3.0));
+    builder.add_instance(GroupId::TOP, at(four, Vec3::ZERO));
+    builder.add_instance(GroupId::TOP, at(pair, Vec3::Y * 6.0));
+    builder.add_instance(pair, at(one, Vec3::ZERO));
+    builder.add_instance(pair, at(one, Vec3::X));
+    builder.add_geometry(one, Shape::from(Sphere::whole(&Transform::IDENTITY, false, 0.3)));
+    let world = builder.build();
+    let mut paths = Vec::new();
+    for y in [0.0, 3.0, 6.0] {
+        for x in [0.0, 1.0] {
+            let hit = nearest(&world, &Ray::new(Vec3::new(x, y, 5.0), -Vec3::Z, 0.0)).expect("a ball");
+            assert!((hit.t - 4.7).abs() < 1e-6);
+            paths.push(hit.instance);
+        }
+        assert!(nearest(&world, &Ray::new(Vec3::new(0.5, y, 5.0), -Vec3::Z, 0.0)).is_none());
+    }
+    assert_eq!(paths[1].ids(), [InstanceId(2), InstanceId(0), InstanceId(5)]);
+    assert_eq!(paths[4].ids(), [InstanceId(3), InstanceId(4)]);
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), 6);
+}
+
+#[test]
+#[should_panic(expected = "too deep")]
+fn instances_too_deep_in_each_other_are_refused() {
+    nested(&mut Rng::new(9, 0), InstancePath::MOST + 1);
 }

@@ -201,7 +201,7 @@ fn sets_stand_in_instances_and_beside_others() {
     let group = builder.add_group();
     let ball = builder.add_geometry(group, set(vec![Vec3::ZERO], vec![1.0], &Transform::IDENTITY));
     let stretch = Transform::translate(Vec3::X * 5.0).after(&Transform::scale(Vec3::new(1.0, 2.0, 1.0)));
-    builder.add_instance(Instance { group, render_from_instance: stretch.into() });
+    builder.add_instance(GroupId::TOP, Instance { group, render_from_instance: stretch.into() });
     let other = builder.add_geometry(GroupId::TOP, set(vec![Vec3::ZERO], vec![1.0], &Transform::IDENTITY));
     let cube = builder.add_geometry(GroupId::TOP, cube(&Transform::translate(-Vec3::X * 5.0)));
     let world = builder.build();
@@ -211,6 +211,27 @@ fn sets_stand_in_instances_and_beside_others() {
     };
     assert_eq!([down(5.0), down(0.0), down(-4.9)], [(7.0, ball), (8.0, other), (8.0, cube)]);
     assert!(world.bytes() > 3 * 12 && world.bounds().max.y >= 2.0);
+}
+
+#[test]
+fn sets_that_moved_are_hit_where_they_are() {
+    let rng = &mut Rng::new(8, 0);
+    let old = random_set(rng, 5000, [-3.0, -1.0], &Transform::IDENTITY);
+    let mut world = world([old.into()]);
+    let new = random_set(rng, 5000, [-3.0, -1.0], &Transform::IDENTITY);
+    world.refit([(GeometryId(0), new.clone().into())]).expect("the same primitives");
+    let rebuilt = common::world([new.into()]);
+    let mut hits = 0;
+    for _ in 0..5000 {
+        let ray = Ray::new(point_in(rng, 2.0), direction(rng), 0.0);
+        let hit = nearest(&world, &ray);
+        hits += hit.is_some() as u32;
+        assert_eq!(hit, nearest(&rebuilt, &ray));
+    }
+    assert!(hits > 1000, "{hits}");
+    let fewer = random_set(rng, 4999, [-3.0, -1.0], &Transform::IDENTITY);
+    let refused = world.refit([(GeometryId(0), fewer.into())]);
+    assert_eq!(refused, Err(RefitError::Different(GeometryId(0))));
 }
 
 #[test]

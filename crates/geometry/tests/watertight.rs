@@ -25,7 +25,7 @@ fn closed_worlds(rng: &mut Rng, m: &Transform) -> Vec<World> {
     let mut groups = World::builder();
     let inner = groups.add_group();
     groups.add_geometry(inner, cube(&Transform::rotate(between(rng, 0.0, 6.0), direction(rng))));
-    groups.add_instance(Instance { group: inner, render_from_instance: (*m).into() });
+    groups.add_instance(GroupId::TOP, Instance { group: inner, render_from_instance: (*m).into() });
     let rounded = Formula::parse("x^4 + y^4 + z^4 - 1").expect("a formula");
     let bounds = Bounds3 { min: Vec3::splat(-1.5), max: Vec3::splat(1.5) };
     vec![

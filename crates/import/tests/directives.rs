@@ -62,6 +62,25 @@ fn settings_before_the_world() {
 }
 
 #[test]
+fn the_quality_of_the_tree() {
+    use description::BuildQualityDesc::{Balanced, Fast, High};
+    for (parameters, quality) in [
+        ("", Balanced),
+        (r#""string splitmethod" "hlbvh""#, Fast),
+        (r#""string splitmethod" "middle""#, Balanced),
+        (r#""string splitmethod" "hlbvh" "string quality" "high""#, High),
+        (r#""string quality" "fast""#, Fast),
+    ] {
+        let desc = read(&format!(r#"Accelerator "bvh" {parameters} WorldBegin"#));
+        assert_eq!(desc.accelerator.quality(), quality, "{parameters}");
+    }
+    let mut desc = read(r#"Accelerator "kdtree" WorldBegin"#);
+    assert_eq!(desc.accelerator.quality(), Balanced);
+    desc.accelerator.set_quality(High);
+    assert_eq!(desc.accelerator.quality(), High);
+}
+
+#[test]
 fn what_is_left_out_has_the_default_of_the_format() {
     let desc = read("WorldBegin");
     assert_eq!((desc.film.resolution, desc.sampler.pixel_samples), ([1280, 720], 16));
@@ -199,6 +218,31 @@ fn objects_and_instances_have_their_own_transforms() {
     let shape = desc.objects[instance.object].shapes.iter().next().unwrap().1;
     assert_near(shape.world_from_object.start, DMat4::from_translation(DVec3::new(1.0, 1.0, 0.0)));
     assert_near(instance.world_from_object.start, DMat4::from_translation(DVec3::new(1.0, 0.0, 1.0)));
+}
+
+#[test]
+fn objects_may_hold_instances_of_objects_that_come_later() {
+    let desc = world(
+        "ObjectBegin \"a\" Translate 1 0 0 ObjectInstance \"b\" ObjectInstance \"b\" ObjectEnd
+        ObjectBegin \"b\" Shape \"sphere\" ObjectEnd ObjectInstance \"a\"",
+    );
+    assert_eq!(desc.instances.len(), 1);
+    let a = &desc.objects[desc.instances.iter().next().unwrap().1.object];
+    assert_eq!((a.shapes.len(), a.instances.len()), (0, 2));
+    let inner = a.instances.iter().next().unwrap().1;
+    assert_eq!(desc.objects[inner.object].name, "b");
+    assert_near(inner.world_from_object.start, DMat4::from_translation(DVec3::X));
+}
+
+#[test]
+fn a_mesh_with_keyframes_has_its_points_divided_up() {
+    let desc = world(
+        "Shape \"trianglemesh\" \"integer keyframes\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1] \"normal N\" [0 0 1 0 0 1 0 0 1]",
+    );
+    let ShapeKind::Triangles(mesh) = &desc.shapes.iter().next().unwrap().1.kind else { panic!() };
+    assert_eq!((mesh.indices.len(), mesh.positions.len(), mesh.later.len()), (1, 3, 1));
+    assert_eq!(mesh.later[0].positions[2], math::Vec3::new(0.0, 1.0, 1.0));
+    assert_eq!(mesh.later[0].normals, mesh.normals);
 }
 
 #[test]

@@ -203,6 +203,22 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:53 error[parameter-value] `indices` has 3, but there are 3 points in `P`",
     ),
     (
+        r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 0 4 0 1 1 0 2 1 0 1 2 0] "integer contours" [3 4]"#,
+        "1:66 error[parameter-value] `contours` must divide up the 6 points in `P`",
+    ),
+    (
+        r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 4 4 0 0 4 1]"#,
+        "1:17 error[parameter-value] `P` is no polygon: point 1 is outside of the plane of the others",
+    ),
+    (
+        r#"Shape "polygon" "point3 P" [0 0 0 4 4 0 1 4 0 4 0 0]"#,
+        "1:17 error[parameter-value] `P` is no polygon: the edges that begin with the points 0 and 2 touch or cross",
+    ),
+    (
+        r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0 0 0 1] "integer keyframes" 3"#,
+        "1:59 error[parameter-value] the 4 points in `P` are no multiple of 3",
+    ),
+    (
         r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 2 3]"#,
         "1:42 error[parameter-value] `radius` has 3 values for 2 points in `P`",
     ),

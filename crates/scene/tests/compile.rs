@@ -102,6 +102,48 @@ fn transforms_without_an_inverse_are_errors() {
 }
 
 #[test]
+fn objects_within_themselves_or_too_deep_in_each_other_are_errors() {
+    let place = |object| InstanceDesc { object, world_from_object: TransformDesc::default() };
+    let endless = with(|desc| {
+        let mut a = ObjectDesc { name: "a".into(), ..ObjectDesc::default() };
+        a.instances.push(place(description::Handle::new(1)));
+        let mut b = ObjectDesc { name: "b".into(), ..ObjectDesc::default() };
+        b.instances.push_stated(stated(place(description::Handle::new(0)), 8));
+        let a = desc.objects.push(a);
+        desc.objects.push(b);
+        desc.instances.push(place(a));
+    });
+    let message = "the object `a` is within itself";
+    check(&endless, Severity::Error, "endless-instances", message, 8);
+    let chain = |levels: u32| {
+        with(|desc| {
+            for level in 0..levels {
+                let mut object = ObjectDesc::default();
+                if level > 0 {
+                    let inner = place(description::Handle::new(level - 1));
+                    object.instances.push_stated(stated(inner, level));
+                }
+                desc.objects.push(object);
+            }
+            desc.instances.push_stated(stated(place(description::Handle::new(levels - 1)), 77));
+        })
+    };
+    assert!(diagnostics(&chain(8)).is_empty());
+    let message = "instances lie more than 8 deep in each other";
+    check(&chain(9), Severity::Error, "nested-too-deep", message, 1);
+    check(&chain(10_000), Severity::Error, "nested-too-deep", message, 9992);
+    // The inner object was built before, at less depth.
+    let twice = with(|desc| {
+        *desc = chain(9);
+        let mut instances = description::Arena::default();
+        instances.push(place(description::Handle::new(7)));
+        instances.push_stated(stated(place(description::Handle::new(8)), 78));
+        desc.instances = instances;
+    });
+    check(&twice, Severity::Error, "nested-too-deep", message, 8);
+}
+
+#[test]
 fn a_mix_of_itself_is_an_error() {
     let desc = with(|desc| {
         let other = desc.materials.push(MaterialDesc::default());

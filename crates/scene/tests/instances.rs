@@ -57,3 +57,31 @@ fn an_instance_turns_about_the_origin_of_render_space() {
         assert!(there(&scene, x, y, 0.5), "from {eye}");
     }
 }
+
+#[test]
+fn objects_within_objects_stand_and_move_where_all_transforms_say() {
+    // A ball at x = 1 of its object, which stands at y = 2 of another, which moves along x; the camera is elsewhere.
+    let mut desc = SceneDesc::default();
+    desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_translation(DVec3::new(-3.0, 1.0, 0.0)));
+    let mut inner = ObjectDesc::default();
+    inner.shapes.push(ball(TransformDesc::translation(1.0, 0.0, 0.0)));
+    let inner = desc.objects.push(inner);
+    let mut outer = ObjectDesc::default();
+    outer.shapes.push(ball(TransformDesc::translation(0.0, 0.0, 0.0)));
+    let turn = moving(DMat4::IDENTITY, DMat4::from_translation(DVec3::Y));
+    outer
+        .instances
+        .push(InstanceDesc { object: inner, world_from_object: TransformDesc::translation(0.0, 2.0, 0.0) });
+    outer.instances.push(InstanceDesc { object: inner, world_from_object: turn });
+    let outer = desc.objects.push(outer);
+    let along = moving(DMat4::IDENTITY, DMat4::from_translation(DVec3::X * 4.0));
+    desc.instances.push(InstanceDesc { object: outer, world_from_object: along });
+    let scene = scene(&desc);
+    for time in [0.0, 0.25, 0.5, 1.0] {
+        let there = |x: f32, y: f32| there(&scene, x + 4.0 * time - 3.0, y + 1.0, time);
+        assert!(there(0.0, 0.0), "the outer ball at {time}");
+        assert!(there(1.0, 2.0), "the inner ball at {time}");
+        assert!(there(1.0, time), "the inner ball that moves by itself at {time}");
+        assert!(!there(0.0, 2.0) && !there(1.0, 2.5), "elsewhere at {time}");
+    }
+}

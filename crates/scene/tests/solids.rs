@@ -22,7 +22,10 @@ fn implicit(text: &str) -> ShapeKind {
 
 fn object(desc: &mut SceneDesc, shapes: impl IntoIterator<Item = ShapeDesc>) -> Spanned<Handle<ObjectDesc>> {
     let shapes = shapes.into_iter().map(|shape| Stated::new(shape, Origin::new(span(40, 50)))).collect();
-    Spanned::new(desc.objects.push(ObjectDesc { name: "part".into(), shapes }), span(20, 30))
+    Spanned::new(
+        desc.objects.push(ObjectDesc { name: "part".into(), shapes, ..ObjectDesc::default() }),
+        span(20, 30),
+    )
 }
 
 fn solid(operation: SolidOperation, operands: Vec<Spanned<Handle<ObjectDesc>>>) -> ShapeDesc {

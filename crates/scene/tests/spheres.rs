@@ -4,9 +4,7 @@ mod common;
 
 use alhazen_scene::compile;
 use common::*;
-use description::{
-    AreaLightDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, SpheresDesc, Stated, TransformDesc,
-};
+use description::{AreaLightDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, SpheresDesc, TransformDesc};
 use math::{DMat4, DVec3, Vec3};
 
 fn spheres(centers: &[Vec3], radii: &[f32]) -> ShapeKind {
@@ -15,7 +13,9 @@ fn spheres(centers: &[Vec3], radii: &[f32]) -> ShapeKind {
 
 fn desc(shapes: impl IntoIterator<Item = ShapeDesc>) -> SceneDesc {
     let mut desc = SceneDesc::default();
-    shapes.into_iter().for_each(|shape| drop(desc.shapes.push_stated(Stated::from(shape))));
+    for shape in shapes {
+        desc.shapes.push(shape);
+    }
     desc
 }
 
@@ -56,8 +56,7 @@ fn each_sphere_is_a_light() {
     let centers = [Vec3::ZERO, Vec3::X * 3.0];
     let mut desc = desc([]);
     let light = desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0)));
-    desc.shapes
-        .push_stated(Stated::from(ShapeDesc { area_light: Some(light), ..spheres(&centers, &[0.5]).into() }));
+    desc.shapes.push(ShapeDesc { area_light: Some(light), ..spheres(&centers, &[0.5]).into() });
     let scene = scene(&desc);
     assert_eq!(scene.lights().len(), 2);
     for center in centers {
@@ -74,7 +73,7 @@ fn arrays_that_are_no_spheres_are_errors() {
         (&[Vec3::ZERO; 2], &[1.0, 0.0], "radius 1 is 0; it must be finite and above zero"),
         (&[Vec3::NAN], &[1.0], "the centre of sphere 0 is not finite"),
     ] {
-        let errors = compile(&desc([spheres(centers, radii).into()])).err().expect("errors");
+        let errors = compile(&desc([spheres(centers, radii).into()])).expect_err("errors");
         assert!(errors.len() == 1 && errors[0].code == "invalid-spheres", "{errors:?}");
         assert_eq!(errors[0].message, message);
     }

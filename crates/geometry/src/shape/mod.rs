@@ -20,6 +20,7 @@ mod disk;
 mod hyperboloid;
 mod implicit;
 mod level;
+mod moving_triangle;
 mod paraboloid;
 mod plane;
 mod quadric;
@@ -33,6 +34,7 @@ pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use hyperboloid::Hyperboloid;
 pub use implicit::{Formula, FormulaError, Implicit};
+pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub(crate) use quadric::first_root;
@@ -130,6 +132,8 @@ pub enum Shape {
     BilinearPatch(Box<BilinearPatch>),
     /// Triangle.
     Triangle(Triangle),
+    /// Triangle whose corners move.
+    MovingTriangle(MovingTriangle),
 }
 
 macro_rules! each_shape {
@@ -146,6 +150,7 @@ macro_rules! each_shape {
             Shape::Solid($shape) => $result,
             Shape::BilinearPatch($shape) => $result,
             Shape::Triangle($shape) => $result,
+            Shape::MovingTriangle($shape) => $result,
         }
     };
 }
@@ -159,7 +164,7 @@ macro_rules! from_shape {
         }
     )*};
 }
-from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle);
+from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle MovingTriangle);
 
 impl Shape {
     /// A box around it; `None` when it has no end.
@@ -187,6 +192,7 @@ impl Shape {
             Self::Solid(shape) => shape.surface(ray, hit),
             Self::BilinearPatch(shape) => shape.surface(ray, hit.uv),
             Self::Triangle(shape) => shape.surface(ray, hit.uv),
+            Self::MovingTriangle(shape) => shape.surface(ray, hit),
         }
     }
 
@@ -249,7 +255,8 @@ impl Shape {
             | Self::Paraboloid(_)
             | Self::Hyperboloid(_)
             | Self::Implicit(_)
-            | Self::Solid(_) => DirectionCone::ENTIRE_SPHERE,
+            | Self::Solid(_)
+            | Self::MovingTriangle(_) => DirectionCone::ENTIRE_SPHERE,
             Self::Disk(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::Plane(shape) => DirectionCone::new(shape.normal(), 1.0),
             Self::BilinearPatch(shape) => shape.normal_bounds(),

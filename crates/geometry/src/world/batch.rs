@@ -12,7 +12,7 @@
 use super::group::{Trace, Triangles, goes_somewhere, in_order};
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
-use super::{Hit, RayStats, World};
+use super::{Hit, InstancePath, RayStats, World};
 use crate::bvh::{WIDTH, Walk};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
@@ -59,6 +59,12 @@ impl World {
         stats: &mut RayStats,
     ) {
         assert_eq!(rays.len(), answers.len(), "an answer for each ray");
+        if !self.extents {
+            for (ray, answer) in rays.iter().zip(answers) {
+                *answer = self.trace(&ray.0, question(ray), stats);
+            }
+            return;
+        }
         stats.rays += rays.len() as u64;
         // SAFETY: worlds are only given sets that the processor has.
         unsafe { self.instruction_set.run(Batch { world: self, rays, question, answers, stats }) }
@@ -180,7 +186,7 @@ impl<'a> SideBySide<'a> {
                 continue;
             }
             let sheared = &self.sheared[i];
-            let Some(hit) = packet.hit(lane, found, i, sheared, None) else { continue };
+            let Some(hit) = packet.hit(lane, found, i, sheared, InstancePath::TOP) else { continue };
             t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
         }
     }
@@ -259,7 +265,8 @@ impl<S: Simd, Q: Query> Walker<S, Q> {
     unsafe fn step(&mut self, world: &World, stats: &mut RayStats) -> bool {
         let group = &world.groups[0];
         let Self { query, sheared, lanes, walk, .. } = self;
-        let mut triangles = Triangles { group, instance: None, sheared, lanes, query, primitives: 0 };
+        let mut triangles =
+            Triangles { group, instance: InstancePath::TOP, sheared, lanes, query, primitives: 0 };
         // SAFETY: as the caller promises.
         let over = unsafe { walk.step(group.triangles(), &mut triangles) };
         stats.primitives += triangles.primitives;
@@ -271,7 +278,7 @@ impl<S: Simd, Q: Query> Walker<S, Q> {
 #[inline(always)]
 fn finish<Q: Query>(world: &World, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
     if !query.is_answered() && goes_somewhere(ray) {
-        let mut trace = Trace { world, ray, instance: None, stats };
+        let mut trace = Trace { world, ray, instance: InstancePath::TOP, stats };
         world.groups[0].trace_others(&mut trace, &mut query);
     }
     query.answer()

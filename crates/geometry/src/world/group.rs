@@ -6,13 +6,14 @@
 use super::packet::Packet;
 use super::query::Query;
 use super::spheres::Spheres;
-use super::{Geometry, GeometryId, Hit, InstanceId, Placed, RayStats, World};
+use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
 use math::{Bounds3, Ray, Vec3, gamma};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Meshes with fewer triangles are not worth another thread.
 const PARALLEL: usize = 4096;
@@ -29,8 +30,8 @@ pub(super) struct Trace<'a> {
     pub world: &'a World,
     /// In the space of the group.
     pub ray: &'a Ray,
-    /// Through which instance it came.
-    pub instance: Option<InstanceId>,
+    /// Through which instances it came.
+    pub instance: InstancePath,
     pub stats: &'a mut RayStats,
 }
 
@@ -107,7 +108,7 @@ impl Group {
         self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, geometries));
     }
 
-    /// The same for all else. `placed_groups` are those below the top group.
+    /// The same for all else. `placed_groups` begin with the first one below the top group.
     pub fn refit_items(&mut self, geometries: &[Geometry], instances: &[Placed], placed_groups: &[Group]) {
         self.items.refit(&mut self.item_list, |&mut item| {
             let bounds = match item {
@@ -124,6 +125,11 @@ impl Group {
             };
             bounds.filter(is_finite).unwrap_or(Bounds3::EMPTY)
         });
+    }
+
+    /// Whether other groups are placed in it.
+    pub fn has_instances(&self) -> bool {
+        self.item_list.iter().any(|item| matches!(item, Item::Instance(_)))
     }
 
     /// Bytes of memory that the trees take.
@@ -225,11 +231,8 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
                 query,
                 primitives: 0,
             };
-            let (extents, stop) = if in_order::<Q>(t_max) {
-                group.triangles.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
-            } else {
-                group.triangles.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
-            };
+            let all = trace.all(group.packets.len());
+            let (extents, stop) = visit::<S, Q>(&group.triangles, all, trace.ray, &mut t_max, &mut leaves);
             (extents, leaves.primitives, stop)
         }
     }
@@ -238,7 +241,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
 /// The triangles of a group before a ray.
 pub(super) struct Triangles<'a, V, Q> {
     pub group: &'a Group,
-    pub instance: Option<InstanceId>,
+    pub instance: InstancePath,
     pub sheared: &'a Sheared,
     pub lanes: &'a ShearedLanes<V>,
     pub query: &'a mut Q,
@@ -288,17 +291,11 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> Self::Output {
         let Self { group, trace, query } = self;
-        let ray = trace.ray;
+        let (ray, all) = (trace.ray, trace.all(group.item_list.len()));
         let mut t_max = query.t_max();
         let mut leaves = Items { group, trace, query };
         // SAFETY: the caller promises the instructions.
-        unsafe {
-            if in_order::<Q>(t_max) {
-                group.items.traverse::<S, false>(ray, &mut t_max, &mut leaves)
-            } else {
-                group.items.traverse::<S, true>(ray, &mut t_max, &mut leaves)
-            }
-        }
+        unsafe { visit::<S, Q>(&group.items, all, ray, &mut t_max, &mut leaves) }
     }
 }
 
@@ -328,7 +325,35 @@ impl<Q: Query> Leaves for Items<'_, '_, Q> {
     }
 }
 
+/// Shows `leaves` the blocks of a tree that the ray may meet, or `all` without a look at the tree. Returns the number of
+/// boxes tested, and whether `leaves` broke off.
+///
+/// # Safety
+/// The blocks must be those of the tree, and the processor must have the instructions of the set.
+#[inline(always)]
+pub(super) unsafe fn visit<S: Simd, Q: Query>(
+    tree: &Bvh,
+    all: Option<Range<usize>>,
+    ray: &Ray,
+    t_max: &mut f32,
+    leaves: &mut impl Leaves,
+) -> (u64, bool) {
+    // SAFETY: the caller promises the blocks and the instructions.
+    unsafe {
+        match all {
+            Some(blocks) => (0, leaves.test(blocks, t_max)),
+            None if in_order::<Q>(*t_max) => tree.traverse::<S, false>(ray, t_max, leaves),
+            None => tree.traverse::<S, true>(ray, t_max, leaves),
+        }
+    }
+}
+
 impl Trace<'_> {
+    /// All of so many blocks, where rays are not tested against extents.
+    pub fn all(&self, blocks: usize) -> Option<Range<usize>> {
+        (!self.world.extents).then_some(0..blocks)
+    }
+
     #[inline(never)]
     fn item<Q: Query>(&mut self, item: Item, query: &mut Q) -> bool {
         match item {
@@ -346,8 +371,8 @@ impl Trace<'_> {
             Item::Instance(id) => {
                 let placed = &self.world.instances[id.0 as usize];
                 let ray = placed.with_placement(self.ray.time, |placement| placement.ray(self.ray));
-                let mut inner =
-                    Trace { world: self.world, ray: &ray, instance: Some(id), stats: &mut *self.stats };
+                let instance = self.instance.into(id);
+                let mut inner = Trace { world: self.world, ray: &ray, instance, stats: &mut *self.stats };
                 self.world.groups[placed.group as usize].trace(&mut inner, query)
             }
         }
@@ -367,13 +392,16 @@ fn placed_bounds(placed: &Placed, bounds: &Bounds3) -> Bounds3 {
 /// The triangles of all meshes whose corners are finite.
 fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<Reference> {
     let mut references = Vec::new();
+    let some_are_missing = AtomicBool::new(false);
     for &id in members {
         if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
             let reference = |i: usize| {
                 let corners = mesh.corners(i);
-                match corners.iter().all(|p| p.is_finite()) {
-                    true => Reference::new(&Bounds3::around(corners), id.0, i as u32),
-                    false => Reference::none(),
+                if corners.iter().all(|p| p.is_finite()) {
+                    Reference::new(&Bounds3::around(corners), id.0, i as u32)
+                } else {
+                    some_are_missing.store(true, Ordering::Relaxed);
+                    Reference::none()
                 }
             };
             match mesh.len() {
@@ -382,7 +410,7 @@ fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<R
             }
         }
     }
-    if references.iter().any(Reference::is_none) {
+    if some_are_missing.into_inner() {
         references.retain(|r| !r.is_none());
     }
     references

@@ -1,13 +1,14 @@
 //! Everything that a ray can hit.
 //!
 //! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`]
-//! places another group in it, at rest or moving. A shape that moves is an instance of a group with that
-//! shape alone.
+//! places another group in it, or in a group that is placed itself, at rest or moving. A shape that moves is
+//! an instance of a group with that shape alone.
 
 mod batch;
 mod builder;
 mod group;
 mod packet;
+mod path;
 mod query;
 mod refit;
 mod spheres;
@@ -26,6 +27,7 @@ use query::{Any, Nearest, Query};
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
+pub use path::InstancePath;
 pub use refit::RefitError;
 pub use stats::RayStats;
 
@@ -121,12 +123,12 @@ impl Geometry {
     }
 }
 
-/// A group placed in the top group.
+/// A group placed in another.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// What is placed.
     pub group: GroupId,
-    /// Where.
+    /// Where: from its own space to that of the group it is placed in.
     pub render_from_instance: AnimatedTransform,
 }
 
@@ -142,8 +144,8 @@ pub struct Hit {
     pub geometry: GeometryId,
     /// Which triangle, patch or part of a curve of it.
     pub primitive: u32,
-    /// Through which instance.
-    pub instance: Option<InstanceId>,
+    /// Through which instances.
+    pub instance: InstancePath,
 }
 
 /// An instance made ready for rays.
@@ -180,6 +182,8 @@ pub struct World {
     group_of: Vec<GroupId>,
     instances: Vec<Placed>,
     instruction_set: InstructionSet,
+    /// Whether rays are tested against extents first.
+    extents: bool,
 }
 
 impl World {
@@ -235,7 +239,8 @@ impl World {
     #[inline]
     fn trace<Q: Query>(&self, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
         stats.rays += 1;
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: None, stats }, &mut query);
+        let mut trace = Trace { world: self, ray, instance: InstancePath::TOP, stats };
+        self.groups[0].trace(&mut trace, &mut query);
         query.answer()
     }
 
@@ -250,10 +255,14 @@ impl World {
 
     /// What is known of the surface where `ray` met it.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        match hit.instance {
-            None => self.surface_in_group(ray, hit),
-            Some(id) => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
-                self.surface_in_group(&placement.ray(ray), hit).placed(placement, ray)
+        self.surface_within(hit.instance.ids(), ray, hit)
+    }
+
+    fn surface_within(&self, path: &[InstanceId], ray: &Ray, hit: &Hit) -> SurfacePoint {
+        match path {
+            [] => self.surface_in_group(ray, hit),
+            [id, inner @ ..] => self.instances[id.0 as usize].with_placement(ray.time, |placement| {
+                self.surface_within(inner, &placement.ray(ray), hit).placed(placement, ray)
             }),
         }
     }

@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code)]
 
-use super::{GeometryId, Hit, InstanceId};
+use super::{GeometryId, Hit, InstancePath};
 use crate::simd::Vector;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use math::{Vec2, Vec3};
@@ -88,7 +88,7 @@ impl Packet {
         found: &LaneHits<N>,
         of: usize,
         ray: &Sheared,
-        instance: Option<InstanceId>,
+        instance: InstancePath,
     ) -> Option<Hit> {
         let (mut t, mut uv) = (found.t[of], Vec2::new(found.b1[of], found.b2[of]));
         if found.doubts >> of & 1 != 0 {

@@ -50,14 +50,15 @@ impl World {
             self.geometries[id.0 as usize] = new;
         }
         let Self { groups, geometries, instances, .. } = self;
+        let stale = groups.par_iter_mut().zip(&is_stale).filter(|(_, is_stale)| **is_stale);
+        stale.for_each(|(group, _)| group.refit_meshes_and_spheres(geometries));
         let Some((top, placed)) = groups.split_first_mut() else { return Ok(()) };
-        let stale = placed.par_iter_mut().zip(&is_stale[1..]).filter(|(_, is_stale)| **is_stale);
-        stale.for_each(|(group, _)| {
-            group.refit_meshes_and_spheres(geometries);
-            group.refit_items(geometries, &[], &[]);
-        });
-        if is_stale[0] {
-            top.refit_meshes_and_spheres(geometries);
+        // A group holds only such as come before it, the top group all.
+        for group in 0..placed.len() {
+            let (inner, rest) = placed.split_at_mut(group);
+            if is_stale[group + 1] || rest[0].has_instances() {
+                rest[0].refit_items(geometries, instances, inner);
+            }
         }
         top.refit_items(geometries, instances, placed);
         Ok(())

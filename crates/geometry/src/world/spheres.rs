@@ -7,7 +7,7 @@
 
 #![allow(unsafe_code)]
 
-use super::group::Trace;
+use super::group::{Trace, visit};
 use super::query::Query;
 use super::{Geometry, GeometryId, Hit};
 use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
@@ -85,11 +85,8 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
         unsafe {
             let lanes = UnitRay::<S::Eight>::new(trace.ray);
             let mut leaves = Tests { packets: &spheres.packets, trace, lanes, query, primitives: 0 };
-            let (extents, stop) = if Q::ANY {
-                spheres.tree.traverse::<S, true>(trace.ray, &mut t_max, &mut leaves)
-            } else {
-                spheres.tree.traverse::<S, false>(trace.ray, &mut t_max, &mut leaves)
-            };
+            let all = trace.all(spheres.packets.len());
+            let (extents, stop) = visit::<S, Q>(&spheres.tree, all, trace.ray, &mut t_max, &mut leaves);
             (extents, leaves.primitives, stop)
         }
     }
@@ -190,17 +187,21 @@ impl Packet {
 
     /// Takes the spheres from their sets again; gives the box around them. Spheres that are not finite are met by nothing.
     fn renew(&mut self, geometries: &[Geometry]) -> Bounds3 {
+        // Nothing but loads, so that many are under way at once: spheres of a packet lie anywhere in their arrays.
+        let mut spheres = [(Vec3::NAN, 0.0); Self::WIDTH];
+        for (sphere, (geometry, primitive)) in spheres.iter_mut().zip(self.ids).take(self.len as usize) {
+            if let Geometry::Spheres(set) = &geometries[geometry as usize] {
+                *sphere = (set.center(primitive as usize), set.radius(primitive as usize));
+            }
+        }
         let mut all = Bounds3::EMPTY;
-        for lane in 0..self.len as usize {
-            let (geometry, primitive) = self.ids[lane];
-            let Geometry::Spheres(set) = &geometries[geometry as usize] else { continue };
-            let primitive = primitive as usize;
-            let bounds = set.bounds(primitive);
+        for (lane, &(center, radius)) in spheres.iter().enumerate() {
+            let bounds = SphereSet::bounds_of(center, radius);
             let finite = bounds.min.is_finite() && bounds.max.is_finite();
-            let center = if finite { set.center(primitive) } else { Vec3::NAN };
+            all = all.union(if finite { bounds } else { Bounds3::EMPTY });
+            let center = if finite { center } else { Vec3::NAN };
             (0..3).for_each(|axis| self.center[axis][lane] = center[axis]);
-            self.radius[lane] = set.radius(primitive);
-            all = if finite { all.union(bounds) } else { all };
+            self.radius[lane] = radius;
         }
         all
     }

@@ -1,5 +1,6 @@
 //! Mesh files: polygons with shared vertices.
 
+pub(crate) mod contours;
 mod obj;
 mod ply;
 mod polygon;

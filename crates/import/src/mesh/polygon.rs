@@ -8,7 +8,7 @@
 use math::{DVec3, Point3};
 
 /// Polygons with more corners than this are cut as fans: searching ears takes quadratic time, and no modeller makes them.
-const MOST_CORNERS: usize = 4096;
+pub(super) const MOST_CORNERS: usize = 4096;
 
 /// Whether a face turns the same way at every corner (seen along its normal).
 pub(super) fn is_convex(positions: &[Point3], corners: &[u32]) -> bool {
@@ -66,26 +66,35 @@ fn find_ear(points: &[[f64; 2]], left: &[usize]) -> usize {
 
 /// The corners in the plane in which the polygon has most area, counter-clockwise.
 fn project(positions: &[Point3], corners: &[u32]) -> Vec<[f64; 2]> {
+    let [u, v] = axes(normal(positions, corners));
     let origin = positions[corners[0] as usize].as_dvec3();
-    let points: Vec<DVec3> =
-        corners.iter().map(|&corner| positions[corner as usize].as_dvec3() - origin).collect();
-    let next = |i: usize| points[(i + 1) % points.len()];
-    let normal: DVec3 = points.iter().enumerate().map(|(i, point)| point.cross(next(i))).sum();
+    let point = |&corner: &u32| positions[corner as usize].as_dvec3() - origin;
+    corners.iter().map(point).map(|p| [p[u], p[v]]).collect()
+}
+
+/// The polygon's normal after Newell; twice the area long.
+pub(super) fn normal(positions: &[Point3], corners: &[u32]) -> DVec3 {
+    let origin = positions[corners[0] as usize].as_dvec3();
+    let point = |i: usize| positions[corners[i % corners.len()] as usize].as_dvec3() - origin;
+    (0..corners.len()).map(|i| point(i).cross(point(i + 1))).sum()
+}
+
+/// The axes of the coordinate plane in which what has this normal has most area, so ordered that it turns
+/// counter-clockwise.
+pub(super) fn axes(normal: DVec3) -> [usize; 2] {
     let size = normal.abs();
-    let flat = |u: usize, v: usize, positive: bool| {
-        points.iter().map(|p| if positive { [p[u], p[v]] } else { [p[v], p[u]] }).collect()
-    };
-    if size.z >= size.x && size.z >= size.y {
-        flat(0, 1, normal.z >= 0.0)
+    let (axes, along) = if size.z >= size.x && size.z >= size.y {
+        ([0, 1], normal.z)
     } else if size.x >= size.y {
-        flat(1, 2, normal.x >= 0.0)
+        ([1, 2], normal.x)
     } else {
-        flat(2, 0, normal.y >= 0.0)
-    }
+        ([2, 0], normal.y)
+    };
+    if along >= 0.0 { axes } else { [axes[1], axes[0]] }
 }
 
 /// Twice the signed area of a triangle.
-fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+pub(super) fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 

@@ -89,6 +89,7 @@ pub(crate) fn shape_kind(mesh: Mesh) -> ShapeKind {
             tangents: Arc::default(),
             uvs: uvs.clone(),
             face_indices: mesh.triangle_faces.into(),
+            later: Vec::new(),
         },
         patches: description::PatchMeshDesc {
             indices: mesh.quads.into_iter().map(|[a, b, c, d]| [a, b, d, c]).collect(),

@@ -147,7 +147,7 @@ impl Interpreter<'_> {
             return Err(Abandoned);
         }
         self.begin_block(BlockKind::Object, span)?;
-        self.object = Some(ObjectStatement { name, shapes: Vec::new() });
+        self.object = Some(ObjectStatement { name, shapes: Vec::new(), instances: Vec::new() });
         Ok(())
     }
 
@@ -159,14 +159,13 @@ impl Interpreter<'_> {
 
     pub(super) fn object_instance(&mut self, span: Span, tokens: &mut Tokens) -> Step {
         let object = self.string(tokens, "the object's name")?;
-        if self.object.is_some() {
-            let message = "an object cannot be instanced inside the definition of one";
-            self.report.error("misplaced-directive", message, span);
-            return Err(Abandoned);
-        }
         let world_from_object = self.state.ctm.over(self.times());
         let span = span.to(object.span);
-        self.statements.instances.push(InstanceStatement { object, span, world_from_object });
+        let instances = match &mut self.object {
+            Some(object) => &mut object.instances,
+            None => &mut self.statements.instances,
+        };
+        instances.push(InstanceStatement { object, span, world_from_object });
         Ok(())
     }
 

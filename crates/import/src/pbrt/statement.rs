@@ -73,6 +73,7 @@ pub(crate) struct ShapeStatement {
 pub(crate) struct ObjectStatement {
     pub(crate) name: Spanned<String>,
     pub(crate) shapes: Vec<ShapeStatement>,
+    pub(crate) instances: Vec<InstanceStatement>,
 }
 
 #[derive(Debug)]

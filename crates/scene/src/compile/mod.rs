@@ -7,6 +7,7 @@ mod curves;
 mod emission;
 mod lights;
 mod materials;
+mod objects;
 mod shapes;
 mod solids;
 mod spheres;
@@ -17,8 +18,10 @@ use crate::light::{AreaEmission, Light, LightId, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, Scene, SceneOptions};
 use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
-use description::{Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter};
-use geometry::{World, WorldBuilder};
+use description::{
+    AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
+};
+use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
 
 /// A scene, and what had to be left out of it.
@@ -41,7 +44,13 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         render_from_world,
         diagnostics,
         textures,
-        world: World::builder(),
+        world: World::builder()
+            .quality(match desc.accelerator.quality() {
+                BuildQualityDesc::Fast => BuildQuality::Fast,
+                BuildQualityDesc::Balanced => BuildQuality::Balanced,
+                BuildQualityDesc::High => BuildQuality::High,
+            })
+            .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),

@@ -1,4 +1,4 @@
-//! Shapes, objects and instances, and the lights that emitting shapes are.
+//! Shapes, and the lights that emitting shapes are.
 
 use super::Compiler;
 use super::curves::are_strands;
@@ -8,27 +8,20 @@ use crate::material::Material;
 use crate::scene::GeometryEntry;
 use crate::texture::{FloatTextureId, Texture};
 use description::{
-    AreaLightDesc, Diagnostic, Handle, ImageDesc, InstanceDesc, MeshDesc, ObjectDesc, Origin, PatchMeshDesc,
-    ShapeDesc, ShapeKind, Span, Spanned, Stated, TransformDesc,
+    AreaLightDesc, Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind,
+    Span, Spanned, Stated, TransformDesc,
 };
 use geometry::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
-    Instance, MeshAttributes, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
+    Instance, MeshAttributes, MovingMesh, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
-use math::{AnimatedTransform, Bounds2, Bounds3, Transform};
+use math::{AnimatedTransform, Bounds2, Bounds3, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
-use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Where the shapes of an object are.
-struct ObjectGroups {
-    /// Those that rest, together, in render space.
-    resting: GroupId,
-    /// Those that move, each by itself and in its own space, which moves so in the object.
-    moving: Vec<(GroupId, TransformDesc)>,
-}
+const MOVING_LIGHT: &str = "moving shapes do not emit yet; drawn without light";
 
 impl Compiler<'_> {
     /// Everything that can be hit.
@@ -38,12 +31,7 @@ impl Compiler<'_> {
         for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
             self.shape(run);
         }
-        let mut groups = HashMap::new();
-        for (_, instance) in desc.instances.iter() {
-            let object = instance.object;
-            let groups = groups.entry(object.index()).or_insert_with(|| self.object(object));
-            self.instance(instance, groups);
-        }
+        self.instances();
     }
 
     /// What every area light emits, on whatever shape; `None` where that makes no sense.
@@ -66,54 +54,6 @@ impl Compiler<'_> {
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
     }
 
-    fn instance(&mut self, instance: &Stated<InstanceDesc>, groups: &ObjectGroups) {
-        let place = instance.world_from_object;
-        let Some(render_from_instance) = self.instance_motion(&place) else {
-            return self.singular("instance", &instance.origin);
-        };
-        self.world.add_instance(Instance { group: groups.resting, render_from_instance });
-        for (group, shape) in &groups.moving {
-            let times = if shape.is_animated() { shape.times } else { place.times };
-            let (start, end) = (place.start * shape.start, place.end * shape.end);
-            if let Some(render_from_instance) = self.motion(&TransformDesc { start, end, times }) {
-                self.world.add_instance(Instance { group: *group, render_from_instance });
-            }
-        }
-    }
-
-    /// How an instance moves whose shapes already stand in render space. Its transform is brought there before the moments
-    /// between start and end are found: of a turn they depend on the place of the origin, and this is that of the format.
-    fn instance_motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
-        let world_from_render = self.render_from_world.inverse();
-        let moved = |world_from_object| self.render_from_world * world_from_object * world_from_render;
-        AnimatedTransform::new(moved(t.start), moved(t.end), t.times)
-    }
-
-    /// The groups of an object's shapes.
-    fn object(&mut self, handle: Handle<ObjectDesc>) -> ObjectGroups {
-        let mut groups = ObjectGroups { resting: self.world.add_group(), moving: Vec::new() };
-        let object = &self.desc.objects[handle];
-        let shapes: Vec<_> = object.shapes.iter().map(|(_, shape)| shape).collect();
-        for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
-            let shape = run[0];
-            if shape.area_light.is_some() {
-                let message = "shapes of objects do not emit; drawn without light";
-                self.warn("not-drawn", message, shape.origin.span);
-            }
-            if shape.world_from_object.is_animated() {
-                let group = self.world.add_group();
-                self.unlit(run, group, &Transform::IDENTITY);
-                groups.moving.push((group, shape.world_from_object));
-                continue;
-            }
-            match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.unlit(run, groups.resting, &transform),
-                None => self.singular("shape", &shape.origin),
-            }
-        }
-        groups
-    }
-
     /// A shape of the world (or strands): in render space where it rests, in a group of its own where it moves.
     fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
         let shape = run[0];
@@ -123,19 +63,28 @@ impl Compiler<'_> {
                 None => self.singular("shape", &shape.origin),
             };
         }
-        let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
-            return self.singular("shape", &shape.origin);
-        };
         if shape.area_light.is_some() {
-            self.warn("not-drawn", "moving shapes do not emit yet; drawn without light", shape.origin.span);
+            self.warn("not-drawn", MOVING_LIGHT, shape.origin.span);
         }
+        if let Some(instance) = self.moving(run) {
+            self.world.add_instance(GroupId::TOP, instance);
+        }
+    }
+
+    /// A shape (or strands) that moves: the instance of a group of its own.
+    pub(super) fn moving(&mut self, run: &[&Stated<ShapeDesc>]) -> Option<Instance> {
+        let shape = run[0];
+        let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
+            self.singular("shape", &shape.origin);
+            return None;
+        };
         let group = self.world.add_group();
         self.unlit(run, group, &Transform::IDENTITY);
-        self.world.add_instance(Instance { group, render_from_instance });
+        Some(Instance { group, render_from_instance })
     }
 
     /// Adds a shape to a group of instances, where nothing emits.
-    fn unlit(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
+    pub(super) fn unlit(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
         let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
         for geometry in self.geometries(run, transform) {
@@ -262,14 +211,23 @@ impl Compiler<'_> {
         if mesh.indices.is_empty() {
             return None;
         }
-        let attributes = MeshAttributes {
-            normals: given(&mesh.normals),
-            tangents: given(&mesh.tangents),
-            uvs: given(&mesh.uvs),
+        let key = |positions: &Arc<[Point3]>, normals: &Arc<[Normal3]>| {
+            let attributes = MeshAttributes {
+                normals: given(normals),
+                tangents: given(&mesh.tangents),
+                uvs: given(&mesh.uvs),
+            };
+            let (positions, indices) = (positions.clone(), mesh.indices.clone());
+            TriangleMesh::new(positions, indices, attributes, transform, shape.reverse_orientation)
         };
-        let (positions, indices) = (mesh.positions.clone(), mesh.indices.clone());
-        match TriangleMesh::new(positions, indices, attributes, transform, shape.reverse_orientation) {
-            Ok(mesh) => Some(mesh.into()),
+        let later = mesh.later.iter().map(|later| key(&later.positions, &later.normals));
+        let keys = std::iter::once(key(&mesh.positions, &mesh.normals)).chain(later);
+        match keys.collect::<Result<Vec<_>, _>>() {
+            Ok(mut keys) if keys.len() == 1 => keys.pop().map(Geometry::from),
+            Ok(keys) => {
+                let mesh = MovingMesh::new(keys, shape.world_from_object.times);
+                Some(Geometry::Shapes(mesh.triangles().map(Shape::from).collect()))
+            }
             Err(error) => {
                 self.error("invalid-mesh", error.to_string(), shape.origin.span);
                 None
@@ -339,6 +297,10 @@ impl Compiler<'_> {
     ) -> Option<LightId> {
         let handle = shape.area_light?;
         let span = shape.origin.span;
+        if matches!(&shape.kind, ShapeKind::Triangles(mesh) if !mesh.later.is_empty()) {
+            self.warn("not-drawn", MOVING_LIGHT, span);
+            return None;
+        }
         if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
             let message = "solids and surfaces given by formulas do not emit; drawn without light";
             self.warn("not-drawn", message, span);

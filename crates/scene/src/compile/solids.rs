@@ -100,6 +100,11 @@ impl Compiler<'_> {
         let mut bodies = Vec::new();
         for operand in operands {
             let object = &desc.objects[operand.value];
+            if let Some((_, instance)) = object.instances.iter().next() {
+                let message = "instances of objects are no bodies that a solid can be made of";
+                self.error("not-closed", message, instance.origin.span);
+                return None;
+            }
             let mut shapes = Vec::new();
             for (_, part) in object.shapes.iter() {
                 shapes.push(self.part(part, transform, assembly)?);

@@ -32,7 +32,7 @@ fn grow(
     if n <= blocks.width() {
         return Grown::leaf(extent, n as u32, blocks);
     }
-    let (middle, halves) = divide(references, blocks, depth);
+    let (middle, halves) = divide(references, &extent, blocks, depth);
     let (left, right) = references.split_at_mut(middle);
     let (left_inner, right_inner) = inner.split_at_mut(middle);
     let [l, r] = halves;
@@ -45,9 +45,14 @@ fn grow(
 }
 
 /// Brings the left half to the front; gives its length, and the boxes of both halves.
-fn divide(references: &mut [Reference], blocks: Blocks, depth: usize) -> (usize, [Extent; 2]) {
+fn divide(
+    references: &mut [Reference],
+    extent: &Extent,
+    blocks: Blocks,
+    depth: usize,
+) -> (usize, [Extent; 2]) {
     if depth < DEEPEST
-        && let Some(border) = Border::best(references, blocks)
+        && let Some(border) = Border::best(references, extent, blocks)
     {
         return (partition(references, |r| border.is_left(r)), border.halves);
     }

@@ -40,6 +40,9 @@ impl Grid {
     }
 }
 
+/// To read so many references costs more than to sort them into bins.
+const LARGE_SET: usize = 1 << 14;
+
 /// A place to split at.
 #[derive(Clone, Copy)]
 pub(super) struct Border {
@@ -53,13 +56,21 @@ pub(super) struct Border {
 }
 
 impl Border {
-    /// The cheapest border with primitives on both sides.
-    pub fn best(references: &[Reference], blocks: Blocks) -> Option<Self> {
-        match references.len() {
-            0..64 => Bins::<8>::best(references, blocks),
-            64..1024 => Bins::<16>::best(references, blocks),
-            _ => Bins::<32>::best(references, blocks),
-        }
+    /// The cheapest border with primitives on both sides, of a set in the box `extent`.
+    pub fn best(references: &[Reference], extent: &Extent, blocks: Blocks) -> Option<Self> {
+        // Where there are many bins and primitives, the box is nearly the range of the centroids.
+        let in_box = match references.len() {
+            LARGE_SET.. => Bins::<32>::best(references, &extent.doubled(), blocks),
+            _ => None,
+        };
+        in_box.or_else(|| {
+            let range = centroids(references);
+            match references.len() {
+                0..64 => Bins::<8>::best(references, &range, blocks),
+                64..1024 => Bins::<16>::best(references, &range, blocks),
+                _ => Bins::<32>::best(references, &range, blocks),
+            }
+        })
     }
 
     #[inline]
@@ -86,8 +97,8 @@ impl<const B: usize> Bins<B> {
     const EMPTY: Self = Self { boxes: [[Extent::EMPTY; B]; 3], counts: [[0; B]; 3] };
 
     #[inline(never)]
-    fn best(references: &[Reference], blocks: Blocks) -> Option<Border> {
-        let grid = Grid::new(&centroids(references), B);
+    fn best(references: &[Reference], range: &Extent, blocks: Blocks) -> Option<Border> {
+        let grid = Grid::new(range, B);
         in_parts(references, |part| Self::of(part, &grid), Self::merge).cheapest(grid, blocks)
     }
 
@@ -96,8 +107,8 @@ impl<const B: usize> Bins<B> {
         let mut bins = Self::EMPTY;
         for r in references {
             let at = grid.bins(r);
-            for axis in 0..3 {
-                let bin = at[axis] as usize % B;
+            for (axis, bin) in at.into_iter().take(3).enumerate() {
+                let bin = bin as usize % B;
                 bins.boxes[axis][bin] = bins.boxes[axis][bin].union(r.extent());
                 bins.counts[axis][bin] += 1;
             }

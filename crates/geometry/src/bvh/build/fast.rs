@@ -2,7 +2,7 @@
 //!
 //! The bits of a centroid's quantised coordinates, interleaved, are its place on a curve that visits space
 //! octant by octant. Primitives are sorted along the curve, and a range of them is divided where the highest
-//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach et al. 2009]). The
+//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach 2009]). The
 //! smallest ranges are divided so that blocks are full.
 
 use super::balanced::PARALLEL;
@@ -18,8 +18,9 @@ const BITS: u32 = 30;
 const DIGIT: u32 = 10;
 /// How many keys a thread sorts into digits at a time.
 const PART: usize = 1 << 16;
-/// Ranges of so many blocks are divided between blocks.
+/// Ranges of so many blocks are divided between blocks, and of so many are not divided.
 const FULL_BLOCKS: u32 = 4;
+const LEAF_BLOCKS: usize = 2;
 
 /// Brings references into order and grows a tree over them.
 pub(super) fn plant(references: Vec<Reference>, blocks: Blocks) -> Planted {
@@ -109,7 +110,7 @@ fn spread(x: u32) -> u32 {
 /// `first` is the index of the first reference.
 fn grow(references: &[Reference], keys: &[u64], inner: &mut [Inner], first: usize, blocks: Blocks) -> Grown {
     let n = keys.len();
-    if n <= blocks.width() {
+    if n <= LEAF_BLOCKS * blocks.width() {
         return Grown::leaf(Extent::around(references), n as u32, blocks);
     }
     let middle = middle(keys, blocks);

@@ -1,6 +1,6 @@
 //! Top-down like [`super::balanced`], but space may be split as well: a primitive across the border is then
 //! referred to from both sides, each time with a box around only its part on that side. Long, slanted
-//! triangles, whose boxes are mostly empty, gain most ([Stich et al. 2009]).
+//! triangles, whose boxes are mostly empty, gain most ([Stich 2009]).
 //!
 //! A spatial split is tried where the boxes of the best object split overlap by more than [`OVERLAP`] of the
 //! whole, and as long as there is room for more references, of which there are at most twice as many as primitives.
@@ -83,7 +83,7 @@ impl<C: Corners> Builder<'_, C> {
     fn divide<'a>(&self, set: Set<'a>, depth: usize) -> [Set<'a>; 2] {
         let Set { references, count, extent } = set;
         let used = &mut references[..count];
-        let border = if depth < DEEPEST { Border::best(used, self.blocks) } else { None };
+        let border = if depth < DEEPEST { Border::best(used, &extent, self.blocks) } else { None };
         let Some(border) = border else {
             let (middle, extents) = halve(used);
             return share_room(references, [middle, count - middle], extents);

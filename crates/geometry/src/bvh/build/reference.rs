@@ -86,6 +86,11 @@ impl Extent {
         self.low - self.minus_high
     }
 
+    /// Twice as large in every coordinate.
+    pub fn doubled(&self) -> Self {
+        Self { low: self.low * 2.0, minus_high: self.minus_high * 2.0 }
+    }
+
     /// Half of the surface area; NaN or infinite for the empty box.
     #[inline]
     pub fn half_area(&self) -> f32 {

@@ -36,23 +36,22 @@ impl<'a, B: Send> Part<'a, B> {
         let parallel = self.nodes.len() > PARALLEL;
         let root = self.take(self.first_node + 1, self.first_block).nodes;
         let node = &mut root[0];
-        let children = *node.children();
-        let children = &children[..node.len()];
+        let children = in_order(node);
         let mut all = Extent::EMPTY;
         let mut set = |lane, extent: Extent| {
             node.set_bounds(lane, &extent.bounds());
             all = all.union(extent);
         };
         let mut below = Vec::new();
-        for (lane, child) in children.iter().enumerate() {
+        for (i, &(lane, child)) in children.iter().enumerate() {
             if child.is_leaf() {
                 let leaf = self.take(self.first_node, child.blocks().end);
                 let boxes = leaf.blocks.iter_mut().map(|block| Extent::from(&renew(block)));
                 set(lane, boxes.fold(Extent::EMPTY, Extent::union));
                 continue;
             }
-            let part = match children.get(lane + 1) {
-                Some(next) => {
+            let part = match children.get(i + 1) {
+                Some(&(_, next)) => {
                     let end = self.first_block_of(next);
                     self.take(next.index(), end)
                 }
@@ -69,10 +68,11 @@ impl<'a, B: Send> Part<'a, B> {
     }
 
     /// Where the blocks below a child begin.
-    fn first_block_of(&self, child: &Child) -> usize {
-        let mut child = *child;
+    fn first_block_of(&self, mut child: Child) -> usize {
         while !child.is_leaf() {
-            child = self.nodes[child.index() - self.first_node].children()[0];
+            let node = &self.nodes[child.index() - self.first_node];
+            let children = node.children()[..node.len()].iter();
+            child = children.copied().min_by_key(place).expect("invariant: a node has children");
         }
         child.blocks().start
     }
@@ -84,5 +84,20 @@ impl<'a, B: Send> Part<'a, B> {
         let taken = Part { nodes, blocks, ..*self };
         *self = Part { nodes: later_nodes, first_node: node, blocks: later_blocks, first_block: block };
         taken
+    }
+}
+
+/// The children of a node with their lanes, in the order in which they were written.
+fn in_order(node: &WideNode) -> Vec<(usize, Child)> {
+    let mut children: Vec<_> = node.children()[..node.len()].iter().copied().enumerate().collect();
+    children.sort_by_key(|(_, child)| place(child));
+    children
+}
+
+/// Where a child is: leaves come first, each kind in the order of its indices.
+fn place(child: &Child) -> (bool, usize) {
+    match child.is_leaf() {
+        true => (false, child.blocks().start),
+        false => (true, child.index()),
     }
 }

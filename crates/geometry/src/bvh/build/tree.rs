@@ -16,7 +16,7 @@ use super::reference::{Extent, Reference};
 use crate::bvh::node::WIDTH;
 
 /// What the test of a wide node costs, where testing a block of primitives costs 1.
-const NODE_COST: f32 = 1.0;
+const NODE_COST: f32 = 1.8;
 /// Leaves have at most this many blocks.
 const LARGEST_LEAF: u32 = 4;
 

@@ -1,8 +1,8 @@
 //! Options, film, filter and accelerator.
 
 use description::{
-    AcceleratorDesc, BvhSplit, Diagnostic, FilmDesc, FilmKind, FilterDesc, GBufferSpace, OptionsDesc,
-    RenderSpace, SensorDesc, Span, Spanned, Stated,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, Diagnostic, FilmDesc, FilmKind, FilterDesc, GBufferSpace,
+    OptionsDesc, RenderSpace, SensorDesc, Span, Spanned, Stated,
 };
 
 use super::Builder;
@@ -203,6 +203,15 @@ fn accelerator(reader: &mut Reader) -> Option<AcceleratorDesc> {
                     ("equal", BvhSplit::Equal),
                 ],
             ),
+            quality: reader.choice(
+                "quality",
+                None,
+                &[
+                    ("fast", Some(BuildQualityDesc::Fast)),
+                    ("balanced", Some(BuildQualityDesc::Balanced)),
+                    ("high", Some(BuildQualityDesc::High)),
+                ],
+            ),
         },
         "kdtree" => AcceleratorDesc::KdTree {
             intersect_cost: reader.integer("intersectcost", 5, 0..=i32::MAX),
@@ -211,8 +220,9 @@ fn accelerator(reader: &mut Reader) -> Option<AcceleratorDesc> {
             max_prims: reader.integer("maxprims", 1, 1..=i32::MAX),
             max_depth: reader.integer("maxdepth", -1, -1..=i32::MAX),
         },
+        "none" => AcceleratorDesc::None,
         _ => {
-            reader.unknown_type("accelerator", "accelerator", &["bvh", "kdtree"]);
+            reader.unknown_type("accelerator", "accelerator", &["bvh", "kdtree", "none"]);
             return None;
         }
     })

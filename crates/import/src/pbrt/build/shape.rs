@@ -5,20 +5,21 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use description::{
-    CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, ObjectDesc, Origin,
-    PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, SpheresDesc, Stated,
+    Arena, CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, MeshKey,
+    ObjectDesc, Origin, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, SpheresDesc,
+    Stated,
 };
 use math::Vec3;
 use rayon::prelude::*;
 
 use super::{Builder, unknown_reference};
 use crate::assets::{AssetSource, read_unpacked};
-use crate::mesh::{Format, scene::shape_kind};
+use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::reader::Reader;
-use crate::pbrt::statement::{ShapeStatement, Statements};
+use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
 
-const TYPES: [&str; 15] = [
+const TYPES: [&str; 16] = [
     "sphere",
     "spheres",
     "cylinder",
@@ -28,6 +29,7 @@ const TYPES: [&str; 15] = [
     "disk",
     "plane",
     "trianglemesh",
+    "polygon",
     "bilinearmesh",
     "plymesh",
     "curve",
@@ -101,15 +103,21 @@ impl Builder<'_> {
                     built.shapes.push_stated(shape);
                 }
             }
+            self.instances(object.instances, &mut built.instances);
             desc.objects.push_stated(Stated::new(built, Origin::new(span)));
         }
-        for instance in statements.instances.drain(..) {
+        let instances = std::mem::take(&mut statements.instances);
+        self.instances(instances, &mut desc.instances);
+    }
+
+    fn instances(&mut self, statements: Vec<InstanceStatement>, instances: &mut Arena<InstanceDesc>) {
+        for instance in statements {
             let Some(&object) = self.objects.get(&instance.object.value) else {
                 unknown_reference(&mut self.report, "object", &instance.object, None, &self.objects);
                 continue;
             };
             let built = InstanceDesc { object, world_from_object: instance.world_from_object };
-            desc.instances.push_stated(Stated::new(built, Origin::new(instance.span)));
+            instances.push_stated(Stated::new(built, Origin::new(instance.span)));
         }
     }
 }
@@ -163,6 +171,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
         "implicit" => implicit(reader)?,
         "csg" => solid(reader)?,
         "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
+        "polygon" => ShapeKind::Triangles(polygon(reader)?),
         "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
         "plymesh" => mesh_file(reader)?,
         "curve" => ShapeKind::Curve(curve(reader)?),
@@ -311,19 +320,68 @@ fn face_indices(reader: &mut Reader, faces: usize) -> Arc<[i32]> {
 
 fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc> {
     let positions = points(reader)?;
-    let indices = indices(reader, positions.len(), [0, 1, 2])?;
     if !with_attributes {
+        let indices = indices(reader, positions.len(), [0, 1, 2])?;
         return Some(MeshDesc { indices, positions, ..MeshDesc::default() });
     }
+    let keys = reader.integer("keyframes", 1, 1..=i32::MAX) as usize;
+    let vertices = positions.len() / keys;
+    if vertices * keys != positions.len() {
+        let message = format!("the {} points in `P` are no multiple of {keys}", positions.len());
+        reader.refuse("keyframes", message);
+        return None;
+    }
+    let indices = indices(reader, vertices, [0, 1, 2])?;
     let (normals, tangents, uvs) = (reader.normals("N"), reader.vectors3("S"), reader.points2("uv"));
-    let vertices = positions.len();
+    // Normals may stay while vertices move.
+    let moving = normals.as_ref().is_some_and(|normals| normals.len() == vertices * keys);
+    let normals = per_vertex(reader, "N", if moving { positions.len() } else { vertices }, normals);
+    let key = |k: usize| MeshKey {
+        positions: positions[k * vertices..][..vertices].into(),
+        normals: if moving { normals[k * vertices..][..vertices].into() } else { normals.clone() },
+    };
+    let later = (1..keys).map(key).collect();
+    let MeshKey { positions, normals } = if keys == 1 { MeshKey { positions, normals } } else { key(0) };
     Some(MeshDesc {
         face_indices: face_indices(reader, indices.len()),
-        normals: per_vertex(reader, "N", vertices, normals),
+        normals,
         tangents: per_vertex(reader, "S", vertices, tangents),
         uvs: per_vertex(reader, "uv", vertices, uvs),
         indices,
         positions,
+        later,
+    })
+}
+
+/// A plane polygon: `contours` counts the points of its outer contour and of each hole.
+fn polygon(reader: &mut Reader) -> Option<MeshDesc> {
+    let positions = points(reader)?;
+    let vertices = positions.len();
+    let counts = reader.integers("contours").unwrap_or_else(|| vec![vertices as i32]);
+    let lengths: Option<Vec<usize>> = counts.iter().map(|&count| usize::try_from(count).ok()).collect();
+    let lengths = lengths.filter(|lengths| {
+        !lengths.is_empty()
+            && lengths.iter().try_fold(0, |sum: usize, &n| sum.checked_add(n)) == Some(vertices)
+    });
+    let Some(lengths) = lengths else {
+        let message = format!("`contours` must divide up the {vertices} points in `P`");
+        reader.refuse(if reader.has("contours") { "contours" } else { "P" }, message);
+        return None;
+    };
+    let indices = match triangulate_contours(&positions, &lengths) {
+        Ok(triangles) => triangles.into(),
+        Err(error) => {
+            reader.refuse("P", format!("`P` is no polygon: {error}"));
+            return None;
+        }
+    };
+    let (normals, uvs) = (reader.normals("N"), reader.points2("uv"));
+    Some(MeshDesc {
+        normals: per_vertex(reader, "N", vertices, normals),
+        uvs: per_vertex(reader, "uv", vertices, uvs),
+        indices,
+        positions,
+        ..MeshDesc::default()
     })
 }
 

@@ -1,0 +1,112 @@
+//! Objects, and instances of them: in the world, and within each other.
+//!
+//! An object is a group of the world. Its resting shapes stand there in render space; a shape that moves is an instance
+//! within it, and so is another object. Motions at several levels are found each for itself and then combined.
+
+use super::Compiler;
+use super::curves::are_strands;
+use description::{Handle, InstanceDesc, ObjectDesc, Stated, TransformDesc};
+use geometry::{GroupId, Instance, InstancePath};
+use math::{AnimatedTransform, Transform};
+use std::collections::HashMap;
+
+/// An object as a group.
+#[derive(Clone, Copy)]
+struct Placeable {
+    group: GroupId,
+    /// How many levels of instances stand within it.
+    levels: usize,
+}
+
+#[derive(Default)]
+struct Objects {
+    built: HashMap<usize, Placeable>,
+    /// Those under way, each within the one before.
+    open: Vec<usize>,
+}
+
+impl Compiler<'_> {
+    /// All instances, and the objects that they show.
+    pub(super) fn instances(&mut self) {
+        let desc = self.desc;
+        let mut objects = Objects::default();
+        for (_, instance) in desc.instances.iter() {
+            if let Some((instance, _)) = self.instance(instance, &mut objects) {
+                self.world.add_instance(GroupId::TOP, instance);
+            }
+        }
+    }
+
+    /// An instance and the levels of instances that it makes, itself included.
+    fn instance(
+        &mut self,
+        instance: &Stated<InstanceDesc>,
+        objects: &mut Objects,
+    ) -> Option<(Instance, usize)> {
+        let span = instance.origin.span;
+        if objects.open.contains(&instance.object.index()) {
+            let name = &self.desc.objects[instance.object].name;
+            self.error("endless-instances", format!("the object `{name}` is within itself"), span);
+            return None;
+        }
+        let built = (objects.open.len() < InstancePath::MOST).then(|| self.object(instance.object, objects));
+        let Some(Placeable { group, levels }) =
+            built.filter(|object| objects.open.len() + object.levels < InstancePath::MOST)
+        else {
+            let most = InstancePath::MOST;
+            self.error("nested-too-deep", format!("instances lie more than {most} deep in each other"), span);
+            return None;
+        };
+        let Some(render_from_instance) = self.instance_motion(&instance.world_from_object) else {
+            self.singular("instance", &instance.origin);
+            return None;
+        };
+        Some((Instance { group, render_from_instance }, levels + 1))
+    }
+
+    /// How an instance moves whose shapes already stand in render space. Its transform is brought there before the moments
+    /// between start and end are found: of a turn they depend on the place of the origin, and this is that of the format.
+    fn instance_motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
+        let world_from_render = self.render_from_world.inverse();
+        let moved = |world_from_object| self.render_from_world * world_from_object * world_from_render;
+        AnimatedTransform::new(moved(t.start), moved(t.end), t.times)
+    }
+
+    /// The group of an object. What stands within it comes before it.
+    fn object(&mut self, handle: Handle<ObjectDesc>, objects: &mut Objects) -> Placeable {
+        if let Some(built) = objects.built.get(&handle.index()) {
+            return *built;
+        }
+        let object = &self.desc.objects[handle];
+        let mut inner = Vec::new();
+        objects.open.push(handle.index());
+        for (_, instance) in object.instances.iter() {
+            inner.extend(self.instance(instance, objects));
+        }
+        objects.open.pop();
+        let shapes: Vec<_> = object.shapes.iter().map(|(_, shape)| shape).collect();
+        let (moving, resting): (Vec<_>, Vec<_>) =
+            shapes.chunk_by(|a, b| are_strands(a, b)).partition(|run| run[0].world_from_object.is_animated());
+        for run in moving {
+            inner.extend(self.moving(run).map(|instance| (instance, 1)));
+        }
+        let group = self.world.add_group();
+        for run in resting {
+            match Transform::from_f64(self.render_from_world * run[0].world_from_object.start) {
+                Some(transform) => self.unlit(run, group, &transform),
+                None => self.singular("shape", &run[0].origin),
+            }
+        }
+        for shape in shapes.iter().filter(|shape| shape.area_light.is_some()) {
+            let message = "shapes of objects do not emit; drawn without light";
+            self.warn("not-drawn", message, shape.origin.span);
+        }
+        let levels = inner.iter().map(|(_, levels)| *levels).max().unwrap_or(0);
+        for (instance, _) in inner {
+            self.world.add_instance(group, instance);
+        }
+        let built = Placeable { group, levels };
+        objects.built.insert(handle.index(), built);
+        built
+    }
+}
