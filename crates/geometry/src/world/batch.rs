@@ -23,7 +23,7 @@ use std::ops::Range;
 const WALKS: usize = 8;
 
 impl World {
-    /// What [`World::intersect`] says of each ray and its `t_max`, but sooner.
+    /// What [`World::intersect`] says of each ray and its `t_max`.
     ///
     /// # Panics
     /// When there are not as many hits as rays.
@@ -37,7 +37,7 @@ impl World {
         self.trace_batch(rays, |(ray, t_max)| Nearest::new(ray, *t_max, filter), hits, stats);
     }
 
-    /// What [`World::occluded`] says of each ray and its `t_max`, but sooner.
+    /// What [`World::occluded`] says of each ray and its `t_max`.
     ///
     /// # Panics
     /// When there are not as many answers as rays.
@@ -59,6 +59,12 @@ impl World {
         stats: &mut RayStats,
     ) {
         assert_eq!(rays.len(), answers.len(), "an answer for each ray");
+        if !self.extents {
+            for (ray, answer) in rays.iter().zip(answers) {
+                *answer = self.trace(&ray.0, question(ray), stats);
+            }
+            return;
+        }
         stats.rays += rays.len() as u64;
         // SAFETY: worlds are only given sets that the processor has.
         unsafe { self.instruction_set.run(Batch { world: self, rays, question, answers, stats }) }

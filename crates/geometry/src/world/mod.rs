@@ -239,7 +239,8 @@ impl World {
     #[inline]
     fn trace<Q: Query>(&self, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
         stats.rays += 1;
-        self.groups[0].trace(&mut Trace { world: self, ray, instance: InstancePath::TOP, stats }, &mut query);
+        let mut trace = Trace { world: self, ray, instance: InstancePath::TOP, stats };
+        self.groups[0].trace(&mut trace, &mut query);
         query.answer()
     }
 
