@@ -96,15 +96,6 @@ impl<'a, Q: Query, F: Fn(&'a (Ray, f32)) -> Q> Task for Batch<'a, '_, Q, F> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) {
         let Self { world, rays, question, answers, stats } = self;
-        if !world.extents {
-            for (ray, answer) in rays.iter().zip(answers) {
-                let mut query = question(ray);
-                world.groups[0]
-                    .trace(&mut Trace { world, ray: &ray.0, instance: InstancePath::TOP, stats }, &mut query);
-                *answer = query.answer();
-            }
-            return;
-        }
         let mut apart = Vec::new();
         for (first, eight) in (0..).step_by(WIDTH).zip(rays.chunks(WIDTH)) {
             match eight.try_into().ok().and_then(SideBySide::new) {
