@@ -1,7 +1,8 @@
 //! From what a scene's author said of algorithm and sampler to an integrator.
 
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind, SceneDesc, SppmDesc,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, Randomization, SamplerKind,
+    SceneDesc, SppmDesc, VcmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler};
@@ -122,14 +123,20 @@ impl Builder<'_> {
             &IntegratorDesc::SimpleVolPath { max_depth } => {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
             }
-            &IntegratorDesc::LightPath { max_depth } => {
-                self.instead_of("lightpath", max_depth, false, sampler)
+            &IntegratorDesc::LightTracing { max_depth } => {
+                self.instead_of("light-tracing", max_depth, false, sampler)
             }
             &IntegratorDesc::Bdpt { max_depth, regularize, .. } => {
                 self.instead_of("bdpt", max_depth, regularize, sampler)
             }
             &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
                 self.instead_of("mlt", max_depth, regularize, sampler)
+            }
+            IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. }) => {
+                self.instead_of("photon-mapping", *max_depth, false, sampler)
+            }
+            &IntegratorDesc::Vcm(VcmDesc { max_depth, .. }) => {
+                self.instead_of("vcm", max_depth, false, sampler)
             }
             &IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => {
                 self.instead_of("sppm", max_depth, false, sampler)

@@ -33,7 +33,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use build::{Built, build};
 pub use control::{Cancelled, Control, Progress, ProgressSink};
-pub use integrator::Integrator;
+pub use integrator::{ByProduct, Integrator};
 pub use path::{Path, PathSettings};
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;
