@@ -123,10 +123,12 @@ fn positions_have_their_density() {
     let view = Frame::from_z(Vec3::new(0.3, -0.5, 1.0).normalize());
     let (side, fine, size, count) = (12, 40, 4.0, 5_000);
     for (i, case) in cases.iter().enumerate() {
+        let mut random = Random::new(i as u64);
         let mut expected = vec![0.0; side * side];
         for y in 0..side * fine {
             for x in 0..side * fine {
-                let at = |i: usize| ((i as f32 + 0.5) / (side * fine) as f32 - 0.5) * size;
+                // Somewhere in the cell, as the density is without bound at the outline of what is round.
+                let mut at = |i: usize| ((i as f32 + random.get_1d()) / (side * fine) as f32 - 0.5) * size;
                 let mut ray = ray(view.from_local(Vec3::new(at(x), at(y), -3.0)), view.z);
                 while let Some(surface) = hit(&case.scene, &ray) {
                     let s = &surface.surface;
@@ -141,7 +143,6 @@ fn positions_have_their_density() {
         let total = expected.iter().sum::<f64>() / f64::from(count);
         assert!((total - 1.0).abs() < 0.01, "{}: the density integrates to {total}", case.name);
         let mut observed = vec![0; side * side];
-        let mut random = Random::new(i as u64);
         for _ in 0..count {
             let Some(LightLeSample { p: Some(p), .. }) = emit(case, &mut random) else { continue };
             let p = view.to_local(p.p);
@@ -210,10 +211,10 @@ fn a_disk_finds_the_light_that_finds_it() {
         let (light, sphere) = (case.light(), case.scene.sphere());
         let mut random = Random::new(100 + i as u64);
         let n = Vec3::new(-0.2, 0.1, -1.0).normalize();
-        let (center, radius) = if light.is_distant() {
-            (sphere.center + Vec3::new(0.2, -0.1, 0.3) * sphere.radius, 0.5 * sphere.radius)
+        let (center, radius, n) = if light.is_distant() {
+            (sphere.center + Vec3::new(0.2, -0.1, 0.3) * sphere.radius, 0.5 * sphere.radius, -n)
         } else {
-            (Vec3::new(0.3, 0.2, 2.0), 1.0)
+            (Vec3::new(0.3, 0.2, 2.0), 1.0, n)
         };
         let by_rays: Moments = (0..40_000)
             .map(|_| {
@@ -222,8 +223,8 @@ fn a_disk_finds_the_light_that_finds_it() {
                 let t = n.dot(center - ray.o) / n.dot(ray.d);
                 let falls_in = n.dot(ray.d) < 0.0 && t > 0.0 && ray.at(t).distance(center) < radius;
                 let stats = &mut RayStats::default();
-                let arrives = falls_in
-                    && (light.is_distant() || !case.scene.occluded(ray, t, Interfaces::Stop, stats));
+                let arrives =
+                    falls_in && (light.is_distant() || !case.scene.occluded(ray, t, Interfaces::Stop, stats));
                 if arrives { f64::from(sample.beta()[0]) / f64::from(PI * radius * radius) } else { 0.0 }
             })
             .collect();
@@ -231,8 +232,7 @@ fn a_disk_finds_the_light_that_finds_it() {
         let by_points: Moments = (0..20_000)
             .map(|_| {
                 let place = sampling::warp::sample_uniform_disk_concentric(random.get_2d().into());
-                let from =
-                    context(center + frame.from_local(place.extend(0.0)) * radius, Vec3::ZERO);
+                let from = context(center + frame.from_local(place.extend(0.0)) * radius, Vec3::ZERO);
                 let sample = seen_sample(&case.scene, light, &from, random.get_2d(), false);
                 sample.map_or(0.0, |s| f64::from(s.l[0] * n.dot(s.wi).max(0.0) / s.pdf))
             })
@@ -249,9 +249,7 @@ fn a_light_that_is_cut_out_sends_by_its_alpha() {
     let mut power = |alpha: f32| -> Moments {
         let desc = area(disk(0.0, 1.0), |_, shape| shape.alpha = Some(alpha.into()));
         let case = Case { name: "alpha", scene: scene(&desc) };
-        (0..20_000)
-            .map(|_| emit(&case, &mut random).map_or(0.0, |ray| f64::from(ray.beta()[0])))
-            .collect()
+        (0..20_000).map(|_| emit(&case, &mut random).map_or(0.0, |ray| f64::from(ray.beta()[0]))).collect()
     };
     let whole = power(1.0).mean;
     t_test(&power(0.3), 0.3 * whole, 1).unwrap();
