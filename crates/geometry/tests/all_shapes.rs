@@ -152,6 +152,17 @@ fn samples_by_area_have_their_density() {
 }
 
 #[test]
+fn a_bent_patch_knows_its_points_whatever_their_texture_coordinates() {
+    let p = [[-1.0, -1.0, 0.0], [1.0, -0.8, 0.5], [-0.9, 1.0, 0.4], [1.1, 1.2, -0.3]].map(Vec3::from);
+    let patch = BilinearPatch::new(p, None, Some([Vec2::splat(0.5); 4]), &Transform::IDENTITY, false);
+    let (shape, rng) = (Shape::from(patch), &mut Rng::new(2, 0));
+    for _ in 0..500 {
+        let s = shape.sample(uniform_2d(rng)).unwrap();
+        assert!((shape.pdf_area(s.p.p, s.n) / s.pdf - 1.0).abs() < 1e-4);
+    }
+}
+
+#[test]
 fn an_image_guides_the_samples_of_a_patch() {
     let image = sampling::PiecewiseConstant2d::new(&[0.1, 2.0, 1.0, 0.0, 0.5, 3.0], 3, Bounds2::UNIT);
     let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.3, 1.2, 0.6)];

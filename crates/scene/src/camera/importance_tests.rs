@@ -16,14 +16,13 @@ fn cameras() -> Vec<(String, Camera)> {
         times: [0.0, 1.0],
     };
     let places = [("", somewhere()), (", sheared", TransformDesc::fixed(sheared)), (", moving", moving)];
-    let at = |(place, transform): &(&str, TransformDesc)| {
-        let place = place.to_string();
-        let transform = transform.clone();
-        kinds().into_iter().map(move |(name, kind)| {
-            (format!("{name}{place}"), build(kind, transform.clone(), RenderSpace::CameraWorld))
-        })
-    };
-    places.iter().flat_map(at).collect()
+    let mut cameras = Vec::new();
+    for (place, transform) in places {
+        for (name, kind) in kinds() {
+            cameras.push((format!("{name}{place}"), build(kind, transform, RenderSpace::CameraWorld)));
+        }
+    }
+    cameras
 }
 
 fn anywhere(random: &mut Random) -> CameraSample {

@@ -2,7 +2,8 @@
 //!
 //! Each triangle or patch of a mesh is a light of its own. Power: Φ = π·A·L, twice that when both sides shine.
 //! Where the surface is cut out by an alpha texture, it does not emit; a surface with the constant alpha 0 is an invisible
-//! light, which rays never meet but points still sample. Sources: [Pharr 2023 §12.4].
+//! light, which rays never meet but points still sample. Rays leave evenly from its area (patches may follow an image) and by
+//! the cosine, to both sides alike if it has two. Sources: [Pharr 2023 §12.4].
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
 use crate::texture::{FloatTextureId, TextureContext, Textures};

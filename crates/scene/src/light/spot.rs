@@ -1,7 +1,9 @@
 //! A light at a point that shines into a cone, with a soft edge: L = I · s(cos θ) / r², where the smooth step s falls from 1 at
 //! the start of the falloff to 0 at the cone's end.
 //!
-//! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Sources: [Pharr 2023 §12.2.1].
+//! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Rays leave with the density of the intensity itself, p_direction
+//! = s(cos θ)·I/Φ: evenly within the start of the falloff, around it with cos θ by the smooth step; each carries all of Φ.
+//! Sources: [Pharr 2023 §12.2.1].
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
 use math::{
