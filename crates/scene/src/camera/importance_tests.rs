@@ -161,13 +161,13 @@ fn a_lamp_is_as_bright_from_both_ends() {
         if lamp.cross().dot(place.vector(Vec3::Z)) > 0.0 {
             lamp.sides.swap(0, 1);
         }
-        let seen: Moments = (0..40_000)
+        let seen: Moments = (0..200_000)
             .map(|_| {
                 let ray = camera.generate_ray(&anywhere(&mut random)).unwrap();
                 if lamp.is_met(&ray.ray) { f64::from(ray.weight * pixels) } else { 0.0 }
             })
             .collect();
-        let sent: Moments = (0..40_000)
+        let sent: Moments = (0..200_000)
             .map(|_| {
                 let [u, v] = random.get_2d();
                 let p = lamp.corner + lamp.sides[0] * u + lamp.sides[1] * v;
