@@ -144,7 +144,7 @@ impl Bidirectional<'_> {
 
     /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses, if what arrives there is of
     /// any use on the film.
-    pub fn to_camera(
+    pub fn see(
         &self,
         vertex: &Vertex,
         u: Point2,

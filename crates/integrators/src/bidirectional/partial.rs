@@ -56,12 +56,12 @@ impl Balance {
     }
 
     /// What a camera subpath begins with, whose first direction has the density `pdf` on the film (per pixel).
-    pub fn from_camera(&self, pdf: f32) -> Partial {
+    pub fn at_camera(&self, pdf: f32) -> Partial {
         Partial { vcm: self.light_paths / pdf, vc: 0.0, vm: 0.0 }
     }
 
     /// What a light subpath has at its first surface, where it arrives at `cos_theta` to the normal.
-    pub fn from_light(&self, end: &LightEnd, cos_theta: f32) -> Partial {
+    pub fn at_light(&self, end: &LightEnd, cos_theta: f32) -> Partial {
         let scale = end.cos_theta / (end.emission * cos_theta);
         let vc = if end.is_delta { 0.0 } else { scale };
         Partial { vcm: end.direct * scale, vc, vm: vc * self.per_merging() }

@@ -65,7 +65,7 @@ impl<'a> Walk<'a> {
         let pdf = if parallel { pdf_position } else { pdf_direction };
         let beta = SampledSpectrum::splat(camera_ray.weight);
         let origin = if parallel { Origin::Direction } else { Origin::Place };
-        let partial = paths.balance.from_camera(pdf);
+        let partial = paths.balance.at_camera(pdf);
         Self::new(paths, camera_ray.ray, (beta, partial), lambda, (origin, TransportMode::Radiance))
     }
 
@@ -145,7 +145,7 @@ impl<'a> Walk<'a> {
                 let context = vertex.light_context();
                 let direct = self.paths.direct_pdf(light, &context, vertex.wo, place);
                 let end = self.paths.light_end(light, &context, vertex.wo, place, direct);
-                self.paths.balance.from_light(&end, cos_theta)
+                self.paths.balance.at_light(&end, cos_theta)
             }
         };
         Some(vertex)
