@@ -117,7 +117,9 @@ mod tests {
 
     #[test]
     fn origins_that_are_no_numbers_have_a_place() {
-        let odd = |i: usize| if i % 3 == 0 { Vec3::NAN } else { scattered(i) * [1.0, f32::INFINITY][i % 2] };
+        let odd = |i: usize| {
+            if i.is_multiple_of(3) { Vec3::NAN } else { scattered(i) * [1.0, f32::INFINITY][i % 2] }
+        };
         let mut order = order(&rays(ENOUGH, odd)).expect("an order");
         order.sort_unstable();
         assert!(order.into_iter().eq(0..ENOUGH));
