@@ -201,7 +201,7 @@ pub(super) fn goes_somewhere(ray: &Ray) -> bool {
 
 /// Whether a tree is best passed in order of distance.
 #[inline(always)]
-pub(super) fn in_order<Q: Query>(t_max: f32) -> bool {
+fn in_order<Q: Query>(t_max: f32) -> bool {
     !Q::ANY || t_max < f32::INFINITY
 }
 
