@@ -25,7 +25,7 @@ impl Numbers {
         let mut all = 0;
         for &id in members {
             if let Geometry::Mesh(mesh) = &geometries[id.0 as usize]
-                && mesh.len() > 0
+                && !mesh.is_empty()
             {
                 all += mesh.len();
                 assert!(all < u32::MAX as usize, "too many triangles for numbers of 32 bits");
