@@ -171,9 +171,7 @@ impl<V> ShearedLanes<V> {
         let [a, b, c] = [sheared(0), sheared(1), sheared(2)];
         let edge = |p: [V; 3], q: [V; 3]| {
             let yx = p[1].mul(q[0]);
-            // SAFETY: as the caller promises.
-            let negative = unsafe { V::splat(0.0) }.sub(yx);
-            let difference = p[0].mul_add(q[1], negative);
+            let difference = p[0].mul_sub(q[1], yx);
             difference.add(p[1].neg_mul_add(q[0], yx))
         };
         let e = [edge(b, c), edge(c, a), edge(a, b)];

@@ -196,13 +196,16 @@ impl Bvh {
         }
     }
 
+    /// How many lines of a node or block are asked for. What is left of a node comes while these are computed with.
+    const AHEAD: usize = 3;
+
     /// Asks for a node or a block.
     #[inline(always)]
     fn prefetch<S: Simd, B>(&self, blocks: &[B], child: Child) {
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
         let block = blocks.as_ptr().wrapping_add(child.blocks().start).cast::<u8>();
         let at = if child.is_leaf() { block } else { node };
-        for line in 0..size_of::<WideNode>() / 64 {
+        for line in 0..Self::AHEAD {
             S::prefetch(at.wrapping_add(64 * line));
         }
     }
@@ -308,7 +311,6 @@ unsafe fn choose_nearest<S: Simd>(
     hits &= hits - 1;
     let b = waiting(lane);
     let (mut nearest, other) = (a.min(b), a.max(b));
-    ahead(nearest.child());
     ahead(other.child());
     // SAFETY: a node leaves at most seven children waiting.
     unsafe {
@@ -322,9 +324,9 @@ unsafe fn choose_nearest<S: Simd>(
             let lane = hits.trailing_zeros() as usize;
             hits &= hits - 1;
             let c = waiting(lane);
-            ahead(c.child());
             let other = c.max(nearest);
             nearest = c.min(nearest);
+            ahead(other.child());
             sink(top, floor, other);
         }
     }

@@ -10,7 +10,7 @@
 
 #![allow(unsafe_code)]
 
-use super::group::{Trace, Triangles, goes_somewhere};
+use super::group::{Group, Trace, Triangles, goes_somewhere};
 use super::order::order;
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
@@ -201,7 +201,7 @@ impl<'a> SideBySide<'a> {
                         primitives += WIDTH as u64;
                         let found = packet.intersect_rays(lane, &lanes, S::Eight::load(t_max));
                         if let Some(found) = found {
-                            self.offer(packet, lane, &found, queries, t_max);
+                            self.offer(group, packet, lane, &found, queries, t_max);
                         }
                     }
                 }
@@ -215,6 +215,7 @@ impl<'a> SideBySide<'a> {
     #[inline(always)]
     fn offer<Q: Query>(
         &self,
+        group: &Group,
         packet: &Packet,
         lane: usize,
         found: &LaneHits<WIDTH>,
@@ -228,8 +229,8 @@ impl<'a> SideBySide<'a> {
             if t_max[i] < 0.0 {
                 continue;
             }
-            let sheared = &self.sheared[i];
-            let Some(hit) = packet.hit(lane, found, i, sheared, InstancePath::TOP) else { continue };
+            let (sheared, numbers) = (&self.sheared[i], group.numbers());
+            let Some(hit) = packet.hit(lane, found, i, sheared, numbers, InstancePath::TOP) else { continue };
             t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
         }
     }

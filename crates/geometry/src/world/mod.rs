@@ -7,6 +7,7 @@
 mod batch;
 mod builder;
 mod group;
+mod numbers;
 mod order;
 mod packet;
 mod path;
