@@ -2,7 +2,8 @@
 
 #![allow(unsafe_code)]
 
-use super::{GeometryId, Hit, InstancePath};
+use super::{Geometry, GeometryId, Hit, InstancePath};
+use crate::bvh::{Extent, Primitives, Reference};
 use crate::simd::Vector;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use math::{Vec2, Vec3};
@@ -28,8 +29,9 @@ impl Packet {
         primitives: [u32::MAX; Self::WIDTH],
     };
 
-    pub fn push(&mut self, corners: [Vec3; 3], id: (u32, u32)) {
-        let lane = self.len();
+    /// Fills a lane. Lanes are filled in order, so that those in use come first.
+    #[inline]
+    pub fn set(&mut self, lane: usize, corners: [Vec3; 3], id: (u32, u32)) {
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
             for axis in 0..3 {
                 lanes[axis][lane] = corner[axis];
@@ -96,5 +98,70 @@ impl Packet {
         }
         let (geometry, primitive) = self.id(lane);
         Some(Hit { t, uv, geometry: GeometryId(geometry), primitive, instance })
+    }
+}
+
+/// The triangles of all meshes among geometries.
+pub(super) struct MeshTriangles<'a> {
+    pub members: &'a [GeometryId],
+    pub geometries: &'a [Geometry],
+}
+
+impl Primitives for MeshTriangles<'_> {
+    type Block = Packet;
+
+    fn width(&self) -> usize {
+        Packet::WIDTH
+    }
+
+    fn geometries(&self) -> Vec<(u32, usize)> {
+        let len = |&id: &GeometryId| match &self.geometries[id.0 as usize] {
+            Geometry::Mesh(mesh) => Some((id.0, mesh.len())),
+            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
+        };
+        self.members.iter().filter_map(len).collect()
+    }
+
+    #[inline(always)]
+    fn extent(&self, geometry: u32, triangle: u32) -> Option<Extent> {
+        Extent::around_finite(self.corners(geometry, triangle)?)
+    }
+
+    #[inline(always)]
+    fn prefetch_indices(&self, geometry: u32, triangle: u32) {
+        if let Geometry::Mesh(mesh) = &self.geometries[geometry as usize] {
+            mesh.prefetch_indices(triangle as usize);
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, geometry: u32, triangle: u32) {
+        if let Geometry::Mesh(mesh) = &self.geometries[geometry as usize] {
+            mesh.prefetch_corners(triangle as usize);
+        }
+    }
+
+    #[inline(always)]
+    fn corners(&self, geometry: u32, triangle: u32) -> Option<[Vec3; 3]> {
+        match &self.geometries[geometry as usize] {
+            Geometry::Mesh(mesh) => Some(mesh.corners(triangle as usize)),
+            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
+        }
+    }
+
+    #[inline(always)]
+    fn block(&self, triangles: &[Reference]) -> (Packet, Extent) {
+        // Nothing but loads, so that many are under way at once.
+        let mut corners = [[Vec3::NAN; 3]; Packet::WIDTH];
+        for (corners, r) in corners.iter_mut().zip(triangles) {
+            *corners = self.corners(r.geometry(), r.primitive()).unwrap_or(*corners);
+        }
+        let mut packet = Packet::EMPTY;
+        let mut extent = Extent::EMPTY;
+        for (lane, (r, corners)) in triangles.iter().zip(corners).enumerate() {
+            packet.set(lane, corners, (r.geometry(), r.primitive()));
+            extent = extent.union(Extent::around_finite(corners).unwrap_or(Extent::EMPTY));
+        }
+        (packet, extent)
     }
 }
