@@ -38,7 +38,7 @@ impl Bvh {
 
     /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its box.
     pub fn refit<B: Send>(&mut self, blocks: &mut [B], renew: impl Fn(&mut B) -> Bounds3 + Sync) {
-        self.bounds = build::refit(&mut self.nodes, blocks, &renew);
+        self.bounds = build::refit(&mut self.nodes, blocks, renew);
     }
 
     /// Bytes of memory taken.

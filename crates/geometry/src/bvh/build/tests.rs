@@ -93,7 +93,7 @@ fn walk(built: &Built<Vec<Reference>>, node: usize, seen: &mut (Vec<u32>, Vec<u3
     seen.0[node] += 1;
     let wide: &WideNode = &built.nodes[node];
     for lane in 0..wide.len() {
-        let (child, inside) = (wide.children()[lane], wide.bounds(lane));
+        let (child, inside) = (wide.children()[lane], wide.bounds_of(lane));
         assert!(contains(bounds, &inside));
         if !child.is_leaf() {
             walk(built, child.index(), seen, &inside);
