@@ -115,7 +115,7 @@ fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
 mod tests {
     use super::*;
     use crate::settings::{max_depth, regularize};
-    use description::{AcceleratorDesc, FilterDesc, LightSamplerDesc, SamplerKind};
+    use description::{AcceleratorDesc, FilterDesc, LightSamplerDesc, SamplerKind, SppmDesc};
 
     fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {
         let mut desc = SceneDesc::default();
@@ -223,5 +223,10 @@ mod tests {
         let desc = desc.unwrap();
         assert_eq!((desc.film.resolution, desc.film.pixel_bounds), ([100, 50], Some([99, 100, 49, 50])));
         assert_eq!((desc.options.seed, desc.sampler.seed), (7, Some(7)));
+
+        let photons = SppmDesc { seed: Some(3), ..SppmDesc::default() };
+        let mut desc = SceneDesc { integrator: IntegratorDesc::Sppm(photons).into(), ..SceneDesc::default() };
+        Overrides { seed: Some(7), ..Overrides::default() }.apply(&mut desc).unwrap();
+        assert_eq!(desc.integrator.value, IntegratorDesc::Sppm(SppmDesc::default()), "no seed of its own");
     }
 }

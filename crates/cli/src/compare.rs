@@ -22,6 +22,7 @@ use crate::render::{named_after, scene_failure, start_threads};
 /// Renders a scene by several algorithms and writes the report.
 pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     let report = Report::new(arguments)?;
+    start_threads(arguments.changes.threads)?;
     let reference = match &arguments.reference {
         Some(path) => {
             let picture = Image::open(path).map_err(|error| about_file(path, error))?;
@@ -32,7 +33,6 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
             samples_per_pixel: arguments.reference_spp,
         },
     };
-    start_threads(arguments.changes.threads)?;
     let interrupt = Interrupt::listen()?;
     let talkative = !arguments.quiet && !arguments.json;
 
@@ -57,6 +57,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
             laboratory
         }
         Err(PlanError::Plan(message)) => return Err(Failure::Usage(message)),
+        Err(PlanError::Reference(message)) => return Err(Failure::Input(message)),
         Err(PlanError::Scene(errors)) => {
             imported.diagnostics.extend(errors);
             return Err(scene_failure(imported));
@@ -184,7 +185,7 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
             percent(last.measure.mean_error / mean),
             percent(last.measure.mean_error_deviation / mean)
         ),
-        count(run.efficiency()),
+        if run.efficiency() < 1.0 { format!("{:.2e}", run.efficiency()) } else { count(run.efficiency()) },
         count(run.rays_per_second()),
     ]
 }

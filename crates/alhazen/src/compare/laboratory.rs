@@ -71,7 +71,7 @@ impl Laboratory {
         };
         let reference = match plan.reference {
             ReferenceSource::Picture { name, picture } => {
-                let picture = fitting(&name, &picture, &setup).map_err(PlanError::Plan)?;
+                let picture = fitting(&name, &picture, &setup).map_err(PlanError::Reference)?;
                 ReferencePlan::Picture(Reference { source: name, picture, noise: None })
             }
             ReferenceSource::Render { by, samples_per_pixel } => {

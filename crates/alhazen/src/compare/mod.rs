@@ -112,6 +112,8 @@ pub struct Plan {
 pub enum PlanError {
     /// It asks for what cannot be.
     Plan(String),
+    /// The reference is of another size.
+    Reference(String),
     /// The scene is wrong; with everything there is to say about it.
     Scene(Vec<Diagnostic>),
 }

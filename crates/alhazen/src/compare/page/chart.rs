@@ -5,10 +5,10 @@ use std::ops::RangeInclusive;
 use super::figure::{escape, figure};
 use super::write_to;
 
-const WIDTH: f64 = 860.0;
+const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 400.0;
 const LEFT: f64 = 66.0;
-const RIGHT: f64 = 700.0;
+const RIGHT: f64 = 680.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 352.0;
 

@@ -10,7 +10,7 @@ use crate::picture::in_srgb;
 /// Side of a block over which errors are averaged, in pixels.
 const BLOCK: u32 = 8;
 
-/// The share of values that are within the scale of a map.
+/// The share of a map's values that its scale is to hold.
 const WITHIN_SCALE: f64 = 0.98;
 
 /// Every picture of a page as a data URI.
@@ -72,22 +72,28 @@ fn block_means(map: &Image) -> Image {
     Image::from_fn(map.width(), map.height(), ["Y"], |x, y| [means.channel(x / BLOCK, y / BLOCK, 0)])
 }
 
-/// A round number that all but the largest values of all maps are below: 1, 2 or 5 times a power of ten.
+/// The error that has the full colour, a round number: 1, 2 or 5 times a power of ten. Nearly all values of a usual map are below it;
+/// one map that is worse than the others does not darken them.
 fn scale(maps: &[Image]) -> f32 {
-    let mut sizes: Vec<f32> =
-        maps.iter().flat_map(Image::values).map(f32::abs).filter(|size| size.is_finite()).collect();
-    if sizes.is_empty() {
-        return 1.0;
-    }
-    let place = ((sizes.len() - 1) as f64 * WITHIN_SCALE) as usize;
-    let (_, size, _) = sizes.select_nth_unstable_by(place, f32::total_cmp);
-    let size = size.max(1e-6);
+    let mut sizes: Vec<f32> = maps.iter().map(usual_limit).collect();
+    sizes.sort_by(f32::total_cmp);
+    let size = sizes[(sizes.len() - 1) / 2].max(1e-6);
     let decade = 10f32.powf(size.log10().floor());
     [1.0, 2.0, 5.0]
         .map(|step| step * decade)
         .into_iter()
         .find(|&round| round >= size)
         .unwrap_or(10.0 * decade)
+}
+
+/// The size that nearly all finite values of a map do not exceed; 1 where none is finite.
+fn usual_limit(map: &Image) -> f32 {
+    let mut sizes: Vec<f32> = map.values().map(f32::abs).filter(|size| size.is_finite()).collect();
+    if sizes.is_empty() {
+        return 1.0;
+    }
+    let place = ((sizes.len() - 1) as f64 * WITHIN_SCALE) as usize;
+    *sizes.select_nth_unstable_by(place, f32::total_cmp).1
 }
 
 fn colored(map: &Image, scale: f32) -> String {
@@ -134,7 +140,7 @@ mod tests {
         let flat = |value: f32| Image::from_fn(10, 9, ["R", "G", "B"], |_, _| [value; 3]);
         let map = error_map(&flat(2.0), &[flat(1.0), flat(2.2)]);
         assert!((map.channel(3, 4, 0) + 0.2).abs() < 1e-3);
-        assert_eq!(scale(&[map]), 0.2);
+        assert_eq!(scale(&[flat(100.0), map]), 0.2, "the better half decides");
         assert_eq!(scale(&[flat(0.0)]), 1e-6);
     }
 

@@ -112,9 +112,9 @@ impl Comparison {
                 (
                     if surprising { "strong" } else { "" },
                     format!(
-                        "{} ± {}",
-                        percent(last.measure.mean_error / mean),
-                        percent(last.measure.mean_error_deviation / mean)
+                        "{:.2} ± {:.2} %",
+                        100.0 * last.measure.mean_error / mean,
+                        100.0 * last.measure.mean_error_deviation / mean
                     ),
                 ),
                 (if efficiency == best { "bar strong" } else { "bar" }, figure(efficiency)),
@@ -161,7 +161,7 @@ impl Comparison {
                 .collect()
             };
         let with_slope = |run: &Run| match self.slope(run) {
-            Some(slope) => format!("{}  {slope:.2}", run.name).replace('-', "−"),
+            Some(slope) => format!("{}  {}", run.name, format!("{slope:.2}").replace('-', "−")),
             None => run.name.clone(),
         };
         let error = Chart {
@@ -297,8 +297,8 @@ const VIEWER: &str = r#"<section id="viewer" hidden>
 <label>right <select id="right"></select></label>
 <label>zoom <select id="zoom"><option value="0">fit</option><option>1</option><option>2</option><option>4</option><option>8</option></select></label>
 </div>
-<div class="scroll"><div id="stack"><img id="under" alt="the picture on the right"><img id="over" alt="the picture on the left"><div id="edge"></div></div></div>
-<input id="slider" type="range" min="0" max="1000" value="500" aria-label="where the left picture ends">
+<div class="scroll"><div id="frame"><div id="stack"><img id="under" alt="the picture on the right"><img id="over" alt="the picture on the left"><div id="edge"></div></div>
+<input id="slider" type="range" min="0" max="1000" value="500" aria-label="where the left picture ends"></div></div>
 </section>
 "#;
 

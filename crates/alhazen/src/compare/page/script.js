@@ -1,7 +1,8 @@
 "use strict";
 {
   const find = (id) => document.getElementById(id);
-  const [stack, over, under, edge, slider, zoom] = ["stack", "over", "under", "edge", "slider", "zoom"].map(find);
+  const [frame, stack, over, under, edge, slider, zoom] =
+    ["frame", "stack", "over", "under", "edge", "slider", "zoom"].map(find);
   const pictures = [...document.querySelectorAll("figure img")];
 
   const choose = (select, shown, first) => {
@@ -37,8 +38,8 @@
   const resize = () => {
     const factor = Number(zoom.value);
     const width = find("reference").naturalWidth;
-    stack.style.width = factor ? `${width * factor}px` : `min(100%, ${Math.max(width, 640)}px)`;
-    stack.style.maxWidth = factor ? "none" : "100%";
+    frame.style.width = factor ? `${width * factor}px` : `min(100%, ${Math.max(width, 640)}px)`;
+    frame.style.maxWidth = factor ? "none" : "100%";
     for (const picture of [over, under]) picture.style.imageRendering = factor > 1 ? "pixelated" : "auto";
   };
   zoom.addEventListener("change", resize);
