@@ -37,7 +37,7 @@ struct Entry {
 enum ReferencePlan {
     Picture(Reference),
     /// To be rendered as two halves, each of which may take so much.
-    Render(Entry, Budget),
+    Render(Box<Entry>, Budget),
 }
 
 impl Laboratory {
@@ -79,7 +79,7 @@ impl Laboratory {
                     Some(samples) => Budget::Samples(samples.div_ceil(2)),
                     None => plan.budget.times(REFERENCE_FACTOR / 2),
                 };
-                ReferencePlan::Render(entry(by.as_ref().unwrap_or(&plan.contenders[0]), half)?, half)
+                ReferencePlan::Render(Box::new(entry(by.as_ref().unwrap_or(&plan.contenders[0]), half)?), half)
             }
         };
         let laboratory = Self { setup, scene: compiled.scene, contenders, reference };
@@ -93,7 +93,7 @@ impl Laboratory {
     fn entries(&self) -> impl Iterator<Item = &Entry> {
         let reference = match &self.reference {
             ReferencePlan::Picture(_) => None,
-            ReferencePlan::Render(entry, _) => Some(entry),
+            ReferencePlan::Render(entry, _) => Some(&**entry),
         };
         self.contenders.iter().chain(reference)
     }

@@ -192,7 +192,7 @@ fn guide(svg: &mut String, slope: f64, x: &Axis, y: &Axis) {
             to.0,
             to.1,
             from.0 + 14.0,
-            from.1 + 12.0,
+            from.1 - 4.0,
             -slope
         ),
     );

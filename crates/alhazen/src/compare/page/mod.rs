@@ -204,7 +204,7 @@ impl Comparison {
         };
         text += &shown("reference", "reference", &maps.reference, "");
         text += "</div>\n";
-        let [scale, block_scale] = [maps.scale, maps.block_scale].map(|scale| percent(f64::from(scale)));
+        let [scale, block_scale] = [maps.scale, maps.block_scale].map(|scale| format!("{} %", (f64::from(scale) * 1e8).round() / 1e6));
         for (index, (run, map)) in self.runs.iter().zip(&maps.runs).enumerate() {
             let figure_of = |kind: &str, title: String, source: &str, caption: &str| {
                 shown(&format!("{kind}{index}"), &title, source, caption)
