@@ -1,17 +1,18 @@
 //! From what a scene's author said of algorithm and sampler to an integrator.
 
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind, SceneDesc, SppmDesc,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, Randomization, SamplerKind,
+    SceneDesc, SppmDesc, VcmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
-use sampling::{Randomize, Sampler};
+use sampling::{Randomize, Sampler, hash};
 use scene::Interfaces;
 use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::{
-    AmbientOcclusion, Integrator, Path, PathSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator,
-    SimplePath, Whitted,
+    AmbientOcclusion, Bdpt, BdptSettings, Integrator, LightTracing, Path, PathSettings, PixelLoop,
+    RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
 };
 
 /// What [`build`] gives.
@@ -93,6 +94,14 @@ impl Builder<'_> {
         }
     }
 
+    /// The sampler of paths that begin at lights, which has nothing in common with that of the camera's.
+    fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
+        const LIGHTS: u32 = 0x6c69_6768;
+        let seed = hash(&[self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32, LIGHTS]) as u32;
+        let samples = of_camera.samples_per_pixel();
+        Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
+    }
+
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         match &self.desc.integrator.value {
             IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
@@ -122,14 +131,28 @@ impl Builder<'_> {
             &IntegratorDesc::SimpleVolPath { max_depth } => {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
             }
-            &IntegratorDesc::LightPath { max_depth } => {
-                self.instead_of("lightpath", max_depth, false, sampler)
+            &IntegratorDesc::LightTracing { max_depth } => {
+                let light_sampler = self.light_sampler(&sampler);
+                Box::new(LightTracing::new(self.depth(max_depth), sampler, light_sampler))
             }
-            &IntegratorDesc::Bdpt { max_depth, regularize, .. } => {
-                self.instead_of("bdpt", max_depth, regularize, sampler)
+            &IntegratorDesc::Bdpt { max_depth, regularize, visualize_strategies, visualize_weights } => {
+                let settings = BdptSettings {
+                    max_depth: self.depth(max_depth),
+                    regularize,
+                    unweighted: visualize_strategies,
+                    weighted: visualize_weights,
+                };
+                let light_sampler = self.light_sampler(&sampler);
+                Box::new(Bdpt::new(settings, sampler, light_sampler))
             }
             &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
                 self.instead_of("mlt", max_depth, regularize, sampler)
+            }
+            IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. }) => {
+                self.instead_of("photon-mapping", *max_depth, false, sampler)
+            }
+            &IntegratorDesc::Vcm(VcmDesc { max_depth, .. }) => {
+                self.instead_of("vcm", max_depth, false, sampler)
             }
             &IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => {
                 self.instead_of("sppm", max_depth, false, sampler)

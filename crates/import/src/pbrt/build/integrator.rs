@@ -1,12 +1,15 @@
 //! Light transport algorithms.
 
-use description::{IntegratorDesc, LightSamplerDesc, MltDesc, SppmDesc, Stated};
+use description::{
+    IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc,
+    PhotonMappingShow, SppmDesc, Stated, VcmDesc,
+};
 
 use super::Builder;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::Statement;
 
-const TYPES: [&str; 14] = [
+const TYPES: [&str; 17] = [
     "path",
     "volpath",
     "bdpt",
@@ -21,6 +24,9 @@ const TYPES: [&str; 14] = [
     "whitted",
     "ray-casting",
     "ambient-occlusion",
+    "light-tracing",
+    "photon-mapping",
+    "vcm",
 ];
 
 impl Builder<'_> {
@@ -54,7 +60,7 @@ fn integrator(reader: &mut Reader) -> Option<IntegratorDesc> {
             regularize: reader.boolean("regularize", false),
             light_sampler: light_sampler(reader),
         },
-        "lightpath" => IntegratorDesc::LightPath { max_depth: max_depth(reader) },
+        "lightpath" | "light-tracing" => IntegratorDesc::LightTracing { max_depth: max_depth(reader) },
         "bdpt" => IntegratorDesc::Bdpt {
             max_depth: max_depth(reader),
             regularize: reader.boolean("regularize", false),
@@ -69,6 +75,12 @@ fn integrator(reader: &mut Reader) -> Option<IntegratorDesc> {
                 .filter(|&photons| photons > 0),
             radius: reader.positive("radius", SppmDesc::default().radius),
             seed: reader.optional_integer("seed"),
+        }),
+        "photon-mapping" => IntegratorDesc::PhotonMapping(photon_mapping(reader)),
+        "vcm" => IntegratorDesc::Vcm(VcmDesc {
+            max_depth: max_depth(reader),
+            radius: radius(reader),
+            alpha: reader.positive("alpha", VcmDesc::default().alpha),
         }),
         "function" => IntegratorDesc::Function {
             function: reader.string("function").map_or("step".into(), |function| function.value),
@@ -99,9 +111,41 @@ fn light_sampler(reader: &mut Reader) -> LightSamplerDesc {
     )
 }
 
+/// A distance, where one is given.
+fn radius(reader: &mut Reader) -> Option<f32> {
+    Some(reader.positive("radius", f32::INFINITY)).filter(|radius| radius.is_finite())
+}
+
+fn photon_mapping(reader: &mut Reader) -> PhotonMappingDesc {
+    let default = PhotonMappingDesc::default();
+    PhotonMappingDesc {
+        max_depth: max_depth(reader),
+        photons: reader.integer("photons", default.photons, 0..=i32::MAX),
+        caustic_photons: reader.integer("causticphotons", default.caustic_photons, 0..=i32::MAX),
+        nearest: reader.integer("nearest", default.nearest, 1..=i32::MAX),
+        radius: radius(reader),
+        kernel: reader.choice(
+            "kernel",
+            default.kernel,
+            &[("cone", PhotonKernel::Cone), ("epanechnikov", PhotonKernel::Epanechnikov)],
+        ),
+        gather: reader.integer("gather", default.gather, 0..=i32::MAX),
+        show: reader.choice(
+            "show",
+            default.show,
+            &[("radiance", PhotonMappingShow::Radiance), ("photons", PhotonMappingShow::Photons)],
+        ),
+    }
+}
+
 fn mlt(reader: &mut Reader) -> MltDesc {
     let default = MltDesc::default();
     MltDesc {
+        technique: reader.choice(
+            "technique",
+            default.technique,
+            &[("path", MltTechnique::Path), ("bdpt", MltTechnique::Bdpt)],
+        ),
         max_depth: max_depth(reader),
         bootstrap_samples: reader.integer("bootstrapsamples", default.bootstrap_samples, 1..=i32::MAX),
         chains: reader.integer("chains", default.chains, 1..=i32::MAX),
