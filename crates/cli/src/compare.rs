@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use alhazen::compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
-use alhazen::image::Image;
+use alhazen::image::{Image, replace_file};
 use alhazen::import::{Files, import};
 use alhazen::integrators::{Control, Progress};
 
@@ -132,8 +132,9 @@ impl Report {
     }
 
     fn write(&self, comparison: &Comparison) -> Result<(), Failure> {
-        let write =
-            |path: &Path, text: String| std::fs::write(path, text).map_err(|error| about_file(path, error));
+        let write = |path: &Path, text: String| {
+            replace_file(path, text.as_bytes()).map_err(|error| about_file(path, error))
+        };
         let numbers = format!("{:#}\n", comparison.to_json());
         write(&self.numbers, numbers).and(write(&self.page, comparison.to_html()))
     }

@@ -1,6 +1,6 @@
 //! A comparison as JSON. What cannot be told (noise of a given reference, a slope of two points) is null.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::{Budget, Checkpoint, Comparison, Measure, Run};
 
@@ -41,6 +41,7 @@ impl Comparison {
         let more = json!({
             "name": run.name,
             "settings": run.settings,
+            "notes": run.notes.iter().map(|(name, note)| ((*name).to_owned(), json!(note))).collect::<Map<_, _>>(),
             "status": if run.interrupted { "interrupted" } else { "done" },
             "flip": run.flip,
             "efficiency": run.efficiency(),

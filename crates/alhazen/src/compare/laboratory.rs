@@ -79,7 +79,10 @@ impl Laboratory {
                     Some(samples) => Budget::Samples(samples.div_ceil(2)),
                     None => plan.budget.times(REFERENCE_FACTOR / 2),
                 };
-                ReferencePlan::Render(Box::new(entry(by.as_ref().unwrap_or(&plan.contenders[0]), half)?), half)
+                ReferencePlan::Render(
+                    Box::new(entry(by.as_ref().unwrap_or(&plan.contenders[0]), half)?),
+                    half,
+                )
             }
         };
         let laboratory = Self { setup, scene: compiled.scene, contenders, reference };
@@ -215,6 +218,7 @@ fn run(entry: &Entry, setup: &Setup, scene: &Scene, reference: &Reference, contr
     Some(Run {
         name: entry.name.clone(),
         settings: format!("{:?}", entry.desc.integrator.value),
+        notes: twins.notes(),
         checkpoints,
         pictures,
         flip,

@@ -184,6 +184,8 @@ pub struct Run {
     pub name: String,
     /// All settings of the algorithm.
     pub settings: String,
+    /// What the algorithm tells of itself: names, and what there is to say.
+    pub notes: Vec<(&'static str, String)>,
     /// From the first pass to the end; never empty.
     pub checkpoints: Vec<Checkpoint>,
     /// The two pictures.

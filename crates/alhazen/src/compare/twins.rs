@@ -133,6 +133,11 @@ impl Twins {
         }
     }
 
+    /// What the algorithm tells of itself, in the first render.
+    pub fn notes(&self) -> Vec<(&'static str, String)> {
+        self.twins[0].integrator.summary()
+    }
+
     /// The two pictures as they stand.
     pub fn pictures(&self) -> [Image; 2] {
         [0, 1].map(|twin: usize| self.twins[twin].film.develop())

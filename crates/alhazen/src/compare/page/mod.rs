@@ -204,7 +204,8 @@ impl Comparison {
         };
         text += &shown("reference", "reference", &maps.reference, "");
         text += "</div>\n";
-        let [scale, block_scale] = [maps.scale, maps.block_scale].map(|scale| format!("{} %", (f64::from(scale) * 1e8).round() / 1e6));
+        let [scale, block_scale] = [maps.scale, maps.block_scale]
+            .map(|scale| format!("{} %", (f64::from(scale) * 1e8).round() / 1e6));
         for (index, (run, map)) in self.runs.iter().zip(&maps.runs).enumerate() {
             let figure_of = |kind: &str, title: String, source: &str, caption: &str| {
                 shown(&format!("{kind}{index}"), &title, source, caption)
@@ -255,7 +256,10 @@ impl Comparison {
             ("reference".into(), self.reference.source.clone()),
             ("its noise".into(), noise),
         ];
-        rows.extend(self.runs.iter().map(|run| (run.name.clone(), run.settings.clone())));
+        for run in &self.runs {
+            rows.push((run.name.clone(), run.settings.clone()));
+            rows.extend(run.notes.iter().map(|(name, note)| (format!("{}: {name}", run.name), note.clone())));
+        }
         rows.push(("program".into(), concat!("alhazen ", env!("CARGO_PKG_VERSION")).into()));
         let mut text = String::from("<section>\n<h2>Settings</h2>\n<dl>\n");
         for (name, value) in rows {
