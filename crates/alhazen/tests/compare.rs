@@ -1,4 +1,5 @@
 //! The laboratory: its figures against direct computation, what it says of algorithms with and without bias, and its page.
+#![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -238,6 +239,20 @@ fn the_page_is_well_formed_and_needs_no_network() {
     assert_eq!(page.matches("src=\"data:image/png;base64,").count(), 7);
     assert!(page.contains("<h1>&lt;walls&gt; &amp; lamp.pbrt</h1>"), "text is escaped");
     assert_eq!(page.matches("<svg").count(), 2);
+}
+
+#[test]
+fn black_pictures_and_single_pixels_have_a_report_too() {
+    let dark = plan(&["ambient-occlusion:maxdistance=0.001", "path:maxdepth=0"], Budget::Samples(1));
+    let overrides = Overrides { crop: Some([0.0, 0.1, 0.9, 1.0]), ..Overrides::default() };
+    let one = Overrides { pixel: Some([3, 4]), ..Overrides::default() };
+    for comparison in [overrides, one].map(|overrides| compared(Plan { overrides, ..dark.clone() })) {
+        let page = comparison.to_html();
+        check_elements(&page);
+        assert!(!page.contains("NaN") && !page.contains("inf "), "{page}");
+        let point = comparison.runs[0].last();
+        assert!(comparison.reference.picture.width() > 1 || !point.measure.relative.is_biased(), "{point:?}");
+    }
 }
 
 /// Panics unless every element is closed where it has to be; gives their ids, none of which occurs twice.

@@ -171,7 +171,7 @@ fn summary(comparison: &Comparison, report: &Report) -> String {
 }
 
 fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
-    let (last, mean) = (run.last(), comparison.reference.mean());
+    let last = run.last();
     let parts = last.measure.relative;
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     [
@@ -181,11 +181,9 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
         format!("{:.2e}", parts.error),
         percent(parts.variance.sqrt()),
         if parts.is_biased() { percent(parts.bias_squared.sqrt()) } else { "none seen".into() },
-        format!(
-            "{} ± {}",
-            percent(last.measure.mean_error / mean),
-            percent(last.measure.mean_error_deviation / mean)
-        ),
+        comparison.relative_mean_error(run).map_or("–".into(), |[error, deviation]| {
+            format!("{} ± {}", percent(error), percent(deviation))
+        }),
         if run.efficiency() < 1.0 { format!("{:.2e}", run.efficiency()) } else { count(run.efficiency()) },
         count(run.rays_per_second()),
     ]

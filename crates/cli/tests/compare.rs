@@ -1,4 +1,5 @@
 //! `alhazen compare` from outside.
+#![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
 mod common;
 

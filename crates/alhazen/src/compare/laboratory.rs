@@ -35,7 +35,7 @@ struct Entry {
 }
 
 enum ReferencePlan {
-    Picture(Reference),
+    Picture(Box<Reference>),
     /// To be rendered as two halves, each of which may take so much.
     Render(Box<Entry>, Budget),
 }
@@ -72,7 +72,7 @@ impl Laboratory {
         let reference = match plan.reference {
             ReferenceSource::Picture { name, picture } => {
                 let picture = fitting(&name, &picture, &setup).map_err(PlanError::Reference)?;
-                ReferencePlan::Picture(Reference { source: name, picture, noise: None })
+                ReferencePlan::Picture(Box::new(Reference { source: name, picture, noise: None }))
             }
             ReferenceSource::Render { by, samples_per_pixel } => {
                 let half = match samples_per_pixel {
@@ -109,7 +109,7 @@ impl Laboratory {
     pub fn compare(self, mut begin: impl FnMut(&str) -> Control) -> Result<Comparison, Cancelled> {
         let Self { setup, scene, contenders, reference } = self;
         let reference = match reference {
-            ReferencePlan::Picture(reference) => reference,
+            ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
                 let control = begin(&format!("reference by {}", entry.name));
                 // Seeds of its own: a picture judged by its own samples would look better than it is.

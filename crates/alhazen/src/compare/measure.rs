@@ -26,7 +26,7 @@ pub struct Parts {
     pub variance: f64,
     /// Squared bias, as far as it can be told.
     pub bias_squared: f64,
-    /// The standard deviation of the estimate of the squared bias.
+    /// The standard deviation of the estimate of the squared bias; infinite for a single pixel, which cannot tell.
     pub bias_squared_deviation: f64,
 }
 
@@ -86,11 +86,12 @@ impl Sums {
         let values = 3.0 * pixels;
         // The channels of a pixel share their samples, so that they count as one number.
         let spread = self.products_squared / pixels - (self.products / pixels).powi(2);
+        let deviation = if pixels < 2.0 { f64::INFINITY } else { (spread.max(0.0) / pixels).sqrt() / 3.0 };
         Parts {
             error: self.squares / (2.0 * values),
             variance: self.differences / (2.0 * values),
             bias_squared: self.products / values - reference_noise,
-            bias_squared_deviation: (spread.max(0.0) / pixels).sqrt() / 3.0,
+            bias_squared_deviation: deviation,
         }
     }
 }

@@ -247,6 +247,12 @@ impl Comparison {
         convergence::slope(&curve)
     }
 
+    /// A run's mean error and its standard deviation as shares of the reference's mean; `None` where the reference is black.
+    pub fn relative_mean_error(&self, run: &Run) -> Option<[f64; 2]> {
+        let (mean, measure) = (self.reference.mean(), &run.last().measure);
+        (mean > 0.0).then(|| [measure.mean_error, measure.mean_error_deviation].map(|value| value / mean))
+    }
+
     /// The largest relMSE at the end of a run: an error that all have reached.
     pub fn common_error(&self) -> f64 {
         self.runs.iter().map(|run| run.last().measure.relative.error).fold(0.0, f64::max)

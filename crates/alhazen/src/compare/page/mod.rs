@@ -76,7 +76,6 @@ impl Comparison {
     fn table(&self) -> String {
         let best =
             self.runs.iter().map(Run::efficiency).filter(|value| value.is_finite()).fold(0.0, f64::max);
-        let mean = self.reference.mean();
         let mut text =
             String::from("<section>\n<h2>Figures</h2>\n<div class=\"scroll\"><table>\n<thead><tr>");
         let common = format!("s to relMSE {}", figure(self.common_error()));
@@ -111,11 +110,9 @@ impl Comparison {
                 (if parts.is_biased() { "strong" } else { "" }, bias(&parts)),
                 (
                     if surprising { "strong" } else { "" },
-                    format!(
-                        "{:.2} ± {:.2} %",
-                        100.0 * last.measure.mean_error / mean,
-                        100.0 * last.measure.mean_error_deviation / mean
-                    ),
+                    self.relative_mean_error(run).map_or("–".into(), |[error, deviation]| {
+                        format!("{:.2} ± {:.2} %", 100.0 * error, 100.0 * deviation)
+                    }),
                 ),
                 (if efficiency == best { "bar strong" } else { "bar" }, figure(efficiency)),
                 ("", self.seconds_to_common_error(run).map_or("–".into(), figure)),
@@ -128,7 +125,7 @@ impl Comparison {
                 format_args!("<tr><th scope=\"row\">{}{}</th>", swatch(index), escape(&run.name)),
             );
             for (class, cell) in cells {
-                let share = 100.0 * (efficiency / best).clamp(0.0, 1.0);
+                let share = if best > 0.0 { 100.0 * (efficiency / best).min(1.0) } else { 0.0 };
                 let style = if class.starts_with("bar") {
                     format!(" style=\"--share:{share:.1}%\"")
                 } else {
