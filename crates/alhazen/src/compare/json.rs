@@ -20,7 +20,6 @@ impl Comparison {
             },
             "seed": setup.seed,
             "threads": setup.threads,
-            "sampler": setup.sampler,
             "filter": setup.filter,
             "settings": setup.changes,
             "reference": {
@@ -41,6 +40,7 @@ impl Comparison {
         let more = json!({
             "name": run.name,
             "settings": run.settings,
+            "sampler": run.sampler,
             "notes": run.notes.iter().map(|(name, note)| ((*name).to_owned(), json!(note))).collect::<Map<_, _>>(),
             "status": if run.interrupted { "interrupted" } else { "done" },
             "flip": run.flip,

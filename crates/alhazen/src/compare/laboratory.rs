@@ -65,9 +65,8 @@ impl Laboratory {
             budget: plan.budget,
             seed: desc.sampler.seed.unwrap_or(desc.options.seed),
             threads: plan.threads,
-            sampler: format!("{:?}", desc.sampler.kind),
             filter: format!("{:?}", desc.filter.value),
-            changes: plan.overrides.settings.iter().map(|(key, value)| format!("{key}={value}")).collect(),
+            changes: changes(&plan.overrides),
         };
         let reference = match plan.reference {
             ReferenceSource::Picture { name, picture } => {
@@ -149,6 +148,12 @@ fn entry(
     Ok(Entry { name: contender.title(&desc), desc })
 }
 
+/// What is changed for all, as `key=value`.
+fn changes(overrides: &Overrides) -> Vec<String> {
+    let accelerator = overrides.accelerator.iter().map(|name| format!("accelerator={name}"));
+    accelerator.chain(overrides.settings.iter().map(|(key, value)| format!("{key}={value}"))).collect()
+}
+
 /// The part of a reference that is rendered.
 fn fitting(name: &str, picture: &Image, setup: &Setup) -> Result<Image, String> {
     let [x0, x1, y0, y1] = setup.pixel_bounds;
@@ -218,6 +223,7 @@ fn run(entry: &Entry, setup: &Setup, scene: &Scene, reference: &Reference, contr
     Some(Run {
         name: entry.name.clone(),
         settings: format!("{:?}", entry.desc.integrator.value),
+        sampler: format!("{:?}", entry.desc.sampler.kind),
         notes: twins.notes(),
         checkpoints,
         pictures,

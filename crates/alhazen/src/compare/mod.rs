@@ -133,11 +133,9 @@ pub struct Setup {
     pub seed: i32,
     /// How many threads there were.
     pub threads: usize,
-    /// The sampler of those that have none of their own, with its settings.
-    pub sampler: String,
     /// The pixel filter with its settings.
     pub filter: String,
-    /// Settings that were changed for all, as `key=value`.
+    /// What was changed of the scene for all, as `key=value`.
     pub changes: Vec<String>,
 }
 
@@ -184,6 +182,8 @@ pub struct Run {
     pub name: String,
     /// All settings of the algorithm.
     pub settings: String,
+    /// The sampler with its settings.
+    pub sampler: String,
     /// What the algorithm tells of itself: names, and what there is to say.
     pub notes: Vec<(&'static str, String)>,
     /// From the first pass to the end; never empty.

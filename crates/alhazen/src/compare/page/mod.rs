@@ -247,14 +247,13 @@ impl Comparison {
             ("each picture".into(), setup.budget.to_string()),
             ("seeds".into(), format!("{} and {}", setup.seed, setup.seed.wrapping_add(1))),
             ("threads".into(), setup.threads.to_string()),
-            ("sampler".into(), setup.sampler.clone()),
             ("filter".into(), setup.filter.clone()),
             ("changed for all".into(), changes),
             ("reference".into(), self.reference.source.clone()),
             ("its noise".into(), noise),
         ];
         for run in &self.runs {
-            rows.push((run.name.clone(), run.settings.clone()));
+            rows.push((run.name.clone(), format!("{}, sampler {}", run.settings, run.sampler)));
             rows.extend(run.notes.iter().map(|(name, note)| (format!("{}: {name}", run.name), note.clone())));
         }
         rows.push(("program".into(), concat!("alhazen ", env!("CARGO_PKG_VERSION")).into()));
