@@ -14,6 +14,7 @@
 //! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected in all ways |
+//! | [`PhotonMapping`] | photons from the lights, and camera rays that pick up the nearest |
 //!
 //! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
 //! that reaches the camera, and the depth of a path the number of its scattering events: depth 0 shows lights alone, depth 1
@@ -28,6 +29,9 @@ mod direct;
 mod integrator;
 mod light_tracing;
 mod path;
+mod photon;
+mod photon_map;
+mod photon_mapping;
 mod pixel_loop;
 mod random_walk;
 mod ray_casting;
@@ -42,6 +46,8 @@ pub use control::{Cancelled, Control, Progress, ProgressSink};
 pub use integrator::{ByProduct, Integrator};
 pub use light_tracing::LightTracing;
 pub use path::{Path, PathSettings};
+pub use photon_map::Kernel;
+pub use photon_mapping::{PhotonMapping, PhotonMappingSettings};
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;

@@ -1,0 +1,53 @@
+//! A photon: light of a light subpath that has arrived at a surface.
+//!
+//! The photons of a pass and all camera rays that look for them have the same wavelengths, so that light which one carries is
+//! light at the wavelengths of the other. Over the passes the wavelengths are spread evenly by steps of the golden ratio.
+
+use math::{Normal3, Point3, Vector3};
+use sampling::Sampler;
+use scene::Scene;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use crate::bidirectional::Vertex;
+
+/// Light that has arrived at a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Photon {
+    /// Where.
+    pub p: Point3,
+    /// Geometric normal there.
+    pub n: Normal3,
+    /// Unit direction to where it came from.
+    pub wi: Vector3,
+    /// Power, over the density of the subpath; to be divided by the number of subpaths.
+    pub beta: SampledSpectrum,
+    /// Scattering events on the subpath, the one here included.
+    pub depth: u32,
+    /// Whether only the first wavelength is left.
+    pub hero_only: bool,
+}
+
+impl Photon {
+    /// The one that a vertex of a light subpath leaves.
+    pub fn at(vertex: &Vertex) -> Self {
+        let &Vertex { ref p, n, wo: wi, beta, depth, hero_only, .. } = vertex;
+        Self { p: p.p, n, wi, beta, depth, hero_only }
+    }
+
+    /// Whether it is somewhere, with a finite power.
+    pub fn is_finite(&self) -> bool {
+        self.p.is_finite() && self.beta.is_finite()
+    }
+}
+
+/// The wavelengths of a pass.
+pub(crate) fn pass_wavelengths(scene: &Scene, sampler: &Sampler, pass: u32) -> SampledWavelengths {
+    const GOLDEN: u32 = 0x9e37_79b9;
+    if scene.options().disable_wavelength_jitter {
+        return SampledWavelengths::sample_visible(0.5);
+    }
+    let mut sampler = sampler.clone();
+    sampler.start_pixel_sample([-1, -1], 0, 0);
+    let step = pass.wrapping_mul(GOLDEN) as f32 / (u32::MAX as f32 + 1.0);
+    SampledWavelengths::sample_visible((sampler.get_1d() + step).fract())
+}

@@ -1,0 +1,97 @@
+//! Photons where they have arrived, and how densely they lie around a point.
+//!
+//! What n subpaths have left on a surface estimates the flux that arrives there: the density of flux at a point is
+//!
+//! ```text
+//! 1/n Σ K(dᵢ/r)/r² · βᵢ
+//! ```
+//!
+//! over the photons i at the distances dᵢ < r, K being a [`Kernel`]. The radius r is the distance of the photon that comes after the `nearest`
+//! nearest, so that where photons lie densely little is blurred; but at most `radius`.
+//!
+//! A given radius has a bias, that of the blur: on a plane inside which the density is linear there is none, elsewhere it falls with r².
+//! At edges of surfaces the disk hangs over and finds too little; corners are darkened within r of them. Neighbours that count do not
+//! include the one that makes the radius: on an even density of photons that fell independently (k − 1)/πr² with the k-th
+//! photon's distance has the right mean, where k/πr² has too much by 1/(k − 1), and the largest radius changes nothing about that.
+//!
+//! Sources: [Jensen 2001a ch. 6, 7]; [Silverman 1986 §5.2].
+
+mod kd_tree;
+mod kernel;
+
+use math::Point3;
+use rayon::prelude::*;
+use spectrum::SampledSpectrum;
+
+pub use kernel::Kernel;
+
+use crate::photon::Photon;
+use crate::{Cancelled, Control};
+use kd_tree::{KdTree, Neighbour};
+
+/// Photons of one kind.
+#[derive(Debug, Default)]
+pub(crate) struct PhotonMap {
+    tree: KdTree,
+    /// In the order of the tree's points.
+    photons: Vec<Photon>,
+    /// Subpaths that left them.
+    paths: u32,
+}
+
+/// Which photons make an estimate, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Neighbourhood {
+    /// How many of the nearest.
+    pub nearest: usize,
+    /// The farthest that they may be away.
+    pub radius: f32,
+    /// How they are weighed.
+    pub kernel: Kernel,
+}
+
+impl PhotonMap {
+    /// Of photons that so many subpaths have left; those that are not finite are left out.
+    pub fn build(photons: Vec<Photon>, paths: u32, control: &Control) -> Result<Self, Cancelled> {
+        let places = photons.iter().map(|photon| if photon.is_finite() { photon.p } else { Point3::NAN });
+        let (tree, order) = KdTree::build(places, control)?;
+        let photons = order.into_par_iter().map(|i| photons[i as usize]).collect();
+        Ok(Self { tree, photons, paths })
+    }
+
+    /// How many photons there are.
+    pub fn len(&self) -> usize {
+        self.photons.len()
+    }
+
+    /// Bytes that it takes.
+    pub fn memory(&self) -> usize {
+        self.tree.memory() + size_of_val(&*self.photons)
+    }
+
+    /// The density at `p` of what `weigh` makes of the photons that `accept` takes; and the radius within which they were.
+    ///
+    /// There is no density where the photons of an estimate all lie in one point.
+    pub fn density(
+        &self,
+        p: Point3,
+        neighbourhood: &Neighbourhood,
+        accept: impl Fn(&Photon) -> bool,
+        weigh: impl Fn(&Photon) -> SampledSpectrum,
+    ) -> (SampledSpectrum, f32) {
+        let &Neighbourhood { nearest, radius, kernel } = neighbourhood;
+        let found = self.tree.nearest(p, nearest + 1, radius, |i| accept(&self.photons[i as usize]));
+        let farthest = found.iter().fold(0.0, |farthest: f32, found| farthest.max(found.distance_squared));
+        let radius_squared = if found.len() > nearest { farthest } else { radius * radius };
+        if radius_squared == 0.0 {
+            return (SampledSpectrum::ZERO, 0.0);
+        }
+        let sum: SampledSpectrum = found
+            .iter()
+            .map(|&Neighbour { distance_squared, index }| {
+                weigh(&self.photons[index as usize]) * kernel.evaluate(distance_squared / radius_squared)
+            })
+            .sum();
+        (sum / (radius_squared * self.paths as f32), radius_squared.sqrt())
+    }
+}

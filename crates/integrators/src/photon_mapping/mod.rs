@@ -1,0 +1,269 @@
+//! Photon mapping: light is shot into the scene, stays where it falls, and is picked up by the camera's rays.
+//!
+//! Photons leave the lights and are scattered by surfaces as the BSDFs say. At each surface that is not purely specular they leave
+//! their power Φ, direction and place in a *photon map*. The radiance that such a surface at x reflects is then, over the photons
+//! near x,
+//!
+//! ```text
+//! L(x, ωₒ) = ∫ f(x, ωₒ, ωᵢ) L(x, ωᵢ) |cos θᵢ| dωᵢ = ∫ f d²Φ/dA ≈ Σ f(x, ωₒ, ω_p) Φ_p · K(d_p/r)/r²
+//! ```
+//!
+//! Two maps are kept. The *caustic map* has light that came through mirrors and glass alone; the *global map* that which other surfaces
+//! have scattered. Direct light is found by shadow rays, since the eye sees its edges best. `gather.rs` says how all light is found
+//! once. With `gather` rays of a final gather the global map is not seen itself but through the reflection of a diffuse surface, which
+//! evens its blotches out.
+//!
+//! It is at its best on caustics, also those seen in a mirror, and those of lights at a point, which no path from the camera finds. It is
+//! *biased*: photons are spread over the radius of the nearest ones. Caustics have soft rims, corners are a little dark (the radius reaches
+//! beyond the surface), light may seep around things thinner than the radius. Each pass emits photons of its own, so that noise falls
+//! with the number of passes as in path tracing while the bias stays; it falls with r², which is to say with 1/`photons`, at equal
+//! `nearest`. Narrow glossy surfaces are noisy in light that comes through glass.
+//!
+//! Memory is taken for the photons of one pass: no more than the subpaths asked for times their mean length, 69 bytes each, and again as much
+//! while the tree is built.
+//!
+//! Sources: [Jensen 1996]; [Jensen 2001a].
+
+mod emission;
+mod gather;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use film::Film;
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::light_sampler::LightSamplerKind;
+use scene::{Interfaces, Scene};
+use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
+
+use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
+use crate::photon::{Photon, pass_wavelengths};
+use crate::photon_map::{Kernel, Neighbourhood, PhotonMap};
+use crate::pixel_loop::PixelSamples;
+use crate::{Cancelled, Control, Integrator, Path, PathSettings, RayIntegrator};
+use emission::{Emission, Kind};
+use gather::Gather;
+
+/// Settings of [`PhotonMapping`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonMappingSettings {
+    /// Most scattering events of a path; default 5.
+    pub max_depth: u32,
+    /// Light subpaths for the global map in each pass; default 200 000.
+    pub photons: u32,
+    /// Light subpaths for the caustic map in each pass; default 100 000.
+    pub caustic_photons: u32,
+    /// How many of the nearest photons make an estimate; default 50.
+    pub nearest: u32,
+    /// The farthest that they may be away, in scene units; by default 3 % of the radius of the sphere around the scene.
+    pub radius: Option<f32>,
+    /// How they are weighed.
+    pub kernel: Kernel,
+    /// Rays of a final gather; default 0, for none.
+    pub gather: u32,
+    /// Whether the picture shows the photons themselves.
+    pub show_photons: bool,
+}
+
+impl Default for PhotonMappingSettings {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            photons: 200_000,
+            caustic_photons: 100_000,
+            nearest: 50,
+            radius: None,
+            kernel: Kernel::default(),
+            gather: 0,
+            show_photons: false,
+        }
+    }
+}
+
+/// Photon mapping.
+#[derive(Debug)]
+pub struct PhotonMapping {
+    settings: PhotonMappingSettings,
+    sampler: Sampler,
+    light_sampler: Sampler,
+    lights: Lights,
+    path: Path,
+    radius: f32,
+    tally: Tally,
+    reach: Reach,
+}
+
+/// The photons of a pass.
+#[derive(Debug, Default)]
+struct Maps {
+    caustic: PhotonMap,
+    global: PhotonMap,
+}
+
+/// What the maps have held.
+#[derive(Debug, Default)]
+struct Tally {
+    passes: u64,
+    caustic: u64,
+    global: u64,
+    largest_memory: usize,
+}
+
+/// The radii of estimates, in parts of the largest.
+#[derive(Debug)]
+struct Reach {
+    largest: f32,
+    sum: AtomicU64,
+    count: AtomicU64,
+}
+
+impl Reach {
+    /// One part: fine enough for a mean, and whole numbers, whose sum has no order.
+    const PART: f32 = 1.0 / 4096.0;
+
+    fn new(largest: f32) -> Self {
+        Self { largest, sum: AtomicU64::new(0), count: AtomicU64::new(0) }
+    }
+
+    fn add(&self, radius: f32) {
+        self.sum.fetch_add((radius / (self.largest * Self::PART)) as u64, Ordering::Relaxed);
+        self.count.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn mean(&self) -> f64 {
+        let (sum, count) = (self.sum.load(Ordering::Relaxed), self.count.load(Ordering::Relaxed));
+        sum as f64 / count.max(1) as f64 * f64::from(self.largest * Self::PART)
+    }
+}
+
+impl PhotonMapping {
+    /// With a sampler for each end.
+    pub fn new(settings: PhotonMappingSettings, sampler: Sampler, light_sampler: Sampler) -> Self {
+        let path = Path::new(PathSettings {
+            max_depth: settings.max_depth,
+            regularize: false,
+            light_sampler: LightSamplerKind::Bvh,
+            interfaces: Interfaces::Pass,
+        });
+        let (lights, tally, reach) = (Lights::none(), Tally::default(), Reach::new(1.0));
+        Self { settings, sampler, light_sampler, lights, path, radius: 1.0, tally, reach }
+    }
+
+    /// How the global map's photons are used tells which ones it needs.
+    fn global_kind(&self) -> Kind {
+        if self.settings.gather > 0 { Kind::All } else { Kind::Indirect }
+    }
+
+    /// Emits the photons of a pass.
+    fn maps(&self, emission: &Emission, control: &Control) -> Result<(Maps, RayStats), Cancelled> {
+        let map = |kind, paths| {
+            let (photons, stats) = emission.emit(kind, paths, control, |vertex, _, _| Photon::at(vertex))?;
+            Ok((PhotonMap::build(photons, paths, control)?, stats))
+        };
+        let (caustic, mut stats) = map(Kind::Caustic, self.settings.caustic_photons)?;
+        let (global, global_stats) = map(self.global_kind(), self.settings.photons)?;
+        stats += global_stats;
+        Ok((Maps { caustic, global }, stats))
+    }
+
+    /// Draws the photons as dots, a white one that has lost nothing at white.
+    fn draw(&self, emission: &Emission, film: &mut Film, control: &Control) -> Result<RayStats, Cancelled> {
+        let scene = emission.paths.scene;
+        let mean = |lambda: &SampledWavelengths, l: SampledSpectrum| l.safe_div(lambda.pdf()).average();
+        let fixed = SampledWavelengths::sample_visible(0.5);
+        let power: f32 = scene.lights().iter().map(|light| mean(&fixed, light.phi(&fixed))).sum();
+        let white = mean(&fixed, SampledSpectrum::ONE) / (power * CIE_Y_INTEGRAL);
+        let (_, splatter) = film.tiles_and_splatter();
+        let dot = |vertex: &Vertex, sampler: &mut Sampler, stats: &mut RayStats| {
+            let lens = sampler.get_2d();
+            if let Some(seen) = emission.paths.see(vertex, lens, |film| splatter.reaches(film), stats) {
+                let photon = Photon::at(vertex);
+                let l = photon.beta * white;
+                let l = if photon.hero_only { hero_only(l) } else { l };
+                splatter.add(seen.film, &l, &emission.lambda);
+            }
+        };
+        splatter.add_paths(1);
+        let (_, mut stats) = emission.emit(Kind::Caustic, self.settings.caustic_photons, control, dot)?;
+        let (_, global_stats) = emission.emit(self.global_kind(), self.settings.photons, control, dot)?;
+        stats += global_stats;
+        Ok(stats)
+    }
+}
+
+impl Integrator for PhotonMapping {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene) {
+        self.lights = Lights::of(scene);
+        self.path.prepare(scene);
+        self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
+        self.reach = Reach::new(self.radius);
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let settings = &self.settings;
+        let paths = Bidirectional {
+            scene,
+            lights: &self.lights,
+            balance: Balance::connecting(film.pixel_bounds().area()),
+            max_depth: settings.max_depth,
+            regularize: false,
+        };
+        let lambda = pass_wavelengths(scene, &self.light_sampler, pass);
+        // Photons that are shown stay, and their colours become right over the passes.
+        let generation = if settings.show_photons { 0 } else { pass };
+        let emission = Emission { paths: &paths, lambda, sampler: &self.light_sampler, generation };
+        if settings.show_photons {
+            return self.draw(&emission, film, control);
+        }
+        let (maps, mut stats) = self.maps(&emission, control)?;
+        let neighbourhood = Neighbourhood {
+            nearest: settings.nearest as usize,
+            radius: self.radius,
+            kernel: settings.kernel,
+        };
+        let (path, reach) = (&self.path, &self.reach);
+        let gather = Gather { scene, path, maps: &maps, settings, neighbourhood, reach };
+        let filter = film.filter().clone();
+        let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
+        stats += pixels.add(film.tiles_mut(), control, |sample, sampler, stats| {
+            sample.lambda = lambda;
+            let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
+            gather.li(camera_ray.ray, &lambda, sampler, stats) * camera_ray.weight
+        })?;
+        self.tally.passes += 1;
+        self.tally.caustic += maps.caustic.len() as u64;
+        self.tally.global += maps.global.len() as u64;
+        let memory = maps.caustic.memory() + maps.global.memory();
+        self.tally.largest_memory = self.tally.largest_memory.max(memory);
+        Ok(stats)
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        let Tally { passes, caustic, global, largest_memory } = self.tally;
+        if passes == 0 {
+            return Vec::new();
+        }
+        let mebibytes = largest_memory as f64 / f64::from(1 << 20);
+        let (global, caustic) = (global / passes, caustic / passes);
+        let (mean, largest) = (self.reach.mean(), self.reach.largest);
+        vec![
+            (
+                "photons",
+                format!(
+                    "{global} in the global map of a pass, {caustic} in its caustic map; {mebibytes:.1} MiB"
+                ),
+            ),
+            ("radius", format!("{mean:.3} in the mean, {largest:.3} at most")),
+        ]
+    }
+}
