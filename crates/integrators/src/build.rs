@@ -103,6 +103,13 @@ impl Builder<'_> {
         Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
     }
 
+    /// The seed of photons, which have nothing in common with the other samplers.
+    fn photon_seed(&self, seed: Option<i32>) -> u32 {
+        const PHOTONS: u32 = 0x7068_6f74;
+        let seed = seed.or(self.desc.sampler.seed).unwrap_or(self.desc.options.seed);
+        hash(&[seed as u32, PHOTONS]) as u32
+    }
+
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         match &self.desc.integrator.value {
             IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
@@ -151,8 +158,7 @@ impl Builder<'_> {
             }
             IntegratorDesc::PhotonMapping(desc) => {
                 let settings = self.photon_mapping(desc);
-                let light_sampler = self.light_sampler(&sampler);
-                Box::new(PhotonMapping::new(settings, sampler, light_sampler))
+                Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
             }
             &IntegratorDesc::Vcm(VcmDesc { max_depth, .. }) => {
                 self.instead_of("vcm", max_depth, false, sampler)

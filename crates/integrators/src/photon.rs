@@ -4,7 +4,7 @@
 //! light at the wavelengths of the other. Over the passes the wavelengths are spread evenly by steps of the golden ratio.
 
 use math::{Normal3, Point3, Vector3};
-use sampling::Sampler;
+use sampling::hash_float;
 use scene::Scene;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -41,13 +41,11 @@ impl Photon {
 }
 
 /// The wavelengths of a pass.
-pub(crate) fn pass_wavelengths(scene: &Scene, sampler: &Sampler, pass: u32) -> SampledWavelengths {
-    const GOLDEN: u32 = 0x9e37_79b9;
+pub(crate) fn pass_wavelengths(scene: &Scene, seed: u32, pass: u32) -> SampledWavelengths {
     if scene.options().disable_wavelength_jitter {
         return SampledWavelengths::sample_visible(0.5);
     }
-    let mut sampler = sampler.clone();
-    sampler.start_pixel_sample([-1, -1], 0, 0);
-    let step = pass.wrapping_mul(GOLDEN) as f32 / (u32::MAX as f32 + 1.0);
-    SampledWavelengths::sample_visible((sampler.get_1d() + step).fract())
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let steps = (f64::from(pass) * GOLDEN).fract() as f32;
+    SampledWavelengths::sample_visible((hash_float(&[seed]) + steps).fract())
 }

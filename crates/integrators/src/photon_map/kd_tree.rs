@@ -167,3 +167,99 @@ impl<A: Fn(u32) -> bool> Search<'_, A> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use testkit::Random;
+
+    fn tree(points: &[Point3]) -> (KdTree, Vec<u32>) {
+        KdTree::build(points.iter().copied(), &Control::default()).expect("nobody cancels it")
+    }
+
+    /// Sets of points that trees find hard, and easy ones.
+    fn clouds() -> Vec<(&'static str, Vec<Point3>)> {
+        let mut random = Random::new(3);
+        let mut next = move || random.get_1d();
+        let mut cloud = |count: usize, make: &mut dyn FnMut(&mut dyn FnMut() -> f32) -> Point3| {
+            (0..count).map(|_| make(&mut next)).collect::<Vec<_>>()
+        };
+        let nan = f32::NAN;
+        vec![
+            ("none", Vec::new()),
+            ("one", vec![Point3::ONE]),
+            ("in a cube", cloud(700, &mut |u| Point3::new(u(), u(), u()))),
+            ("many", cloud(9000, &mut |u| Point3::new(u(), u(), u() * u()))),
+            ("on a line", cloud(300, &mut |u| Point3::new(0.5, u(), 0.5))),
+            ("on a grid", cloud(600, &mut |u| Point3::new(u(), u(), u()).map(|x| (x * 4.0).floor() / 4.0))),
+            ("in one point", vec![Point3::new(0.5, 0.2, 0.1); 100]),
+            (
+                "far apart",
+                cloud(200, &mut |u| Point3::new(u(), u(), u()).map(|x| (1.0 / (x + 1e-6)).powi(4))),
+            ),
+            (
+                "not all finite",
+                cloud(300, &mut |u| {
+                    let p = Point3::new(u(), u(), u());
+                    match (u() * 6.0) as u32 {
+                        0 => Point3 { x: nan, ..p },
+                        1 => Point3 { y: f32::INFINITY, ..p },
+                        2 => Point3 { z: f32::NEG_INFINITY, ..p },
+                        _ => p,
+                    }
+                }),
+            ),
+        ]
+    }
+
+    #[test]
+    fn the_nearest_are_those_that_a_search_through_all_finds() {
+        let mut random = Random::new(8);
+        for (name, points) in clouds() {
+            let (tree, order) = tree(&points);
+            let mut kept = order.clone();
+            kept.sort_unstable();
+            let finite = (0..points.len() as u32).filter(|&i| points[i as usize].is_finite());
+            assert_eq!(kept, finite.collect::<Vec<_>>(), "{name}");
+            for trial in 0..150 {
+                let p = match points.get(trial / 3) {
+                    Some(p) if trial % 3 == 0 && p.is_finite() => *p,
+                    _ => Point3::new(random.get_1d(), random.get_1d(), random.get_1d()) * 1.4 - 0.2,
+                };
+                let count = [0, 1, 2, 7, 50, 1000][trial % 6];
+                let radius = [0.0, 0.01, 0.1, 0.3, 2.0, f32::INFINITY, 1e30][trial % 7];
+                let accept = |i: u32| trial % 2 == 0 || i % 3 != 1;
+                let mut expected: Vec<_> = (0..order.len() as u32)
+                    .map(|index| {
+                        let q = points[order[index as usize] as usize];
+                        Neighbour { distance_squared: p.distance_squared(q), index }
+                    })
+                    .filter(|n| n.distance_squared <= radius * radius && accept(n.index))
+                    .collect();
+                expected.sort_unstable();
+                expected.truncate(count);
+                let mut found = tree.nearest(p, count, radius, accept);
+                found.sort_unstable();
+                assert_eq!(found, expected, "{name}, {count} nearest to {p} within {radius}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tree_depends_on_its_points_alone() {
+        let (_, points) = clouds().swap_remove(3);
+        let build = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| tree(&points)).1
+        };
+        assert_eq!(build(1), build(7));
+    }
+
+    #[test]
+    fn building_stops_when_it_is_told_to() {
+        let (_, points) = clouds().swap_remove(3);
+        let control = Control::default();
+        control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(KdTree::build(points.into_iter(), &control).is_err());
+    }
+}

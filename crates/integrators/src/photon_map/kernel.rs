@@ -31,3 +31,21 @@ impl Kernel {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use testkit::integrate;
+
+    #[test]
+    fn the_integral_over_the_disk_is_one() {
+        for kernel in [Kernel::Cone, Kernel::Epanechnikov] {
+            let ring =
+                |r: f64, _: f64| 2.0 * std::f64::consts::PI * r * f64::from(kernel.evaluate((r * r) as f32));
+            let integral = integrate(&ring, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
+            assert!((integral - 1.0).abs() < 1e-5, "{kernel:?}: {integral}");
+            assert_eq!(kernel.evaluate(1.0), 0.0);
+            assert_eq!(kernel.evaluate(2.0), 0.0);
+        }
+    }
+}

@@ -83,8 +83,8 @@ impl PhotonMap {
         let found = self.tree.nearest(p, nearest + 1, radius, |i| accept(&self.photons[i as usize]));
         let farthest = found.iter().fold(0.0, |farthest: f32, found| farthest.max(found.distance_squared));
         let radius_squared = if found.len() > nearest { farthest } else { radius * radius };
-        if radius_squared == 0.0 {
-            return (SampledSpectrum::ZERO, 0.0);
+        if found.is_empty() || radius_squared == 0.0 {
+            return (SampledSpectrum::ZERO, radius_squared.sqrt());
         }
         let sum: SampledSpectrum = found
             .iter()
@@ -93,5 +93,60 @@ impl PhotonMap {
             })
             .sum();
         (sum / (radius_squared * self.paths as f32), radius_squared.sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use math::Vec3;
+    use testkit::{Moments, Random, t_test};
+
+    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, each at a place of its own.
+    fn square(count: usize, seed: u64) -> PhotonMap {
+        let mut random = Random::new(seed);
+        let photons = (0..count).map(|_| {
+            let p = Point3::new(2.0 * random.get_1d() - 1.0, 2.0 * random.get_1d() - 1.0, 0.0);
+            Photon { p, n: Vec3::Z, wi: Vec3::Z, beta: SampledSpectrum::ONE, depth: 2, hero_only: false }
+        });
+        PhotonMap::build(photons.collect(), 2, &Control::default()).expect("nobody cancels it")
+    }
+
+    fn density(map: &PhotonMap, neighbourhood: &Neighbourhood) -> f64 {
+        map.density(Point3::ZERO, neighbourhood, |_| true, |photon| photon.beta).0[0].into()
+    }
+
+    #[test]
+    fn an_even_density_is_found_without_bias_however_many_photons_count() {
+        for kernel in [Kernel::Cone, Kernel::Epanechnikov] {
+            // The nearest k alone, the radius alone, and now the one and now the other.
+            for (nearest, radius) in [(3, 0.9), (5, 0.9), (1000, 0.5), (12, 0.35)] {
+                let neighbourhood = Neighbourhood { nearest, radius, kernel };
+                let found: Moments =
+                    (0..6000).map(|seed| density(&square(120, seed), &neighbourhood)).collect();
+                t_test(&found, 120.0 / 4.0 / 2.0, 8)
+                    .unwrap_or_else(|difference| panic!("{neighbourhood:?}: {difference}"));
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_found_where_nothing_is_or_all_is_in_one_point() {
+        let neighbourhood = Neighbourhood { nearest: 5, radius: 0.1, kernel: Kernel::Epanechnikov };
+        assert_eq!(density(&PhotonMap::default(), &neighbourhood), 0.0);
+        let mut photon = square(1, 1).photons[0];
+        photon.p = Point3::ZERO;
+        let map = PhotonMap::build(vec![photon; 9], 1, &Control::default()).expect("nobody cancels it");
+        assert_eq!(density(&map, &neighbourhood), 0.0);
+    }
+
+    #[test]
+    fn photons_that_are_no_numbers_are_left_out() {
+        let mut photons = square(40, 2).photons;
+        photons[3].p.y = f32::NAN;
+        photons[8].beta[2] = f32::INFINITY;
+        let map = PhotonMap::build(photons, 2, &Control::default()).expect("nobody cancels it");
+        assert_eq!(map.len(), 38);
+        assert!(map.memory() >= 38 * 68);
     }
 }

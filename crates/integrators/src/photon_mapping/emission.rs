@@ -6,7 +6,8 @@
 
 use geometry::RayStats;
 use rayon::prelude::*;
-use sampling::Sampler;
+use sampling::sampler::PaddedSobol;
+use sampling::{Randomize, Sampler};
 use spectrum::SampledWavelengths;
 
 use crate::bidirectional::{Bidirectional, Vertex, Walk};
@@ -49,7 +50,7 @@ impl Kind {
 pub(super) struct Emission<'a> {
     pub paths: &'a Bidirectional<'a>,
     pub lambda: SampledWavelengths,
-    pub sampler: &'a Sampler,
+    pub seed: u32,
     /// Which photons, of all that the seed has.
     pub generation: u32,
 }
@@ -63,12 +64,14 @@ impl Emission<'_> {
         control: &Control,
         keep: impl Fn(&Vertex, &mut Sampler, &mut RayStats) -> T + Sync,
     ) -> Result<(Vec<T>, RayStats), Cancelled> {
+        // Arranged for all subpaths of the generation at once, which makes their order in one coordinate no hint at the next.
+        let sampler = Sampler::PaddedSobol(PaddedSobol::new(paths, Randomize::FastOwen, self.seed));
         let chunks: Vec<_> = (0..paths.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 control.check()?;
                 let (mut kept, mut stats) = (Vec::new(), RayStats::default());
-                let mut sampler = self.sampler.clone();
+                let mut sampler = sampler.clone();
                 let start = chunk * CHUNK;
                 for path in start..paths.min(start.saturating_add(CHUNK)) {
                     sampler.start_pixel_sample([self.generation as i32, kind.pixel()], path, 0);

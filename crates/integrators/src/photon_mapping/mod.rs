@@ -85,7 +85,7 @@ impl Default for PhotonMappingSettings {
 pub struct PhotonMapping {
     settings: PhotonMappingSettings,
     sampler: Sampler,
-    light_sampler: Sampler,
+    photon_seed: u32,
     lights: Lights,
     path: Path,
     radius: f32,
@@ -137,8 +137,8 @@ impl Reach {
 }
 
 impl PhotonMapping {
-    /// With a sampler for each end.
-    pub fn new(settings: PhotonMappingSettings, sampler: Sampler, light_sampler: Sampler) -> Self {
+    /// With a sampler for the camera's rays, and a seed for photons.
+    pub fn new(settings: PhotonMappingSettings, sampler: Sampler, photon_seed: u32) -> Self {
         let path = Path::new(PathSettings {
             max_depth: settings.max_depth,
             regularize: false,
@@ -146,7 +146,7 @@ impl PhotonMapping {
             interfaces: Interfaces::Pass,
         });
         let (lights, tally, reach) = (Lights::none(), Tally::default(), Reach::new(1.0));
-        Self { settings, sampler, light_sampler, lights, path, radius: 1.0, tally, reach }
+        Self { settings, sampler, photon_seed, lights, path, radius: 1.0, tally, reach }
     }
 
     /// How the global map's photons are used tells which ones it needs.
@@ -218,10 +218,10 @@ impl Integrator for PhotonMapping {
             max_depth: settings.max_depth,
             regularize: false,
         };
-        let lambda = pass_wavelengths(scene, &self.light_sampler, pass);
+        let lambda = pass_wavelengths(scene, self.photon_seed, pass);
         // Photons that are shown stay, and their colours become right over the passes.
         let generation = if settings.show_photons { 0 } else { pass };
-        let emission = Emission { paths: &paths, lambda, sampler: &self.light_sampler, generation };
+        let emission = Emission { paths: &paths, lambda, seed: self.photon_seed, generation };
         if settings.show_photons {
             return self.draw(&emission, film, control);
         }
