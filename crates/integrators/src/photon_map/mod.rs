@@ -102,14 +102,20 @@ mod tests {
     use math::Vec3;
     use testkit::{Moments, Random, t_test};
 
-    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, each at a place of its own.
-    fn square(count: usize, seed: u64) -> PhotonMap {
+    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, so many or those of them that `stays`.
+    fn photons(count: usize, seed: u64, stays: impl Fn(Point3, f32) -> bool) -> PhotonMap {
         let mut random = Random::new(seed);
-        let photons = (0..count).map(|_| {
+        let photons = (0..count).filter_map(|_| {
             let p = Point3::new(2.0 * random.get_1d() - 1.0, 2.0 * random.get_1d() - 1.0, 0.0);
-            Photon { p, n: Vec3::Z, wi: Vec3::Z, beta: SampledSpectrum::ONE, depth: 2, hero_only: false }
+            let photon =
+                Photon { p, n: Vec3::Z, wi: Vec3::Z, beta: SampledSpectrum::ONE, depth: 2, hero_only: false };
+            stays(p, random.get_1d()).then_some(photon)
         });
         PhotonMap::build(photons.collect(), 2, &Control::default()).expect("nobody cancels it")
+    }
+
+    fn square(count: usize, seed: u64) -> PhotonMap {
+        photons(count, seed, |_, _| true)
     }
 
     fn density(map: &PhotonMap, neighbourhood: &Neighbourhood) -> f64 {
@@ -125,6 +131,21 @@ mod tests {
                 let found: Moments =
                     (0..6000).map(|seed| density(&square(120, seed), &neighbourhood)).collect();
                 t_test(&found, 120.0 / 4.0 / 2.0, 8)
+                    .unwrap_or_else(|difference| panic!("{neighbourhood:?}: {difference}"));
+            }
+        }
+    }
+
+    #[test]
+    fn where_the_density_bends_the_error_goes_with_the_square_of_the_radius() {
+        // Of (1 + x²)/2 the kernel finds (1 + r² E[x²])/2 at x = 0, E[x²] being its second moment.
+        for (kernel, moment) in [(Kernel::Cone, 0.15), (Kernel::Epanechnikov, 1.0 / 6.0)] {
+            for radius in [0.9f32, 0.45] {
+                let neighbourhood = Neighbourhood { nearest: 1000, radius, kernel };
+                let bent = |seed| photons(100, seed, |p, u| 2.0 * u < 1.0 + p.x * p.x);
+                let found: Moments = (0..20_000).map(|seed| density(&bent(seed), &neighbourhood)).collect();
+                let expected = 100.0 / 4.0 / 2.0 * 0.5 * (1.0 + f64::from(radius).powi(2) * moment);
+                t_test(&found, expected, 4)
                     .unwrap_or_else(|difference| panic!("{neighbourhood:?}: {difference}"));
             }
         }

@@ -120,3 +120,84 @@ impl Emission<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bidirectional::{Balance, Lights};
+    use crate::photon::Photon;
+    use description::{
+        AreaLightDesc, MaterialKind, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+    };
+    use scene::Scene;
+    use testkit::{Moments, t_test, welch_test};
+
+    /// The inside of a ball that shines and reflects half, and perhaps a ball of glass in it.
+    fn furnace(with_glass: bool) -> Scene {
+        let mut desc = SceneDesc::default();
+        let ball = |radius: f32| {
+            ShapeDesc::from(ShapeKind::Sphere { radius, z_min: -radius, z_max: radius, phi_max: 360.0 })
+        };
+        let material = Some(desc.materials.push(MaterialKind::Diffuse { reflectance: 0.5.into() }.into()));
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::Constant(1.0))));
+        desc.shapes.push(ShapeDesc { material, area_light, reverse_orientation: true, ..ball(1.0) });
+        if with_glass {
+            let eta = SpectrumDesc::Constant(1.5);
+            let glass = MaterialKind::Dielectric { eta, roughness: RoughnessDesc::default() };
+            let material = Some(desc.materials.push(glass.into()));
+            desc.shapes.push(ShapeDesc { material, ..ball(0.6) });
+        }
+        scene::compile(&desc).expect("a scene").scene
+    }
+
+    const PATHS: u32 = 30_000;
+
+    fn emit(scene: &Scene, kind: Kind, max_depth: u32) -> Vec<Photon> {
+        let lights = Lights::of(scene);
+        let balance = Balance::connecting(1);
+        let paths = Bidirectional { scene, lights: &lights, balance, max_depth, regularize: false };
+        let lambda = SampledWavelengths::sample_visible(0.3);
+        let emission = Emission { paths: &paths, lambda, seed: 5, generation: 2 };
+        let keep = |vertex: &Vertex, _: &mut Sampler, _: &mut RayStats| Photon::at(vertex);
+        emission.emit(kind, PATHS, &Control::default(), keep).expect("nobody cancels it").0
+    }
+
+    /// What each subpath has left of `photons`, of which it has left one at most, over the power of the lights.
+    fn shares<'a>(scene: &Scene, photons: impl Iterator<Item = &'a Photon>) -> Moments {
+        let power = scene.lights()[0].phi(&SampledWavelengths::sample_visible(0.3))[0];
+        let mut shares: Vec<f64> = photons.map(|photon| f64::from(photon.beta[0] / power)).collect();
+        shares.resize(PATHS as usize, 0.0);
+        shares.into_iter().collect()
+    }
+
+    #[test]
+    fn surfaces_receive_what_surfaces_have_left_of_the_power_of_lights() {
+        let scene = furnace(false);
+        let photons = emit(&scene, Kind::All, 6);
+        assert!(photons.iter().all(|photon| (1..=6).contains(&photon.depth)));
+        for depth in 1..=6 {
+            let found = shares(&scene, photons.iter().filter(|photon| photon.depth == depth));
+            let expected = 0.5f64.powi(depth as i32 - 1);
+            if (found.mean - expected).abs() > 1e-6 {
+                t_test(&found, expected, 6)
+                    .unwrap_or_else(|difference| panic!("depth {depth}: {difference}"));
+            }
+        }
+    }
+
+    #[test]
+    fn photons_are_direct_or_of_a_caustic_or_indirect() {
+        let scene = furnace(true);
+        let [all, indirect, caustic] =
+            [Kind::All, Kind::Indirect, Kind::Caustic].map(|kind| emit(&scene, kind, 8));
+        // The maps of all and of indirect light have the same subpaths.
+        let mut rest = indirect.iter().peekable();
+        let first: Vec<_> = all.iter().filter(|photon| rest.next_if_eq(photon).is_none()).collect();
+        assert!(rest.next().is_none() && !indirect.is_empty());
+        assert!(caustic.iter().all(|photon| photon.depth > 1));
+        let direct = shares(&scene, first.iter().copied().filter(|photon| photon.depth == 1));
+        let expected = shares(&scene, first.iter().copied().filter(|photon| photon.depth > 1));
+        assert!(direct.mean > 0.3 && expected.mean > 0.3);
+        welch_test(&shares(&scene, caustic.iter()), &expected, 1).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
