@@ -27,6 +27,7 @@
 mod emission;
 mod gather;
 
+use std::ops::AddAssign;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use film::Film;
@@ -109,6 +110,21 @@ struct Tally {
     largest_memory: usize,
 }
 
+impl Tally {
+    fn of_pass(caustic: usize, global: usize, memory: usize) -> Self {
+        Self { passes: 1, caustic: caustic as u64, global: global as u64, largest_memory: memory }
+    }
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.passes += other.passes;
+        self.caustic += other.caustic;
+        self.global += other.global;
+        self.largest_memory = self.largest_memory.max(other.largest_memory);
+    }
+}
+
 /// The radii of estimates, in parts of the largest.
 #[derive(Debug)]
 struct Reach {
@@ -167,7 +183,12 @@ impl PhotonMapping {
     }
 
     /// Draws the photons as dots, a white one that has lost nothing at white.
-    fn draw(&self, emission: &Emission, film: &mut Film, control: &Control) -> Result<RayStats, Cancelled> {
+    fn draw(
+        &self,
+        emission: &Emission,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<(Tally, RayStats), Cancelled> {
         let scene = emission.paths.scene;
         let mean = |lambda: &SampledWavelengths, l: SampledSpectrum| l.safe_div(lambda.pdf()).average();
         let fixed = SampledWavelengths::sample_visible(0.5);
@@ -184,10 +205,12 @@ impl PhotonMapping {
             }
         };
         splatter.add_paths(1);
-        let (_, mut stats) = emission.emit(Kind::Caustic, self.settings.caustic_photons, control, dot)?;
-        let (_, global_stats) = emission.emit(self.global_kind(), self.settings.photons, control, dot)?;
+        let (caustic, mut stats) =
+            emission.emit(Kind::Caustic, self.settings.caustic_photons, control, dot)?;
+        let (global, global_stats) =
+            emission.emit(self.global_kind(), self.settings.photons, control, dot)?;
         stats += global_stats;
-        Ok(stats)
+        Ok((Tally::of_pass(caustic.len(), global.len(), 0), stats))
     }
 }
 
@@ -223,7 +246,9 @@ impl Integrator for PhotonMapping {
         let generation = if settings.show_photons { 0 } else { pass };
         let emission = Emission { paths: &paths, lambda, seed: self.photon_seed, generation };
         if settings.show_photons {
-            return self.draw(&emission, film, control);
+            let (tally, stats) = self.draw(&emission, film, control)?;
+            self.tally += tally;
+            return Ok(stats);
         }
         let (maps, mut stats) = self.maps(&emission, control)?;
         let neighbourhood = Neighbourhood {
@@ -240,11 +265,8 @@ impl Integrator for PhotonMapping {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
             gather.li(camera_ray.ray, &lambda, sampler, stats) * camera_ray.weight
         })?;
-        self.tally.passes += 1;
-        self.tally.caustic += maps.caustic.len() as u64;
-        self.tally.global += maps.global.len() as u64;
         let memory = maps.caustic.memory() + maps.global.memory();
-        self.tally.largest_memory = self.tally.largest_memory.max(memory);
+        self.tally += Tally::of_pass(maps.caustic.len(), maps.global.len(), memory);
         Ok(stats)
     }
 
@@ -253,16 +275,15 @@ impl Integrator for PhotonMapping {
         if passes == 0 {
             return Vec::new();
         }
-        let mebibytes = largest_memory as f64 / f64::from(1 << 20);
         let (global, caustic) = (global / passes, caustic / passes);
+        let photons = format!("{global} in the global map of a pass, {caustic} in its caustic map");
+        if self.settings.show_photons {
+            return vec![("photons", photons)];
+        }
+        let mebibytes = largest_memory as f64 / f64::from(1 << 20);
         let (mean, largest) = (self.reach.mean(), self.reach.largest);
         vec![
-            (
-                "photons",
-                format!(
-                    "{global} in the global map of a pass, {caustic} in its caustic map; {mebibytes:.1} MiB"
-                ),
-            ),
+            ("photons", format!("{photons}; {mebibytes:.1} MiB")),
             ("radius", format!("{mean:.3} in the mean, {largest:.3} at most")),
         ]
     }
