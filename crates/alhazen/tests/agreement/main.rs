@@ -24,12 +24,25 @@ struct Pictures(Vec<Moments>);
 
 impl Pictures {
     fn new(scene: &Scene, integrator: &str, samples: u32, first_seed: i32) -> Self {
+        Self::with_settings(scene, integrator, &[], samples, first_seed)
+    }
+
+    fn with_settings(
+        scene: &Scene,
+        integrator: &str,
+        settings: &[(&str, &str)],
+        samples: u32,
+        first_seed: i32,
+    ) -> Self {
         let text = scene.text();
+        let depth = scene.max_depth.to_string();
+        let settings = settings.iter().copied().chain([("maxdepth", &*depth)]);
+        let settings: Vec<_> = settings.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
         let mut pictures = Self(Vec::new());
         for seed in first_seed..first_seed + RUNS {
             let overrides = Overrides {
                 integrator: Some(integrator.into()),
-                settings: vec![("maxdepth".into(), scene.max_depth.to_string())],
+                settings: settings.clone(),
                 samples_per_pixel: Some(samples),
                 seed: Some(seed),
                 ..Overrides::default()
@@ -87,4 +100,32 @@ fn bidirectional_paths_find_what_path_tracing_finds() {
 #[test]
 fn light_finds_what_path_tracing_finds() {
     assert_agrees("light-tracing", 16, |scene| !scene.has_mirrors);
+}
+
+/// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance: photons are blurred.
+const BLUR: f64 = 0.03;
+
+#[test]
+fn photons_find_nearly_what_path_tracing_finds() {
+    let mut failures = Vec::new();
+    for scene in &SCENES {
+        let reference = Pictures::new(scene, "vol-path", scene.path_samples, 1000);
+        let settings =
+            [("photons", "2000"), ("causticphotons", "2000"), ("nearest", "20"), ("radius", "0.1")];
+        let found = Pictures::with_settings(scene, "photon-mapping", &settings, 16, 0);
+        for (channel, (a, b)) in found.0.iter().zip(&reference.0).take(3).enumerate() {
+            let error = a.mean / b.mean - 1.0;
+            let deviation = (a.variance_of_mean() + b.variance_of_mean()).sqrt() / b.mean;
+            eprintln!(
+                "{}, channel {channel}: {:+.2} % ± {:.2} %",
+                scene.name,
+                100.0 * error,
+                100.0 * deviation
+            );
+            if error.abs() > BLUR + 4.0 * deviation {
+                failures.push(format!("{}, channel {channel}: {error} ± {deviation}", scene.name));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "photon-mapping in\n{}", failures.join("\n"));
 }

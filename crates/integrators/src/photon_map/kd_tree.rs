@@ -84,7 +84,7 @@ impl KdTree {
         if count == 0 {
             return Vec::new();
         }
-        let found = BinaryHeap::with_capacity(count.min(self.points.len()));
+        let found = BinaryHeap::with_capacity(count.min(64));
         let mut search = Search { tree: self, p, count, limit: radius * radius, found, accept };
         search.visit(0..self.points.len(), Vec3::ZERO);
         search.found.into_vec()

@@ -69,22 +69,21 @@ impl PhotonMap {
         self.tree.memory() + size_of_val(&*self.photons)
     }
 
-    /// The density at `p` of what `weigh` makes of the photons that `accept` takes; and the radius within which they were.
-    ///
-    /// There is no density where the photons of an estimate all lie in one point.
+    /// The density at `p` of what `weigh` makes of the photons that `accept` takes, and the radius within which they were; `None` where
+    /// there are none, or all of them lie in one point.
     pub fn density(
         &self,
         p: Point3,
         neighbourhood: &Neighbourhood,
         accept: impl Fn(&Photon) -> bool,
         weigh: impl Fn(&Photon) -> SampledSpectrum,
-    ) -> (SampledSpectrum, f32) {
+    ) -> Option<(SampledSpectrum, f32)> {
         let &Neighbourhood { nearest, radius, kernel } = neighbourhood;
         let found = self.tree.nearest(p, nearest + 1, radius, |i| accept(&self.photons[i as usize]));
         let farthest = found.iter().fold(0.0, |farthest: f32, found| farthest.max(found.distance_squared));
         let radius_squared = if found.len() > nearest { farthest } else { radius * radius };
         if found.is_empty() || radius_squared == 0.0 {
-            return (SampledSpectrum::ZERO, radius_squared.sqrt());
+            return None;
         }
         let sum: SampledSpectrum = found
             .iter()
@@ -92,7 +91,7 @@ impl PhotonMap {
                 weigh(&self.photons[index as usize]) * kernel.evaluate(distance_squared / radius_squared)
             })
             .sum();
-        (sum / (radius_squared * self.paths as f32), radius_squared.sqrt())
+        Some((sum / (radius_squared * self.paths as f32), radius_squared.sqrt()))
     }
 }
 
@@ -119,7 +118,8 @@ mod tests {
     }
 
     fn density(map: &PhotonMap, neighbourhood: &Neighbourhood) -> f64 {
-        map.density(Point3::ZERO, neighbourhood, |_| true, |photon| photon.beta).0[0].into()
+        map.density(Point3::ZERO, neighbourhood, |_| true, |photon| photon.beta)
+            .map_or(0.0, |(density, _)| density[0].into())
     }
 
     #[test]

@@ -219,7 +219,9 @@ impl Gather<'_> {
             let l = bsdf.f(s.wo, photon.wi, TransportMode::Radiance) * photon.beta * cosines;
             if terminated || photon.hero_only { hero_only(l) } else { l }
         };
-        let (l, radius) = map.density(s.p.p, &self.neighbourhood, accept, weigh);
+        let Some((l, radius)) = map.density(s.p.p, &self.neighbourhood, accept, weigh) else {
+            return SampledSpectrum::ZERO;
+        };
         self.reach.add(radius);
         l
     }

@@ -19,7 +19,7 @@
 //! with the number of passes as in path tracing while the bias stays; it falls with r², which is to say with 1/`photons`, at equal
 //! `nearest`. Narrow glossy surfaces are noisy in light that comes through glass.
 //!
-//! Memory is taken for the photons of one pass: no more than the subpaths asked for times their mean length, 69 bytes each, and again as much
+//! Memory is taken for the photons of one pass: no more than the subpaths asked for times their mean length, 73 bytes each, and again as much
 //! while the tree is built.
 //!
 //! Sources: [Jensen 1996]; [Jensen 2001a].
