@@ -14,10 +14,12 @@
 //! evens its blotches out.
 //!
 //! It is at its best on caustics, also those seen in a mirror, and those of lights at a point, which no path from the camera finds. It is
-//! *biased*: photons are spread over the radius of the nearest ones. Caustics have soft rims, corners are a little dark (the radius reaches
-//! beyond the surface), light may seep around things thinner than the radius. Each pass emits photons of its own, so that noise falls
-//! with the number of passes as in path tracing while the bias stays; it falls with r², which is to say with 1/`photons`, at equal
-//! `nearest`. Narrow glossy surfaces are noisy in light that comes through glass.
+//! *biased*: photons are spread over the radius r of the nearest ones. The rims of caustics are soft; corners are a little dark, as the disk
+//! reaches beyond the surface; light seeps under doors and around things thinner than r, and on what bends within r a little is lost below
+//! the horizon. Each pass emits photons of its own, so noise falls with the number of passes as in path tracing, while the bias stays. It
+//! goes with r² in the middle of surfaces and with r in the mean over a room with corners, r² with 1/`photons`: the Cornell box is too dark by 0.8 %
+//! with 50 000 of them, by 0.4 % with 200 000 and by 0.2 % with 800 000, where the radius has no other bound. Narrow glossy surfaces are noisy in
+//! light that comes through glass.
 //!
 //! Memory is taken for the photons of one pass: no more than the subpaths asked for times their mean length, 73 bytes each, and again as much
 //! while the tree is built.
