@@ -23,11 +23,7 @@ const SIDE: usize = 5;
 struct Pictures(Vec<Moments>);
 
 impl Pictures {
-    fn new(scene: &Scene, integrator: &str, samples: u32, first_seed: i32) -> Self {
-        Self::with_settings(scene, integrator, &[], samples, first_seed)
-    }
-
-    fn with_settings(
+    fn new(
         scene: &Scene,
         integrator: &str,
         settings: &[(&str, &str)],
@@ -35,14 +31,14 @@ impl Pictures {
         first_seed: i32,
     ) -> Self {
         let text = scene.text();
-        let depth = scene.max_depth.to_string();
-        let settings = settings.iter().copied().chain([("maxdepth", &*depth)]);
-        let settings: Vec<_> = settings.map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
         let mut pictures = Self(Vec::new());
         for seed in first_seed..first_seed + RUNS {
+            let max_depth = scene.max_depth.to_string();
+            let max_depth = [("maxdepth", max_depth.as_str())];
+            let settings = settings.iter().chain(&max_depth);
             let overrides = Overrides {
                 integrator: Some(integrator.into()),
-                settings: settings.clone(),
+                settings: settings.map(|&(name, value)| (name.into(), value.into())).collect(),
                 samples_per_pixel: Some(samples),
                 seed: Some(seed),
                 ..Overrides::default()
@@ -80,12 +76,12 @@ fn means(picture: &Image) -> Vec<f64> {
 }
 
 /// Holds an algorithm to path tracing on every scene that it can see all of.
-fn assert_agrees(integrator: &str, samples: u32, can: impl Fn(&Scene) -> bool) {
+fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can: impl Fn(&Scene) -> bool) {
     let scenes: Vec<_> = SCENES.iter().filter(|scene| can(scene)).collect();
     let mut failures = Vec::new();
     for scene in &scenes {
-        let reference = Pictures::new(scene, "vol-path", scene.path_samples, 1000);
-        let found = Pictures::new(scene, integrator, samples, 0);
+        let reference = Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+        let found = Pictures::new(scene, integrator, settings, samples, 0);
         let differences = found.differences(&reference, scenes.len());
         failures.extend(differences.into_iter().map(|text| format!("{}, {text}", scene.name)));
     }
@@ -94,12 +90,12 @@ fn assert_agrees(integrator: &str, samples: u32, can: impl Fn(&Scene) -> bool) {
 
 #[test]
 fn bidirectional_paths_find_what_path_tracing_finds() {
-    assert_agrees("bdpt", 8, |_| true);
+    assert_agrees("bdpt", &[], 8, |_| true);
 }
 
 #[test]
 fn light_finds_what_path_tracing_finds() {
-    assert_agrees("light-tracing", 16, |scene| !scene.has_mirrors);
+    assert_agrees("light-tracing", &[], 16, |scene| !scene.has_mirrors);
 }
 
 /// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance: photons are blurred.
@@ -112,8 +108,8 @@ fn photons_find_nearly_what_path_tracing_finds() {
     let settings = [("photons", "2000"), ("causticphotons", "2000"), ("nearest", "20"), ("radius", "0.1")];
     let mut failures = Vec::new();
     for scene in scenes {
-        let reference = Pictures::new(scene, "vol-path", scene.path_samples, 1000);
-        let found = Pictures::with_settings(scene, "photon-mapping", &settings, 8, 0);
+        let reference = Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+        let found = Pictures::new(scene, "photon-mapping", &settings, 8, 0);
         for (channel, (a, b)) in found.0.iter().zip(&reference.0).take(3).enumerate() {
             let error = a.mean / b.mean - 1.0;
             let deviation = (a.variance_of_mean() + b.variance_of_mean()).sqrt() / b.mean;
