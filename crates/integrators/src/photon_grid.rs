@@ -131,3 +131,70 @@ impl PhotonGrid {
         (mixed ^ mixed >> 16) & (self.starts.len() as u32 - 2)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use testkit::Random;
+
+    /// Photons at these places, known again by their depth.
+    fn photons(places: &[Point3]) -> Vec<Photon> {
+        let photon = |(i, &p): (usize, &Point3)| Photon {
+            p,
+            wo: Vector3::Z,
+            beta: SampledSpectrum::ONE,
+            partial: Partial::default(),
+            depth: i as u16,
+            hero_only: false,
+        };
+        places.iter().enumerate().map(photon).collect()
+    }
+
+    /// That queries at all these places find what a look at every photon finds, each once.
+    fn assert_all_are_found(places: &[Point3], queries: &[Point3], radius: f32) {
+        let grid = PhotonGrid::new(photons(places), radius);
+        assert_eq!(grid.len(), places.len());
+        for &p in queries {
+            let mut found = Vec::new();
+            grid.within(p, |photon| found.push(usize::from(photon.depth)));
+            found.sort_unstable();
+            let near = |i: &usize| places[*i].distance_squared(p) <= radius * radius;
+            let expected: Vec<_> = (0..places.len()).filter(near).collect();
+            assert_eq!(found, expected, "around {p} within {radius}");
+        }
+    }
+
+    #[test]
+    fn a_query_finds_what_a_look_at_every_photon_finds() {
+        let mut random = Random::new(1);
+        for (count, size, offset) in
+            [(0, 1.0, 0.0), (1, 1.0, 0.0), (500, 1.0, 0.0), (3000, 10.0, -3.0), (500, 2.0, 1e4), (300, 9.0, 3e7)]
+        {
+            let mut place = |_| Point3::from_array([0; 3].map(|_| size * random.get_1d() + offset));
+            let places: Vec<_> = (0..count).map(&mut place).collect();
+            let queries: Vec<_> = (0..200).map(place).chain(places.iter().copied().take(200)).collect();
+            for radius in [1e-3, 0.1, 1.0, 30.0] {
+                assert_all_are_found(&places, &queries, radius);
+            }
+        }
+    }
+
+    #[test]
+    fn places_on_borders_and_beyond_numbers_do_no_harm() {
+        let odd = [0.0, -0.0, 1.0, -1.0, 2.0, 4.0, 1e-40, 1e9, -1e30, f32::MAX, f32::INFINITY, f32::NAN];
+        let places: Vec<_> = odd.iter().flat_map(|&x| odd.map(|y| Point3::new(x, y, 1.0))).collect();
+        for radius in [f32::MIN_POSITIVE, 1e-20, 0.5, 1.0, 2.0, 1e18] {
+            assert_all_are_found(&places, &places, radius);
+        }
+    }
+
+    #[test]
+    fn photons_of_one_place_are_found_in_the_order_in_which_they_came() {
+        let grid = PhotonGrid::new(photons(&[Point3::ONE; 100]), 0.1);
+        let mut found = Vec::new();
+        grid.within(Point3::ONE, |photon| found.push(photon.depth));
+        assert!(found.len() == 100 && found.is_sorted());
+        assert_eq!(size_of::<Photon>(), 56);
+        assert_eq!(grid.bytes(), 100 * 56 + 129 * 4);
+    }
+}

@@ -23,13 +23,21 @@ const SIDE: usize = 5;
 struct Pictures(Vec<Moments>);
 
 impl Pictures {
-    fn new(scene: &Scene, integrator: &str, samples: u32, first_seed: i32) -> Self {
+    fn new(
+        scene: &Scene,
+        integrator: &str,
+        settings: &[(&str, &str)],
+        samples: u32,
+        first_seed: i32,
+    ) -> Self {
         let text = scene.text();
         let mut pictures = Self(Vec::new());
         for seed in first_seed..first_seed + RUNS {
+            let max_depth = scene.max_depth.to_string();
+            let settings = settings.iter().chain([&("maxdepth", max_depth.as_str())]);
             let overrides = Overrides {
                 integrator: Some(integrator.into()),
-                settings: vec![("maxdepth".into(), scene.max_depth.to_string())],
+                settings: settings.map(|&(name, value)| (name.into(), value.into())).collect(),
                 samples_per_pixel: Some(samples),
                 seed: Some(seed),
                 ..Overrides::default()
@@ -67,12 +75,12 @@ fn means(picture: &Image) -> Vec<f64> {
 }
 
 /// Holds an algorithm to path tracing on every scene that it can see all of.
-fn assert_agrees(integrator: &str, samples: u32, can: impl Fn(&Scene) -> bool) {
+fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can: impl Fn(&Scene) -> bool) {
     let scenes: Vec<_> = SCENES.iter().filter(|scene| can(scene)).collect();
     let mut failures = Vec::new();
     for scene in &scenes {
-        let reference = Pictures::new(scene, "vol-path", scene.path_samples, 1000);
-        let found = Pictures::new(scene, integrator, samples, 0);
+        let reference = Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+        let found = Pictures::new(scene, integrator, settings, samples, 0);
         let differences = found.differences(&reference, scenes.len());
         failures.extend(differences.into_iter().map(|text| format!("{}, {text}", scene.name)));
     }
@@ -81,10 +89,20 @@ fn assert_agrees(integrator: &str, samples: u32, can: impl Fn(&Scene) -> bool) {
 
 #[test]
 fn bidirectional_paths_find_what_path_tracing_finds() {
-    assert_agrees("bdpt", 8, |_| true);
+    assert_agrees("bdpt", &[], 8, |_| true);
 }
 
 #[test]
 fn light_finds_what_path_tracing_finds() {
-    assert_agrees("light-tracing", 16, |scene| !scene.has_mirrors);
+    assert_agrees("light-tracing", &[], 16, |scene| !scene.has_mirrors);
+}
+
+#[test]
+fn connecting_and_merging_find_what_path_tracing_finds() {
+    assert_agrees("vcm", &[("radius", "0.03")], 8, |_| true);
+}
+
+#[test]
+fn photons_find_what_path_tracing_finds() {
+    assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, |_| true);
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
 use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
-use description::{IntegratorDesc, LightSamplerDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc};
+use description::{IntegratorDesc, LightSamplerDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc};
 use film::Film;
 use geometry::RayStats;
 use math::RayDifferential;
@@ -59,6 +59,8 @@ fn threads_never_change_a_bit() {
         IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY },
         IntegratorDesc::RandomWalk { max_depth: 5 },
         IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+        IntegratorDesc::Sppm(SppmDesc { radius: 0.3, ..SppmDesc::default() }),
+        IntegratorDesc::Vcm(VcmDesc { radius: Some(0.3), ..VcmDesc::default() }),
     ];
     for integrator in integrators {
         let desc = SceneDesc { integrator: integrator.into(), ..balls() };
