@@ -12,8 +12,7 @@ use scene::texture::color_space;
 
 use crate::{
     AmbientOcclusion, Bdpt, BdptSettings, Integrator, LightTracing, Path, PathSettings, PixelLoop,
-    RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings,
-    Vcm, VcmSettings, Whitted,
+    RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted,
 };
 
 /// What [`build`] gives.

@@ -167,9 +167,14 @@ mod tests {
     #[test]
     fn a_query_finds_what_a_look_at_every_photon_finds() {
         let mut random = Random::new(1);
-        for (count, size, offset) in
-            [(0, 1.0, 0.0), (1, 1.0, 0.0), (500, 1.0, 0.0), (3000, 10.0, -3.0), (500, 2.0, 1e4), (300, 9.0, 3e7)]
-        {
+        for (count, size, offset) in [
+            (0, 1.0, 0.0),
+            (1, 1.0, 0.0),
+            (500, 1.0, 0.0),
+            (3000, 10.0, -3.0),
+            (500, 2.0, 1e4),
+            (300, 9.0, 3e7),
+        ] {
             let mut place = |_| Point3::from_array([0; 3].map(|_| size * random.get_1d() + offset));
             let places: Vec<_> = (0..count).map(&mut place).collect();
             let queries: Vec<_> = (0..200).map(place).chain(places.iter().copied().take(200)).collect();

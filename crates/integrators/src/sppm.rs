@@ -108,8 +108,13 @@ impl Integrator for Sppm {
             let mut l = SampledSpectrum::ZERO;
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;
-            paths.camera_subpath_to(is_end, camera_ray, lambda, sampler, stats, |on_the_way, sampler, stats| {
-                match on_the_way {
+            paths.camera_subpath_to(
+                is_end,
+                camera_ray,
+                lambda,
+                sampler,
+                stats,
+                |on_the_way, sampler, stats| match on_the_way {
                     OnTheWay::Light(found) => l += found.weighted(),
                     OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
                         let direct = paths.direct(vertex, lambda, sampler, stats);
@@ -126,8 +131,8 @@ impl Integrator for Sppm {
                         });
                     }
                     OnTheWay::Vertex(_) => (),
-                }
-            });
+                },
+            );
             l
         })?;
         Ok(stats)

@@ -34,7 +34,8 @@ impl Pictures {
         let mut pictures = Self(Vec::new());
         for seed in first_seed..first_seed + RUNS {
             let max_depth = scene.max_depth.to_string();
-            let settings = settings.iter().chain([&("maxdepth", max_depth.as_str())]);
+            let max_depth = [("maxdepth", max_depth.as_str())];
+            let settings = settings.iter().chain(&max_depth);
             let overrides = Overrides {
                 integrator: Some(integrator.into()),
                 settings: settings.map(|&(name, value)| (name.into(), value.into())).collect(),
@@ -104,5 +105,7 @@ fn connecting_and_merging_find_what_path_tracing_finds() {
 
 #[test]
 fn photons_find_what_path_tracing_finds() {
-    assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, |_| true);
+    // Light of one side of a wall without thickness is found on the other, within the radius.
+    let can = |scene: &Scene| scene.name != "a door that is almost closed";
+    assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, can);
 }

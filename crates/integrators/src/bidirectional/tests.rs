@@ -226,7 +226,12 @@ fn assert_weights(balance: Balance, expected: Balance) {
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
             if let Some(found) = paths.see(vertex, Vec2::ZERO, |_| true, stats) {
-                check(&Path { light: start, surfaces, camera }, connect(found.found.s), found.found.weight, 0);
+                check(
+                    &Path { light: start, surfaces, camera },
+                    connect(found.found.s),
+                    found.found.weight,
+                    0,
+                );
             }
         }
 

@@ -98,8 +98,9 @@ fn merging_needs_a_radius_a_rate_and_photons() {
     };
     for (radius, alpha) in [(0.0, 0.0), (-1.0, 1.5), (f32::INFINITY, f32::NAN)] {
         let vcm = VcmDesc { radius: Some(radius), alpha, ..VcmDesc::default() };
-        let expected =
-            format!("`alpha` is above 0 and at most 1, not {alpha}; `radius` is a distance above 0, not {radius}");
+        let expected = format!(
+            "`alpha` is above 0 and at most 1, not {alpha}; `radius` is a distance above 0, not {radius}"
+        );
         assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
     }
     let sppm = SppmDesc { photons_per_iteration: Some(0), radius: f32::NAN, ..SppmDesc::default() };

@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
 use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
-use description::{IntegratorDesc, LightSamplerDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc};
+use description::{
+    IntegratorDesc, LightSamplerDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
+};
 use film::Film;
 use geometry::RayStats;
 use math::RayDifferential;
