@@ -12,8 +12,8 @@ use scene::texture::color_space;
 
 use crate::{
     AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Path, PathSettings,
-    PhotonMapping, PhotonMappingSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath,
-    Whitted,
+    PhotonMapping, PhotonMappingSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm,
+    SppmSettings, Vcm, VcmSettings, Whitted,
 };
 
 /// What [`build`] gives.
@@ -160,11 +160,22 @@ impl Builder<'_> {
                 let settings = self.photon_mapping(desc);
                 Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
             }
-            &IntegratorDesc::Vcm(VcmDesc { max_depth, .. }) => {
-                self.instead_of("vcm", max_depth, false, sampler)
+            &IntegratorDesc::Vcm(VcmDesc { max_depth, radius, alpha }) => {
+                if alpha.is_nan() || alpha <= 0.0 || alpha > 1.0 {
+                    self.error(format!("`alpha` is above 0 and at most 1, not {alpha}"), "alpha");
+                }
+                let radius = radius.map(|radius| self.radius(radius));
+                let settings = VcmSettings { max_depth: self.depth(max_depth), radius, alpha };
+                let light_sampler = self.light_sampler(&sampler);
+                Box::new(Vcm::new(settings, sampler, light_sampler, self.photon_seed(None)))
             }
-            &IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => {
-                self.instead_of("sppm", max_depth, false, sampler)
+            &IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed }) => {
+                let settings = SppmSettings {
+                    max_depth: self.depth(max_depth),
+                    photons_per_iteration: photons_per_iteration.map(|count| self.photons(count)),
+                    radius: self.radius(radius),
+                };
+                Box::new(Sppm::new(settings, sampler, self.photon_seed(seed)))
             }
             IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
         }
@@ -237,6 +248,15 @@ impl Builder<'_> {
             self.error(format!("`{parameter}` is {least} or more, not {count}"), parameter);
             least
         })
+    }
+
+    /// A positive number of photons; 1, and an error, where it is none.
+    fn photons(&mut self, count: i32) -> u32 {
+        if count <= 0 {
+            let message = format!("`photonsperiteration` is a number above 0, not {count}");
+            self.error(message, "photonsperiteration");
+        }
+        count.max(1) as u32
     }
 
     /// A distance within which photons count; 1, and an error, where it is none.

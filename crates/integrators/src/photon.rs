@@ -1,12 +1,10 @@
 //! A photon: light of a light subpath that has arrived at a surface.
 //!
-//! The photons of a pass and all camera rays that look for them have the same wavelengths, so that light which one carries is
-//! light at the wavelengths of the other. Over the passes they are spread evenly.
+//! The photons of a pass and all camera rays that look for them have one moment and the same wavelengths, so that light which one carries
+//! is light at the wavelengths of the other.
 
 use math::{Normal3, Point3, Vector3};
-use sampling::hash_float;
-use scene::Scene;
-use spectrum::{SampledSpectrum, SampledWavelengths};
+use spectrum::SampledSpectrum;
 
 use crate::bidirectional::Vertex;
 
@@ -38,15 +36,4 @@ impl Photon {
     pub fn is_finite(&self) -> bool {
         self.p.is_finite() && self.beta.is_finite()
     }
-}
-
-/// The wavelengths of a pass.
-pub(crate) fn pass_wavelengths(scene: &Scene, seed: u32, pass: u32) -> SampledWavelengths {
-    if scene.options().disable_wavelength_jitter {
-        return SampledWavelengths::sample_visible(0.5);
-    }
-    // A quarter of the golden ratio, since four wavelengths a quarter of the range apart are taken at once.
-    const STEP: f64 = 0.25 * 0.618_033_988_749_895;
-    let steps = (f64::from(pass) * STEP).fract() as f32;
-    SampledWavelengths::sample_visible((hash_float(&[seed]) + steps).fract())
 }

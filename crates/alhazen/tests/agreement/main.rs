@@ -99,6 +99,18 @@ fn light_finds_what_path_tracing_finds() {
     assert_agrees("light-tracing", &[], 16, |scene| !scene.has_mirrors);
 }
 
+#[test]
+fn connecting_and_merging_find_what_path_tracing_finds() {
+    assert_agrees("vcm", &[("radius", "0.03")], 8, |_| true);
+}
+
+#[test]
+fn photons_find_what_path_tracing_finds() {
+    // Light of one side of a wall without thickness is found on the other, within the radius.
+    let can = |scene: &Scene| scene.name != "a door that is almost closed";
+    assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, can);
+}
+
 /// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance: photons are blurred.
 const BLUR: f64 = 0.02;
 

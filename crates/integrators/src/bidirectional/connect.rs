@@ -9,6 +9,7 @@ use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Vertex, Walk, hero_only};
+use crate::photon_grid::Photon;
 
 /// What a strategy has found.
 #[derive(Clone, Copy, Debug)]
@@ -168,6 +169,28 @@ impl Bidirectional<'_> {
         let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
         Some(OnFilm { film, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
+    }
+
+    /// s, t ≥ 2: a photon is taken as if it had arrived at the vertex, near which it lies.
+    pub fn merge(&self, camera: &Vertex, photon: &Photon) -> Found {
+        let wi = photon.wo;
+        let l = self.merged(camera, photon);
+        let weight = weight(
+            self.balance.merging_back(&photon.partial, camera.pdf(wi)),
+            self.balance.merging_back(&camera.partial, camera.pdf_back(wi)),
+        );
+        Found { l, weight, s: photon.depth.into(), t: camera.depth + 1 }
+    }
+
+    /// The light of [`Self::merge`] alone.
+    pub fn merged(&self, camera: &Vertex, photon: &Photon) -> SampledSpectrum {
+        let wi = photon.wo;
+        // Power has been through the cosine of the surface, light is scattered by that of the shading.
+        let cos_theta = camera.cos_theta(wi);
+        let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
+        let f = camera.bsdf.f(camera.wo, wi, camera.mode);
+        let l = camera.beta * photon.beta * f * (cosines / self.balance.merging);
+        if camera.hero_only || photon.hero_only { hero_only(l) } else { l }
     }
 
     fn found(&self, l: SampledSpectrum, hero: bool, weight: f32, s: u32, t: u32) -> Found {

@@ -19,6 +19,8 @@
 //! d_vcm is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the factors of the vertex that it
 //! will arrive at, which [`Partial::arrive`] supplies.
 
+use std::f32::consts::PI;
+
 use super::light_end::LightEnd;
 
 /// What a subpath carries for its weights.
@@ -36,18 +38,25 @@ pub(crate) struct Balance {
     pub light_paths: f32,
     /// η: merging counts so much more than connecting; 0 without merging.
     pub merging: f32,
+    /// 1; 0 if light subpaths are not connected to anything, so that camera subpaths find light by chance or by choice alone.
+    pub connecting: f32,
 }
 
 impl Balance {
     /// For as many light subpaths, without merging.
     pub fn connecting(light_paths: usize) -> Self {
-        Self { light_paths: light_paths as f32, merging: 0.0 }
+        Self { light_paths: light_paths as f32, merging: 0.0, connecting: 1.0 }
     }
 
-    /// For as many light subpaths, merged within a radius.
-    pub fn merging(light_paths: usize, radius: f32) -> Self {
-        let n = light_paths as f32;
-        Self { light_paths: n, merging: n * std::f32::consts::PI * radius * radius }
+    /// The same, and merging with other light subpaths within a radius.
+    pub fn merging(light_paths: usize, photon_paths: usize, radius: f32) -> Self {
+        let merging = photon_paths as f32 * (PI * radius * radius);
+        Self { merging, ..Self::connecting(light_paths) }
+    }
+
+    /// For merging within a radius where camera subpaths end, which on their way find light by themselves.
+    pub fn at_the_end(photon_paths: usize, radius: f32) -> Self {
+        Self { connecting: 0.0, ..Self::merging(photon_paths, photon_paths, radius) }
     }
 
     /// 1/η, or 0 without merging.
@@ -70,7 +79,7 @@ impl Balance {
     /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
     /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
     pub fn connecting_back(&self, partial: &Partial, pdf_back: f32) -> f32 {
-        self.merging + partial.vcm + pdf_back * partial.vc
+        self.connecting * (self.merging + partial.vcm + pdf_back * partial.vc)
     }
 
     /// The same for merging, to be used as it is.

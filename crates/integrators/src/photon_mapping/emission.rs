@@ -8,9 +8,9 @@ use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::sampler::PaddedSobol;
 use sampling::{Randomize, Sampler};
-use spectrum::SampledWavelengths;
 
 use crate::bidirectional::{Bidirectional, Vertex, Walk};
+use crate::pixel_loop::Moment;
 use crate::{Cancelled, Control};
 
 /// Subpaths that one thread follows at a time.
@@ -49,7 +49,7 @@ impl Kind {
 /// What emits photons.
 pub(super) struct Emission<'a> {
     pub paths: &'a Bidirectional<'a>,
-    pub lambda: SampledWavelengths,
+    pub moment: Moment,
     pub seed: u32,
     /// Which photons, of all that the seed has.
     pub generation: u32,
@@ -99,8 +99,8 @@ impl Emission<'_> {
         stats: &mut RayStats,
         mut visit: impl FnMut(&Vertex, &mut Sampler, &mut RayStats),
     ) {
-        let time = self.paths.scene.camera().sample_time(sampler.get_1d());
-        let Some(mut walk) = Walk::from_light(self.paths, time, self.lambda, sampler) else { return };
+        let time = self.moment.time(self.paths.scene);
+        let Some(mut walk) = Walk::from_light(self.paths, time, self.moment.lambda, sampler) else { return };
         let mut first = true;
         while walk.depth < self.paths.max_depth {
             let Some(mut surface) = walk.meet(stats) else { return };
@@ -130,6 +130,7 @@ mod tests {
         AreaLightDesc, MaterialKind, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
     };
     use scene::Scene;
+    use spectrum::SampledWavelengths;
     use testkit::{Moments, t_test, welch_test};
 
     /// The inside of a ball that shines and reflects half, and perhaps a ball of glass in it.
@@ -156,8 +157,8 @@ mod tests {
         let lights = Lights::of(scene);
         let balance = Balance::connecting(1);
         let paths = Bidirectional { scene, lights: &lights, balance, max_depth, regularize: false };
-        let lambda = SampledWavelengths::sample_visible(0.3);
-        let emission = Emission { paths: &paths, lambda, seed: 5, generation: 2 };
+        let moment = Moment::new(scene, 0.3, 0.0);
+        let emission = Emission { paths: &paths, moment, seed: 5, generation: 2 };
         let keep = |vertex: &Vertex, _: &mut Sampler, _: &mut RayStats| Photon::at(vertex);
         emission.emit(kind, PATHS, &Control::default(), keep).expect("nobody cancels it").0
     }

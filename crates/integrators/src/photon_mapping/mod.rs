@@ -40,9 +40,9 @@ use scene::{Interfaces, Scene};
 use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
-use crate::photon::{Photon, pass_wavelengths};
+use crate::photon::Photon;
 use crate::photon_map::{Kernel, Neighbourhood, PhotonMap};
-use crate::pixel_loop::PixelSamples;
+use crate::pixel_loop::{Moment, PixelSamples};
 use crate::{Cancelled, Control, Integrator, Path, PathSettings, RayIntegrator};
 use emission::{Emission, Kind};
 use gather::Gather;
@@ -203,7 +203,7 @@ impl PhotonMapping {
                 let photon = Photon::at(vertex);
                 let l = photon.beta * white;
                 let l = if photon.hero_only { hero_only(l) } else { l };
-                splatter.add(seen.film, &l, &emission.lambda);
+                splatter.add(seen.film, &l, &emission.moment.lambda);
             }
         };
         splatter.add_paths(1);
@@ -243,10 +243,10 @@ impl Integrator for PhotonMapping {
             max_depth: settings.max_depth,
             regularize: false,
         };
-        let lambda = pass_wavelengths(scene, self.photon_seed, pass);
+        let moment = Moment::of_pass(scene, self.photon_seed, pass);
         // Photons that are shown stay, and their colours become right over the passes.
         let generation = if settings.show_photons { 0 } else { pass };
-        let emission = Emission { paths: &paths, lambda, seed: self.photon_seed, generation };
+        let emission = Emission { paths: &paths, moment, seed: self.photon_seed, generation };
         if settings.show_photons {
             let (tally, stats) = self.draw(&emission, film, control)?;
             self.tally += tally;
@@ -262,10 +262,9 @@ impl Integrator for PhotonMapping {
         let gather = Gather { scene, path, maps: &maps, settings, neighbourhood, reach };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
-        stats += pixels.add(film.tiles_mut(), control, |sample, sampler, stats| {
-            sample.lambda = lambda;
+        stats += pixels.add_at(Some(&moment), film.tiles_mut(), control, |sample, sampler, stats| {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
-            gather.li(camera_ray.ray, &lambda, sampler, stats) * camera_ray.weight
+            gather.li(camera_ray.ray, &sample.lambda, sampler, stats) * camera_ray.weight
         })?;
         let memory = maps.caustic.memory() + maps.global.memory();
         self.tally += Tally::of_pass(maps.caustic.len(), maps.global.len(), memory);

@@ -3,7 +3,7 @@
 use alhazen_integrators::build;
 use description::{
     Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, PhotonMappingDesc, SamplerDesc,
-    SamplerKind, SceneDesc, Span, SppmDesc, Stated,
+    SamplerKind, SceneDesc, Span, SppmDesc, Stated, VcmDesc,
 };
 
 fn messages(diagnostics: &[Diagnostic]) -> Vec<&str> {
@@ -27,6 +27,8 @@ fn what_is_drawn_is_drawn_without_a_word() {
         IntegratorDesc::Path { max_depth: 5, regularize: true, light_sampler },
         IntegratorDesc::VolPath { max_depth: 5, regularize: true, light_sampler },
         IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
+        IntegratorDesc::Sppm(SppmDesc::default()),
+        IntegratorDesc::Vcm(VcmDesc::default()),
     ] {
         assert_eq!(warnings(integrator), []);
     }
@@ -37,7 +39,6 @@ fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
     for (name, integrator) in [
         ("simplevolpath", IntegratorDesc::SimpleVolPath { max_depth: 5 }),
         ("mlt", IntegratorDesc::Mlt(MltDesc::default())),
-        ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
     ] {
         let expected = format!("integrator `{name}` is not drawn yet; drawn as `path`");
         assert_eq!(messages(&warnings(integrator)), [expected]);
@@ -111,4 +112,29 @@ fn photons_without_sense_are_errors_at_their_place() {
         ]
     );
     assert!(errors.iter().zip(spans).all(|(error, (_, span))| error.is_error() && error.span() == span));
+}
+
+#[test]
+fn merging_needs_a_radius_a_rate_and_photons() {
+    let span = Span { start: 7, ..Span::NONE };
+    let parameters = ["radius", "alpha", "photonsperiteration"].map(|name| (name, span)).to_vec();
+    let errors = |integrator: IntegratorDesc| {
+        let origin = Origin { span: Span::NONE, parameters: parameters.clone() };
+        let integrator = Stated::new(integrator, origin);
+        let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+        assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
+        messages(&errors).join("; ")
+    };
+    for (radius, alpha) in [(0.0, 0.0), (-1.0, 1.5), (f32::INFINITY, f32::NAN)] {
+        let vcm = VcmDesc { radius: Some(radius), alpha, ..VcmDesc::default() };
+        let expected = format!(
+            "`alpha` is above 0 and at most 1, not {alpha}; `radius` is a distance above 0, not {radius}"
+        );
+        assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
+    }
+    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: f32::NAN, ..SppmDesc::default() };
+    assert_eq!(
+        errors(IntegratorDesc::Sppm(sppm)),
+        "`photonsperiteration` is a number above 0, not 0; `radius` is a distance above 0, not NaN"
+    );
 }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
 use description::{
     IntegratorDesc, LightSamplerDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc, SamplerKind,
-    SceneDesc, ShapeDesc,
+    SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
 };
 use film::Film;
 use geometry::RayStats;
@@ -66,6 +66,8 @@ fn threads_never_change_a_bit() {
         IntegratorDesc::PhotonMapping(photons.clone()),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 2, ..photons.clone() }),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { show: PhotonMappingShow::Photons, ..photons }),
+        IntegratorDesc::Sppm(SppmDesc { radius: 0.3, ..SppmDesc::default() }),
+        IntegratorDesc::Vcm(VcmDesc { radius: Some(0.3), ..VcmDesc::default() }),
     ];
     for integrator in integrators {
         let desc = SceneDesc { integrator: integrator.into(), ..balls() };
