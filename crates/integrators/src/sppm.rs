@@ -99,7 +99,7 @@ impl Integrator for Sppm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        let is_wanted = |vertex: &Vertex| vertex.depth >= 2 && is_end(vertex);
+        let is_wanted = |vertex: &Vertex| vertex.can_merge() && is_end(vertex);
         let (photons, mut stats) = self.merging.shoot(&paths, photon_paths, pass, is_wanted, control)?;
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();

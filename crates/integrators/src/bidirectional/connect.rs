@@ -79,7 +79,8 @@ impl Bidirectional<'_> {
             let partial = &walk.partial;
             let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
             let end = self.light_end(light, &context, wi, place, direct);
-            weight(end.direct * partial.vcm, end.emission / end.cos_theta * partial.vc)
+            let by_light = self.balance.connecting_from_light(partial, before.cos_theta(wi));
+            weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
         let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
         Found { l, weight, s: 0, t: walk.depth + 2 }
@@ -120,7 +121,7 @@ impl Bidirectional<'_> {
         let end = self.light_end(light, &context, wi, place, direct);
         let by_chance = if end.is_delta { 0.0 } else { vertex.pdf(wi) / direct };
         let from_light = end.emission * vertex.cos_theta(wi) / (direct * end.cos_theta);
-        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), false);
         Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
     }
 
@@ -136,8 +137,8 @@ impl Bidirectional<'_> {
         let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
         let to_camera = light.pdf(-wi) * camera.cos_theta(wi) / distance_squared;
         let weight = weight(
-            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi)),
-            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi)),
+            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi), light.can_merge()),
+            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi), true),
         );
         let hero = camera.hero_only || light.hero_only;
         Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
@@ -166,7 +167,7 @@ impl Bidirectional<'_> {
         let pdf_area =
             if camera.is_parallel() { pdf_position } else { pdf_direction / vertex.p.p.distance_squared(p) }
                 * vertex.cos_theta(wi);
-        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.can_merge());
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
         Some(OnFilm { film, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
     }

@@ -16,7 +16,8 @@
 //! ```
 //!
 //! where ' marks the vertex before and p←' is per solid angle. What is specular can neither be connected nor merged: its
-//! d_vcm is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the factors of the vertex that it
+//! d_vcm is 0 and the sums lose those terms. What comes straight from a light is not merged either: choosing a point on the light tells
+//! more of it. So the terms η and 1 are missing where the vertex before is next to a light. A [`Partial`] on its way between two vertices lacks the factors of the vertex that it
 //! will arrive at, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
@@ -76,10 +77,18 @@ impl Balance {
         Partial { vcm: end.direct * scale, vc, vm: vc * self.per_merging() }
     }
 
+    /// What the strategies that have more made by the camera subpath, which meets a light in the direction of `cos_theta` at the
+    /// vertex before, add up to, but for the density with which the light makes the same way. A merging at that vertex is none of
+    /// them.
+    pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32) -> f32 {
+        (partial.vc - self.connecting * self.merging * cos_theta * partial.vcm).max(0.0)
+    }
+
     /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
     /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
-    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32) -> f32 {
-        self.connecting * (self.merging + partial.vcm + pdf_back * partial.vc)
+    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32, can_merge: bool) -> f32 {
+        let merging = if can_merge { self.merging } else { 0.0 };
+        self.connecting * (merging + partial.vcm + pdf_back * partial.vc)
     }
 
     /// The same for merging, to be used as it is.
@@ -89,11 +98,19 @@ impl Balance {
 
     /// Leaves a vertex along a direction of the density `pdf`, at `cos_theta` to the normal; `pdf_back` is the density of the way
     /// back.
-    pub fn leave(&self, partial: &Partial, pdf: f32, pdf_back: f32, cos_theta: f32) -> Partial {
+    pub fn leave(
+        &self,
+        partial: &Partial,
+        pdf: f32,
+        pdf_back: f32,
+        cos_theta: f32,
+        can_merge: bool,
+    ) -> Partial {
+        let merging = if can_merge { 1.0 } else { 0.0 };
         Partial {
             vcm: 1.0 / pdf,
-            vc: cos_theta / pdf * self.connecting_back(partial, pdf_back),
-            vm: cos_theta / pdf * (1.0 + self.merging_back(partial, pdf_back)),
+            vc: cos_theta / pdf * self.connecting_back(partial, pdf_back, can_merge),
+            vm: cos_theta / pdf * (merging + self.merging_back(partial, pdf_back)),
         }
     }
 }

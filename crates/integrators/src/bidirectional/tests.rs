@@ -154,7 +154,7 @@ impl Path<'_> {
     /// The weight of a strategy by the densities of all.
     fn weight(&self, paths: &Bidirectional, strategy: Strategy) -> f64 {
         let vertices = self.surfaces.len() + 2;
-        let all = (0..vertices).map(Strategy::Connect).chain((2..vertices).map(Strategy::Merge));
+        let all = (0..vertices).map(Strategy::Connect).chain((3..vertices).map(Strategy::Merge));
         self.density(paths, strategy) / all.map(|each| self.density(paths, each)).sum::<f64>()
     }
 }
@@ -269,7 +269,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     surfaces.extend(from_light(camera_subpath.len()));
                     let path = Path { light: start, surfaces, camera };
                     check(&path, connect(found.s), found.weight, 3);
-                    if balance.merging > 0.0 {
+                    if balance.merging > 0.0 && light.can_merge() {
                         let photon = Photon::from(light);
                         let merged = paths.merge(&stepped(&paths.balance, &vertex, light), &photon);
                         check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
@@ -290,7 +290,7 @@ fn stepped(balance: &Balance, before: &Vertex, at: &Vertex) -> Vertex {
     let way = at.p.p - before.p.p;
     let wi = way.normalize();
     let partial = balance
-        .leave(&before.partial, before.pdf(wi), before.pdf_back(wi), before.cos_theta(wi))
+        .leave(&before.partial, before.pdf(wi), before.pdf_back(wi), before.cos_theta(wi), true)
         .arrive(way.length_squared(), at.cos_theta(wi));
     Vertex { wo: -wi, partial, mode: before.mode, depth: before.depth + 1, ..*at }
 }
