@@ -119,15 +119,14 @@ fn path(max_depth: i32) -> IntegratorDesc {
 fn indirect(integrator: &PhotonMappingDesc) -> f64 {
     let mut desc = room();
     from_above(&mut desc, 1.0, 16);
-    let [direct, all] = [1, 4].map(|max_depth| mean(&luminances(&desc, &path(max_depth), 1, 512)));
+    let [direct, all] = [1, 4].map(|max_depth| mean(&luminances(&desc, &path(max_depth), 1, 1024)));
     let find = |photons| {
         let default = PhotonMappingDesc { max_depth: 4, radius: Some(1.0), ..integrator.clone() };
         let integrator = PhotonMappingDesc { photons, caustic_photons: 0, ..default };
         mean(&luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 2, 16))
     };
-    // Without photons it finds direct light, at the same wavelengths.
-    let (found_direct, found) = (find(0), find(integrator.photons));
-    (found / found_direct - 1.0) / (all / direct - 1.0)
+    // Without photons it finds the same direct light.
+    (find(integrator.photons) - find(0)) / (all - direct)
 }
 
 #[test]
@@ -137,7 +136,8 @@ fn with_more_photons_a_room_comes_closer_to_what_path_finds() {
     });
     // Four times the photons halve the radius, and with it the dark edges.
     let slope = (errors[0] / errors[2]).log2() / 2.0;
-    assert!((slope - 1.0).abs() < 0.25, "the error goes with the power {slope} of the radius: {errors:?}");
+    eprintln!("{slope} {errors:?}");
+    assert!((slope - 1.0).abs() < 0.2, "the error goes with the power {slope} of the radius: {errors:?}");
 }
 
 #[test]
