@@ -4,6 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod promises;
 mod scenes;
 
 use alhazen::Overrides;

@@ -53,6 +53,8 @@ pub(crate) trait Vector<const N: usize>: Copy {
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// c − `self`·b, rounded once.
     fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// `self`·b − c, rounded once.
+    fn mul_sub(self, b: Self, c: Self) -> Self;
     /// `self`·b − c, rounded once or twice.
     fn mul_sub_loosely(self, b: Self, c: Self) -> Self;
     /// A bit for each lane where `self` ≤ b; none where either is NaN.
@@ -69,6 +71,16 @@ pub(crate) trait Simd: Copy {
     /// Asks for the line of the cache around an address, which need not be one, soon to be read.
     #[inline(always)]
     fn prefetch(_: *const u8) {}
+}
+
+/// Asks for the line of the cache where a value begins, soon to be read, with what every processor has.
+#[inline(always)]
+pub(crate) fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    type Least = sse2::Sse2;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Least = scalar::Scalar;
+    Least::prefetch(std::ptr::from_ref(value).cast());
 }
 
 /// Something that is written for all sets.

@@ -1,12 +1,13 @@
 //! From the binary tree to wide nodes.
 //!
-//! Nodes are written parent first, then the subtrees one after another, each as a whole; so are the blocks of
-//! the leaves, those right below a node before those further down. The sizes of subtrees are known before, so
-//! that threads can write to parts of one array.
+//! Nodes are written parent first, then the subtrees one after another, each as a whole; the blocks of the leaves are
+//! written in the order of the references. The sizes of subtrees are known before, so that threads can write to parts
+//! of one array.
 //!
-//! The children of a node are ordered by the mean area of the primitives below them, the largest last, where a ray that
-//! looks for any hit begins: it finds one soonest where few primitives cover much ([Ize & Hansen 2011], who go by the
-//! sum of the areas).
+//! The children of a node are ordered by what they promise to a ray that looks for any hit, which begins with the last: the
+//! chance of a hit in a box that the ray enters, over the expected cost of the search there ([Ize & Hansen 2011]). In a leaf
+//! the chance is the ratio of the surfaces of the primitives' boxes and of its own, and the cost its blocks; in a node, both
+//! follow from those of the children, each of which is entered with the probability of the ratio of surfaces.
 
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Cut, Inner, Planted, Size};
@@ -26,11 +27,13 @@ pub(super) struct Wide {
     pub depth: usize,
 }
 
-/// Cuts a binary tree over at least one reference.
+/// Cuts a binary tree.
 pub(super) fn widen(planted: &Planted, blocks: Blocks) -> Wide {
-    let Planted { references, inner, tree } = planted;
-    let whole = Branch { range: 0..references.len() as u32, root: tree.root };
-    let size = tree.as_node(inner);
+    let Planted { references, inner, root, size } = planted;
+    if references.is_empty() {
+        return Wide { nodes: Vec::new(), blocks: Vec::new(), extent: Extent::EMPTY, depth: 0 };
+    }
+    let whole = Branch { range: 0..references.len() as u32, root: *root };
     let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];
     let mut list = vec![0..0; size.blocks as usize];
     let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
@@ -118,35 +121,48 @@ impl Part<'_> {
 }
 
 /// What is known of a subtree once it is written.
+#[derive(Clone, Copy)]
 struct Written {
     extent: Extent,
     /// How many nodes are above each other.
     depth: usize,
-    /// The areas of all primitives, and how many there are.
-    area: f32,
-    count: usize,
+    /// How probably a ray through the box hits something, and what it costs to know.
+    chance: f32,
+    cost: f32,
 }
 
 impl Written {
-    const NOTHING: Self = Self { extent: Extent::EMPTY, depth: 0, area: 0.0, count: 0 };
+    const NOTHING: Self = Self { extent: Extent::EMPTY, depth: 0, chance: 0.0, cost: 0.0 };
 
-    fn leaf(references: &[Reference]) -> Self {
-        let area = references.iter().map(|r| r.extent().half_area()).sum();
-        Self { extent: Extent::around(references), depth: 0, area, count: references.len() }
+    fn leaf(references: &[Reference], blocks: u32) -> Self {
+        let extent = Extent::around(references);
+        let area: f32 = references.iter().map(|r| r.extent().half_area()).sum();
+        Self { extent, depth: 0, chance: share(area, &extent), cost: blocks as f32 }
     }
 
-    fn with(self, other: &Self) -> Self {
-        Self {
-            extent: self.extent.union(other.extent),
-            depth: self.depth.max(other.depth),
-            area: self.area + other.area,
-            count: self.count + other.count,
+    /// A node over children, the one to be visited first last.
+    fn node(children: &[(Self, Child)]) -> Self {
+        let extent = children.iter().fold(Extent::EMPTY, |all, (child, _)| all.union(child.extent));
+        let depth = 1 + children.iter().map(|(child, _)| child.depth).max().unwrap_or(0);
+        let (mut missed, mut cost) = (1.0, 1.0);
+        for (child, _) in children.iter().rev() {
+            let entered = share(child.extent.half_area(), &extent);
+            cost += missed * entered * child.cost;
+            missed *= 1.0 - entered * child.chance;
         }
+        Self { extent, depth, chance: 1.0 - missed, cost }
     }
 
-    fn mean_area(&self) -> f32 {
-        self.area / self.count as f32
+    fn promise(&self) -> f32 {
+        self.chance / self.cost
     }
+}
+
+/// The part of rays through a box that pass a surface in it.
+fn share(half_area: f32, extent: &Extent) -> f32 {
+    let share = half_area / extent.half_area();
+    // Of what has no surface, or none that floats can hold, nothing is known.
+    if share <= 1.0 { share } else { 1.0 }
 }
 
 struct Writer<'a> {
@@ -159,36 +175,43 @@ impl Writer<'_> {
     /// Writes a node and all below it.
     fn write(&self, node: &Branch, mut part: Part) -> Written {
         let branches = Branches::below(self.inner, node);
-        let mut children = Vec::with_capacity(WIDTH);
         let here = part.take(Size { nodes: 1, blocks: 0 });
-        for leaf in branches.list().iter().filter(|branch| branch.root == 0) {
-            let count = self.blocks.count(leaf.len());
-            let mine = part.take(Size { nodes: 0, blocks: count });
-            let starts = leaf.range.clone().step_by(self.blocks.width());
-            for (block, start) in mine.blocks.iter_mut().zip(starts) {
-                *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
+        let mut children = [(Written::NOTHING, Child::NOTHING); WIDTH];
+        let children = &mut children[..branches.len];
+        let mut for_others = Vec::new();
+        for (branch, (written, child)) in branches.list().iter().zip(&mut *children) {
+            if branch.root == 0 {
+                (*written, *child) = self.write_leaf(branch, &mut part);
+                continue;
             }
-            let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
-            let child = Child::leaf(mine.first_block as usize, count as usize);
-            children.push((Written::leaf(references), child));
-        }
-        let mut below = Vec::new();
-        for branch in branches.list().iter().filter(|branch| branch.root > 0) {
             let mine = part.take(self.inner[branch.root as usize].as_node());
-            let child = Child::node(mine.first_node as usize);
-            if node.len() > PARALLEL {
-                below.push((branch, mine, child));
-            } else {
-                children.push((self.write(branch, mine), child));
+            *child = Child::node(mine.first_node as usize);
+            match node.len() > PARALLEL {
+                true => for_others.push((written, branch, mine)),
+                false => *written = self.write(branch, mine),
             }
         }
-        let written = |(branch, mine, child)| (self.write(branch, mine), child);
-        children.par_extend(below.into_par_iter().map(written));
-        children.sort_by(|(a, _), (b, _)| a.mean_area().total_cmp(&b.mean_area()));
+        if !for_others.is_empty() {
+            let write =
+                |(written, branch, mine): (&mut Written, &Branch, Part)| *written = self.write(branch, mine);
+            for_others.into_par_iter().for_each(write);
+        }
+        children.sort_by(|(a, _), (b, _)| a.promise().total_cmp(&b.promise()));
         let mut wide = WideNode::EMPTY;
         children.iter().for_each(|(below, child)| wide.push(&below.extent.bounds(), *child));
         here.nodes[0] = wide;
-        let all = children.iter().fold(Written::NOTHING, |all, (below, _)| all.with(below));
-        Written { depth: all.depth + 1, ..all }
+        Written::node(children)
+    }
+
+    /// Writes the blocks of a leaf.
+    fn write_leaf(&self, leaf: &Branch, part: &mut Part) -> (Written, Child) {
+        let count = self.blocks.count(leaf.len());
+        let mine = part.take(Size { nodes: 0, blocks: count });
+        let starts = leaf.range.clone().step_by(self.blocks.width());
+        for (block, start) in mine.blocks.iter_mut().zip(starts) {
+            *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
+        }
+        let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
+        (Written::leaf(references, count), Child::leaf(mine.first_block as usize, count as usize))
     }
 }
