@@ -41,7 +41,7 @@ use crate::{Cancelled, Control, Integrator};
 const MAX_PHOTON_PATHS: usize = 1 << 20;
 
 /// The first radius as a part of that of the scene. Three times the 0.003 of [Georgiev 2012]: in small pictures of rooms that halves the
-/// error where merging is needed, and takes a tenth of it elsewhere.
+/// error where merging is needed, and does no harm elsewhere.
 const SHARE_OF_SCENE: f32 = 0.01;
 
 /// Settings of [`Vcm`].

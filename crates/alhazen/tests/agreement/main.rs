@@ -12,7 +12,7 @@ use alhazen::image::Image;
 use testkit::{Moments, welch_test};
 
 use common::{render_text, rgb_values};
-use scenes::{SCENES, Scene};
+use scenes::{POINT_LIGHT_IN_GLASS, SCENES, Scene};
 
 /// Pictures of each algorithm, with a seed each.
 const RUNS: i32 = 16;
@@ -109,6 +109,19 @@ fn photons_find_what_path_tracing_finds() {
     // Light of one side of a wall without thickness is found on the other, within the radius.
     let can = |scene: &Scene| scene.name != "a door that is almost closed";
     assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, can);
+}
+
+#[test]
+fn light_that_path_tracing_never_meets_is_the_same_for_all_others() {
+    let scene = &POINT_LIGHT_IN_GLASS;
+    let reference = Pictures::new(scene, "light-tracing", &[], 32, 1000);
+    let photons = [("radius", "0.03"), ("photons", "4000")];
+    for (integrator, settings) in [("bdpt", &[][..]), ("vcm", &photons[..1]), ("sppm", &photons)] {
+        let differences = Pictures::new(scene, integrator, settings, 16, 0).differences(&reference, 3);
+        assert!(differences.is_empty(), "{integrator}: {}", differences.join("\n"));
+    }
+    let lost = Pictures::new(scene, "vol-path", &[], 4, 0);
+    assert!(lost.0.iter().all(|moments| moments.mean == 0.0));
 }
 
 /// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance: photons are blurred.

@@ -16,9 +16,9 @@
 //! ```
 //!
 //! where ' marks the vertex before and p←' is per solid angle. What is specular can neither be connected nor merged: its
-//! d_vcm is 0 and the sums lose those terms. What comes straight from a light is not merged either: choosing a point on the light tells
-//! more of it. So the terms η and 1 are missing where the vertex before is next to a light. A [`Partial`] on its way between two vertices lacks the factors of the vertex that it
-//! will arrive at, which [`Partial::arrive`] supplies.
+//! d_vcm is 0 and the sums lose those terms. What comes straight from a light is not merged either, because choosing a point on the
+//! light finds the same with less noise: next to a light the sums lose the terms η and 1. A [`Partial`] on its way between two vertices
+//! lacks the factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
 
@@ -77,15 +77,18 @@ impl Balance {
         Partial { vcm: end.direct * scale, vc, vm: vc * self.per_merging() }
     }
 
-    /// What the strategies that have more made by the camera subpath, which meets a light in the direction of `cos_theta` at the
-    /// vertex before, add up to, but for the density with which the light makes the same way. A merging at that vertex is none of
-    /// them.
+    /// The sum over the strategies with s ≥ 2 for a camera subpath that has met a light, along a direction at `cos_theta` to the normal
+    /// of the vertex before; to be multiplied by the density with which the light sends light there. That vertex cannot be merged,
+    /// which was not known when it was left.
     pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32) -> f32 {
-        (partial.vc - self.connecting * self.merging * cos_theta * partial.vcm).max(0.0)
+        let sum = partial.vc - self.connecting * self.merging * cos_theta * partial.vcm;
+        // Not `max`, which would hide what is no number.
+        if sum < 0.0 { 0.0 } else { sum }
     }
 
     /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
-    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
+    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end. Whether it
+    /// could be merged there is `can_merge`.
     pub fn connecting_back(&self, partial: &Partial, pdf_back: f32, can_merge: bool) -> f32 {
         let merging = if can_merge { self.merging } else { 0.0 };
         self.connecting * (merging + partial.vcm + pdf_back * partial.vc)

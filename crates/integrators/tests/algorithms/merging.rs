@@ -1,8 +1,9 @@
 //! Methods that merge photons, against closed forms of what they should find, and of how wrong they should be.
 
 use std::f64::consts::PI;
+use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Control, build};
+use alhazen_integrators::{Cancelled, Control, build};
 use description::{
     CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc,
     ShapeDesc, SpectrumDesc, SppmDesc, TransformDesc, VcmDesc,
@@ -181,4 +182,23 @@ fn without_a_radius_nothing_is_merged_and_all_is_connected() {
     assert!((merged - connected).abs() < 1e-5 * connected, "{merged} {connected}");
     let [merged] = means(&desc, vcm(4, 0.2, 0.75), 3, [8]);
     assert!((merged - connected).abs() > 1e-4 * connected, "{merged} {connected}");
+}
+
+#[test]
+fn a_pass_can_be_stopped_before_its_photons_are_shot() {
+    for integrator in [sppm(5, 0.4, 500), vcm(5, 0.4, 0.75)] {
+        let desc = SceneDesc { integrator: integrator.into(), ..furnace(0.5) };
+        let (scene, mut film) = (compile(&desc), film::compile(&desc).unwrap().film);
+        let mut integrator = build(&desc).ok().unwrap().integrator;
+        integrator.prepare(&scene);
+        let control = Control::default();
+        integrator.pass(0, &scene, &mut film, &control).unwrap();
+        let taken = film.sample_count();
+        control.cancel.store(true, Ordering::Relaxed);
+        assert_eq!(integrator.pass(1, &scene, &mut film, &control), Err(Cancelled));
+        assert_eq!(film.sample_count(), taken);
+        let summary = integrator.summary();
+        assert_eq!(summary.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["photons", "radius"]);
+        assert_eq!(summary[1].1, "0.4 at first, 0.4 after 1 passes");
+    }
 }
