@@ -128,7 +128,7 @@ fn light_that_path_tracing_never_meets_is_the_same_for_all_others() {
 const BLUR: f64 = 0.02;
 
 #[test]
-fn photons_find_nearly_what_path_tracing_finds() {
+fn photon_maps_hold_nearly_what_path_tracing_finds() {
     // Under a door photons seep.
     let scenes = SCENES.iter().filter(|scene| scene.name != "a door that is almost closed");
     let settings = [("photons", "2000"), ("causticphotons", "2000"), ("nearest", "20"), ("radius", "0.1")];
