@@ -2,8 +2,8 @@
 
 use alhazen_integrators::build;
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, SamplerDesc, SamplerKind, SceneDesc, Span,
-    SppmDesc, Stated,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, PhotonMappingDesc, SamplerDesc,
+    SamplerKind, SceneDesc, Span, SppmDesc, Stated, VcmDesc,
 };
 
 fn messages(diagnostics: &[Diagnostic]) -> Vec<&str> {
@@ -26,6 +26,9 @@ fn what_is_drawn_is_drawn_without_a_word() {
         IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
         IntegratorDesc::Path { max_depth: 5, regularize: true, light_sampler },
         IntegratorDesc::VolPath { max_depth: 5, regularize: true, light_sampler },
+        IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
+        IntegratorDesc::Sppm(SppmDesc::default()),
+        IntegratorDesc::Vcm(VcmDesc::default()),
     ] {
         assert_eq!(warnings(integrator), []);
     }
@@ -36,7 +39,6 @@ fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
     for (name, integrator) in [
         ("simplevolpath", IntegratorDesc::SimpleVolPath { max_depth: 5 }),
         ("mlt", IntegratorDesc::Mlt(MltDesc::default())),
-        ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
     ] {
         let expected = format!("integrator `{name}` is not drawn yet; drawn as `path`");
         assert_eq!(messages(&warnings(integrator)), [expected]);
@@ -82,4 +84,57 @@ fn settings_without_sense_are_errors_at_their_place() {
         ["`pixelsamples` is a number above 0, not 0", "`maxdepth` is 0 or more, not -1"]
     );
     assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
+}
+
+#[test]
+fn photons_without_sense_are_errors_at_their_place() {
+    let names = ["photons", "causticphotons", "nearest", "radius", "gather"];
+    let spans = names.map(|name| (name, Span { start: name.len() as u32, ..Span::NONE }));
+    let origin = Origin { span: Span::NONE, parameters: spans.to_vec() };
+    let photons = PhotonMappingDesc {
+        photons: -1,
+        caustic_photons: -2,
+        nearest: 0,
+        radius: Some(f32::NAN),
+        gather: -3,
+        ..PhotonMappingDesc::default()
+    };
+    let integrator = Stated::new(IntegratorDesc::PhotonMapping(photons), origin);
+    let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+    assert_eq!(
+        messages(&errors),
+        [
+            "`photons` is 0 or more, not -1",
+            "`causticphotons` is 0 or more, not -2",
+            "`nearest` is 1 or more, not 0",
+            "`radius` is a distance above 0, not NaN",
+            "`gather` is 0 or more, not -3",
+        ]
+    );
+    assert!(errors.iter().zip(spans).all(|(error, (_, span))| error.is_error() && error.span() == span));
+}
+
+#[test]
+fn merging_needs_a_radius_a_rate_and_photons() {
+    let span = Span { start: 7, ..Span::NONE };
+    let parameters = ["radius", "alpha", "photonsperiteration"].map(|name| (name, span)).to_vec();
+    let errors = |integrator: IntegratorDesc| {
+        let origin = Origin { span: Span::NONE, parameters: parameters.clone() };
+        let integrator = Stated::new(integrator, origin);
+        let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+        assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
+        messages(&errors).join("; ")
+    };
+    for (radius, alpha) in [(0.0, 0.0), (-1.0, 1.5), (f32::INFINITY, f32::NAN)] {
+        let vcm = VcmDesc { radius: Some(radius), alpha, ..VcmDesc::default() };
+        let expected = format!(
+            "`alpha` is above 0 and at most 1, not {alpha}; `radius` is a distance above 0, not {radius}"
+        );
+        assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
+    }
+    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: f32::NAN, ..SppmDesc::default() };
+    assert_eq!(
+        errors(IntegratorDesc::Sppm(sppm)),
+        "`photonsperiteration` is a number above 0, not 0; `radius` is a distance above 0, not NaN"
+    );
 }

@@ -7,5 +7,7 @@ mod ambient_occlusion;
 mod build;
 mod direct_light;
 mod furnace;
+mod merging;
+mod photon_mapping;
 mod render_loop;
 mod support;
