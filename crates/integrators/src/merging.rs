@@ -131,7 +131,7 @@ impl Merging {
         let mebibytes = bytes as f64 / f64::from(1 << 20);
         vec![
             ("photons", format!("{photons} of {paths} paths in a pass, {mebibytes:.1} MiB")),
-            ("radius", format!("{} at first, {radius} after {passes} passes", self.radius)),
+            ("radius", format!("{} in pass 1, {radius} in pass {passes}", self.radius)),
         ]
     }
 }
