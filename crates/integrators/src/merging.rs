@@ -7,7 +7,8 @@
 //! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p
 //! ```
 //!
-//! That blurs light over the radius. The blur is a bias which goes with r², while noise goes with 1/r²; both vanish if pass i has
+//! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and walls without thickness, through
+//! which light leaks), while noise goes with 1/r²; both vanish if pass i has
 //! the radius of [Knaus 2011]
 //!
 //! ```text
