@@ -7,7 +7,8 @@
 //! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p
 //! ```
 //!
-//! That blurs light over the radius. The blur is a bias which goes with r², while noise goes with 1/r²; both vanish if pass i has
+//! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and walls without thickness, through
+//! which light leaks), while noise goes with 1/r²; both vanish if pass i has
 //! the radius of [Knaus 2011]
 //!
 //! ```text
@@ -124,7 +125,7 @@ impl Merging {
         let mebibytes = bytes as f64 / f64::from(1 << 20);
         vec![
             ("photons", format!("{photons} of {paths} paths in a pass, {mebibytes:.1} MiB")),
-            ("radius", format!("{} at first, {radius} after {passes} passes", self.radius)),
+            ("radius", format!("{} in pass 1, {radius} in pass {passes}", self.radius)),
         ]
     }
 }

@@ -7,6 +7,8 @@ mod common;
 mod promises;
 mod scenes;
 
+use std::sync::LazyLock;
+
 use alhazen::Overrides;
 use alhazen::image::Image;
 use testkit::{Moments, welch_test};
@@ -76,14 +78,19 @@ fn means(picture: &Image) -> Vec<f64> {
     sums.iter().map(|sum| sum / (SIDE * SIDE) as f64).collect()
 }
 
+/// What path tracing shows of each scene.
+static REFERENCES: LazyLock<Vec<Pictures>> = LazyLock::new(|| {
+    let reference = |scene: &Scene| Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+    SCENES.iter().map(reference).collect()
+});
+
 /// Holds an algorithm to path tracing on every scene that it can see all of.
 fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can: impl Fn(&Scene) -> bool) {
-    let scenes: Vec<_> = SCENES.iter().filter(|scene| can(scene)).collect();
+    let scenes: Vec<_> = SCENES.iter().zip(&*REFERENCES).filter(|(scene, _)| can(scene)).collect();
     let mut failures = Vec::new();
-    for scene in &scenes {
-        let reference = Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+    for &(scene, reference) in &scenes {
         let found = Pictures::new(scene, integrator, settings, samples, 0);
-        let differences = found.differences(&reference, scenes.len());
+        let differences = found.differences(reference, scenes.len());
         failures.extend(differences.into_iter().map(|text| format!("{}, {text}", scene.name)));
     }
     assert!(failures.is_empty(), "{integrator} in\n{}", failures.join("\n"));

@@ -199,6 +199,6 @@ fn a_pass_can_be_stopped_before_its_photons_are_shot() {
         assert_eq!(film.sample_count(), taken);
         let summary = integrator.summary();
         assert_eq!(summary.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["photons", "radius"]);
-        assert_eq!(summary[1].1, "0.4 at first, 0.4 after 1 passes");
+        assert_eq!(summary[1].1, "0.4 in pass 1, 0.4 in pass 1");
     }
 }
