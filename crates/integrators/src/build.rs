@@ -11,8 +11,8 @@ use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::{
-    AmbientOcclusion, Bdpt, BdptSettings, Integrator, LightTracing, Path, PathSettings, PixelLoop,
-    RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
+    AmbientOcclusion, Bdpt, BdptSettings, Integrator, LightTracing, Mlt, MltSettings, Path, PathSettings,
+    PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
 };
 
 /// What [`build`] gives.
@@ -145,9 +145,7 @@ impl Builder<'_> {
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(Bdpt::new(settings, sampler, light_sampler))
             }
-            &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
-                self.instead_of("mlt", max_depth, regularize, sampler)
-            }
+            IntegratorDesc::Mlt(desc) => self.mlt(desc, sampler),
             IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. }) => {
                 self.instead_of("photon-mapping", *max_depth, false, sampler)
             }
@@ -159,6 +157,29 @@ impl Builder<'_> {
             }
             IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
         }
+    }
+
+    fn mlt(&mut self, desc: &MltDesc, sampler: Sampler) -> Box<dyn Integrator> {
+        let MltDesc { technique, large_step_probability, sigma, regularize, .. } = *desc;
+        if !(0.0..=1.0).contains(&large_step_probability) {
+            let message = format!("`largestepprobability` is from 0 to 1, not {large_step_probability}");
+            self.error(message, "largestepprobability");
+        }
+        if !(sigma > 0.0 && sigma.is_finite()) {
+            self.error(format!("`sigma` is a number above 0, not {sigma}"), "sigma");
+        }
+        let settings = MltSettings {
+            technique,
+            max_depth: self.depth(desc.max_depth),
+            regularize,
+            bootstrap_samples: self.count(desc.bootstrap_samples, "bootstrapsamples"),
+            chains: self.count(desc.chains, "chains"),
+            mutations_per_pixel: self.count(desc.mutations_per_pixel, "mutationsperpixel"),
+            large_step_probability,
+            sigma,
+        };
+        let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
+        Box::new(Mlt::new(settings, sampler, seed))
     }
 
     /// Path tracing where the author asked for something else.
@@ -203,6 +224,14 @@ impl Builder<'_> {
         u32::try_from(max_depth).unwrap_or_else(|_| {
             self.error(format!("`maxdepth` is 0 or more, not {max_depth}"), "maxdepth");
             0
+        })
+    }
+
+    /// A number above 0; 1, and an error, where it is none.
+    fn count(&mut self, count: i32, parameter: &str) -> u32 {
+        u32::try_from(count).ok().filter(|&count| count > 0).unwrap_or_else(|| {
+            self.error(format!("`{parameter}` is a number above 0, not {count}"), parameter);
+            1
         })
     }
 

@@ -14,6 +14,7 @@
 //! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected in all ways |
+//! | [`Mlt`] | a walk through paths that lingers where they are bright |
 //!
 //! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
 //! that reaches the camera, and the depth of a path the number of its scattering events: depth 0 shows lights alone, depth 1
@@ -27,6 +28,7 @@ mod control;
 mod direct;
 mod integrator;
 mod light_tracing;
+mod mlt;
 mod path;
 mod pixel_loop;
 mod random_walk;
@@ -41,6 +43,7 @@ pub use build::{Built, build};
 pub use control::{Cancelled, Control, Progress, ProgressSink};
 pub use integrator::{ByProduct, Integrator};
 pub use light_tracing::LightTracing;
+pub use mlt::{Mlt, MltSettings};
 pub use path::{Path, PathSettings};
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;

@@ -1,0 +1,129 @@
+//! Metropolis light transport in primary sample space: a walk through paths that lingers where they are bright.
+
+mod chain;
+mod chains;
+mod target;
+
+use description::MltTechnique;
+use film::Film;
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::light_sampler::LightSamplerKind;
+use scene::{Interfaces, Scene};
+use spectrum::SampledSpectrum;
+
+use chains::Chains;
+use target::{CameraPaths, ConnectedPaths, Target, View};
+
+use crate::bidirectional::{Balance, Bidirectional, Lights};
+use crate::pixel_loop::PixelSamples;
+use crate::{Cancelled, Control, Integrator, Path, PathSettings, RayIntegrator};
+
+/// Settings of [`Mlt`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MltSettings {
+    /// What makes paths; default `Bdpt`.
+    pub technique: MltTechnique,
+    /// Most scattering events; default 5.
+    pub max_depth: u32,
+    /// Roughen surfaces after the first rough one of each subpath; default false.
+    pub regularize: bool,
+    /// Paths among which each pass chooses where its chains start, above 0.
+    pub bootstrap_samples: u32,
+    /// Chains of each pass, above 0.
+    pub chains: u32,
+    /// Passes, each of as many mutations as there are pixels.
+    pub mutations_per_pixel: u32,
+    /// Probability of a large step, from 0 to 1.
+    pub large_step_probability: f32,
+    /// Standard deviation of a small step, above 0.
+    pub sigma: f32,
+}
+
+/// Metropolis light transport.
+#[derive(Debug)]
+pub struct Mlt {
+    settings: MltSettings,
+    /// Of the camera rays that see lights.
+    sampler: Sampler,
+    /// Paths that do not scatter.
+    seen: Path,
+    technique: Technique,
+    chains: Chains,
+}
+
+/// What makes paths, prepared for the scene.
+#[derive(Debug)]
+enum Technique {
+    Path(Path),
+    Bdpt(Lights),
+}
+
+impl Mlt {
+    /// With a sampler of the camera rays that see lights.
+    pub fn new(settings: MltSettings, sampler: Sampler, seed: u32) -> Self {
+        let path = |max_depth| {
+            Path::new(PathSettings {
+                max_depth,
+                regularize: settings.regularize,
+                light_sampler: LightSamplerKind::Bvh,
+                interfaces: Interfaces::Pass,
+            })
+        };
+        let technique = match settings.technique {
+            MltTechnique::Path => Technique::Path(path(settings.max_depth)),
+            MltTechnique::Bdpt => Technique::Bdpt(Lights::none()),
+        };
+        Self { settings, sampler, seen: path(0), technique, chains: Chains::new(settings, seed) }
+    }
+}
+
+impl Integrator for Mlt {
+    fn passes(&self) -> u32 {
+        self.settings.mutations_per_pixel
+    }
+
+    fn prepare(&mut self, scene: &Scene) {
+        match &mut self.technique {
+            Technique::Path(path) => path.prepare(scene),
+            Technique::Bdpt(lights) => *lights = Lights::of(scene),
+        }
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let MltSettings { max_depth, regularize, mutations_per_pixel, .. } = self.settings;
+        let filter = film.filter().clone();
+        let view = View::new(scene, film, mutations_per_pixel);
+        let mutations = film.pixel_bounds().area();
+        let (tiles, splatter) = film.tiles_and_splatter();
+
+        let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
+        let mut stats = pixels.add(tiles, control, |sample, sampler, stats| {
+            let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
+            self.seen.li(scene, camera_ray.ray, &mut sample.lambda, sampler, stats) * camera_ray.weight
+        })?;
+        if max_depth == 0 {
+            return Ok(stats);
+        }
+        let target: &dyn Target = match &self.technique {
+            Technique::Path(path) => &CameraPaths { view, path },
+            Technique::Bdpt(lights) => {
+                let balance = Balance { light_paths: view.area(), merging: 0.0 };
+                let paths = Bidirectional { scene, lights, balance, max_depth, regularize };
+                &ConnectedPaths { view, paths }
+            }
+        };
+        stats += self.chains.run(pass, target, mutations, &splatter, control)?;
+        Ok(stats)
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        self.chains.summary()
+    }
+}
