@@ -116,3 +116,102 @@ impl<V> Chain<V> {
         ((self.current.value, self.current.worth), self.acceptance)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use math::Vec2;
+    use sampling::sampler::PrimarySample;
+    use testkit::{Chi2, Moments, integrate, t_test};
+
+    /// A narrow hill on a plain.
+    fn hill(x: f64, y: f64) -> f64 {
+        let (dx, dy) = (x - 0.3, y - 0.85);
+        (-(dx * dx + dy * dy) / (2.0 * 0.1 * 0.1)).exp() + 0.1
+    }
+
+    fn evaluate([first, second, _]: &mut Streams) -> (Vec2, f32) {
+        let p = Vec2::new(first.get_1d(), second.get_1d());
+        (p, hill(f64::from(p.x), f64::from(p.y)) as f32)
+    }
+
+    fn streams(sigma: f32, index: i32) -> Streams {
+        [0, 1, 2].map(|seed| {
+            let mut sampler = Sampler::PrimarySample(PrimarySample::new(1, sigma, seed));
+            sampler.start_pixel_sample([index, 0], 0, 0);
+            sampler
+        })
+    }
+
+    fn volume(range: [[f64; 2]; 2]) -> f64 {
+        integrate(&hill, range, 1e-9)
+    }
+
+    #[test]
+    fn a_chain_that_starts_in_the_distribution_of_the_target_stays_in_it() {
+        let b = volume([[0.0, 1.0]; 2]);
+        for (test, (large, sigma)) in [(0.0, 0.1), (0.3, 0.02), (1.0, 0.1)].into_iter().enumerate() {
+            let steps = Steps { large, b: 1.0, b0: 1.0 };
+            let mut candidate = 0;
+            let chi2 = Chi2 { tests: 3, samples: 60_000, seed: test as u64, ..Chi2::default() };
+            let end = |u: [f32; 2]| {
+                // Start by rejection.
+                let mut chain = loop {
+                    candidate += 1;
+                    let chain = Chain::new(streams(sigma, candidate), candidate as u64, evaluate);
+                    let height = 1.1 * sampling::hash_float(&[candidate as u32, 9]);
+                    if height < chain.current.c {
+                        break chain;
+                    }
+                };
+                for _ in 0..(1.0 + u[0] * 8.0) as u32 {
+                    chain.step(&steps, evaluate);
+                }
+                Some(chain.end().0.0.to_array())
+            };
+            chi2.rectangle([[0.0, 1.0]; 2], end, |[x, y]| hill(f64::from(x), f64::from(y)) / b).unwrap();
+        }
+    }
+
+    /// What a region of the plane is worth by chains that start at one of a few candidates, whatever else is taken for b.
+    #[test]
+    fn what_is_found_on_the_way_is_worth_its_part_of_the_integral() {
+        const STEPS: u32 = 6;
+        let regions = [[[0.0, 1.0], [0.0, 1.0]], [[0.2, 0.4], [0.8, 1.0]], [[0.6, 1.0], [0.0, 0.5]]];
+        let cases = [(0.3, 0.05, 0.2), (0.3, 0.05, 1.0), (0.0, 0.05, 0.2), (1.0, 0.05, 0.2), (0.5, 0.3, 0.0)];
+        for (large, sigma, b0) in cases {
+            let mut found = [Moments::default(); 3];
+            for run in 0..20_000 {
+                let candidates = [0, 1, 2].map(|i| 3 * run + i);
+                let weights = candidates.map(|i| evaluate(&mut streams(sigma, i)).1);
+                let sum: f32 = weights.iter().sum();
+                let mut place = sum * sampling::hash_float(&[run as u32, 5]);
+                let chosen = weights.iter().position(|weight| {
+                    place -= weight;
+                    place < 0.0
+                });
+                let start = candidates[chosen.unwrap_or(2)];
+                let steps = Steps { large, b: sum / 3.0, b0 };
+                let mut chain = Chain::new(streams(sigma, start), run as u64, evaluate);
+                let mut worth = [0.0; 3];
+                let mut add = |(p, more): (Vec2, f32)| {
+                    let c = hill(f64::from(p.x), f64::from(p.y));
+                    for (worth, [x, y]) in worth.iter_mut().zip(regions) {
+                        let inside =
+                            |range: [f64; 2], at: f32| range[0] <= at.into() && f64::from(at) < range[1];
+                        if inside(x, p.x) && inside(y, p.y) {
+                            *worth += c * f64::from(more) / f64::from(STEPS);
+                        }
+                    }
+                };
+                (0..STEPS).for_each(|_| add(chain.step(&steps, evaluate)));
+                add(chain.end().0);
+                found.iter_mut().zip(worth).for_each(|(found, worth)| found.push(worth));
+            }
+            for (found, region) in found.iter().zip(regions) {
+                t_test(found, volume(region), 15)
+                    .unwrap_or_else(|e| panic!("{large} {sigma} {b0} {region:?}: {e}"));
+            }
+        }
+    }
+}

@@ -31,6 +31,12 @@ impl Chains {
         Self { settings, seed, b0: None, acceptance: Acceptance::default() }
     }
 
+    /// Among how many points the chains of a pass start: its share of all, and one for each chain at least.
+    fn candidates(&self) -> u32 {
+        let MltSettings { bootstrap_samples, mutations_per_pixel, chains, .. } = self.settings;
+        bootstrap_samples.div_ceil(mutations_per_pixel).max(chains)
+    }
+
     /// Takes as many steps as `mutations` says, with the chains of a pass.
     pub fn run(
         &mut self,
@@ -97,7 +103,7 @@ impl Chains {
         target: &dyn Target,
         control: &Control,
     ) -> Result<(Vec<f32>, RayStats), Cancelled> {
-        let mut candidates = vec![0.0; self.settings.bootstrap_samples as usize];
+        let mut candidates = vec![0.0; self.candidates() as usize];
         let row = |(row, candidates): (usize, &mut [f32])| {
             control.check()?;
             let (mut streams, mut stats) = (self.streams(), RayStats::default());
@@ -159,4 +165,23 @@ fn resample(weights: &[f32], count: usize, u: f32) -> Vec<u32> {
     }
     chosen.resize(count, chosen.last().copied().unwrap_or(0));
     chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_are_chosen_as_often_as_they_weigh() {
+        let weights = [0.0, 3.0, 0.5, 0.0, 1.5, 0.0];
+        for u in [0.0, 0.3, 0.999] {
+            let chosen = resample(&weights, 100, u);
+            for (i, weight) in weights.iter().enumerate() {
+                let count = chosen.iter().filter(|&&chosen| chosen == i as u32).count() as f32;
+                assert!((count - 20.0 * weight).abs() <= 1.0, "{i}: {count}");
+                assert!(*weight > 0.0 || count == 0.0);
+            }
+        }
+        assert_eq!(resample(&[0.0; 4], 3, 0.5).len(), 3);
+    }
 }

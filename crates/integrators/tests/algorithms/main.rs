@@ -7,5 +7,6 @@ mod ambient_occlusion;
 mod build;
 mod direct_light;
 mod furnace;
+mod mlt;
 mod render_loop;
 mod support;
