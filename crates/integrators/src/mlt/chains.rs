@@ -17,6 +17,9 @@ pub(super) struct Chains {
     settings: MltSettings,
     seed: u32,
     b0: Option<f32>,
+    passes: u32,
+    /// Of all passes.
+    b_sum: f64,
     acceptance: Acceptance,
 }
 
@@ -28,7 +31,7 @@ const ROW: usize = 256;
 
 impl Chains {
     pub fn new(settings: MltSettings, seed: u32) -> Self {
-        Self { settings, seed, b0: None, acceptance: Acceptance::default() }
+        Self { settings, seed, b0: None, passes: 0, b_sum: 0.0, acceptance: Acceptance::default() }
     }
 
     /// Among how many points the chains of a pass start: its share of all, and one for each chain at least.
@@ -91,6 +94,8 @@ impl Chains {
                 all.1 += one.1;
                 Ok(all)
             })?;
+        self.passes += 1;
+        self.b_sum += f64::from(b);
         self.acceptance += acceptance;
         stats += more;
         Ok(stats)
@@ -133,10 +138,15 @@ impl Chains {
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         let Acceptance { proposed, accepted } = self.acceptance;
         let share = |kind: usize| 100.0 * accepted[kind] as f64 / proposed[kind].max(1) as f64;
-        let b = self.b0.unwrap_or(0.0);
+        let (candidates, chains) = (self.candidates(), self.settings.chains);
+        let bytes = size_of::<f32>() * candidates as usize + size_of::<u32>() * chains as usize;
         vec![
-            ("b", format!("{b:.4}")),
+            ("b", format!("{:.6e}", self.b_sum / f64::from(self.passes.max(1)))),
             ("accepted", format!("{:.1} % of small steps, {:.1} % of large ones", share(0), share(1))),
+            (
+                "starts",
+                format!("{chains} of {candidates} paths in each pass, in {} KiB", bytes.div_ceil(1024)),
+            ),
         ]
     }
 }

@@ -63,15 +63,16 @@ pub struct MltSettings {
     pub max_depth: u32,
     /// Roughen surfaces after the first rough one of each subpath; default false.
     pub regularize: bool,
-    /// Paths among which each pass chooses where its chains start, above 0.
+    /// Paths among which chains choose where to start, above 0; each pass has its share of them, but at least one for each chain.
+    /// Default 100,000.
     pub bootstrap_samples: u32,
-    /// Chains of each pass, above 0.
+    /// Chains of each pass, above 0; default 1000. Fewer are longer, and explore farther around fewer paths.
     pub chains: u32,
-    /// Passes, each of as many mutations as there are pixels.
+    /// Passes, each of as many mutations as there are pixels; default 100.
     pub mutations_per_pixel: u32,
-    /// Probability of a large step, from 0 to 1.
+    /// Probability of a large step, from 0 to 1; default 0.3.
     pub large_step_probability: f32,
-    /// Standard deviation of a small step, above 0.
+    /// Standard deviation of a small step in each coordinate, above 0; default 0.01.
     pub sigma: f32,
 }
 

@@ -28,6 +28,8 @@ pub struct PrimarySample {
     sigma: f32,
     rng: Rng,
     is_large: bool,
+    /// Normal deviates come in pairs: the second of the last.
+    spare: Option<f32>,
     current: Vec<f32>,
     proposed: Vec<f32>,
 }
@@ -41,6 +43,7 @@ impl PrimarySample {
             sigma,
             rng: Rng::new(0, 0),
             is_large: true,
+            spare: None,
             current: Vec::new(),
             proposed: Vec::new(),
         }
@@ -49,6 +52,7 @@ impl PrimarySample {
     /// Draws all that follows from a random sequence of its own.
     pub fn reseed(&mut self, sequence: u64) {
         self.rng = Rng::from_sequence(sequence);
+        self.spare = None;
     }
 
     /// Proposes a step from the current point, and forgets the step proposed before. The coordinates asked for from now on are those of
@@ -75,18 +79,15 @@ impl PrimarySample {
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
         self.rng = pixel_rng(pixel, index, dimension, self.seed);
+        self.spare = None;
         self.current.clear();
         self.propose(true);
     }
 
     pub(super) fn get_1d(&mut self) -> f32 {
-        let u = self.rng.uniform_f32();
         let x = match self.origin() {
-            None => u,
-            Some(x) => {
-                let step = sample_two_normal(Vec2::new(u, self.rng.uniform_f32()), 0.0, self.sigma);
-                wrap(x + step.x)
-            }
+            None => self.rng.uniform_f32(),
+            Some(x) => wrap(x + self.small_step()),
         };
         self.proposed.push(x);
         x
@@ -99,6 +100,15 @@ impl PrimarySample {
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
         self.get_2d()
+    }
+
+    fn small_step(&mut self) -> f32 {
+        self.spare.take().unwrap_or_else(|| {
+            let u = Vec2::new(self.rng.uniform_f32(), self.rng.uniform_f32());
+            let steps = sample_two_normal(u, 0.0, self.sigma);
+            self.spare = Some(steps.y);
+            steps.x
+        })
     }
 
     /// What the next coordinate steps from; `None` if it is drawn anew.
