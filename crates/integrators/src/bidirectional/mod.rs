@@ -29,6 +29,8 @@ mod connect;
 mod light_end;
 mod partial;
 mod subpaths;
+#[cfg(test)]
+mod tests;
 mod vertex;
 mod walk;
 

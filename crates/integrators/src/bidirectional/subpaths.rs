@@ -25,7 +25,7 @@ impl Bidirectional<'_> {
         stats: &mut RayStats,
         mut visit: impl FnMut(&Vertex, &mut Sampler, &mut RayStats),
     ) {
-        let Some(mut walk) = Walk::from_light(self, time, lambda.clone(), sampler) else { return };
+        let Some(mut walk) = Walk::from_light(self, time, *lambda, sampler) else { return };
         while walk.depth < self.max_depth {
             let Some(mut surface) = walk.meet(stats) else { return };
             let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
@@ -47,7 +47,7 @@ impl Bidirectional<'_> {
         stats: &mut RayStats,
         mut visit: impl FnMut(OnTheWay, &mut Sampler, &mut RayStats),
     ) {
-        let mut walk = Walk::from_camera(self, camera_ray, lambda.clone());
+        let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut before: Option<Vertex> = None;
         loop {
             let Some(mut surface) = walk.meet(stats) else {
