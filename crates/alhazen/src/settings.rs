@@ -95,12 +95,12 @@ pub static SETTINGS: [Setting; 31] = [
     },
     Setting {
         name: "bootstrapsamples",
-        help: "mlt: paths among which chains choose where to start, in all passes together",
+        help: "mlt: most paths among which the chains of a pass choose where to start",
         apply: |desc, text| set(Some(&mut mlt(desc)?.bootstrap_samples), text),
     },
     Setting {
         name: "chains",
-        help: "mlt: chains of each pass, a pass being a mutation per pixel",
+        help: "mlt: most chains of a pass, which has a mutation per pixel",
         apply: |desc, text| set(Some(&mut mlt(desc)?.chains), text),
     },
     Setting {

@@ -89,3 +89,8 @@ fn bidirectional_paths_find_what_path_tracing_finds() {
 fn light_finds_what_path_tracing_finds() {
     assert_agrees("light-tracing", 16, |scene| !scene.has_mirrors);
 }
+
+#[test]
+fn chains_of_paths_find_what_path_tracing_finds() {
+    assert_agrees("mlt", 48, |_| true);
+}

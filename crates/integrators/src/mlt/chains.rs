@@ -18,26 +18,43 @@ pub(super) struct Chains {
     seed: u32,
     b0: Option<f32>,
     passes: u32,
-    /// Of all passes.
+    /// Sum of the b of these passes.
     b_sum: f64,
+    /// Steps of the last of them.
+    mutations: usize,
     acceptance: Acceptance,
 }
 
 /// The number of the pass whose starting points tell b₀: no other has it.
 const BEFORE_ALL: u32 = u32::MAX;
 
+/// A share of the time that goes into the choice of starts: with fewer candidates, chains start too often at the same one.
+const MUTATIONS_PER_CANDIDATE: usize = 4;
+
+/// Shorter chains than this leave too little of the place where they start.
+const FEWEST_MUTATIONS: usize = 256;
+
 /// Points that a thread looks at in a row, and steps that it takes, before it asks whether to go on.
 const ROW: usize = 256;
 
 impl Chains {
     pub fn new(settings: MltSettings, seed: u32) -> Self {
-        Self { settings, seed, b0: None, passes: 0, b_sum: 0.0, acceptance: Acceptance::default() }
+        Self {
+            settings,
+            seed,
+            b0: None,
+            passes: 0,
+            b_sum: 0.0,
+            mutations: 0,
+            acceptance: Acceptance::default(),
+        }
     }
 
-    /// Among how many points the chains of a pass start: its share of all, and one for each chain at least.
-    fn candidates(&self) -> u32 {
-        let MltSettings { bootstrap_samples, mutations_per_pixel, chains, .. } = self.settings;
-        bootstrap_samples.div_ceil(mutations_per_pixel).max(chains)
+    /// Among how many points the chains of a pass choose, and how many chains.
+    fn starts(&self, mutations: usize) -> (usize, usize) {
+        let MltSettings { bootstrap_samples, chains, .. } = self.settings;
+        let candidates = (bootstrap_samples as usize).min(mutations / MUTATIONS_PER_CANDIDATE);
+        (candidates.max(1), (chains as usize).min(mutations / FEWEST_MUTATIONS).max(1))
     }
 
     /// Takes as many steps as `mutations` says, with the chains of a pass.
@@ -50,8 +67,9 @@ impl Chains {
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
         let mut stats = RayStats::default();
+        let (count, chains) = self.starts(mutations);
         let mut bootstrap = |pass| {
-            let (candidates, more) = self.bootstrap(pass, target, control)?;
+            let (candidates, more) = self.bootstrap(pass, count, target, control)?;
             stats += more;
             Ok((mean(&candidates), candidates))
         };
@@ -63,7 +81,6 @@ impl Chains {
         self.b0 = Some(b0);
 
         let steps = Steps { large: self.settings.large_step_probability, b, b0 };
-        let chains = mutations.min(self.settings.chains as usize);
         let starts = resample(&candidates, chains, hash_float(&[self.seed, pass]));
         let chain = |(k, &start): (usize, &u32)| {
             let mut stats = RayStats::default();
@@ -95,6 +112,7 @@ impl Chains {
                 Ok(all)
             })?;
         self.passes += 1;
+        self.mutations = mutations;
         self.b_sum += f64::from(b);
         self.acceptance += acceptance;
         stats += more;
@@ -105,10 +123,11 @@ impl Chains {
     fn bootstrap(
         &self,
         pass: u32,
+        count: usize,
         target: &dyn Target,
         control: &Control,
     ) -> Result<(Vec<f32>, RayStats), Cancelled> {
-        let mut candidates = vec![0.0; self.candidates() as usize];
+        let mut candidates = vec![0.0; count];
         let row = |(row, candidates): (usize, &mut [f32])| {
             control.check()?;
             let (mut streams, mut stats) = (self.streams(), RayStats::default());
@@ -138,15 +157,12 @@ impl Chains {
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         let Acceptance { proposed, accepted } = self.acceptance;
         let share = |kind: usize| 100.0 * accepted[kind] as f64 / proposed[kind].max(1) as f64;
-        let (candidates, chains) = (self.candidates(), self.settings.chains);
-        let bytes = size_of::<f32>() * candidates as usize + size_of::<u32>() * chains as usize;
+        let (candidates, chains) = self.starts(self.mutations);
+        let kib = (size_of::<f32>() * candidates + size_of::<u32>() * chains).div_ceil(1024);
         vec![
             ("b", format!("{:.6e}", self.b_sum / f64::from(self.passes.max(1)))),
             ("accepted", format!("{:.1} % of small steps, {:.1} % of large ones", share(0), share(1))),
-            (
-                "starts",
-                format!("{chains} of {candidates} paths in each pass, in {} KiB", bytes.div_ceil(1024)),
-            ),
+            ("starts", format!("{chains} of {candidates} paths in each pass, in {kib} KiB")),
         ]
     }
 }

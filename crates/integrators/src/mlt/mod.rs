@@ -63,10 +63,10 @@ pub struct MltSettings {
     pub max_depth: u32,
     /// Roughen surfaces after the first rough one of each subpath; default false.
     pub regularize: bool,
-    /// Paths among which chains choose where to start, above 0; each pass has its share of them, but at least one for each chain.
-    /// Default 100,000.
+    /// Most paths among which the chains of a pass choose their starts, above 0; default 100,000. No more are looked at than a
+    /// quarter of the pass's mutations.
     pub bootstrap_samples: u32,
-    /// Chains of each pass, above 0; default 1000. Fewer are longer, and explore farther around fewer paths.
+    /// Most chains of a pass, above 0; default 1000. None has fewer than 256 mutations, but where the picture is smaller.
     pub chains: u32,
     /// Passes, each of as many mutations as there are pixels; default 100.
     pub mutations_per_pixel: u32,

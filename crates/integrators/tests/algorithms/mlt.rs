@@ -25,7 +25,7 @@ fn view(resolution: [i32; 2]) -> SceneDesc {
 }
 
 fn mlt(technique: MltTechnique, max_depth: i32) -> MltDesc {
-    MltDesc { technique, max_depth, mutations_per_pixel: 4, chains: 100, ..MltDesc::default() }
+    MltDesc { technique, max_depth, mutations_per_pixel: 4, ..MltDesc::default() }
 }
 
 fn with(desc: &SceneDesc, integrator: IntegratorDesc, seed: i32) -> SceneDesc {
@@ -115,7 +115,7 @@ fn the_mean_is_that_of_path_tracing() {
             IntegratorDesc::VolPath { max_depth: 4, regularize: false, light_sampler: LightSamplerDesc::Bvh };
         let path: Moments = (0..6).map(|seed| mean(&with(&scene, path.clone(), seed))).collect();
         for technique in TECHNIQUES {
-            let desc = MltDesc { bootstrap_samples: 40_000, mutations_per_pixel: 40, ..mlt(technique, 4) };
+            let desc = MltDesc { mutations_per_pixel: 80, ..mlt(technique, 4) };
             let desc = |seed| with(&scene, IntegratorDesc::Mlt(desc.clone()), seed);
             let found: Moments = (0..8).map(|seed| mean(&desc(seed))).collect();
             let error = found.variance_of_mean().sqrt() / path.mean;
@@ -127,7 +127,7 @@ fn the_mean_is_that_of_path_tracing() {
 
 #[test]
 fn a_closed_furnace_shows_what_it_emits_once_for_each_reflection() {
-    let mut scene = view([8, 8]);
+    let mut scene = view([16, 16]);
     let (material, area_light) = (diffuse(&mut scene, 0.6), emission(&mut scene, 1.0));
     let ball = ShapeDesc { reverse_orientation: true, ..at(sphere(1.0), v(0.2, 0.1, 0.3)) };
     scene.shapes.push(ShapeDesc { material, area_light, ..ball });
@@ -135,8 +135,7 @@ fn a_closed_furnace_shows_what_it_emits_once_for_each_reflection() {
     for max_depth in depths {
         let expected: f64 = (0..=max_depth).map(|k| 0.6f64.powi(k)).sum();
         for technique in TECHNIQUES {
-            let desc =
-                MltDesc { bootstrap_samples: 8000, mutations_per_pixel: 32, ..mlt(technique, max_depth) };
+            let desc = MltDesc { mutations_per_pixel: 16, ..mlt(technique, max_depth) };
             let means = (0..8).map(|seed| mean(&with(&scene, IntegratorDesc::Mlt(desc.clone()), seed)));
             assert_mean(&means.collect(), expected, 6, &format!("{technique:?} of depth {max_depth}"));
         }
