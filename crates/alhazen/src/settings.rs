@@ -95,12 +95,12 @@ pub static SETTINGS: [Setting; 31] = [
     },
     Setting {
         name: "bootstrapsamples",
-        help: "mlt: paths that find where chains start",
+        help: "mlt: most paths among which the chains of a pass choose where to start",
         apply: |desc, text| set(Some(&mut mlt(desc)?.bootstrap_samples), text),
     },
     Setting {
         name: "chains",
-        help: "mlt: number of chains",
+        help: "mlt: most chains of a pass, which has a mutation per pixel",
         apply: |desc, text| set(Some(&mut mlt(desc)?.chains), text),
     },
     Setting {

@@ -121,9 +121,9 @@ pub struct MltDesc {
     pub technique: MltTechnique,
     /// Greatest depth of a path.
     pub max_depth: i32,
-    /// Samples that find where chains start.
+    /// Most samples among which the chains of a pass choose where to start.
     pub bootstrap_samples: i32,
-    /// Chains.
+    /// Most chains of a pass; it has as many mutations as there are pixels.
     pub chains: i32,
     /// Mutations per pixel on average.
     pub mutations_per_pixel: i32,

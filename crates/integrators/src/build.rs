@@ -11,9 +11,9 @@ use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::{
-    AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Path, PathSettings,
-    PhotonMapping, PhotonMappingSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm,
-    SppmSettings, Vcm, VcmSettings, Whitted,
+    AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Mlt, MltSettings, Path,
+    PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator,
+    SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted,
 };
 
 /// What [`build`] gives.
@@ -153,9 +153,7 @@ impl Builder<'_> {
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(Bdpt::new(settings, sampler, light_sampler))
             }
-            &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
-                self.instead_of("mlt", max_depth, regularize, sampler)
-            }
+            IntegratorDesc::Mlt(desc) => self.mlt(desc, sampler),
             IntegratorDesc::PhotonMapping(desc) => {
                 let settings = self.photon_mapping(desc);
                 Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
@@ -195,6 +193,29 @@ impl Builder<'_> {
             gather: self.count(desc.gather, 0, "gather"),
             show_photons: desc.show == PhotonMappingShow::Photons,
         }
+    }
+
+    fn mlt(&mut self, desc: &MltDesc, sampler: Sampler) -> Box<dyn Integrator> {
+        let MltDesc { technique, large_step_probability, sigma, regularize, .. } = *desc;
+        if !(0.0..=1.0).contains(&large_step_probability) {
+            let message = format!("`largestepprobability` is from 0 to 1, not {large_step_probability}");
+            self.error(message, "largestepprobability");
+        }
+        if !(sigma > 0.0 && sigma.is_finite()) {
+            self.error(format!("`sigma` is a number above 0, not {sigma}"), "sigma");
+        }
+        let settings = MltSettings {
+            technique,
+            max_depth: self.depth(desc.max_depth),
+            regularize,
+            bootstrap_samples: self.count(desc.bootstrap_samples, 1, "bootstrapsamples"),
+            chains: self.count(desc.chains, 1, "chains"),
+            mutations_per_pixel: self.count(desc.mutations_per_pixel, 1, "mutationsperpixel"),
+            large_step_probability,
+            sigma,
+        };
+        let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
+        Box::new(Mlt::new(settings, sampler, seed))
     }
 
     /// Path tracing where the author asked for something else.

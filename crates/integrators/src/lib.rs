@@ -14,6 +14,7 @@
 //! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected in all ways |
+//! | [`Mlt`] | a walk through paths that lingers where they are bright |
 //! | [`PhotonMapping`] | photons from the lights, and camera rays that pick up the nearest |
 //! | [`Sppm`] | paths to the first diffuse surface, and the photons there |
 //! | [`Vcm`] | paths from both ends, connected and merged |
@@ -31,6 +32,7 @@ mod direct;
 mod integrator;
 mod light_tracing;
 mod merging;
+mod mlt;
 mod path;
 mod photon;
 mod photon_grid;
@@ -51,6 +53,7 @@ pub use build::{Built, build};
 pub use control::{Cancelled, Control, Progress, ProgressSink};
 pub use integrator::{ByProduct, Integrator};
 pub use light_tracing::LightTracing;
+pub use mlt::{Mlt, MltSettings};
 pub use path::{Path, PathSettings};
 pub use photon_map::Kernel;
 pub use photon_mapping::{PhotonMapping, PhotonMappingSettings};

@@ -130,15 +130,11 @@ impl Path {
         let p_b = bsdf.pdf(surface.surface.wo, sample.wi, TransportMode::Radiance, Directions::All);
         l * (power_heuristic(p_l, p_b) / p_l)
     }
-}
 
-impl RayIntegrator for Path {
-    fn prepare(&mut self, scene: &Scene) {
-        self.lights = scene.light_sampler(self.settings.light_sampler);
-    }
-
-    fn li(
+    /// The radiance along the ray of paths that scatter at least `min_depth` times.
+    pub(crate) fn li_from(
         &self,
+        min_depth: u32,
         scene: &Scene,
         mut ray: RayDifferential,
         lambda: &mut SampledWavelengths,
@@ -152,9 +148,14 @@ impl RayIntegrator for Path {
         let mut origin = None;
         loop {
             let Some((mut surface, t)) = scene.intersect(&ray.ray, f32::INFINITY, stats) else {
-                return l + beta * self.escaped(scene, &ray, origin.as_ref(), lambda);
+                if depth >= min_depth {
+                    l += beta * self.escaped(scene, &ray, origin.as_ref(), lambda);
+                }
+                return l;
             };
-            l += beta * self.emitted(scene, &surface, origin.as_ref(), lambda);
+            if depth >= min_depth {
+                l += beta * self.emitted(scene, &surface, origin.as_ref(), lambda);
+            }
             let Some(mut bsdf) = scene.bsdf(&mut surface, &ray, lambda, sampler) else {
                 ray = pass_through(&ray, &surface, t);
                 if self.settings.interfaces == Interfaces::Stop {
@@ -198,6 +199,23 @@ impl RayIntegrator for Path {
                 beta /= survival;
             }
         }
+    }
+}
+
+impl RayIntegrator for Path {
+    fn prepare(&mut self, scene: &Scene) {
+        self.lights = scene.light_sampler(self.settings.light_sampler);
+    }
+
+    fn li(
+        &self,
+        scene: &Scene,
+        ray: RayDifferential,
+        lambda: &mut SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> SampledSpectrum {
+        self.li_from(0, scene, ray, lambda, sampler, stats)
     }
 }
 

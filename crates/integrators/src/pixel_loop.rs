@@ -187,21 +187,27 @@ impl PixelSamples<'_> {
             (center + place.offset, lens, place.weight)
         };
         let sample = CameraSample { film, lens, time: moment.shutter, filter_weight };
-        let camera_ray = self.camera_ray(&sample, sampler.samples_per_pixel());
+        let camera_ray = camera_ray(self.scene, &sample, sampler.samples_per_pixel());
         let time = moment.time(self.scene);
         PixelSample { pixel, lambda: moment.lambda, time, camera_ray, filter_weight }
     }
+}
 
-    fn camera_ray(&self, sample: &CameraSample, samples_per_pixel: u32) -> Option<CameraRayDifferential> {
-        let camera = self.scene.camera();
-        let camera_ray = if self.scene.has_footprints() {
-            camera.generate_ray_differential(sample)
-        } else {
-            camera.generate_ray(sample).map(|r| CameraRayDifferential { ray: r.ray.into(), weight: r.weight })
-        };
-        camera_ray.map(|mut camera_ray| {
-            camera_ray.ray.scale(differential_scale(samples_per_pixel));
-            camera_ray
-        })
-    }
+/// The ray that the camera sees along, with its neighbours where something in the scene asks for them; `None` where it sees
+/// nothing.
+pub(crate) fn camera_ray(
+    scene: &Scene,
+    sample: &CameraSample,
+    samples_per_pixel: u32,
+) -> Option<CameraRayDifferential> {
+    let camera = scene.camera();
+    let camera_ray = if scene.has_footprints() {
+        camera.generate_ray_differential(sample)
+    } else {
+        camera.generate_ray(sample).map(|r| CameraRayDifferential { ray: r.ray.into(), weight: r.weight })
+    };
+    camera_ray.map(|mut camera_ray| {
+        camera_ray.ray.scale(differential_scale(samples_per_pixel));
+        camera_ray
+    })
 }

@@ -45,14 +45,14 @@ pub(crate) struct Balance {
 
 impl Balance {
     /// For as many light subpaths, without merging.
-    pub fn connecting(light_paths: usize) -> Self {
-        Self { light_paths: light_paths as f32, merging: 0.0, connecting: 1.0 }
+    pub fn connecting(light_paths: f32) -> Self {
+        Self { light_paths, merging: 0.0, connecting: 1.0 }
     }
 
     /// The same, and merging with other light subpaths within a radius.
     pub fn merging(light_paths: usize, photon_paths: usize, radius: f32) -> Self {
         let merging = photon_paths as f32 * (PI * radius * radius);
-        Self { merging, ..Self::connecting(light_paths) }
+        Self { merging, ..Self::connecting(light_paths as f32) }
     }
 
     /// For merging within a radius where camera subpaths end, which on their way find light by themselves.

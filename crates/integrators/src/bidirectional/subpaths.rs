@@ -1,9 +1,9 @@
-//! Whole subpaths, told vertex by vertex.
+//! Whole subpaths, told vertex by vertex, and ends of subpaths of one length alone.
 
 use geometry::RayStats;
 use sampling::Sampler;
 use scene::camera::CameraRayDifferential;
-use spectrum::SampledWavelengths;
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Found, Vertex, Walk};
 
@@ -81,6 +81,61 @@ impl Bidirectional<'_> {
                 return;
             }
             before = Some(vertex);
+        }
+    }
+
+    /// The vertex where a light subpath scatters for the `depth`-th time, from 1.
+    pub fn light_vertex(
+        &self,
+        depth: u32,
+        time: f32,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> Option<Vertex> {
+        let mut walk = Walk::from_light(self, time, *lambda, sampler)?;
+        Some(walk.follow_to(depth, sampler, stats)?.0)
+    }
+
+    /// The vertex where a camera subpath scatters for the `depth`-th time, from 1.
+    pub fn camera_vertex(
+        &self,
+        depth: u32,
+        camera_ray: &CameraRayDifferential,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> Option<Vertex> {
+        let mut walk = Walk::from_camera(self, camera_ray, *lambda);
+        Some(walk.follow_to(depth, sampler, stats)?.0)
+    }
+
+    /// The weighted light of all lights that a camera subpath meets by chance after it has scattered `depth` times, from 1.
+    pub fn lights_met(
+        &self,
+        depth: u32,
+        camera_ray: &CameraRayDifferential,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> SampledSpectrum {
+        let mut walk = Walk::from_camera(self, camera_ray, *lambda);
+        let mut l = SampledSpectrum::ZERO;
+        let Some((vertex, surface)) = walk.follow_to(depth, sampler, stats) else { return l };
+        if !walk.scatter(&vertex, &surface, sampler) {
+            return l;
+        }
+        loop {
+            let Some(mut surface) = walk.meet(stats) else {
+                let escaped = self.escaped(&walk, Some(&vertex)).map(|found| found.weighted());
+                return l + escaped.sum::<SampledSpectrum>();
+            };
+            if let Some(found) = self.emitted(&walk, &surface, Some(&vertex)) {
+                l += found.weighted();
+            }
+            if walk.arrive(&mut surface, sampler).is_some() {
+                return l;
+            }
         }
     }
 }

@@ -170,7 +170,7 @@ enum Strategy {
 
 #[test]
 fn weights_are_those_of_the_densities_of_all_strategies() {
-    assert_weights(Balance::connecting(LIGHT_PATHS), Balance::connecting(LIGHT_PATHS));
+    assert_weights(Balance::connecting(LIGHT_PATHS as f32), Balance::connecting(LIGHT_PATHS as f32));
 }
 
 #[test]

@@ -3,7 +3,8 @@
 //! A walk follows its ray to a surface ([`Walk::meet`]), which may be a vertex ([`Walk::arrive`]) or let the ray pass, and leaves the
 //! vertex along a direction that its BSDF chooses ([`Walk::leave`]). From the second vertex on it ends with probability 1 − q by
 //! Russian roulette, where q is how much of what began is still carried, at most 1; the weights of strategies do not know of it,
-//! which costs nothing but a little efficiency.
+//! which costs nothing but a little efficiency. Who wants a vertex of a certain depth and no other plays no roulette
+//! ([`Walk::follow_to`]).
 
 use geometry::RayStats;
 use math::RayDifferential;
@@ -151,8 +152,32 @@ impl<'a> Walk<'a> {
         Some(vertex)
     }
 
-    /// Leaves a vertex along a direction of its BSDF; `false` if it ends there.
+    /// Leaves a vertex along a direction of its BSDF; `false` if it ends there, which Russian roulette may decide.
     pub fn leave(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
+        self.scatter(vertex, surface, sampler) && self.survive(sampler)
+    }
+
+    /// Goes on to the vertex of a depth, without Russian roulette; `None` if it does not get there.
+    pub fn follow_to(
+        &mut self,
+        depth: u32,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> Option<(Vertex, SurfaceInteraction)> {
+        loop {
+            let mut surface = self.meet(stats)?;
+            let Some(vertex) = self.arrive(&mut surface, sampler) else { continue };
+            if vertex.depth == depth {
+                return Some((vertex, surface));
+            }
+            if !self.scatter(&vertex, &surface, sampler) {
+                return None;
+            }
+        }
+    }
+
+    /// Leaves a vertex along a direction of its BSDF; `false` if it has none.
+    pub fn scatter(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
         let (uc, u) = (sampler.get_1d(), sampler.get_2d());
         let Some(sample) = vertex.bsdf.sample_f(vertex.wo, uc, u, vertex.mode, Directions::All) else {
             return false;
@@ -175,7 +200,11 @@ impl<'a> Walk<'a> {
         self.origin = Origin::Place;
         self.distance = 0.0;
         self.ray = surface.spawn_scattered(&self.ray, &sample);
+        !self.beta.is_black()
+    }
 
+    /// Russian roulette.
+    fn survive(&mut self, sampler: &mut Sampler) -> bool {
         let survival = self.share.max_component();
         if self.depth > 1 && survival < 1.0 {
             if survival <= 0.0 || sampler.get_1d() >= survival {
@@ -184,6 +213,6 @@ impl<'a> Walk<'a> {
             self.beta /= survival;
             self.share /= survival;
         }
-        !self.beta.is_black()
+        true
     }
 }

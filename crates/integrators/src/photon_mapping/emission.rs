@@ -155,7 +155,7 @@ mod tests {
 
     fn emit(scene: &Scene, kind: Kind, max_depth: u32) -> Vec<Photon> {
         let lights = Lights::of(scene);
-        let balance = Balance::connecting(1);
+        let balance = Balance::connecting(1.0);
         let paths = Bidirectional { scene, lights: &lights, balance, max_depth, regularize: false };
         let moment = Moment::new(scene, 0.3, 0.0);
         let emission = Emission { paths: &paths, moment, seed: 5, generation: 2 };

@@ -239,7 +239,7 @@ impl Integrator for PhotonMapping {
         let paths = Bidirectional {
             scene,
             lights: &self.lights,
-            balance: Balance::connecting(film.pixel_bounds().area()),
+            balance: Balance::connecting(film.pixel_bounds().area() as f32),
             max_depth: settings.max_depth,
             regularize: false,
         };

@@ -8,6 +8,7 @@ mod build;
 mod direct_light;
 mod furnace;
 mod merging;
+mod mlt;
 mod photon_mapping;
 mod render_loop;
 mod support;

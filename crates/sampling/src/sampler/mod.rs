@@ -12,6 +12,7 @@
 mod halton;
 mod independent;
 mod padded_sobol;
+mod primary_sample;
 mod sobol;
 mod stratified;
 mod zsobol;
@@ -19,6 +20,7 @@ mod zsobol;
 pub use halton::Halton;
 pub use independent::Independent;
 pub use padded_sobol::PaddedSobol;
+pub use primary_sample::PrimarySample;
 pub use sobol::Sobol;
 pub use stratified::Stratified;
 pub use zsobol::ZSobol;
@@ -70,6 +72,8 @@ pub enum Sampler {
     Sobol(Sobol),
     /// Two-dimensional Sobol' points, spread over the picture along a curve: error becomes blue noise.
     ZSobol(ZSobol),
+    /// Uniform random numbers that can be changed step by step.
+    PrimarySample(PrimarySample),
 }
 
 macro_rules! each_sampler {
@@ -81,6 +85,7 @@ macro_rules! each_sampler {
             Sampler::PaddedSobol($sampler) => $result,
             Sampler::Sobol($sampler) => $result,
             Sampler::ZSobol($sampler) => $result,
+            Sampler::PrimarySample($sampler) => $result,
         }
     };
 }

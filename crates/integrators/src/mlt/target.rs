@@ -1,0 +1,180 @@
+//! What chains look for: paths, as functions of a point of primary sample space.
+
+use film::{Film, Splatter};
+use geometry::RayStats;
+use math::{Bounds2, Point2, Vec2};
+use sampling::Sampler;
+use scene::Scene;
+use scene::camera::{CameraRayDifferential, CameraSample};
+use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
+
+use super::chain::Streams;
+use crate::Path;
+use crate::bidirectional::Bidirectional;
+use crate::pixel_loop::camera_ray;
+
+/// Light that arrives at a place on the film.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contribution {
+    /// Position in pixels.
+    film: Point2,
+    /// The light.
+    l: SampledSpectrum,
+    /// At these wavelengths.
+    lambda: SampledWavelengths,
+}
+
+impl Contribution {
+    /// Importance: the mean of the three numbers that an eye makes of the light, so that no colour counts for nothing.
+    pub fn c(&self) -> f32 {
+        let xyz = xyz_from(&self.l, &self.lambda);
+        let c = (xyz.x + xyz.y + xyz.z) / 3.0;
+        if c.is_finite() { c.max(0.0) } else { 0.0 }
+    }
+
+    /// Adds the light, times a factor.
+    pub fn splat(&self, factor: f32, splatter: &Splatter) {
+        if factor > 0.0 && !self.l.is_black() {
+            splatter.add(self.film, &(self.l * factor), &self.lambda);
+        }
+    }
+}
+
+/// The film's place in primary sample space.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    scene: &'a Scene,
+    /// All positions that reach a pixel: the pixels, and around them the filter's radius.
+    film: Bounds2,
+    samples_per_pixel: u32,
+}
+
+/// Where a path meets the camera.
+struct Seen {
+    film: Point2,
+    lambda: SampledWavelengths,
+    time: f32,
+    camera_ray: Option<CameraRayDifferential>,
+}
+
+impl<'a> View<'a> {
+    pub fn new(scene: &'a Scene, film: &Film, samples_per_pixel: u32) -> Self {
+        let bounds = film.pixel_bounds();
+        let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
+        // Pixels reach as far as the filter from their centres.
+        let margin = film.filter().radius() - 0.5;
+        let film = Bounds2::new(corner(bounds.min) - margin, corner(bounds.max) + margin);
+        Self { scene, film, samples_per_pixel }
+    }
+
+    /// The area of all positions, in pixels: what light of a path from the camera is worth, since positions have one over it for
+    /// density.
+    pub fn area(&self) -> f32 {
+        self.film.area()
+    }
+
+    /// The camera's coordinates: wavelengths (1), film (2), moment (1), lens (2).
+    fn sample(&self, sampler: &mut Sampler) -> Seen {
+        let u = sampler.get_1d();
+        let u = if self.scene.options().disable_wavelength_jitter { 0.5 } else { u };
+        let film = self.film.lerp(sampler.get_2d());
+        let (time, lens) = (sampler.get_1d(), sampler.get_2d());
+        let sample = CameraSample { film, lens, time, filter_weight: 1.0 };
+        Seen {
+            film,
+            lambda: SampledWavelengths::sample_visible(u),
+            time: self.scene.camera().sample_time(time),
+            camera_ray: camera_ray(self.scene, &sample, self.samples_per_pixel),
+        }
+    }
+}
+
+/// What a point of primary sample space stands for.
+pub(super) trait Target: Sync {
+    /// The light that is found there; its mean over the cube is the picture.
+    fn contribution(&self, streams: &mut Streams, stats: &mut RayStats) -> Contribution;
+}
+
+/// Path tracing: the whole of a camera path with all the light that it finds.
+pub(super) struct CameraPaths<'a> {
+    pub view: View<'a>,
+    pub path: &'a Path,
+}
+
+impl Target for CameraPaths<'_> {
+    fn contribution(&self, [sampler, ..]: &mut Streams, stats: &mut RayStats) -> Contribution {
+        let Seen { film, mut lambda, camera_ray, .. } = self.view.sample(sampler);
+        let l = camera_ray.map_or(SampledSpectrum::ZERO, |camera_ray| {
+            let l = self.path.li_from(1, self.view.scene, camera_ray.ray, &mut lambda, sampler, stats);
+            l * (camera_ray.weight * self.view.area())
+        });
+        Contribution { film, l, lambda }
+    }
+}
+
+/// Bidirectional path tracing: one path, made by one strategy.
+///
+/// The first coordinates choose the number of scattering events, from 1 to the greatest, and then the strategy, each as likely as the others of
+/// its kind; what is found counts that many times. Camera subpath, light subpath and what connects them have samplers of their own, lest a
+/// longer subpath of one kind move the coordinates of the other.
+pub(super) struct ConnectedPaths<'a> {
+    pub view: View<'a>,
+    pub paths: Bidirectional<'a>,
+}
+
+impl Target for ConnectedPaths<'_> {
+    fn contribution(&self, streams: &mut Streams, stats: &mut RayStats) -> Contribution {
+        let [camera, ..] = &mut *streams;
+        let (depth, depths) = (1 + choose(camera.get_1d(), self.paths.max_depth), self.paths.max_depth);
+        let strategies = depth + 2;
+        let s = choose(camera.get_1d(), strategies);
+        let seen = self.view.sample(camera);
+        let lambda = seen.lambda;
+        let (film, l) = self.find(s, strategies - s, &seen, streams, stats).unwrap_or_default();
+        Contribution { film, l: l * (depths * strategies) as f32, lambda }
+    }
+}
+
+impl ConnectedPaths<'_> {
+    /// What the strategy (s, t) finds, and where it arrives on the film.
+    fn find(
+        &self,
+        s: u32,
+        t: u32,
+        seen: &Seen,
+        [camera, light, connection]: &mut Streams,
+        stats: &mut RayStats,
+    ) -> Option<(Point2, SampledSpectrum)> {
+        let (paths, lambda) = (&self.paths, &seen.lambda);
+        let mut light_vertex = |stats: &mut RayStats| {
+            let vertex = paths.light_vertex(s - 1, seen.time, lambda, light, stats)?;
+            vertex.is_connectible().then_some(vertex)
+        };
+        if t == 1 {
+            let vertex = light_vertex(stats)?;
+            let reaches = |film| self.view.film.contains(film);
+            let on_film = paths.see(&vertex, connection.get_2d(), reaches, stats)?;
+            return Some((on_film.film, on_film.found.weighted()));
+        }
+        let camera_ray = seen.camera_ray.as_ref()?;
+        let l = if s == 0 {
+            paths.lights_met(t - 2, camera_ray, lambda, camera, stats)
+        } else {
+            let vertex = paths.camera_vertex(t - 1, camera_ray, lambda, camera, stats)?;
+            if !vertex.is_connectible() {
+                return None;
+            }
+            let found = match s {
+                1 => paths.direct(&vertex, lambda, connection, stats)?,
+                _ => paths.connect(&vertex, &light_vertex(stats)?, stats)?,
+            };
+            found.weighted()
+        };
+        Some((seen.film, l * self.view.area()))
+    }
+}
+
+/// One of `count` numbers from 0 on, all as likely.
+fn choose(u: f32, count: u32) -> u32 {
+    ((u * count as f32) as u32).min(count - 1)
+}
