@@ -225,6 +225,12 @@ impl Film {
         self.gate.add(pixel, &mut self.pixels[index], l, lambda, weight);
     }
 
+    /// Takes out everything that has come in.
+    pub fn clear(&mut self) {
+        self.pixels.fill(Pixel::default());
+        *self.gate.rejected() = Rejected::default();
+    }
+
     /// The film cut into tiles, at most [`TILE_SIZE`] pixels wide and high, that different threads can fill.
     pub fn tiles_mut(&mut self) -> Vec<FilmTile<'_>> {
         let mut rest = self.pixels.as_mut_slice();

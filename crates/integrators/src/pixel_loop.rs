@@ -82,20 +82,37 @@ impl<R: RayIntegrator> PixelLoop<R> {
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> SampledSpectrum {
-        let camera = scene.camera();
-        let camera_ray = if scene.has_footprints() {
-            camera.generate_ray_differential(sample)
-        } else {
-            camera.generate_ray(sample).map(|r| CameraRayDifferential { ray: r.ray.into(), weight: r.weight })
+        let Some(camera_ray) = camera_ray(scene, sample, sampler.samples_per_pixel()) else {
+            return SampledSpectrum::ZERO;
         };
-        let Some(mut camera_ray) = camera_ray else { return SampledSpectrum::ZERO };
-        camera_ray.ray.scale(differential_scale(sampler.samples_per_pixel()));
         self.rays.li(scene, camera_ray.ray, lambda, sampler, stats) * camera_ray.weight
     }
 }
 
+/// The ray of a camera sample, with differentials where they are of use; `None` where the camera sees nothing.
+pub(crate) fn camera_ray(
+    scene: &Scene,
+    sample: &CameraSample,
+    samples_per_pixel: u32,
+) -> Option<CameraRayDifferential> {
+    let camera = scene.camera();
+    let mut camera_ray = if scene.has_footprints() {
+        camera.generate_ray_differential(sample)?
+    } else {
+        let ray = camera.generate_ray(sample)?;
+        CameraRayDifferential { ray: ray.ray.into(), weight: ray.weight }
+    };
+    camera_ray.ray.scale(differential_scale(samples_per_pixel));
+    Some(camera_ray)
+}
+
 /// Where, when and through which point of the lens a sample of a pixel looks.
-fn camera_sample(scene: &Scene, filter: &Filter, pixel: [i32; 2], sampler: &mut Sampler) -> CameraSample {
+pub(crate) fn camera_sample(
+    scene: &Scene,
+    filter: &Filter,
+    pixel: [i32; 2],
+    sampler: &mut Sampler,
+) -> CameraSample {
     let place = filter.sample(sampler.get_pixel_2d());
     let (time, lens) = (sampler.get_1d(), sampler.get_2d());
     let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);

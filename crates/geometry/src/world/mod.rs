@@ -9,6 +9,7 @@ mod builder;
 mod group;
 mod packet;
 mod path;
+mod placed;
 mod query;
 mod refit;
 mod spheres;

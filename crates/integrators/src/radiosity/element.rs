@@ -1,0 +1,194 @@
+//! What carries light: elements that receive it, patches that send it on.
+//!
+//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb it sends on from its whole
+//! area evenly. An *element* is a leaf of the mesh within a patch; it remembers how much light fell on each of its two sides.
+//! Elements may be much finer than patches: light is sent on coarsely and received finely [Cohen 1986].
+
+use geometry::{Hit, SurfacePoint};
+use math::{Normal3, Point3, Point3Error, RayDifferential, Vec2};
+use sampling::sampler::Independent;
+use sampling::{Sampler, warp};
+use scattering::{Bsdf, Bxdf, Directions, TransportMode};
+use scene::{Scene, SurfaceInteraction};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::bands::{Bands, Wavelengths};
+use super::mesh::{Cell, Mesh};
+
+/// The shares of light that a surface sends back, and through, evenly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Albedo {
+    pub reflectance: Bands,
+    pub transmittance: Bands,
+}
+
+impl Albedo {
+    /// What leaves either side of a surface on whose sides this falls.
+    pub fn scatter(&self, sides: &[Bands; 2]) -> [Bands; 2] {
+        [0, 1].map(|i| self.reflectance * sides[i] + self.transmittance * sides[1 - i])
+    }
+
+    fn scaled(&self, factor: f32) -> Self {
+        Self { reflectance: self.reflectance * factor, transmittance: self.transmittance * factor }
+    }
+
+    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all directions. Bends the shading normal on the
+    /// way. `None`: nothing is there but a change of medium.
+    pub fn at(
+        scene: &Scene,
+        interaction: &mut SurfaceInteraction,
+        ray: &RayDifferential,
+        wavelengths: &Wavelengths,
+    ) -> Option<Self> {
+        // Only scenes that force diffuse surfaces ask it anything.
+        let mut sampler = Sampler::Independent(Independent::new(1, 0));
+        let pair = wavelengths.sample_pair(|lambda| {
+            let bsdf = scene.bsdf(interaction, ray, &mut lambda.clone(), &mut sampler)?;
+            Some(match bsdf.bxdf {
+                Bxdf::Diffuse(bxdf) => [bxdf.reflectance, SampledSpectrum::ZERO],
+                Bxdf::DiffuseTransmission(bxdf) => [bxdf.reflectance, bxdf.transmittance],
+                _ => mean_albedo(&bsdf),
+            })
+        });
+        pair.map(|[reflectance, transmittance]| Self { reflectance, transmittance })
+    }
+}
+
+/// ρ_hh by fixed samples, apart for the two sides.
+fn mean_albedo(bsdf: &Bsdf) -> [SampledSpectrum; 2] {
+    const STRATA: usize = 4;
+    let mut shares = [SampledSpectrum::ZERO; 2];
+    for i in 0..STRATA * STRATA {
+        let place = |i: usize| (i as f32 + 0.5) / STRATA as f32;
+        let (x, y) = (i % STRATA, i / STRATA);
+        let wo = bsdf.frame.from_local(warp::sample_cosine_hemisphere(Vec2::new(place(x), place(y))));
+        let (uc, u) = (place((x + y) % STRATA), Vec2::new(place((x + 2 * y) % STRATA), place((2 * x + y) % STRATA)));
+        let Some(sample) = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All) else { continue };
+        let cos_theta = bsdf.render_to_local(sample.wi).z;
+        shares[usize::from(cos_theta < 0.0)] += sample.f * (cos_theta.abs() / sample.pdf);
+    }
+    shares.map(|share| share.map(|x| (x / (STRATA * STRATA) as f32).min(1.0)))
+}
+
+/// The middle of a quarter of an element.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SamplePoint {
+    pub p: Point3Error,
+    pub n: Normal3,
+    /// The quarter's share of the area.
+    pub weight: f32,
+}
+
+/// What receives light.
+#[derive(Clone, Debug)]
+pub(crate) struct Element {
+    /// Its leaf.
+    pub cell: u32,
+    /// The patch that it is a part of.
+    pub patch: u32,
+    /// How often its patch was halved to make it.
+    pub level: u32,
+    pub area: f32,
+    pub points: [SamplePoint; 4],
+    pub albedo: Albedo,
+    /// What fell on its outer and inner side.
+    pub irradiance: [Bands; 2],
+}
+
+impl Element {
+    /// A leaf without light.
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, patch: u32, level: u32) -> Self {
+        let world = scene.world();
+        let leaf = mesh.cell(cell);
+        let quarters = leaf.domain().quarters();
+        let areas = quarters.each_ref().map(|quarter| mesh.area(world, leaf, quarter));
+        let area: f32 = areas.iter().sum();
+        let mut albedo = Albedo::default();
+        let mut point = |i: usize| {
+            let Some(surface) = mesh.surface(world, leaf.primitive, quarters[i].center()) else {
+                return SamplePoint { p: Point3Error::exact(Point3::ZERO), n: Normal3::ZERO, weight: 0.0 };
+            };
+            let weight = if area > 0.0 { areas[i] / area } else { 0.0 };
+            let here = albedo_at(scene, mesh.primitive(leaf), &surface, wavelengths).unwrap_or_default().scaled(weight);
+            albedo.reflectance += here.reflectance;
+            albedo.transmittance += here.transmittance;
+            SamplePoint { p: surface.p, n: surface.n, weight }
+        };
+        let points = [point(0), point(1), point(2), point(3)];
+        Self { cell, patch, level, area, points, albedo, irradiance: [Bands::ZERO; 2] }
+    }
+
+    /// What leaves its two sides, emission apart.
+    pub fn radiosity(&self) -> [Bands; 2] {
+        self.albedo.scatter(&self.irradiance)
+    }
+}
+
+/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a change of medium.
+pub(crate) fn albedo_at(
+    scene: &Scene,
+    primitive: &Hit,
+    surface: &SurfacePoint,
+    wavelengths: &Wavelengths,
+) -> Option<Albedo> {
+    let ray = RayDifferential::from(surface.spawn_ray(surface.n));
+    let mut interaction = scene.interaction(primitive, *surface);
+    let coverage = scene.coverage(primitive, surface);
+    Some(Albedo::at(scene, &mut interaction, &ray, wavelengths)?.scaled(coverage))
+}
+
+/// What sends light on.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch {
+    pub cell: u32,
+    pub area: f32,
+    /// What leaves its two sides of its own accord, per area.
+    pub emitted: [Bands; 2],
+    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how often it was scattered.
+    pub unshot: Vec<[Bands; 2]>,
+    /// Which sides have faced a patch that shot.
+    pub faced: [bool; 2],
+}
+
+impl Patch {
+    /// A patch that has not sent out its own light yet; it sends light that was scattered less than `depth` times.
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: usize) -> Self {
+        let area = {
+            let leaf = mesh.cell(cell);
+            leaf.domain().quarters().iter().map(|quarter| mesh.area(scene.world(), leaf, quarter)).sum()
+        };
+        let emitted = emission(scene, mesh, mesh.cell(cell), wavelengths);
+        let mut unshot = vec![[Bands::ZERO; 2]; depth];
+        if let Some(first) = unshot.first_mut() {
+            *first = emitted.map(|side| side * area);
+        }
+        Self { cell, area, emitted, unshot, faced: [false; 2] }
+    }
+
+    /// All that one side has to send.
+    pub fn unshot(&self, side: usize) -> Bands {
+        self.unshot.iter().map(|sides| sides[side]).sum()
+    }
+}
+
+/// The radiant exitance of the two sides of a cell, from 64 points.
+fn emission(scene: &Scene, mesh: &Mesh, cell: &Cell, wavelengths: &Wavelengths) -> [Bands; 2] {
+    let hit = mesh.primitive(cell);
+    let at = |uv: Vec2| mesh.surface(scene.world(), cell.primitive, uv);
+    let is_light = at(cell.domain().center()).is_some_and(|s| scene.interaction(hit, s).area_light.is_some());
+    if !is_light {
+        return [Bands::ZERO; 2];
+    }
+    let quarters = cell.domain().quarters().into_iter().flat_map(|quarter| quarter.quarters());
+    let places = quarters.flat_map(|quarter| quarter.quarters());
+    let mut sum = [Bands::ZERO; 2];
+    for surface in places.filter_map(|place| at(place.center())) {
+        let interaction = scene.interaction(hit, surface);
+        let scale = scene.coverage(hit, &surface) * std::f32::consts::PI / 64.0;
+        for (sum, w) in sum.iter_mut().zip([surface.n, -surface.n]) {
+            let emitted = |lambda: &SampledWavelengths| scene.emitted(&interaction, w, lambda);
+            *sum += wavelengths.sample(emitted) * scale;
+        }
+    }
+    sum
+}

@@ -1,0 +1,244 @@
+//! Radiosity: the light between diffuse surfaces as a balance of energy, found once for all views.
+//!
+//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j F_ij B_j: its own light, and its share of what
+//! comes from all others, F_ij being the [form factor](form_factor) from i to j. [Progressive shooting](shooting) solves this without ever
+//! holding the matrix: the brightest patch sends its light to all others, again and again. Each of the first `steps` passes
+//! sends light until a smaller share of it is left, the last one until `tolerance` is reached, and draws the picture anew, with
+//! an ambient term for what is missing. The passes after these, as many as there are samples a pixel, draw the finished solution.
+//!
+//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by interpolation between vertices, or by a final gather.
+//! Light is carried at fixed [wavelengths](bands).
+//!
+//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white, grey or coloured plaster; glass becomes a sheet
+//! that passes light diffusely. Surfaces reflect on both sides. Shading normals count in the final gather alone. Things that move are where
+//! they are in the middle of the shutter's time.
+//!
+//! It has no noise but that of a final gather, and is biased: light is even over a patch that sends it and an element that receives it, and
+//! visibility is known from a few rays. `max_depth` counts as in all algorithms: light that was scattered more often is missing.
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `max_depth` | most scattering events | 5 |
+//! | `form_factors` | `analytic` or `hemicube` | analytic |
+//! | `hemicube_resolution` | pixels along an edge of the hemicube | 128 |
+//! | `patch_size` | longest side of a patch, in scene units | a sixth of the scene's radius |
+//! | `subdivision` | how often an element may be quartered | 3 |
+//! | `gradient` | change of light across an element, in parts of what is there, above which it is quartered | 0.1 |
+//! | `max_patches` | most elements, unless there are more primitives | 50 000 |
+//! | `tolerance` | share of light that need not be sent | 0.002 |
+//! | `steps` | passes in which light is sent | 8 |
+//! | `gather` | show by a final gather | false |
+//! | `gather_samples` | rays of a final gather for each sample of a pixel | 1 |
+//!
+//! An element takes about 1 kB, a patch 256 bytes for each scattering event more. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
+
+mod bands;
+mod element;
+mod form_factor;
+mod hemicube;
+mod mesh;
+mod ply;
+mod shooting;
+mod show;
+mod subdivide;
+
+use film::{Film, FilmTile, Filter};
+use geometry::RayStats;
+use rayon::prelude::*;
+use sampling::Sampler;
+use scene::Scene;
+use scene::light_sampler::{LightSampler, LightSamplerKind};
+use spectrum::RgbColorSpace;
+
+use crate::pixel_loop::{camera_ray, camera_sample};
+use crate::{Cancelled, Control, Integrator};
+use bands::Bands;
+use shooting::Solution;
+use show::View;
+
+/// How form factors are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FormFactors {
+    /// By the closed form for polygons, with rays for what lies between.
+    Analytic,
+    /// By a hemicube.
+    Hemicube {
+        /// Pixels along an edge.
+        resolution: u32,
+    },
+}
+
+/// Settings of [`Radiosity`]; see there for units and defaults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadiositySettings {
+    /// Most scattering events.
+    pub max_depth: u32,
+    /// How form factors are found.
+    pub form_factors: FormFactors,
+    /// Longest side of a patch, in scene units; a sixth of the scene's radius if `None`.
+    pub patch_size: Option<f32>,
+    /// How often an element may be quartered.
+    pub subdivision: u32,
+    /// The change of light across an element, in parts of what is there, above which it is quartered.
+    pub gradient: f32,
+    /// Most elements, unless there are more primitives.
+    pub max_patches: u32,
+    /// Share of light that need not be sent.
+    pub tolerance: f32,
+    /// Passes in which light is sent.
+    pub steps: u32,
+    /// Rays of a final gather for each sample of a pixel; `None` interpolates.
+    pub gather_samples: Option<u32>,
+    /// Keep the mesh as a by-product under this name.
+    pub mesh_out: Option<String>,
+}
+
+impl Default for RadiositySettings {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            form_factors: FormFactors::Analytic,
+            patch_size: None,
+            subdivision: 3,
+            gradient: 0.1,
+            max_patches: 50_000,
+            tolerance: 0.002,
+            steps: 8,
+            gather_samples: None,
+            mesh_out: None,
+        }
+    }
+}
+
+/// Radiosity by progressive shooting.
+pub struct Radiosity {
+    settings: RadiositySettings,
+    sampler: Sampler,
+    color_space: &'static RgbColorSpace,
+    state: Option<State>,
+}
+
+/// What is known of a scene.
+struct State {
+    solution: Solution,
+    view: View,
+    lights: LightSampler,
+    /// The mesh to be saved.
+    mesh: Vec<u8>,
+}
+
+impl Radiosity {
+    /// With a mesh whose colours are those of `color_space`, if one is kept.
+    pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
+        Self { settings, sampler, color_space, state: None }
+    }
+
+    /// The passes that send light.
+    fn steps(&self) -> u32 {
+        self.settings.steps.max(1)
+    }
+}
+
+impl Integrator for Radiosity {
+    fn passes(&self) -> u32 {
+        self.steps() + self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene) {
+        // A final gather scatters once more.
+        let depth = self.settings.max_depth.saturating_sub(u32::from(self.settings.gather_samples.is_some()));
+        let solution = Solution::new(scene, &self.settings, depth);
+        let lights = scene.light_sampler(LightSamplerKind::Bvh);
+        let view = View::new(scene, &solution, &lights, None);
+        self.state = Some(State { solution, view, lights, mesh: Vec::new() });
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let steps = self.steps();
+        let samples = self.sampler.samples_per_pixel();
+        let Some(State { solution, view, lights, mesh }) = &mut self.state else { return Ok(RayStats::default()) };
+        let mut stats = RayStats::default();
+        if pass < steps {
+            let share = self.settings.tolerance.powf((pass + 1) as f32 / steps as f32);
+            stats += solution.shoot(scene, share, control)?;
+            *view = View::new(scene, solution, lights, None);
+        }
+        if pass == steps {
+            *view = View::new(scene, solution, lights, self.settings.gather_samples);
+            if self.settings.mesh_out.is_some() {
+                *mesh = ply::encode(scene, solution, view, self.color_space);
+            }
+        }
+        if pass <= steps {
+            film.clear();
+        }
+        let picture = Picture { scene, solution, view, filter: film.filter().clone(), control };
+        let index = if pass < steps { pass % samples } else { pass - steps };
+        let tiles = film.tiles_mut().into_par_iter();
+        let drawn = tiles.map(|mut tile| picture.tile(index, self.sampler.clone(), &mut tile));
+        stats += drawn.try_reduce(RayStats::default, |mut sum, stats| {
+            sum += stats;
+            Ok(sum)
+        })?;
+        Ok(stats)
+    }
+}
+
+impl Radiosity {
+    /// What was done, and what it took.
+    pub fn summary(&self) -> Vec<(&'static str, String)> {
+        let Some(State { solution, .. }) = &self.state else { return Vec::new() };
+        vec![
+            ("patches", solution.cut.patches.len().to_string()),
+            ("elements", solution.cut.elements.len().to_string()),
+            ("shots", solution.shots.to_string()),
+            ("unshot light", format!("{:.3} %", 100.0 * solution.unshot_share())),
+            ("memory of patches", format!("{:.1} MB", solution.bytes() as f64 * 1e-6)),
+        ]
+    }
+
+    /// The mesh with its name, if one is kept.
+    pub fn by_products(&self) -> Vec<(String, Vec<u8>)> {
+        let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
+        self.settings.mesh_out.iter().zip(mesh).map(|(name, mesh)| (name.clone(), mesh.clone())).collect()
+    }
+}
+
+/// What all tiles of a picture share.
+struct Picture<'a> {
+    scene: &'a Scene,
+    solution: &'a Solution,
+    view: &'a View,
+    filter: Filter,
+    control: &'a Control,
+}
+
+impl Picture<'_> {
+    /// Takes one sample of each pixel of a tile.
+    fn tile(&self, index: u32, mut sampler: Sampler, tile: &mut FilmTile) -> Result<RayStats, Cancelled> {
+        self.control.check()?;
+        let mut stats = RayStats::default();
+        let bounds = tile.bounds();
+        for y in bounds.min[1]..bounds.max[1] {
+            for x in bounds.min[0]..bounds.max[0] {
+                sampler.start_pixel_sample([x, y], index, 0);
+                let sample = camera_sample(self.scene, &self.filter, [x, y], &mut sampler);
+                let ray = camera_ray(self.scene, &sample, sampler.samples_per_pixel());
+                let l = ray.map_or(Bands::ZERO, |camera| {
+                    let Self { scene, solution, view, .. } = self;
+                    view.radiance(scene, solution, camera.ray, &mut sampler, &mut stats) * camera.weight
+                });
+                for (l, lambda) in l.groups().iter().zip(self.solution.wavelengths.groups()) {
+                    tile.add_sample([x, y], l, lambda, sample.filter_weight);
+                }
+            }
+        }
+        Ok(stats)
+    }
+}
