@@ -6,7 +6,7 @@ use description::{CameraKind, Diagnostic, SceneDesc};
 use film::Film;
 use image::{Attribute, Image, ImageMetadata};
 use import::{AssetSource, Imported};
-use integrators::{Cancelled, Control, Integrator, RenderReport};
+use integrators::{ByProduct, Cancelled, Control, Integrator, RenderReport};
 use scene::Scene;
 
 use crate::{OverrideError, Overrides, integrator_name, sampler_name};
@@ -61,6 +61,16 @@ impl Job {
             picture.metadata.set(name, value.clone());
         }
         picture
+    }
+
+    /// What has been made beside the picture.
+    pub fn by_products(&self) -> Vec<ByProduct> {
+        self.integrator.by_products()
+    }
+
+    /// What the algorithm tells of itself: names, and what there is to say.
+    pub fn summary(&self) -> Vec<(&'static str, String)> {
+        self.integrator.summary()
     }
 
     /// How many passes make the picture.

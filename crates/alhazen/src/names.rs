@@ -1,15 +1,28 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
 use description::{
-    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, IntegratorDesc, LightSamplerDesc, Randomization,
-    SamplerKind,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, Randomization, SamplerKind, SppmDesc, VcmDesc,
 };
 
 use crate::settings::{light_sampler, max_depth, regularize};
 
 /// The names of the algorithms that can be chosen.
-pub const INTEGRATORS: [&str; 7] =
-    ["ray-casting", "whitted", "ambient-occlusion", "random-walk", "simple-path", "path", "vol-path"];
+pub const INTEGRATORS: [&str; 14] = [
+    "ray-casting",
+    "whitted",
+    "ambient-occlusion",
+    "random-walk",
+    "simple-path",
+    "path",
+    "vol-path",
+    "light-tracing",
+    "bdpt",
+    "mlt",
+    "photon-mapping",
+    "sppm",
+    "vcm",
+    "radiosity",
+];
 
 /// Acceleration structures that can be chosen.
 pub(crate) const ACCELERATORS: [(&str, AcceleratorDesc); 2] = [
@@ -23,6 +36,18 @@ pub(crate) const LIGHT_SAMPLERS: [(&str, LightSamplerDesc); 4] = [
     ("bvh", LightSamplerDesc::Bvh),
     ("exhaustive", LightSamplerDesc::Exhaustive),
 ];
+
+pub(crate) const FORM_FACTORS: [(&str, FormFactorsDesc); 2] =
+    [("analytic", FormFactorsDesc::Analytic), ("hemicube", FormFactorsDesc::Hemicube)];
+
+pub(crate) const MLT_TECHNIQUES: [(&str, MltTechnique); 2] =
+    [("path", MltTechnique::Path), ("bdpt", MltTechnique::Bdpt)];
+
+pub(crate) const PHOTON_KERNELS: [(&str, PhotonKernel); 2] =
+    [("cone", PhotonKernel::Cone), ("epanechnikov", PhotonKernel::Epanechnikov)];
+
+pub(crate) const PHOTON_MAPPING_SHOWS: [(&str, PhotonMappingShow); 2] =
+    [("radiance", PhotonMappingShow::Radiance), ("photons", PhotonMappingShow::Photons)];
 
 pub(crate) const SAMPLERS: [(&str, SamplerKind); 6] = [
     ("independent", SamplerKind::Independent),
@@ -64,6 +89,20 @@ pub(crate) fn integrator_called(name: &str, current: &mut IntegratorDesc) -> Opt
         "random-walk" => IntegratorDesc::RandomWalk { max_depth },
         "simple-path" => IntegratorDesc::SimplePath { max_depth, sample_lights: true, sample_bsdf: true },
         "path" => IntegratorDesc::Path { max_depth, regularize, light_sampler },
+        "light-tracing" => IntegratorDesc::LightTracing { max_depth },
+        "bdpt" => IntegratorDesc::Bdpt {
+            max_depth,
+            regularize,
+            visualize_strategies: false,
+            visualize_weights: false,
+        },
+        "mlt" => IntegratorDesc::Mlt(MltDesc { max_depth, regularize, ..MltDesc::default() }),
+        "photon-mapping" => {
+            IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, ..PhotonMappingDesc::default() })
+        }
+        "sppm" => IntegratorDesc::Sppm(SppmDesc { max_depth, ..SppmDesc::default() }),
+        "radiosity" => IntegratorDesc::Radiosity(RadiosityDesc { max_depth, ..RadiosityDesc::default() }),
+        "vcm" => IntegratorDesc::Vcm(VcmDesc { max_depth, ..VcmDesc::default() }),
         _ => IntegratorDesc::VolPath { max_depth, regularize, light_sampler },
     })
 }
@@ -79,10 +118,13 @@ pub fn integrator_name(desc: &IntegratorDesc) -> &'static str {
         IntegratorDesc::Path { .. } => "path",
         IntegratorDesc::SimpleVolPath { .. } => "simple-vol-path",
         IntegratorDesc::VolPath { .. } => "vol-path",
-        IntegratorDesc::LightPath { .. } => "light-path",
+        IntegratorDesc::LightTracing { .. } => "light-tracing",
         IntegratorDesc::Bdpt { .. } => "bdpt",
         IntegratorDesc::Mlt(_) => "mlt",
+        IntegratorDesc::PhotonMapping(_) => "photon-mapping",
         IntegratorDesc::Sppm(_) => "sppm",
+        IntegratorDesc::Vcm(_) => "vcm",
+        IntegratorDesc::Radiosity(_) => "radiosity",
         IntegratorDesc::Function { .. } => "function",
     }
 }

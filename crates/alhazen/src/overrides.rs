@@ -5,7 +5,7 @@ use std::fmt;
 use description::SceneDesc;
 
 use crate::names::{ACCELERATORS, INTEGRATORS, integrator_called};
-use crate::settings::{SETTINGS, set_samples_per_pixel};
+use crate::settings::{SETTINGS, mlt, set_samples_per_pixel};
 
 /// Changes to a scene. `None` leaves what the scene says.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,6 +73,9 @@ impl Overrides {
             let samples = samples
                 .ok_or_else(|| OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)))?;
             set_samples_per_pixel(desc, samples);
+            if let Ok(mlt) = mlt(desc) {
+                mlt.mutations_per_pixel = samples;
+            }
         }
         if let Some(resolution) = self.resolution {
             desc.film.resolution = resolution;
@@ -146,15 +149,16 @@ mod tests {
     #[test]
     fn every_setting_has_a_value_that_it_takes_and_one_that_it_refuses() {
         for setting in &SETTINGS {
-            let mut scenes = [
-                IntegratorDesc::default(),
-                IntegratorDesc::SimplePath { max_depth: 1, sample_lights: true, sample_bsdf: true },
-                IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: 1.0 },
-            ]
-            .map(|integrator| SceneDesc { integrator: integrator.into(), ..SceneDesc::default() });
+            let mut scenes = INTEGRATORS.map(|name| {
+                let mut desc = SceneDesc::default();
+                desc.integrator.value = integrator_called(name, &mut IntegratorDesc::default()).unwrap();
+                desc
+            });
             let mut takes = |value| scenes.iter_mut().any(|desc| (setting.apply)(desc, value).is_ok());
             assert!(
-                ["7", "true", "power", "sobol", "box", "fast"].into_iter().any(&mut takes),
+                ["7", "true", "power", "sobol", "box", "fast", "path", "cone", "photons", "hemicube", "a.ply"]
+                    .into_iter()
+                    .any(&mut takes),
                 "{}",
                 setting.name
             );

@@ -2,9 +2,13 @@
 
 use std::str::FromStr;
 
-use description::{FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, SamplerKind, SceneDesc, SppmDesc};
+use description::{
+    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, SamplerKind, SceneDesc, SppmDesc, VcmDesc,
+};
 
-use crate::names::{FILTERS, LIGHT_SAMPLERS, QUALITIES, SAMPLERS};
+use crate::names::{
+    FILTERS, FORM_FACTORS, LIGHT_SAMPLERS, MLT_TECHNIQUES, PHOTON_KERNELS, PHOTON_MAPPING_SHOWS, QUALITIES, SAMPLERS,
+};
 
 /// A setting that can be changed by name.
 pub struct Setting {
@@ -16,7 +20,7 @@ pub struct Setting {
 }
 
 /// Everything that [`Overrides`](crate::Overrides) can change by name.
-pub static SETTINGS: [Setting; 16] = [
+pub static SETTINGS: [Setting; 40] = [
     Setting {
         name: "maxdepth",
         help: "most bounces of a path after the camera's ray",
@@ -66,6 +70,178 @@ pub static SETTINGS: [Setting; 16] = [
         apply: |desc, text| match &mut desc.integrator.value {
             IntegratorDesc::AmbientOcclusion { max_distance, .. } => set(Some(max_distance), text),
             _ => Err(NOT_HERE.into()),
+        },
+    },
+    Setting {
+        name: "techniques",
+        help: "bdpt: one picture per strategy, weighted and unweighted: true or false",
+        apply: |desc, text| match &mut desc.integrator.value {
+            IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
+                set(Some(visualize_strategies), text)?;
+                *visualize_weights = *visualize_strategies;
+                Ok(())
+            }
+            _ => Err(NOT_HERE.into()),
+        },
+    },
+    Setting {
+        name: "technique",
+        help: "mlt: what chains move through: path or bdpt",
+        apply: |desc, text| {
+            mlt(desc)?.technique = choose(text, &MLT_TECHNIQUES)?;
+            Ok(())
+        },
+    },
+    Setting {
+        name: "bootstrapsamples",
+        help: "mlt: paths that find where chains start",
+        apply: |desc, text| set(Some(&mut mlt(desc)?.bootstrap_samples), text),
+    },
+    Setting {
+        name: "chains",
+        help: "mlt: number of chains",
+        apply: |desc, text| set(Some(&mut mlt(desc)?.chains), text),
+    },
+    Setting {
+        name: "mutationsperpixel",
+        help: "mlt: mutations per pixel, on average; --spp sets it, too",
+        apply: |desc, text| set(Some(&mut mlt(desc)?.mutations_per_pixel), text),
+    },
+    Setting {
+        name: "largestepprobability",
+        help: "mlt: probability of a mutation to an independent path",
+        apply: |desc, text| set(Some(&mut mlt(desc)?.large_step_probability), text),
+    },
+    Setting {
+        name: "sigma",
+        help: "mlt: standard deviation of small mutations in the unit cube of random numbers",
+        apply: |desc, text| set(Some(&mut mlt(desc)?.sigma), text),
+    },
+    Setting {
+        name: "photons",
+        help: "photon-mapping: paths of the global map; sppm: paths; in each pass",
+        apply: |desc, text| match &mut desc.integrator.value {
+            IntegratorDesc::PhotonMapping(photon_mapping) => set(Some(&mut photon_mapping.photons), text),
+            IntegratorDesc::Sppm(sppm) => {
+                sppm.photons_per_iteration = Some(parse(text)?);
+                Ok(())
+            }
+            _ => Err(NOT_HERE.into()),
+        },
+    },
+    Setting {
+        name: "causticphotons",
+        help: "photon-mapping: paths of the caustic map in each pass",
+        apply: |desc, text| set(Some(&mut photon_mapping(desc)?.caustic_photons), text),
+    },
+    Setting {
+        name: "nearest",
+        help: "photon-mapping: how many of the nearest photons make an estimate",
+        apply: |desc, text| set(Some(&mut photon_mapping(desc)?.nearest), text),
+    },
+    Setting {
+        name: "radius",
+        help: "photon-mapping, sppm, vcm: how far away photons count (at first), in scene units",
+        apply: |desc, text| {
+            let radius = parse(text)?;
+            match &mut desc.integrator.value {
+                IntegratorDesc::PhotonMapping(photon_mapping) => photon_mapping.radius = Some(radius),
+                IntegratorDesc::Sppm(sppm) => sppm.radius = radius,
+                IntegratorDesc::Vcm(vcm) => vcm.radius = Some(radius),
+                _ => return Err(NOT_HERE.into()),
+            }
+            Ok(())
+        },
+    },
+    Setting {
+        name: "kernel",
+        help: "photon-mapping: how photons are weighed: cone or epanechnikov",
+        apply: |desc, text| {
+            photon_mapping(desc)?.kernel = choose(text, &PHOTON_KERNELS)?;
+            Ok(())
+        },
+    },
+    Setting {
+        name: "gather",
+        help: "photon-mapping, radiosity: rays of a final gather; 0 for none",
+        apply: |desc, text| match &mut desc.integrator.value {
+            IntegratorDesc::PhotonMapping(photon_mapping) => set(Some(&mut photon_mapping.gather), text),
+            IntegratorDesc::Radiosity(radiosity) => set(Some(&mut radiosity.gather), text),
+            _ => Err(NOT_HERE.into()),
+        },
+    },
+    Setting {
+        name: "show",
+        help: "photon-mapping: radiance or photons",
+        apply: |desc, text| {
+            photon_mapping(desc)?.show = choose(text, &PHOTON_MAPPING_SHOWS)?;
+            Ok(())
+        },
+    },
+    Setting {
+        name: "alpha",
+        help: "vcm: how slowly the radius shrinks, from 0 to 1",
+        apply: |desc, text| match &mut desc.integrator.value {
+            IntegratorDesc::Vcm(vcm) => set(Some(&mut vcm.alpha), text),
+            _ => Err(NOT_HERE.into()),
+        },
+    },
+    Setting {
+        name: "formfactors",
+        help: "radiosity: how form factors are found: analytic or hemicube",
+        apply: |desc, text| {
+            radiosity(desc)?.form_factors = choose(text, &FORM_FACTORS)?;
+            Ok(())
+        },
+    },
+    Setting {
+        name: "hemicuberesolution",
+        help: "radiosity: pixels along an edge of a hemicube",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.hemicube_resolution), text),
+    },
+    Setting {
+        name: "patchsize",
+        help: "radiosity: longest side of a patch, in scene units",
+        apply: |desc, text| {
+            radiosity(desc)?.patch_size = Some(parse(text)?);
+            Ok(())
+        },
+    },
+    Setting {
+        name: "subdivision",
+        help: "radiosity: how often an element may be quartered",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.subdivision), text),
+    },
+    Setting {
+        name: "gradient",
+        help: "radiosity: change of light across an element, in parts of what is there, above which it is quartered",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.gradient), text),
+    },
+    Setting {
+        name: "maxpatches",
+        help: "radiosity: most elements, unless there are more primitives",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.max_patches), text),
+    },
+    Setting {
+        name: "tolerance",
+        help: "radiosity: share of light that need not be sent",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.tolerance), text),
+    },
+    Setting {
+        name: "steps",
+        help: "radiosity: passes in which light is sent",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.steps), text),
+    },
+    Setting {
+        name: "mesh-out",
+        help: "radiosity: a file (.ply) for patches with their radiosity as vertex colours",
+        apply: |desc, text| {
+            let radiosity = radiosity(desc)?;
+            if !text.ends_with(".ply") {
+                return Err("its name ends in .ply".into());
+            }
+            radiosity.mesh_out = Some(text.into());
+            Ok(())
         },
     },
     Setting {
@@ -167,6 +343,27 @@ pub(crate) fn set_samples_per_pixel(desc: &mut SceneDesc, samples: i32) {
     }
 }
 
+pub(crate) fn mlt(desc: &mut SceneDesc) -> Result<&mut MltDesc, String> {
+    match &mut desc.integrator.value {
+        IntegratorDesc::Mlt(mlt) => Ok(mlt),
+        _ => Err(NOT_HERE.into()),
+    }
+}
+
+fn radiosity(desc: &mut SceneDesc) -> Result<&mut RadiosityDesc, String> {
+    match &mut desc.integrator.value {
+        IntegratorDesc::Radiosity(radiosity) => Ok(radiosity),
+        _ => Err(NOT_HERE.into()),
+    }
+}
+
+fn photon_mapping(desc: &mut SceneDesc) -> Result<&mut PhotonMappingDesc, String> {
+    match &mut desc.integrator.value {
+        IntegratorDesc::PhotonMapping(photon_mapping) => Ok(photon_mapping),
+        _ => Err(NOT_HERE.into()),
+    }
+}
+
 pub(crate) fn max_depth(desc: &mut IntegratorDesc) -> Option<&mut i32> {
     match desc {
         IntegratorDesc::Whitted { max_depth }
@@ -175,9 +372,12 @@ pub(crate) fn max_depth(desc: &mut IntegratorDesc) -> Option<&mut i32> {
         | IntegratorDesc::Path { max_depth, .. }
         | IntegratorDesc::SimpleVolPath { max_depth }
         | IntegratorDesc::VolPath { max_depth, .. }
-        | IntegratorDesc::LightPath { max_depth }
+        | IntegratorDesc::LightTracing { max_depth }
         | IntegratorDesc::Bdpt { max_depth, .. }
         | IntegratorDesc::Mlt(MltDesc { max_depth, .. })
+        | IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. })
+        | IntegratorDesc::Vcm(VcmDesc { max_depth, .. })
+        | IntegratorDesc::Radiosity(RadiosityDesc { max_depth, .. })
         | IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => Some(max_depth),
         IntegratorDesc::RayCasting
         | IntegratorDesc::AmbientOcclusion { .. }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use alhazen::description::SceneDesc;
+use alhazen::image::replace_file;
 use alhazen::import::{Files, Imported, import};
-use alhazen::integrators::{Control, Progress};
+use alhazen::integrators::{ByProduct, Control, Progress};
 use alhazen::{Job, integrator_name, write_picture};
 
 use crate::args::Render;
@@ -70,6 +71,11 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         unwritten =
             unwritten.or(write_picture(&picture, path).map_err(|error| about_file(path, error)).err());
     }
+    let mut beside = Vec::new();
+    for by_product in job.by_products() {
+        let written = write_by_product(by_product, &outputs[0]);
+        unwritten = unwritten.or(written.map(|path| beside.push(path)).err());
+    }
     if let Some(failure) = unwritten {
         return Err(failure);
     }
@@ -77,6 +83,8 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         interrupted: outcome.is_err(),
         scene: &arguments.scene,
         outputs: &outputs,
+        beside: &beside,
+        notes: &job.summary(),
         integrator: integrator_name(&imported.desc.integrator),
         samples_per_pixel: job.passes(),
         film: job.film(),
@@ -125,6 +133,27 @@ fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
     Ok(path)
 }
 
+/// Writes what was made beside a picture, and tells where it is.
+fn write_by_product(by_product: ByProduct, picture: &Path) -> Result<PathBuf, Failure> {
+    match by_product {
+        ByProduct::Picture(name, image) => {
+            let path = named_beside(picture, &name);
+            write_picture(&image, &path).map_err(|error| about_file(&path, error))?;
+            Ok(path)
+        }
+        ByProduct::File(path, contents) => {
+            replace_file(&path, &contents).map_err(|error| about_file(&path, error))?;
+            Ok(path)
+        }
+    }
+}
+
+/// "out/room.exr" and "s1-t3" give "out/room-s1-t3.exr".
+fn named_beside(picture: &Path, name: &str) -> PathBuf {
+    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    picture.with_file_name(format!("{}-{name}.{}", part(picture.file_stem()), part(picture.extension())))
+}
+
 /// "scenes/room.pbrt.gz" gives "room.exr".
 fn named_after(scene: &Path) -> PathBuf {
     let name = scene.file_name().unwrap_or_default().to_string_lossy();
@@ -135,6 +164,11 @@ fn named_after(scene: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn by_products_stand_beside_their_picture() {
+        assert_eq!(named_beside(Path::new("out/a.b.exr"), "s1-t3"), Path::new("out/a.b-s1-t3.exr"));
+    }
 
     #[test]
     fn pictures_are_named_after_their_scenes() {

@@ -18,6 +18,10 @@ pub struct Summary<'a> {
     pub scene: &'a Path,
     /// The pictures.
     pub outputs: &'a [PathBuf],
+    /// What was written beside them.
+    pub beside: &'a [PathBuf],
+    /// What the algorithm tells of itself.
+    pub notes: &'a [(&'static str, String)],
     /// The algorithm's name.
     pub integrator: &'static str,
     /// Samples per pixel of the whole picture.
@@ -63,6 +67,8 @@ impl Summary<'_> {
             "status": if self.interrupted { "interrupted" } else { "done" },
             "scene": self.scene.display().to_string(),
             "outputs": self.outputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "by_products": self.beside.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "notes": self.notes.iter().map(|(name, note)| ((*name).to_owned(), json!(note))).collect::<serde_json::Map<_, _>>(),
             "integrator": self.integrator,
             "samples_per_pixel": self.samples_per_pixel,
             "resolution": [width, height],
@@ -118,6 +124,17 @@ impl fmt::Display for Summary<'_> {
         for output in self.outputs {
             writeln!(f, "  picture  {}", output.display())?;
         }
+        if let [first, .., last] = self.beside {
+            writeln!(
+                f,
+                "  beside   {} files, from {} to {}",
+                self.beside.len(),
+                first.display(),
+                last.display()
+            )?;
+        } else if let [only] = self.beside {
+            writeln!(f, "  beside   {}", only.display())?;
+        }
         let Seconds { import, compile, render, write } = self.seconds;
         let [total, import, compile, render, write] = [self.seconds.total(), import, compile, render, write]
             .map(|seconds| duration(Duration::from_secs_f64(seconds)));
@@ -139,6 +156,9 @@ impl fmt::Display for Summary<'_> {
             stats.extents as f64 / rays.max(1.0),
             stats.primitives as f64 / rays.max(1.0),
         )?;
+        for (name, note) in self.notes {
+            write!(f, "\n  {name:<8} {note}")?;
+        }
         let rejected = self.film.rejected();
         if rejected.count > 0 {
             let pixels: Vec<_> = rejected.pixels().map(|[x, y]| format!("{x},{y}")).collect();

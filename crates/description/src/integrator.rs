@@ -70,7 +70,7 @@ pub enum IntegratorDesc {
         light_sampler: LightSamplerDesc,
     },
     /// Paths from lights only.
-    LightPath {
+    LightTracing {
         /// See above.
         max_depth: i32,
     },
@@ -87,8 +87,12 @@ pub enum IntegratorDesc {
     },
     /// Metropolis light transport in primary sample space.
     Mlt(MltDesc),
+    /// Photon maps.
+    PhotonMapping(PhotonMappingDesc),
     /// Stochastic progressive photon mapping.
     Sppm(SppmDesc),
+    /// Vertex connection and merging.
+    Vcm(VcmDesc),
     /// Radiosity by progressive shooting.
     Radiosity(RadiosityDesc),
     /// Integrates an analytic function over the unit square instead of a scene: for the study of samplers.
@@ -102,9 +106,21 @@ pub enum IntegratorDesc {
     },
 }
 
+/// What Metropolis light transport asks for paths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MltTechnique {
+    /// Path tracing.
+    Path,
+    /// Bidirectional path tracing, one strategy at a time.
+    #[default]
+    Bdpt,
+}
+
 /// Settings of Metropolis light transport.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MltDesc {
+    /// Where paths come from.
+    pub technique: MltTechnique,
     /// Greatest depth of a path.
     pub max_depth: i32,
     /// Samples that find where chains start.
@@ -124,6 +140,7 @@ pub struct MltDesc {
 impl Default for MltDesc {
     fn default() -> Self {
         Self {
+            technique: MltTechnique::default(),
             max_depth: 5,
             bootstrap_samples: 100_000,
             chains: 1000,
@@ -132,6 +149,79 @@ impl Default for MltDesc {
             sigma: 0.01,
             regularize: false,
         }
+    }
+}
+
+/// How photons near a point are weighed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PhotonKernel {
+    /// Linearly to zero at the greatest distance.
+    Cone,
+    /// Quadratically to zero at the greatest distance.
+    #[default]
+    Epanechnikov,
+}
+
+/// What photon mapping shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PhotonMappingShow {
+    /// Radiance.
+    #[default]
+    Radiance,
+    /// The photons themselves, as dots.
+    Photons,
+}
+
+/// Settings of photon mapping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotonMappingDesc {
+    /// Greatest depth of a path.
+    pub max_depth: i32,
+    /// Photon paths for the global map, in each pass.
+    pub photons: i32,
+    /// Photon paths for the caustic map, in each pass.
+    pub caustic_photons: i32,
+    /// How many of the nearest photons make an estimate.
+    pub nearest: i32,
+    /// The farthest that a photon may be away, in world units; if absent, a share of the scene's size.
+    pub radius: Option<f32>,
+    /// How photons are weighed.
+    pub kernel: PhotonKernel,
+    /// Rays of a final gather at the first diffuse surface; 0 for none.
+    pub gather: i32,
+    /// What the picture shows.
+    pub show: PhotonMappingShow,
+}
+
+impl Default for PhotonMappingDesc {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            photons: 200_000,
+            caustic_photons: 100_000,
+            nearest: 50,
+            radius: None,
+            kernel: PhotonKernel::default(),
+            gather: 0,
+            show: PhotonMappingShow::default(),
+        }
+    }
+}
+
+/// Settings of vertex connection and merging.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VcmDesc {
+    /// Greatest depth of a path.
+    pub max_depth: i32,
+    /// Distance within which vertices are merged in the first pass, in world units; if absent, a share of the scene's size.
+    pub radius: Option<f32>,
+    /// How slowly the radius shrinks, in (0, 1]: after i passes its square is about i^(α − 1) of what it was.
+    pub alpha: f32,
+}
+
+impl Default for VcmDesc {
+    fn default() -> Self {
+        Self { max_depth: 5, radius: None, alpha: 0.75 }
     }
 }
 
@@ -185,10 +275,8 @@ pub struct RadiosityDesc {
     pub tolerance: f32,
     /// Passes in which light is sent.
     pub steps: i32,
-    /// Show by a final gather instead of by interpolation.
-    pub gather: bool,
-    /// Rays of a final gather for each sample of a pixel.
-    pub gather_samples: i32,
+    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
+    pub gather: i32,
     /// File for the elements with their radiosity as vertex colours.
     pub mesh_out: Option<String>,
 }
@@ -205,8 +293,7 @@ impl Default for RadiosityDesc {
             max_patches: 50_000,
             tolerance: 0.002,
             steps: 8,
-            gather: false,
-            gather_samples: 1,
+            gather: 0,
             mesh_out: None,
         }
     }

@@ -39,7 +39,9 @@ pub use color::{ColorSpaceDesc, SpectrumDesc};
 pub use diagnostic::{Diagnostic, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
-pub use integrator::{IntegratorDesc, LightSamplerDesc, MltDesc, SppmDesc};
+pub use integrator::{
+    FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, SppmDesc, VcmDesc,
+};
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
 pub use material::{
     CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, HairColor, LayersDesc,

@@ -13,7 +13,8 @@ use image::{Chromaticities, Image, ImageError, ImageMetadata, Window};
 use math::Bounds2i;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
-use crate::{ExactSum, Filter, PixelSensor};
+use crate::splats::SplatSums;
+use crate::{ExactSum, Filter, PixelSensor, Splatter};
 
 /// Side of a tile in pixels.
 pub const TILE_SIZE: i32 = 16;
@@ -99,7 +100,7 @@ impl Pixel {
 
 /// Measures samples: what tiles of a film share.
 #[derive(Debug)]
-struct Gate {
+pub(crate) struct Gate {
     sensor: PixelSensor,
     max_component_value: f32,
     rejected: Mutex<Rejected>,
@@ -110,6 +111,22 @@ impl Gate {
         self.rejected.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The sensor's response to light, not beyond the largest one; `None` for light that is no number.
+    pub(crate) fn measure(&self, l: &SampledSpectrum, lambda: &SampledWavelengths) -> Option<[f64; 3]> {
+        let mut rgb = self.sensor.to_sensor_rgb(l, lambda);
+        let largest = rgb.max_component();
+        if largest > self.max_component_value {
+            rgb *= self.max_component_value / largest;
+        }
+        let rgb = rgb.to_array().map(f64::from);
+        (l.is_finite() && rgb.into_iter().all(ExactSum::can_add)).then_some(rgb)
+    }
+
+    /// Counts a sample that is left out.
+    pub(crate) fn reject(&self, at: [i32; 2]) {
+        self.rejected().add(at);
+    }
+
     fn add(
         &self,
         at: [i32; 2],
@@ -118,21 +135,16 @@ impl Gate {
         lambda: &SampledWavelengths,
         weight: f32,
     ) {
-        let mut rgb = self.sensor.to_sensor_rgb(l, lambda);
-        let largest = rgb.max_component();
-        if largest > self.max_component_value {
-            rgb *= self.max_component_value / largest;
-        }
         let weight = f64::from(weight);
-        let terms = rgb.to_array().map(|c| weight * f64::from(c));
-        let accepted = l.is_finite() && terms.into_iter().chain([weight]).all(ExactSum::can_add);
-        if !accepted {
-            self.rejected().add(at);
-            return;
+        let terms = self.measure(l, lambda).map(|rgb| rgb.map(|c| weight * c));
+        match terms {
+            Some(terms) if terms.into_iter().chain([weight]).all(ExactSum::can_add) => {
+                pixel.rgb.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
+                pixel.weight.add(weight);
+                pixel.samples += 1;
+            }
+            _ => self.reject(at),
         }
-        pixel.rgb.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
-        pixel.weight.add(weight);
-        pixel.samples += 1;
     }
 }
 
@@ -147,6 +159,7 @@ pub struct Film {
     color_space: &'static RgbColorSpace,
     half_floats: bool,
     pixels: Vec<Pixel>,
+    splats: SplatSums,
 }
 
 impl Film {
@@ -177,7 +190,19 @@ impl Film {
         let gate =
             Gate { sensor, max_component_value: settings.max_component_value, rejected: Mutex::default() };
         let (color_space, half_floats) = (settings.color_space, settings.half_floats);
-        Ok(Self { full_resolution, bounds, diagonal, filter, gate, color_space, half_floats, pixels })
+        let splats = SplatSums::default();
+        Ok(Self { full_resolution, bounds, diagonal, filter, gate, color_space, half_floats, pixels, splats })
+    }
+
+    /// A film with the same pixels and settings, without light.
+    pub fn blank(&self) -> Self {
+        let gate = Gate {
+            sensor: self.gate.sensor.clone(),
+            max_component_value: self.gate.max_component_value,
+            rejected: Mutex::default(),
+        };
+        let pixels = vec![Pixel::default(); self.pixels.len()];
+        Self { filter: self.filter.clone(), gate, pixels, splats: SplatSums::default(), ..*self }
     }
 
     /// Width and height of the whole image in pixels.
@@ -225,25 +250,22 @@ impl Film {
         self.gate.add(pixel, &mut self.pixels[index], l, lambda, weight);
     }
 
-    /// Takes out everything that has come in.
-    pub fn clear(&mut self) {
-        self.pixels.fill(Pixel::default());
-        *self.gate.rejected() = Rejected::default();
-    }
-
     /// The film cut into tiles, at most [`TILE_SIZE`] pixels wide and high, that different threads can fill.
     pub fn tiles_mut(&mut self) -> Vec<FilmTile<'_>> {
-        let mut rest = self.pixels.as_mut_slice();
-        let mut tiles = Vec::new();
-        for y in (self.bounds.min[1]..self.bounds.max[1]).step_by(TILE_SIZE as usize) {
-            for x in (self.bounds.min[0]..self.bounds.max[0]).step_by(TILE_SIZE as usize) {
-                let bounds = tile_at(&self.bounds, [x, y]);
-                let (pixels, others) = std::mem::take(&mut rest).split_at_mut(bounds.area());
-                tiles.push(FilmTile { bounds, pixels, gate: &self.gate });
-                rest = others;
-            }
-        }
-        tiles
+        tiles(&self.bounds, &mut self.pixels, &self.gate)
+    }
+
+    /// [`Film::tiles_mut`], and what takes light that arrives anywhere.
+    pub fn tiles_and_splatter(&mut self) -> (Vec<FilmTile<'_>>, Splatter<'_>) {
+        self.splats.make_room(&self.bounds);
+        let splatter = Splatter {
+            bounds: self.bounds,
+            filter: &self.filter,
+            filter_integral: self.filter.integral(),
+            gate: &self.gate,
+            sums: &self.splats,
+        };
+        (tiles(&self.bounds, &mut self.pixels, &self.gate), splatter)
     }
 
     /// Adds everything that has come in at another film of the same pixels and settings.
@@ -253,6 +275,7 @@ impl Film {
     pub fn merge(&mut self, other: &Self) {
         assert_eq!(self.bounds, other.bounds, "films of the same pixels can be merged");
         self.pixels.iter_mut().zip(&other.pixels).for_each(|(pixel, other)| pixel.merge(other));
+        self.splats.merge(&other.splats, &self.bounds);
         let rejected = other.rejected();
         self.gate.rejected().merge(&rejected);
     }
@@ -281,8 +304,10 @@ impl Film {
         let [x0, y0] = self.bounds.min;
         let (width, height) = (self.bounds.width() as u32, self.bounds.height() as u32);
         let image = Image::from_fn(width, height, ["R", "G", "B"], |x, y| {
-            let pixel = &self.pixels[self.index([x0 + x as i32, y0 + y as i32])];
-            let rgb = Rgb::from(output_from_sensor.apply(pixel.mean()).map(|c| c as f32));
+            let at = [x0 + x as i32, y0 + y as i32];
+            let (mean, splat) = (self.pixels[self.index(at)].mean(), self.splats.value(&self.bounds, at));
+            let response = [0, 1, 2].map(|c| mean[c] + splat[c]);
+            let rgb = Rgb::from(output_from_sensor.apply(response).map(|c| c as f32));
             if self.half_floats { rgb.clamp(-MAX_HALF, MAX_HALF) } else { rgb }.to_array()
         });
         let mut image = if self.half_floats { image.to_f16() } else { image };
@@ -312,11 +337,25 @@ impl Film {
     }
 }
 
+fn tiles<'film>(bounds: &Bounds2i, pixels: &'film mut [Pixel], gate: &'film Gate) -> Vec<FilmTile<'film>> {
+    let mut rest = pixels;
+    let mut tiles = Vec::new();
+    for y in (bounds.min[1]..bounds.max[1]).step_by(TILE_SIZE as usize) {
+        for x in (bounds.min[0]..bounds.max[0]).step_by(TILE_SIZE as usize) {
+            let bounds = tile_at(bounds, [x, y]);
+            let (pixels, others) = std::mem::take(&mut rest).split_at_mut(bounds.area());
+            tiles.push(FilmTile { bounds, pixels, gate });
+            rest = others;
+        }
+    }
+    tiles
+}
+
 /// The largest finite half float.
 const MAX_HALF: f32 = 65504.0;
 
 /// The tile with this corner.
-fn tile_at(bounds: &Bounds2i, min: [i32; 2]) -> Bounds2i {
+pub(crate) fn tile_at(bounds: &Bounds2i, min: [i32; 2]) -> Bounds2i {
     Bounds2i::new(min, [0, 1].map(|axis: usize| bounds.max[axis].min(min[axis] + TILE_SIZE)))
 }
 

@@ -1,8 +1,8 @@
 //! Radiance samples to pixels: filters, sensors and exact accumulation.
 //!
 //! [`compile`] makes a [`Film`] of what a scene's author said. An integrator takes its [`Filter`]'s samples, traces, and
-//! gives the light to [`Film::add_sample`], or, from many threads, to the tiles of [`Film::tiles_mut`]. [`Film::develop`]
-//! gives the picture at any time.
+//! gives the light to [`Film::add_sample`], or, from many threads, to the tiles of [`Film::tiles_mut`]; light that arrives
+//! anywhere goes to a [`Splatter`]. [`Film::develop`] gives the picture at any time.
 //!
 //! Film coordinates have x to the right, y down, pixel (0, 0) at the top left; the centre of pixel (x, y) is at
 //! (x + ½, y + ½).
@@ -11,10 +11,12 @@ mod compile;
 mod film;
 pub mod filter;
 mod sensor;
+mod splats;
 mod sum;
 
 pub use compile::{Compiled, compile};
 pub use film::{Film, FilmSettings, FilmTile, MAX_REJECTED_PIXELS, Rejected, TILE_SIZE};
 pub use filter::{Filter, FilterSample};
 pub use sensor::PixelSensor;
+pub use splats::Splatter;
 pub use sum::ExactSum;

@@ -109,6 +109,13 @@ impl Placement {
         self.forward.determinant().abs() * self.normal(n).length()
     }
 
+    /// [`Self::area_factor`] where the unit normal outside is `n`: |det M| / |Mᵀn|.
+    pub fn area_factor_outside(&self, n: DVec3) -> f64 {
+        let m = &self.forward;
+        let inward = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.truncate().dot(n));
+        m.determinant().abs() / DVec3::from(inward).length()
+    }
+
     /// The one factor by which all lengths grow; `None` where they grow differently.
     pub fn uniform_scale(&self) -> Option<f64> {
         let axes = [self.forward.x_axis, self.forward.y_axis, self.forward.z_axis].map(|a| a.truncate());

@@ -142,13 +142,24 @@ fn samples_by_solid_angle_have_their_density() {
 fn samples_by_area_have_their_density() {
     each(|what, shape, reference| {
         let pdf = |w: Vec3| {
-            met(shape, reference, w).map_or(0.0, |(hit, surface)| {
+            met(shape, reference, w).map_or(0.0, |(_, surface)| {
                 let distance2 = surface.p.p.distance_squared(reference.p.p);
-                shape.pdf_area(hit.uv) * distance2 / surface.n.dot(surface.wo).abs()
+                shape.pdf_area(surface.p.p, surface.n) * distance2 / surface.n.dot(surface.wo).abs()
             })
         };
         check(&what, shape, reference, |u| shape.sample(u), pdf);
     });
+}
+
+#[test]
+fn a_bent_patch_knows_its_points_whatever_their_texture_coordinates() {
+    let p = [[-1.0, -1.0, 0.0], [1.0, -0.8, 0.5], [-0.9, 1.0, 0.4], [1.1, 1.2, -0.3]].map(Vec3::from);
+    let patch = BilinearPatch::new(p, None, Some([Vec2::splat(0.5); 4]), &Transform::IDENTITY, false);
+    let (shape, rng) = (Shape::from(patch), &mut Rng::new(2, 0));
+    for _ in 0..500 {
+        let s = shape.sample(uniform_2d(rng)).unwrap();
+        assert!((shape.pdf_area(s.p.p, s.n) / s.pdf - 1.0).abs() < 1e-4);
+    }
 }
 
 #[test]
@@ -159,12 +170,14 @@ fn an_image_guides_the_samples_of_a_patch() {
     let shape = Shape::from(patch);
     let sample = |u: [f32; 2]| Some(shape.sample(u.into())?.uv.to_array());
     // Per area of the parameters: by the area element, whose inverse is in the density per area.
-    let element = |uv: Vec2| {
-        let d_du = (p[1] - p[0]).lerp(p[3] - p[2], uv.y);
-        let d_dv = (p[2] - p[0]).lerp(p[3] - p[1], uv.x);
-        d_du.cross(d_dv).length()
+    let pdf = |uv: [f32; 2]| {
+        let [u, v] = uv;
+        let d_du = (p[1] - p[0]).lerp(p[3] - p[2], v);
+        let d_dv = (p[2] - p[0]).lerp(p[3] - p[1], u);
+        let cross = d_du.cross(d_dv);
+        let place = p[0].lerp(p[1], u).lerp(p[2].lerp(p[3], u), v);
+        (shape.pdf_area(place, cross.normalize()) * cross.length()) as f64
     };
-    let pdf = |uv: [f32; 2]| (shape.pdf_area(uv.into()) * element(uv.into())) as f64;
     Chi2 { tests: 1, ..Chi2::default() }.rectangle([[0.0, 1.0], [0.0, 1.0]], sample, pdf).unwrap();
 }
 

@@ -17,7 +17,7 @@ mod pyramid;
 mod resample;
 mod wrap;
 
-pub use codec::{Format, ReadOptions, SampleDepth, WriteOptions, encode, read, write};
+pub use codec::{Format, ReadOptions, SampleDepth, WriteOptions, encode, read, replace_file, write};
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};

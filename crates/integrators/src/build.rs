@@ -1,7 +1,8 @@
 //! From what a scene's author said of algorithm and sampler to an integrator.
 
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Randomization, SamplerKind, SceneDesc, SppmDesc,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, Randomization,
+    SamplerKind, SceneDesc, SppmDesc, VcmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler};
@@ -10,8 +11,8 @@ use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::{
-    AmbientOcclusion, Integrator, Path, PathSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator,
-    SimplePath, Whitted,
+    AmbientOcclusion, Integrator, Path, PathSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
+    RayCasting, RayIntegrator, SimplePath, Whitted, radiosity,
 };
 
 /// What [`build`] gives.
@@ -122,8 +123,8 @@ impl Builder<'_> {
             &IntegratorDesc::SimpleVolPath { max_depth } => {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
             }
-            &IntegratorDesc::LightPath { max_depth } => {
-                self.instead_of("lightpath", max_depth, false, sampler)
+            &IntegratorDesc::LightTracing { max_depth } => {
+                self.instead_of("light-tracing", max_depth, false, sampler)
             }
             &IntegratorDesc::Bdpt { max_depth, regularize, .. } => {
                 self.instead_of("bdpt", max_depth, regularize, sampler)
@@ -131,11 +132,27 @@ impl Builder<'_> {
             &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
                 self.instead_of("mlt", max_depth, regularize, sampler)
             }
+            IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. }) => {
+                self.instead_of("photon-mapping", *max_depth, false, sampler)
+            }
+            &IntegratorDesc::Vcm(VcmDesc { max_depth, .. }) => {
+                self.instead_of("vcm", max_depth, false, sampler)
+            }
             &IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => {
                 self.instead_of("sppm", max_depth, false, sampler)
             }
+            IntegratorDesc::Radiosity(desc) => self.radiosity(desc, sampler),
             IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
         }
+    }
+
+    fn radiosity(&mut self, desc: &RadiosityDesc, sampler: Sampler) -> Box<dyn Integrator> {
+        self.diagnostics.extend(radiosity::warnings(self.desc));
+        let settings = radiosity::settings(desc).unwrap_or_else(|errors| {
+            errors.into_iter().for_each(|(parameter, message)| self.error(message, parameter));
+            RadiositySettings::default()
+        });
+        Box::new(Radiosity::new(settings, sampler, color_space(self.desc.film.color_space)))
     }
 
     /// Path tracing where the author asked for something else.

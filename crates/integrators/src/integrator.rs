@@ -1,7 +1,10 @@
 //! The contract of all algorithms.
 
+use std::path::PathBuf;
+
 use film::Film;
 use geometry::RayStats;
+use image::Image;
 use scene::Scene;
 
 use crate::{Cancelled, Control};
@@ -26,4 +29,22 @@ pub trait Integrator: Send {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled>;
+
+    /// What the passes so far have made beside the picture.
+    fn by_products(&self) -> Vec<ByProduct> {
+        Vec::new()
+    }
+
+    /// What else is worth telling of the passes so far, as names of one or two words and what there is to say.
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
+}
+
+/// Something that is made beside the picture.
+pub enum ByProduct {
+    /// A picture, to stand beside the main one and be called like it with this added.
+    Picture(String, Image),
+    /// The contents of a file that was asked for.
+    File(PathBuf, Vec<u8>),
 }

@@ -12,6 +12,7 @@
 //! | [`RandomWalk`] | paths in uniform directions that meet light by chance |
 //! | [`SimplePath`] | paths by light sampling and BSDF sampling, each to be switched off |
 //! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
+//! | [`Radiosity`] | light between diffuse patches, from the brightest first |
 //!
 //! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
 //! that reaches the camera, and the depth of a path the number of its scattering events: depth 0 shows lights alone, depth 1
@@ -34,7 +35,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use build::{Built, build};
 pub use control::{Cancelled, Control, Progress, ProgressSink};
-pub use integrator::Integrator;
+pub use integrator::{ByProduct, Integrator};
 pub use path::{Path, PathSettings};
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use radiosity::{FormFactors, Radiosity, RadiositySettings};

@@ -52,6 +52,17 @@ fn tent() {
 }
 
 #[test]
+fn smooth_step() {
+    let (a, b) = (-0.3, 1.2);
+    interval(
+        [a, b],
+        |u| sample_smooth_step(u, a, b),
+        |x| smooth_step_pdf(x, a, b),
+        |x| invert_smooth_step(x, a, b),
+    );
+}
+
+#[test]
 fn exponential() {
     interval(
         [0.0, 5.0],

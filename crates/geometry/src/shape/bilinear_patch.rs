@@ -112,11 +112,8 @@ impl BilinearPatch {
         }
         let (o, d) = (ray.o.as_dvec3(), ray.d.as_dvec3());
         let [p00, p10, p01, p11] = self.p.map(|p| p.as_dvec3() - o);
-        let a = (p10 - p00).cross(p01 - p11).dot(d);
-        let c = p00.cross(d).dot(p01 - p00);
-        let b = p10.cross(d).dot(p11 - p10) - (a + c);
         let mut best: Option<ShapeHit> = None;
-        for u in solve_quadratic(a, b, c)? {
+        for u in lines_met(&[p00, p10, p01, p11], d)? {
             if !(0.0..=1.0).contains(&u) {
                 continue;
             }
@@ -205,6 +202,26 @@ impl BilinearPatch {
             None => bilinear_pdf(uv, self.area_weights()),
         };
         pdf / self.cross(uv).length() as f32
+    }
+
+    /// The parameters of the patch's point `p`, where its normal is `n`: of the two lines of constant u that the
+    /// normal there may meet, the one that passes through `p`.
+    pub(super) fn parameters(&self, p: Point3, n: Normal3) -> Vec2 {
+        let kept = |u: f64, v: f64| Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE);
+        if let Some(flat) = &self.flat {
+            let q = p.as_dvec3() - flat.corner;
+            let cross = flat.cross / flat.cross.length_squared();
+            return kept(q.cross(flat.up).dot(cross), flat.right.cross(q).dot(cross));
+        }
+        let (p, n) = (p.as_dvec3(), n.as_dvec3());
+        let around = self.p.map(|corner| corner.as_dvec3() - p);
+        let near = lines_met(&around, n).into_iter().flatten().map(|u| {
+            let start = around[0].lerp(around[1], u);
+            let side = around[2].lerp(around[3], u) - start;
+            kept(u, -start.dot(side) / side.length_squared())
+        });
+        let distance = |uv: &Vec2| at(&around, *uv).length_squared();
+        near.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(Vec2::splat(0.5))
     }
 
     /// By solid angle, for a rectangle that is not too small.
@@ -324,6 +341,15 @@ fn normal_derivatives([du, dv]: [DVec3; 2], mixed: DVec3) -> [DVec3; 2] {
     }
     let n = cross / length;
     [du.cross(mixed), mixed.cross(dv)].map(|d| (d - n * n.dot(d)) / length)
+}
+
+/// The lines of constant u, of the patch between corners that are given relative to the origin of a line along `d`,
+/// that this line meets.
+fn lines_met([p00, p10, p01, p11]: &[DVec3; 4], d: DVec3) -> Option<[f64; 2]> {
+    let a = (p10 - p00).cross(p01 - p11).dot(d);
+    let c = p00.cross(d).dot(p01 - p00);
+    let b = p10.cross(d).dot(p11 - p10) - (a + c);
+    solve_quadratic(a, b, c)
 }
 
 /// The roots of a·t² + b·t + c; one root comes twice.

@@ -7,7 +7,7 @@
 use super::quadric::{Local, Quadric, first_hit, phi, revolved_roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 
 /// A cone without a base.
 #[derive(Clone, Debug)]
@@ -86,8 +86,8 @@ impl Cone {
         Some(self.quadric.sample(p, n, self.parameters(p), 1.0 / self.object_area()))
     }
 
-    pub(super) fn pdf_area(&self, uv: Vec2) -> f32 {
-        self.quadric.pdf_area(self.normal(uv.x as f64), 1.0 / self.object_area())
+    pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
+        self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
     /// With the origin at the tip, x² + y² = (r/h)²·z².

@@ -6,7 +6,7 @@
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 
 /// A tube without ends.
 #[derive(Clone, Debug)]
@@ -79,8 +79,8 @@ impl Cylinder {
         Some(self.quadric.sample(p, n, self.parameters(p), 1.0 / self.object_area()))
     }
 
-    pub(super) fn pdf_area(&self, uv: Vec2) -> f32 {
-        self.quadric.pdf_area(self.normal(uv.x as f64), 1.0 / self.object_area())
+    pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
+        self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
     /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.

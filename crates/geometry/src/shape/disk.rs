@@ -102,8 +102,8 @@ impl Disk {
         Some(self.quadric.sample(p, DVec3::Z, self.parameters(p), 1.0 / self.object_area()))
     }
 
-    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
-        self.quadric.pdf_area(DVec3::Z, 1.0 / self.object_area())
+    pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
+        self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
     pub(super) fn normal(&self) -> Normal3 {

@@ -10,7 +10,7 @@
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, Point3, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, Normal3, Point3, Ray, Transform, Vec2};
 
 /// What a straight line sweeps.
 #[derive(Clone, Debug)]
@@ -87,9 +87,8 @@ impl Hyperboloid {
         Some(self.quadric.sample(local.p, local.n, local.uv, 1.0 / self.object_area()))
     }
 
-    pub(super) fn pdf_area(&self, uv: Vec2) -> f32 {
-        let local = self.local(uv.y as f64, uv.x as f64 * self.phi_max);
-        self.quadric.pdf_area(local.n, 1.0 / self.object_area())
+    pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
+        self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
     /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.

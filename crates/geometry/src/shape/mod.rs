@@ -43,7 +43,7 @@ pub use sphere::Sphere;
 pub use triangle::Triangle;
 
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DirectionCone, Normal3, Point3Error, Ray, Vec2, Vec3, Vector3};
+use math::{Bounds3, DirectionCone, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
 
 /// Where a ray meets a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,11 +227,20 @@ impl Shape {
         each_shape!(self, shape => shape.sample(u)).filter(|s| s.pdf.is_finite() && s.pdf > 0.0)
     }
 
-    /// The density per area with which [`Shape::sample`] chooses the point with the given parameters (those
-    /// of a [`ShapeHit`]).
+    /// The density per area with which [`Shape::sample`] chooses its point `p`, where its unit normal is `n`.
     #[doc(alias = "pdf")]
-    pub fn pdf_area(&self, uv: Vec2) -> f32 {
-        each_shape!(self, shape => shape.pdf_area(uv))
+    pub fn pdf_area(&self, p: Point3, n: Normal3) -> f32 {
+        match self {
+            Self::Sphere(shape) => shape.pdf_area(n),
+            Self::Cylinder(shape) => shape.pdf_area(n),
+            Self::Cone(shape) => shape.pdf_area(n),
+            Self::Paraboloid(shape) => shape.pdf_area(n),
+            Self::Hyperboloid(shape) => shape.pdf_area(n),
+            Self::Disk(shape) => shape.pdf_area(n),
+            Self::BilinearPatch(shape) => shape.pdf_area(shape.parameters(p, n)),
+            Self::Triangle(shape) => shape.pdf_area(),
+            Self::Plane(_) | Self::Implicit(_) | Self::Solid(_) | Self::MovingTriangle(_) => 0.0,
+        }
     }
 
     /// A point with its density per solid angle around `reference`; `None` where no point can be chosen.
@@ -261,7 +270,7 @@ impl Shape {
         };
         let pdf = special.unwrap_or_else(|| {
             let surface = self.surface(&ray, &hit);
-            self.pdf_area(hit.uv) * reference.area_per_solid_angle(surface.p.p, surface.n)
+            self.pdf_area(surface.p.p, surface.n) * reference.area_per_solid_angle(surface.p.p, surface.n)
         });
         if pdf.is_finite() { pdf } else { 0.0 }
     }

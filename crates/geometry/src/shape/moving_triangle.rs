@@ -100,10 +100,6 @@ impl MovingTriangle {
     pub(super) fn sample(&self, _: Vec2) -> Option<ShapeSample> {
         None
     }
-
-    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
-        0.0
-    }
 }
 
 fn mixed(a: [Vec3; 3], b: [Vec3; 3], fraction: f32) -> [Vec3; 3] {

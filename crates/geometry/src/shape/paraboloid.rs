@@ -7,7 +7,7 @@
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 
 /// A bowl.
 #[derive(Clone, Debug)]
@@ -95,8 +95,8 @@ impl Paraboloid {
         Some(self.quadric.sample(p, self.normal(p), self.parameters(p), 1.0 / self.object_area()))
     }
 
-    pub(super) fn pdf_area(&self, uv: Vec2) -> f32 {
-        self.quadric.pdf_area(self.at(uv).1, 1.0 / self.object_area())
+    pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
+        self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
     fn roots(&self, o: DVec3, d: DVec3) -> Option<[f64; 2]> {

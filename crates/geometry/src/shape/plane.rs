@@ -54,10 +54,6 @@ impl Plane {
         None
     }
 
-    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
-        0.0
-    }
-
     pub(super) fn normal(&self) -> Normal3 {
         self.quadric.normal(DVec3::Z)
     }

@@ -86,12 +86,17 @@ impl Quadric {
 
     /// A sample at a point with unit normal `n` that has the density `pdf` per area of object space.
     pub fn sample(&self, p: DVec3, n: DVec3, uv: Vec2, pdf: f64) -> ShapeSample {
-        ShapeSample { p: self.point(p), n: self.normal(n), uv, pdf: self.pdf_area(n, pdf) }
+        ShapeSample {
+            p: self.point(p),
+            n: self.normal(n),
+            uv,
+            pdf: (pdf / self.placement.area_factor(n)) as f32,
+        }
     }
 
-    /// A density per area of object space at unit normal `n`, brought to render space.
-    pub fn pdf_area(&self, n: DVec3, pdf: f64) -> f32 {
-        (pdf / self.placement.area_factor(n)) as f32
+    /// A density per area of object space, brought to render space where the unit normal is `n`.
+    pub fn pdf_area(&self, n: Normal3, pdf: f64) -> f32 {
+        (pdf / self.placement.area_factor_outside(n.as_dvec3())) as f32
     }
 
     /// The area in render space of what has `area` in object space, and the unit normal `normal(u, v)` at

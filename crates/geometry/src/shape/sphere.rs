@@ -10,7 +10,7 @@ use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unro
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::Placement;
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 use std::f64::consts::{PI, TAU};
 
 /// A ball, or a part of it.
@@ -119,8 +119,8 @@ impl Sphere {
         Some(self.quadric.sample(p, p / self.radius, self.parameters(p), 1.0 / self.object_area()))
     }
 
-    pub(super) fn pdf_area(&self, uv: Vec2) -> f32 {
-        self.quadric.pdf_area(self.at(uv).1, 1.0 / self.object_area())
+    pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
+        self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
     /// By the cone, for a whole sphere seen from outside.

@@ -82,7 +82,7 @@ impl Triangle {
         Some(self.sample_at(Vec2::new(b1, b2), 1.0 / self.area()))
     }
 
-    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
+    pub(super) fn pdf_area(&self) -> f32 {
         1.0 / self.area()
     }
 

@@ -177,8 +177,7 @@ pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<V
     }
 }
 
-/// Writes an image to a file in the format of its extension. The file appears whole or not at all: it is written beside its
-/// final place and then moved there.
+/// Writes an image to a file in the format of its extension, by [`replace_file`].
 pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
     let path = path.as_ref();
     let Some(format) = Format::from_name(&path.to_string_lossy()) else {
@@ -191,7 +190,8 @@ pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> R
     Ok(replace_file(path, &encode(image, format, options)?)?)
 }
 
-fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+/// Writes a file that appears whole or not at all: it is written beside its final place and then moved there.
+pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
         return fs::write(path, bytes);
     }

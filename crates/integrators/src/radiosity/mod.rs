@@ -27,12 +27,13 @@
 //! | `max_patches` | most elements, unless there are more primitives | 50 000 |
 //! | `tolerance` | share of light that need not be sent | 0.002 |
 //! | `steps` | passes in which light is sent | 8 |
-//! | `gather` | show by a final gather | false |
-//! | `gather_samples` | rays of a final gather for each sample of a pixel | 1 |
+//! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
+//! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
 //!
 //! An element takes about 1 kB, a patch 256 bytes for each scattering event more. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
 
 mod bands;
+mod described;
 mod element;
 mod form_factor;
 mod hemicube;
@@ -41,6 +42,8 @@ mod ply;
 mod shooting;
 mod show;
 mod subdivide;
+
+use std::path::PathBuf;
 
 use film::{Film, FilmTile, Filter};
 use geometry::RayStats;
@@ -51,8 +54,9 @@ use scene::light_sampler::{LightSampler, LightSamplerKind};
 use spectrum::RgbColorSpace;
 
 use crate::pixel_loop::{camera_ray, camera_sample};
-use crate::{Cancelled, Control, Integrator};
+use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
+pub(crate) use described::{settings, warnings};
 use shooting::Solution;
 use show::View;
 
@@ -87,10 +91,10 @@ pub struct RadiositySettings {
     pub tolerance: f32,
     /// Passes in which light is sent.
     pub steps: u32,
-    /// Rays of a final gather for each sample of a pixel; `None` interpolates.
-    pub gather_samples: Option<u32>,
-    /// Keep the mesh as a by-product under this name.
-    pub mesh_out: Option<String>,
+    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
+    pub gather: u32,
+    /// File for the elements with their radiosity as vertex colours.
+    pub mesh_out: Option<PathBuf>,
 }
 
 impl Default for RadiositySettings {
@@ -104,7 +108,7 @@ impl Default for RadiositySettings {
             max_patches: 50_000,
             tolerance: 0.002,
             steps: 8,
-            gather_samples: None,
+            gather: 0,
             mesh_out: None,
         }
     }
@@ -146,10 +150,10 @@ impl Integrator for Radiosity {
 
     fn prepare(&mut self, scene: &Scene) {
         // A final gather scatters once more.
-        let depth = self.settings.max_depth.saturating_sub(u32::from(self.settings.gather_samples.is_some()));
+        let depth = self.settings.max_depth.saturating_sub(u32::from(self.settings.gather > 0));
         let solution = Solution::new(scene, &self.settings, depth);
         let lights = scene.light_sampler(LightSamplerKind::Bvh);
-        let view = View::new(scene, &solution, &lights, None);
+        let view = View::new(scene, &solution, &lights, 0);
         self.state = Some(State { solution, view, lights, mesh: Vec::new() });
     }
 
@@ -167,16 +171,16 @@ impl Integrator for Radiosity {
         if pass < steps {
             let share = self.settings.tolerance.powf((pass + 1) as f32 / steps as f32);
             stats += solution.shoot(scene, share, control)?;
-            *view = View::new(scene, solution, lights, None);
+            *view = View::new(scene, solution, lights, 0);
         }
         if pass == steps {
-            *view = View::new(scene, solution, lights, self.settings.gather_samples);
+            *view = View::new(scene, solution, lights, self.settings.gather);
             if self.settings.mesh_out.is_some() {
                 *mesh = ply::encode(scene, solution, view, self.color_space);
             }
         }
         if pass <= steps {
-            film.clear();
+            *film = film.blank();
         }
         let picture = Picture { scene, solution, view, filter: film.filter().clone(), control };
         let index = if pass < steps { pass % samples } else { pass - steps };
@@ -188,25 +192,22 @@ impl Integrator for Radiosity {
         })?;
         Ok(stats)
     }
-}
 
-impl Radiosity {
-    /// What was done, and what it took.
-    pub fn summary(&self) -> Vec<(&'static str, String)> {
+    fn by_products(&self) -> Vec<ByProduct> {
+        let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
+        let file = self.settings.mesh_out.iter().zip(mesh);
+        file.map(|(path, mesh)| ByProduct::File(path.clone(), mesh.clone())).collect()
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
         let Some(State { solution, .. }) = &self.state else { return Vec::new() };
         vec![
             ("patches", solution.cut.patches.len().to_string()),
             ("elements", solution.cut.elements.len().to_string()),
             ("shots", solution.shots.to_string()),
             ("unshot light", format!("{:.3} %", 100.0 * solution.unshot_share())),
-            ("memory of patches", format!("{:.1} MB", solution.bytes() as f64 * 1e-6)),
+            ("patch memory", format!("{:.1} MB", solution.bytes() as f64 * 1e-6)),
         ]
-    }
-
-    /// The mesh with its name, if one is kept.
-    pub fn by_products(&self) -> Vec<(String, Vec<u8>)> {
-        let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
-        self.settings.mesh_out.iter().zip(mesh).map(|(name, mesh)| (name.clone(), mesh.clone())).collect()
     }
 }
 

@@ -32,13 +32,13 @@ pub(crate) struct View {
     /// The irradiance that is still to come, evenly.
     ambient: Bands,
     lights: LightSampler,
-    /// Rays that gather indirect light; `None`: interpolated.
-    gather_samples: Option<u32>,
+    /// Rays that gather light for each sample of a pixel; 0: interpolated.
+    gather: u32,
 }
 
 impl View {
     /// Spreads the light of elements to their vertices.
-    pub fn new(scene: &Scene, solution: &Solution, lights: &LightSampler, gather_samples: Option<u32>) -> Self {
+    pub fn new(scene: &Scene, solution: &Solution, lights: &LightSampler, gather: u32) -> Self {
         let mesh = &solution.cut.mesh;
         let elements = &solution.cut.elements;
         let outline = |element: &super::element::Element| mesh.outline(scene.world(), mesh.cell(element.cell));
@@ -52,7 +52,7 @@ impl View {
             }
         }
         let vertices = sums.into_iter().map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip())).collect();
-        Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather_samples }
+        Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
     /// The irradiance of both sides at a point of an element.
@@ -112,26 +112,21 @@ impl View {
                 continue;
             };
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
-            let samples = match (leaf, self.gather_samples) {
-                (Some((leaf, uv)), None) => {
-                    let sides = albedo.scatter(&self.irradiance(solution, leaf, uv));
-                    return l + sides[seen_side(&surface)] * FRAC_1_PI;
-                }
-                (_, samples) => samples.unwrap_or(1),
-            };
-            return l + self.gathered(scene, solution, &interaction, &albedo, samples, sampler, stats);
+            if let (Some((leaf, uv)), 0) = (leaf, self.gather) {
+                let sides = albedo.scatter(&self.irradiance(solution, leaf, uv));
+                return l + sides[seen_side(&surface)] * FRAC_1_PI;
+            }
+            return l + self.gathered(scene, solution, &interaction, &albedo, sampler, stats);
         }
     }
 
     /// What a surface scatters to where it is seen from, by samples.
-    #[expect(clippy::too_many_arguments, reason = "a place, what is known there, and what is used up")]
     fn gathered(
         &self,
         scene: &Scene,
         solution: &Solution,
         interaction: &SurfaceInteraction,
         albedo: &Albedo,
-        samples: u32,
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> Bands {
@@ -139,12 +134,10 @@ impl View {
         let ns = s.shading.n;
         let toward = if s.wo.dot(ns) < 0.0 { -ns } else { ns };
         let frame = Frame::from_z(toward);
+        let samples = self.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
             sum += self.direct(scene, solution, interaction, albedo, sampler, stats);
-            if !self.has_indirect(solution) {
-                continue;
-            }
             let (uc, u) = (sampler.get_1d(), sampler.get_2d());
             let (back, on) = (albedo.reflectance.mean(), albedo.transmittance.mean());
             if back + on == 0.0 {
@@ -161,11 +154,6 @@ impl View {
             sum += weight * found(scene, solution, interaction.spawn_ray(frame.from_local(wi)), stats);
         }
         sum * (samples as f32).recip()
-    }
-
-    /// Whether there is light to be gathered.
-    fn has_indirect(&self, solution: &Solution) -> bool {
-        solution.shots > 0 || !self.vertices.is_empty()
     }
 
     /// What a surface scatters of the light that comes straight from the lights, by one sample of one.

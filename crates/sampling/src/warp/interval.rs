@@ -1,8 +1,8 @@
-//! Densities of one variable: linear, tent, exponential; and pairs of normal variables.
+//! Densities of one variable: linear, tent, smooth step, exponential; and pairs of normal variables.
 //!
 //! Sources: [Pharr 2023 §2.4, §A.4]; [Box 1958] for the normal pair.
 
-use math::{ONE_MINUS_EPSILON, Vec2, lerp};
+use math::{ONE_MINUS_EPSILON, Vec2, lerp, smooth_step};
 use std::f32::consts::TAU;
 
 /// A number in [0, 1] with density proportional to `lerp(x, a, b)`, for a, b ≥ 0.
@@ -60,6 +60,34 @@ pub fn invert_tent(x: f32, r: f32) -> f32 {
     } else {
         0.5 + 0.5 * invert_linear(x / r, 1.0, 0.0)
     }
+}
+
+/// A number in [a, b], for a < b, with density proportional to the smooth step from a to b.
+///
+/// With t = (x − a)/(b − a) its distribution is F(t) = 2t³ − t⁴. As t³ ≤ F ≤ 2t³ and F is convex, Newton's iteration falls from
+/// ∛u to the root without passing it.
+#[inline]
+pub fn sample_smooth_step(u: f32, a: f32, b: f32) -> f32 {
+    let mut t = u.cbrt();
+    if t > 0.0 {
+        for _ in 0..5 {
+            t -= (t * t * t * (2.0 - t) - u) / (t * t * (6.0 - 4.0 * t));
+        }
+    }
+    lerp(t, a, b)
+}
+
+/// Density of [`sample_smooth_step`].
+#[inline]
+pub fn smooth_step_pdf(x: f32, a: f32, b: f32) -> f32 {
+    if x < a || x > b { 0.0 } else { 2.0 * smooth_step(x, a, b) / (b - a) }
+}
+
+/// Inverse of [`sample_smooth_step`].
+#[inline]
+pub fn invert_smooth_step(x: f32, a: f32, b: f32) -> f32 {
+    let t = (x - a) / (b - a);
+    t * t * t * (2.0 - t)
 }
 
 /// A number in [0, ∞) with density a·e^(−a·x), for a > 0.

@@ -7,10 +7,15 @@
 //! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in pbrt). Film
 //! positions are in pixels, x to the right and y down, (0, 0) at the top left corner of the picture, so that
 //! the centre of pixel (i, j) is (i + ½, j + ½). Rays are in render space, their directions have unit length,
-//! and their `time` is in the scene's time. Differentials are one pixel wide; bring them nearer by
+//! and their `time` is in the scene's time. For light that comes from the other side, [`Camera::we`] is the importance of a ray
+//! and [`Camera::sample_wi`] the way from a point to the lens: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of
+//! integral 1 over the film in pixels. Differentials are one pixel wide; bring them nearer by
 //! [`differential_scale`] when a pixel takes many samples.
 
 mod compile;
+mod importance;
+#[cfg(test)]
+mod importance_tests;
 mod minimum_differentials;
 mod orthographic;
 mod perspective;
@@ -20,10 +25,12 @@ mod spherical;
 mod tests;
 mod transform;
 
+use importance::Aperture;
 use math::{Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vec3, Vector3, lerp};
 use minimum_differentials::MinimumDifferentials;
 
 pub use compile::compile;
+pub use importance::CameraWiSample;
 pub use minimum_differentials::differential_scale;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
@@ -80,6 +87,36 @@ impl Projection {
             Self::Perspective(p) => p.ray(film, lens),
             Self::Orthographic(p) => p.ray(film, lens),
             Self::Spherical(p) => p.ray(film),
+        }
+    }
+
+    /// The film position of the ray from `o` on the lens along the unit direction `d`, both in camera space, and how much
+    /// film, in square pixels, sees a solid angle there, or of parallel rays an area of the film's plane. `None` for rays
+    /// that do not lead to the front.
+    fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
+        match self {
+            Self::Perspective(p) => p.film(o, d),
+            Self::Orthographic(p) => p.film(o, d),
+            Self::Spherical(p) => p.film(d),
+        }
+    }
+
+    /// What rays pass when they enter.
+    fn aperture(&self) -> Aperture {
+        match self {
+            Self::Perspective(p) => p.lens().area().map_or(Aperture::Pinhole, Aperture::Lens),
+            Self::Orthographic(p) => p.lens().area().map_or(Aperture::Film, Aperture::Lens),
+            Self::Spherical(_) => Aperture::Point,
+        }
+    }
+
+    /// Where a ray from `p` may enter, in camera space; on a lens chosen by `u` in [0, 1)².
+    fn lens_point(&self, p: Point3, u: Vec2) -> Point3 {
+        match self {
+            Self::Orthographic(o) if o.is_parallel() => Vec3::new(p.x, p.y, 0.0),
+            Self::Perspective(o) => o.lens().at(u),
+            Self::Orthographic(o) => o.lens().at(u),
+            Self::Spherical(_) => Vec3::ZERO,
         }
     }
 

@@ -32,4 +32,22 @@ impl Orthographic {
     pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
         self.lens.refract(self.screen.at(film).extend(0.0), Vec3::Z, lens)
     }
+
+    pub(super) fn lens(&self) -> ThinLens {
+        self.lens
+    }
+
+    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a pixel of the area A on the
+    /// focal plane z = f is seen at the angle θ under A·cos³θ/f². Of parallel rays film per area, 1/A.
+    #[inline]
+    pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
+        let per_area = 1.0 / self.screen.pixel_area();
+        (d.z > 0.0).then(|| {
+            if self.is_parallel() {
+                return (self.screen.film(o.truncate()), per_area);
+            }
+            let focus = self.lens.focus(o, d);
+            (self.screen.film(focus.truncate()), per_area * focus.z * focus.z / d.z.powi(3))
+        })
+    }
 }

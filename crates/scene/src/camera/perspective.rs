@@ -50,6 +50,20 @@ impl Perspective {
     pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
         self.lens.refract(Vec3::ZERO, self.screen.at(film).extend(1.0), lens)
     }
+
+    pub(super) fn lens(&self) -> ThinLens {
+        self.lens
+    }
+
+    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a pixel of the area A at z = 1
+    /// is seen at the angle θ under A·cos³θ.
+    #[inline]
+    pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
+        (d.z > 0.0).then(|| {
+            let focus = self.lens.focus(o, d);
+            (self.screen.film(focus.truncate() / focus.z), 1.0 / (self.screen.pixel_area() * d.z.powi(3)))
+        })
+    }
 }
 
 #[cfg(test)]

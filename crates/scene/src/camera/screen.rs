@@ -9,6 +9,7 @@
 use description::{LensDesc, ScreenDesc};
 use math::{Bounds2, Point2, Point3, Vec2, Vector3};
 use sampling::warp::sample_uniform_disk_concentric;
+use std::f32::consts::PI;
 
 /// From film positions to positions on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +43,18 @@ impl Screen {
     pub fn at(&self, film: Point2) -> Vec2 {
         self.top_left + film * self.per_pixel
     }
+
+    /// The film position in pixels of a point of the screen: the inverse of [`Self::at`].
+    #[inline]
+    pub fn film(&self, p: Vec2) -> Point2 {
+        (p - self.top_left) / self.per_pixel
+    }
+
+    /// The area of a pixel on the screen.
+    #[inline]
+    pub fn pixel_area(&self) -> f32 {
+        (self.per_pixel.x * self.per_pixel.y).abs()
+    }
 }
 
 /// A lens without thickness.
@@ -68,7 +81,28 @@ impl ThinLens {
             return (o, d.normalize());
         }
         let focus = o + d * (self.focal_distance / d.z);
-        let on_lens = (sample_uniform_disk_concentric(u) * self.radius).extend(0.0);
+        let on_lens = self.at(u);
         (on_lens, (focus - on_lens).normalize())
+    }
+
+    /// The point of the lens that `u` in [0, 1)² names.
+    #[inline]
+    pub fn at(&self, u: Vec2) -> Point3 {
+        (sample_uniform_disk_concentric(u) * self.radius.max(0.0)).extend(0.0)
+    }
+
+    /// The area; `None` of a pinhole.
+    #[inline]
+    pub fn area(&self) -> Option<f32> {
+        (self.radius > 0.0).then_some(PI * self.radius * self.radius)
+    }
+
+    /// Where a ray from the lens meets the plane of what is sharp; for a pinhole that is z = 1.
+    #[inline]
+    pub fn focus(&self, o: Point3, d: Vector3) -> Point3 {
+        if self.radius <= 0.0 {
+            return d / d.z;
+        }
+        (o + d * (self.focal_distance / d.z)).with_z(self.focal_distance)
     }
 }

@@ -7,8 +7,8 @@
 
 use description::SphericalMapping;
 use math::{
-    Point2, Point3, Vec2, Vec3, Vector3, equal_area_square_to_sphere, spherical_direction,
-    wrap_equal_area_square,
+    Point2, Point3, Vec2, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
+    spherical_direction, spherical_phi, wrap_equal_area_square,
 };
 use std::f32::consts::{PI, TAU};
 
@@ -37,5 +37,22 @@ impl Spherical {
             SphericalMapping::EqualArea => equal_area_square_to_sphere(wrap_equal_area_square(st)),
         };
         (Vec3::ZERO, Vec3::new(z_up.x, z_up.z, z_up.y))
+    }
+
+    /// The inverse of [`Self::ray`] on the film itself, and film per solid angle: dω is 2π²·sin θ ds dt, or 4π ds dt where areas
+    /// are kept. `None` at the poles of the first mapping, which a whole row of film sees.
+    #[inline]
+    pub(super) fn film(&self, d: Vector3) -> Option<(Point2, f32)> {
+        let z_up = Vec3::new(d.x, d.z, d.y);
+        let (st, solid_angle) = match self.mapping {
+            SphericalMapping::EquiRectangular => {
+                let sin_theta = d.x.hypot(d.z);
+                let theta = sin_theta.atan2(d.y);
+                (Vec2::new(spherical_phi(z_up) / TAU, theta / PI), 2.0 * PI * PI * sin_theta)
+            }
+            SphericalMapping::EqualArea => (equal_area_sphere_to_square(z_up), 4.0 * PI),
+        };
+        let pixels = self.resolution.x * self.resolution.y;
+        (solid_angle > 0.0).then(|| (st * self.resolution, pixels / solid_angle))
     }
 }

@@ -7,10 +7,10 @@ use description::{
 };
 use math::{DMat4, DVec3, Vec3};
 
-const RESOLUTION: [u32; 2] = [200, 150];
+pub(super) const RESOLUTION: [u32; 2] = [200, 150];
 const LENS: LensDesc = LensDesc { radius: 0.3, focal_distance: 4.0 };
 
-fn kinds() -> Vec<(&'static str, CameraKind)> {
+pub(super) fn kinds() -> Vec<(&'static str, CameraKind)> {
     let screen = ScreenDesc::default();
     let cut = ScreenDesc { frame_aspect_ratio: None, window: Some([-0.2, 0.7, 0.1, 0.5]) };
     let pinhole = LensDesc::default();
@@ -25,12 +25,12 @@ fn kinds() -> Vec<(&'static str, CameraKind)> {
     ]
 }
 
-fn somewhere() -> TransformDesc {
+pub(super) fn somewhere() -> TransformDesc {
     let turn = DMat4::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), 0.8);
     TransformDesc::fixed(turn * DMat4::from_translation(DVec3::new(-50.0, 3.0, 20.0)))
 }
 
-fn build(kind: CameraKind, camera_from_world: TransformDesc, render_space: RenderSpace) -> Camera {
+pub(super) fn build(kind: CameraKind, camera_from_world: TransformDesc, render_space: RenderSpace) -> Camera {
     let desc = CameraDesc { kind, camera_from_world, ..CameraDesc::default() };
     let film = FilmDesc { resolution: RESOLUTION.map(|n| n as i32), ..FilmDesc::default() };
     let options = OptionsDesc { render_space, ..OptionsDesc::default() };
@@ -40,7 +40,7 @@ fn build(kind: CameraKind, camera_from_world: TransformDesc, render_space: Rende
     camera.unwrap()
 }
 
-fn sample(x: f32, y: f32, lens: Vec2, time: f32) -> CameraSample {
+pub(super) fn sample(x: f32, y: f32, lens: Vec2, time: f32) -> CameraSample {
     CameraSample { film: Vec2::new(x, y), lens, time, filter_weight: 1.0 }
 }
 

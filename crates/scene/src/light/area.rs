@@ -2,14 +2,15 @@
 //!
 //! Each triangle or patch of a mesh is a light of its own. Power: Φ = π·A·L, twice that when both sides shine.
 //! Where the surface is cut out by an alpha texture, it does not emit; a surface with the constant alpha 0 is an invisible
-//! light, which rays never meet but points still sample. Sources: [Pharr 2023 §12.4].
+//! light, which rays never meet but points still sample. Rays leave evenly from its area (patches may follow an image) and by
+//! the cosine, to both sides alike if it has two. Sources: [Pharr 2023 §12.4].
 
-use super::{Emission, LightBounds, LightLiSample, LightSampleContext};
+use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
-use geometry::Shape;
+use geometry::{Shape, ShapeSample};
 use image::{Image, WrapMode};
-use math::{Normal3, Point2, Vec2, Vector3};
-use sampling::hash_float;
+use math::{Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
+use sampling::{hash_float, warp};
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -121,16 +122,68 @@ impl AreaLight {
         if s.pdf == 0.0 || to_light.length_squared() == 0.0 {
             return None;
         }
-        if let Some(alpha) = self.emission.alpha.filter(|_| !self.emission.invisible) {
-            let there =
-                textures.float(alpha, &TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() });
-            if there < 1.0 && hash_float(&s.p.p.to_array().map(f32::to_bits)) >= there {
-                return None;
-            }
+        if !self.is_there(&s, textures) {
+            return None;
         }
         let wi = to_light.normalize();
         let l = self.radiance(s.n, s.uv, -wi, lambda);
         (!l.is_black()).then_some(LightLiSample { l, wi, pdf: s.pdf, p: Some(s.p), n: s.n })
+    }
+
+    /// Whether a point of the surface is there, decided by a hash where its alpha makes it come and go.
+    fn is_there(&self, s: &ShapeSample, textures: &Textures) -> bool {
+        let Some(alpha) = self.emission.alpha.filter(|_| !self.emission.invisible) else { return true };
+        let there =
+            textures.float(alpha, &TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() });
+        there >= 1.0 || hash_float(&s.p.p.to_array().map(f32::to_bits)) < there
+    }
+
+    /// By area, and by the cosine on the sides that shine.
+    pub(super) fn sample_le(
+        &self,
+        u_position: Point2,
+        u_direction: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+        textures: &Textures,
+    ) -> Option<LightLeSample> {
+        let s = self.shape.sample(u_position)?;
+        if !self.is_there(&s, textures) {
+            return None;
+        }
+        let mut u = u_direction;
+        let mut side = s.n;
+        if self.emission.two_sided {
+            u.x *= 2.0;
+            if u.x >= 1.0 {
+                u.x -= 1.0;
+                side = -s.n;
+            }
+        }
+        let w = Frame::from_z(side).from_local(warp::sample_cosine_hemisphere(u));
+        let (l, pdf_direction) = (self.radiance(s.n, s.uv, w, lambda), self.pdf_direction(s.n, w));
+        (pdf_direction > 0.0 && !l.is_black()).then(|| LightLeSample {
+            l,
+            ray: Ray::spawn(s.p, s.n, w, time),
+            p: Some(s.p),
+            n: s.n,
+            pdf_position: s.pdf,
+            pdf_direction,
+        })
+    }
+
+    pub(super) fn pdf_le(&self, p: Point3, n: Normal3, w: Vector3) -> (f32, f32) {
+        let position = self.shape.pdf_area(p, n);
+        (if position.is_finite() { position } else { 0.0 }, self.pdf_direction(n, w))
+    }
+
+    fn pdf_direction(&self, n: Normal3, w: Vector3) -> f32 {
+        let cos_theta = n.dot(w);
+        if self.emission.two_sided {
+            0.5 * warp::cosine_hemisphere_pdf(cos_theta.abs())
+        } else {
+            warp::cosine_hemisphere_pdf(cos_theta.max(0.0))
+        }
     }
 
     pub(super) fn pdf_li(&self, context: &LightSampleContext, wi: Vector3) -> f32 {

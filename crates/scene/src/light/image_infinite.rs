@@ -2,9 +2,10 @@
 //!
 //! Because the mapping keeps areas, the density per solid angle is that of the square over 4π. With incomplete sampling
 //! allowed, the *compensated* distribution max(0, f − mean) is used: multiple importance sampling leaves the dim parts to
-//! the BSDF, and light samples go where they matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]).
+//! the BSDF, and light samples go where they matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the
+//! plain distribution, and start evenly on the disk that faces them and covers the scene.
 
-use super::{LightLiSample, SceneSphere};
+use super::{LightLeSample, LightLiSample, SceneSphere};
 use image::{Image, WrapMode};
 use math::{
     Bounds2, Point2, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
@@ -21,7 +22,7 @@ pub struct ImageInfiniteLight {
     image: Arc<Image>,
     color_space: &'static RgbColorSpace,
     scale: f32,
-    scene: SceneSphere,
+    pub(super) scene: SceneSphere,
     distribution: PiecewiseConstant2d,
     compensated: PiecewiseConstant2d,
 }
@@ -102,6 +103,24 @@ impl ImageInfiniteLight {
             pdf: density / (4.0 * PI),
             p: None,
             n: Vec3::ZERO,
+        })
+    }
+
+    pub(super) fn sample_le(
+        &self,
+        u_position: Point2,
+        u_direction: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLeSample> {
+        let LightLiSample { l, wi, pdf, n, .. } = self.sample_li(u_direction, lambda, false)?;
+        Some(LightLeSample {
+            l,
+            ray: self.scene.ray_from(wi, u_position, time),
+            p: None,
+            n,
+            pdf_position: self.scene.disk_pdf(),
+            pdf_direction: pdf,
         })
     }
 

@@ -3,7 +3,23 @@
 //! A light answers two questions. *How much comes from there?* — [`Light::radiance`] for emitting surfaces, [`Light::le`] for
 //! rays that leave the scene. *Where should I look?* — [`Light::sample_li`] draws a direction from a point towards the
 //! light, [`Light::pdf_li`] is its density per solid angle. Lights at a point or in one direction (delta lights) can only
-//! be sampled, never hit: their pdf is 0. Radiometric scale follows the pbrt-v4 format: a light's spectrum is first
+//! be sampled, never hit: their pdf is 0.
+//!
+//! To follow light on its way there is a third question, *which rays leave?* — [`Light::sample_le`] draws a ray with two
+//! densities. That of its position is per area of the surface; of lights infinitely far away, which have none, per area of the
+//! disk of the scene's radius R that faces them, 1/(πR²). That of its direction is per solid angle. Where one of the two is
+//! fixed, its delta has the coefficient 1. What the ray carries on average is the light's power,
+//!
+//! ```text
+//! β = L·|cos θ| / (p_position·p_direction)        E[β] = Φ
+//! ```
+//!
+//! with θ at the light's surface (|cos θ| = 1 where there is none) and for L radiance, of lights at a point radiant
+//! intensity. [`Light::pdf_le`] and [`Light::pdf_le_infinite`] are the densities of a given ray, 0 for a delta: whoever has
+//! come to the light from the other side weighs with them how likely light would have come that way
+//! ([Pharr 2016 §16.1.2]).
+//!
+//! Radiometric scale follows the pbrt-v4 format: a light's spectrum is first
 //! divided by its photometric integral, so that a scale of 1 is a luminance of 1.
 
 mod area;
@@ -26,8 +42,10 @@ pub use spot::SpotLight;
 pub use uniform_infinite::UniformInfiniteLight;
 
 use crate::texture::Textures;
-use math::{Bounds3, Normal3, Point2, Point3, Point3Error, Ray, Vector3};
+use math::{Bounds3, Frame, Normal3, Point2, Point3, Point3Error, Ray, Vector3};
+use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
+use std::f32::consts::PI;
 
 /// Index of a light in its scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,6 +83,31 @@ pub struct LightLiSample {
     pub n: Normal3,
 }
 
+/// A ray of light on its way from a light.
+#[derive(Clone, Copy, Debug)]
+pub struct LightLeSample {
+    /// Radiance along the ray; of lights at a point radiant intensity.
+    pub l: SampledSpectrum,
+    /// The way of the light, a unit direction; clear of the surface that it leaves.
+    pub ray: Ray,
+    /// Where on the light; `None` for lights infinitely far away.
+    pub p: Option<Point3Error>,
+    /// Normal of the light's surface there; zero where it has none.
+    pub n: Normal3,
+    /// Density of the position per area; 1 for lights at a point.
+    pub pdf_position: f32,
+    /// Density of the direction per solid angle; 1 for lights in one direction.
+    pub pdf_direction: f32,
+}
+
+impl LightLeSample {
+    /// What a particle that leaves along the ray carries: L·|cos θ| over the densities.
+    pub fn beta(&self) -> SampledSpectrum {
+        let cos_theta = if self.n == Normal3::ZERO { 1.0 } else { self.n.dot(self.ray.d).abs() };
+        self.l * (cos_theta / (self.pdf_position * self.pdf_direction))
+    }
+}
+
 /// Dispatch to the member.
 macro_rules! each_light {
     ($self:expr, $light:ident => $e:expr) => {
@@ -94,6 +137,12 @@ impl Light {
     #[inline]
     pub fn is_infinite(&self) -> bool {
         matches!(self, Self::UniformInfinite(_) | Self::ImageInfinite(_))
+    }
+
+    /// Whether it is infinitely far away, so that its light comes from a direction but from no place.
+    #[inline]
+    pub fn is_distant(&self) -> bool {
+        matches!(self, Self::Distant(_)) || self.is_infinite()
     }
 
     /// Emitted power.
@@ -133,6 +182,53 @@ impl Light {
             Self::Area(light) => light.pdf_li(context, wi),
             Self::UniformInfinite(light) => light.pdf_li(allow_incomplete),
             Self::ImageInfinite(light) => light.pdf_li(wi, allow_incomplete),
+        }
+    }
+
+    /// A ray of light that leaves at `time`, its position chosen by `u_position` and its direction by `u_direction`; `None`
+    /// where no light does.
+    #[doc(alias = "SampleLe")]
+    pub fn sample_le(
+        &self,
+        u_position: Point2,
+        u_direction: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+        textures: &Textures,
+    ) -> Option<LightLeSample> {
+        match self {
+            Self::Point(light) => light.sample_le(u_direction, time, lambda),
+            Self::Spot(light) => light.sample_le(u_direction, time, lambda),
+            Self::Distant(light) => light.sample_le(u_position, time, lambda),
+            Self::Area(light) => light.sample_le(u_position, u_direction, time, lambda, textures),
+            Self::UniformInfinite(light) => light.sample_le(u_position, u_direction, time, lambda),
+            Self::ImageInfinite(light) => light.sample_le(u_position, u_direction, time, lambda),
+        }
+    }
+
+    /// Densities of position and direction with which [`Light::sample_le`] chooses the ray that leaves the light's point `p`,
+    /// where its normal is `n` (zero at a light without a surface), along the unit direction `w`. Both are 0 for lights
+    /// infinitely far away.
+    #[doc(alias = "PDF_Le")]
+    pub fn pdf_le(&self, p: Point3, n: Normal3, w: Vector3) -> (f32, f32) {
+        match self {
+            Self::Point(light) => (0.0, light.pdf_le()),
+            Self::Spot(light) => (0.0, light.pdf_le(w)),
+            Self::Area(light) => light.pdf_le(p, n, w),
+            Self::Distant(_) | Self::UniformInfinite(_) | Self::ImageInfinite(_) => (0.0, 0.0),
+        }
+    }
+
+    /// Densities of position and direction with which [`Light::sample_le`] of a light infinitely far away chooses the ray that
+    /// arrives along `ray`, a ray of unit direction that leaves the scene towards the light. Both are 0 for other lights, and
+    /// where no chosen ray passes: beside the scene's sphere.
+    #[doc(alias = "PDF_Le")]
+    pub fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
+        match self {
+            Self::Distant(light) => (light.scene.pdf_facing_disk(ray), 0.0),
+            Self::UniformInfinite(light) => (light.scene.pdf_facing_disk(ray), light.pdf_li(false)),
+            Self::ImageInfinite(light) => (light.scene.pdf_facing_disk(ray), light.pdf_li(ray.d, false)),
+            Self::Point(_) | Self::Spot(_) | Self::Area(_) => (0.0, 0.0),
         }
     }
 
@@ -186,5 +282,26 @@ impl SceneSphere {
     pub fn around(bounds: &Bounds3) -> Self {
         let (center, radius) = bounds.bounding_sphere();
         Self { center, radius: if bounds.is_empty() { 1.0 } else { radius } }
+    }
+
+    /// The ray from an even choice of points of the disk that faces the direction `w` and touches the sphere from there, against
+    /// `w`: how light from far away falls on all of the sphere.
+    fn ray_from(&self, w: Vector3, u: Point2, time: f32) -> Ray {
+        let disk = warp::sample_uniform_disk_concentric(u);
+        let o = self.center + Frame::from_z(w).from_local(disk.extend(1.0)) * self.radius;
+        Ray::new(o, -w, time)
+    }
+
+    /// The density of such a choice per area of the disk.
+    fn disk_pdf(&self) -> f32 {
+        1.0 / (PI * self.radius * self.radius)
+    }
+
+    /// The density with which that disk has a point on `ray`; 0 where the ray passes beside it.
+    fn pdf_facing_disk(&self, ray: &Ray) -> f32 {
+        let to_center = self.center - ray.o;
+        let along = to_center.dot(ray.d);
+        let beside = (to_center - ray.d * along).length_squared() > self.radius * self.radius;
+        if beside || -along > self.radius { 0.0 } else { self.disk_pdf() }
     }
 }

@@ -1,9 +1,10 @@
 //! A light at a point that shines alike into all directions: L = I / r².
 //!
-//! Parameters: radiant intensity I; power 4π·I. Sources: [Pharr 2023 §12.2].
+//! Parameters: radiant intensity I; power 4π·I. Rays leave evenly in all directions. Sources: [Pharr 2023 §12.2].
 
-use super::{Emission, LightBounds, LightLiSample, LightSampleContext};
-use math::{Bounds3, Point3, Point3Error, Vec3};
+use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
+use math::{Bounds3, Point2, Point3, Point3Error, Ray, Vec3};
+use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 
@@ -35,6 +36,27 @@ impl PointLight {
             p: Some(Point3Error::exact(self.p)),
             n: Vec3::ZERO,
         })
+    }
+
+    pub(super) fn sample_le(
+        &self,
+        u: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLeSample> {
+        Some(LightLeSample {
+            l: self.intensity.sample(lambda),
+            ray: Ray::new(self.p, warp::sample_uniform_sphere(u), time),
+            p: Some(Point3Error::exact(self.p)),
+            n: Vec3::ZERO,
+            pdf_position: 1.0,
+            pdf_direction: self.pdf_le(),
+        })
+    }
+
+    /// Density of the direction, whichever it is.
+    pub(super) fn pdf_le(&self) -> f32 {
+        warp::uniform_sphere_pdf()
     }
 
     pub(super) fn bounds(&self) -> Option<LightBounds> {

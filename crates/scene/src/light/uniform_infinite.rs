@@ -1,9 +1,10 @@
 //! A sky of one radiance in all directions.
 //!
 //! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling allowed it is left wholly to
-//! BSDF sampling, which covers a constant sky better than uniform directions do. Sources: [Pharr 2023 §12.5.1].
+//! BSDF sampling, which covers a constant sky better than uniform directions do. Rays come evenly from all directions, and start
+//! evenly on the disk that faces them and covers the scene. Sources: [Pharr 2023 §12.5.1].
 
-use super::{Emission, LightLiSample, SceneSphere};
+use super::{Emission, LightLeSample, LightLiSample, SceneSphere};
 use math::{Point2, Vec3};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -43,6 +44,24 @@ impl UniformInfiniteLight {
             pdf: self.pdf_li(false),
             p: None,
             n: Vec3::ZERO,
+        })
+    }
+
+    pub(super) fn sample_le(
+        &self,
+        u_position: Point2,
+        u_direction: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLeSample> {
+        let LightLiSample { l, wi, pdf, n, .. } = self.sample_li(u_direction, lambda, false)?;
+        Some(LightLeSample {
+            l,
+            ray: self.scene.ray_from(wi, u_position, time),
+            p: None,
+            n,
+            pdf_position: self.scene.disk_pdf(),
+            pdf_direction: pdf,
         })
     }
 

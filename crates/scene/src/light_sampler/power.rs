@@ -1,4 +1,5 @@
-//! Lights in proportion to their power, wherever the point is.
+//! Lights in proportion to their power, wherever the point is; so that it also chooses where paths of light start, which have
+//! no point to look from.
 
 use crate::light::{Light, LightId};
 use sampling::AliasTable;
@@ -22,12 +23,16 @@ impl PowerLightSampler {
         Self { table: AliasTable::new(&powers) }
     }
 
-    pub(super) fn sample(&self, u: f32) -> Option<(LightId, f32)> {
+    /// A light, with the probability of its choice (> 0); `None` if there are no lights.
+    #[inline]
+    pub fn sample(&self, u: f32) -> Option<(LightId, f32)> {
         let choice = self.table.as_ref()?.sample(u);
         (choice.pmf > 0.0).then_some((LightId(choice.index as u32), choice.pmf))
     }
 
-    pub(super) fn pmf(&self, light: LightId) -> f32 {
+    /// The probability with which `light` is chosen.
+    #[inline]
+    pub fn pmf(&self, light: LightId) -> f32 {
         self.table.as_ref().map_or(0.0, |table| table.pmf(light.0 as usize))
     }
 }

@@ -71,7 +71,7 @@ pub fn placement() -> DMat4 {
 pub fn free(kind: LightKind) -> SceneDesc {
     let mut desc = SceneDesc::default();
     let far_away = TransformDesc::translation(0.0, 0.0, -1e3);
-    desc.shapes.push(ShapeDesc { world_from_object: far_away, ..sphere(0.01).into() });
+    desc.shapes.push(ShapeDesc { world_from_object: far_away, ..sphere(10.0).into() });
     let world_from_light = TransformDesc::fixed(placement());
     desc.lights.push(LightDesc { world_from_light, ..kind.into() });
     desc

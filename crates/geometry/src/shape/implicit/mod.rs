@@ -132,10 +132,6 @@ impl Implicit {
     pub(super) fn sample(&self, _: Vec2) -> Option<ShapeSample> {
         None
     }
-
-    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
-        0.0
-    }
 }
 
 /// How far the point at a root may be from the surface.

@@ -153,10 +153,6 @@ impl Solid {
     pub(super) fn sample(&self, _: Vec2) -> Option<ShapeSample> {
         None
     }
-
-    pub(super) fn pdf_area(&self, _: Vec2) -> f32 {
-        0.0
-    }
 }
 
 fn ascending(z: [f32; 2]) -> [f64; 2] {
