@@ -42,9 +42,14 @@ impl Bands {
         self.0.iter().map(|group| group.average()).sum::<f32>() / GROUPS as f32
     }
 
-    /// The same function of every value.
-    pub fn map(self, mut f: impl FnMut(f32) -> f32) -> Self {
-        Self(self.0.map(|group| group.map(&mut f)))
+    /// The lesser of the two at each wavelength.
+    pub fn min(self, other: Self) -> Self {
+        self.zip(other, SampledSpectrum::min)
+    }
+
+    /// The larger of the two at each wavelength.
+    pub fn max(self, other: Self) -> Self {
+        self.zip(other, SampledSpectrum::max)
     }
 
     fn zip(self, other: Self, f: impl Fn(SampledSpectrum, SampledSpectrum) -> SampledSpectrum) -> Self {
@@ -136,5 +141,32 @@ impl Wavelengths {
     /// Luminance, up to a constant.
     pub fn luminance(&self, bands: &Bands) -> f32 {
         (*bands * self.luminance).0.iter().map(|group| group.average()).sum::<f32>() * N as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectrum::{Spectrum, RgbColorSpace, xyz_from};
+
+    /// X, Y and Z of a spectrum, by `n` equal parts of the visible distribution.
+    fn xyz(spectrum: &Spectrum, n: usize) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for i in 0..n / N {
+            let lambda = SampledWavelengths::sample_visible((i as f32 + 0.5) / n as f32);
+            let xyz = xyz_from(&spectrum.sample(&lambda), &lambda);
+            [xyz.x, xyz.y, xyz.z].iter().zip(&mut sum).for_each(|(x, sum)| *sum += f64::from(*x) * N as f64 / n as f64);
+        }
+        sum
+    }
+
+    #[test]
+    fn bands_make_the_colours() {
+        for space in [RgbColorSpace::srgb(), RgbColorSpace::rec2020()] {
+            let (found, exact) = (xyz(&space.illuminant(), BANDS), xyz(&space.illuminant(), 1 << 16));
+            let coarse = xyz(&space.illuminant(), 16);
+            println!("{found:?} {coarse:?} {exact:?}");
+        }
+        panic!();
     }
 }

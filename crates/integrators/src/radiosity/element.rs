@@ -13,7 +13,7 @@ use scene::{Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::bands::{Bands, Wavelengths};
-use super::mesh::{Cell, Mesh};
+use super::mesh::{Cell, Domain, Mesh};
 
 /// The shares of light that a surface sends back, and through, evenly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -91,8 +91,8 @@ pub(crate) struct Element {
     pub area: f32,
     pub points: [SamplePoint; 4],
     pub albedo: Albedo,
-    /// What fell on its outer and inner side.
-    pub irradiance: [Bands; 2],
+    /// What fell on its outer and inner side, in each quarter.
+    pub quarters: [[Bands; 2]; 4],
 }
 
 impl Element {
@@ -115,13 +115,34 @@ impl Element {
             SamplePoint { p: surface.p, n: surface.n, weight }
         };
         let points = [point(0), point(1), point(2), point(3)];
-        Self { cell, patch, level, area, points, albedo, irradiance: [Bands::ZERO; 2] }
+        Self { cell, patch, level, area, points, albedo, quarters: [[Bands::ZERO; 2]; 4] }
     }
 
-    /// What leaves its two sides, emission apart.
-    pub fn radiosity(&self) -> [Bands; 2] {
-        self.albedo.scatter(&self.irradiance)
+    /// What fell on its outer and inner side.
+    pub fn irradiance(&self) -> [Bands; 2] {
+        weighted(&self.quarters, self.points.each_ref().map(|point| point.weight))
     }
+
+    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of the quarters the change goes on as far
+    /// as it does in any direction, no further.
+    pub fn irradiance_at(&self, domain: &Domain, uv: Vec2) -> [Bands; 2] {
+        let at = weighted(&self.quarters, domain.weights(uv));
+        [0, 1].map(|i| {
+            let [a, b, c, d] = self.quarters.each_ref().map(|sides| sides[i]);
+            let (least, most) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
+            let beyond = (most + least * -1.0) * 0.5;
+            at[i].max(least + beyond * -1.0).min(most + beyond)
+        })
+    }
+
+    /// What leaves its two sides in one quarter, emission apart.
+    pub fn radiosity(&self, quarter: usize) -> [Bands; 2] {
+        self.albedo.scatter(&self.quarters[quarter])
+    }
+}
+
+fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
+    [0, 1].map(|i| quarters.iter().zip(weights).map(|(sides, weight)| sides[i] * weight).sum())
 }
 
 /// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a change of medium.

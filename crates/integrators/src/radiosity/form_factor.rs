@@ -73,10 +73,16 @@ pub(crate) struct Emitter {
 /// What an element receives of one shot of unit radiosity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Received {
-    /// Irradiance on the outer and the inner side.
-    pub sides: [f32; 2],
-    /// Irradiance of both sides in each quarter.
-    pub quarters: [f32; 4],
+    /// Irradiance on the outer and the inner side of each quarter.
+    pub quarters: [[f32; 2]; 4],
+}
+
+impl Received {
+    /// Irradiance on the two sides of an element.
+    pub fn sides(&self, element: &Element) -> [f32; 2] {
+        let pairs = self.quarters.iter().zip(&element.points);
+        pairs.fold([0.0; 2], |sum, (sides, point)| [0, 1].map(|i| sum[i] + sides[i] * point.weight))
+    }
 }
 
 impl Emitter {
@@ -116,12 +122,15 @@ impl Emitter {
         self.n.dot(p - self.center) > 0.0
     }
 
-    /// cosθ cosθ / r² between a point and the `i`th point of a quarter, and the ray between them; `None` where one faces away.
-    fn ray(&self, from: &SamplePoint, quarter: usize, i: usize, time: f32) -> Option<(f32, Ray)> {
+    /// cosθ cosθ / r² between a point and the `i`th point of a quarter, the side of the receiver on which that is, and the ray between them;
+    /// `None` where nothing passes between the two.
+    fn ray(&self, from: &SamplePoint, quarter: usize, i: usize, time: f32) -> Option<(f32, usize, Ray)> {
         let (to, to_n) = self.points[quarter][i];
-        let way = from.p.p - to.p;
-        let g = (-way.dot(from.n)).abs() * way.dot(to_n) / way.length_squared().powi(2);
-        (g > 0.0 && g.is_finite()).then(|| (g, Ray::between(from.p, from.n, to, to_n, time)))
+        let way = to.p - from.p.p;
+        let cos = way.dot(from.n);
+        let g = cos.abs() * -way.dot(to_n) / way.length_squared().powi(2);
+        let ray = || Ray::between(from.p, from.n, to, to_n, time);
+        (g > 0.0 && g.is_finite()).then(|| (g, usize::from(cos < 0.0), ray()))
     }
 
     /// What an element receives.
@@ -132,38 +141,70 @@ impl Emitter {
                 *seen = [self.seen_from(from.p.p, from.n), self.seen_from(from.p.p, -from.n)];
             }
         }
-        let mut received = Received::default();
         if seen == [[0.0; 2]; 4] {
-            return received;
+            return Received::default();
         }
         let mut passes = |ray: &Ray| !scene.occluded(ray, Ray::SHADOW_END, Interfaces::Pass, stats);
-        let probe = |k: usize| self.ray(&element.points[k], k, k, time).map(|(_, ray)| ray);
-        let mut probes = [None; 4];
-        for k in 0..4 {
-            probes[k] = probe(k).map(|ray| passes(&ray));
-        }
-        let visible = probes.iter().flatten().filter(|&&visible| visible).count();
-        let met = probes.iter().flatten().count();
+        let mut share = [Share::default(); 4];
+        let mut probes = Share::default();
         for (k, from) in element.points.iter().enumerate() {
-            let through = if visible == met {
-                1.0
-            } else if visible == 0 {
-                0.0
-            } else {
-                let (mut sum, mut all) = (0.0, 0.0);
-                for quarter in 0..4 {
-                    let Some((g, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) else { continue };
-                    all += g;
-                    sum += if passes(&ray) { g } else { 0.0 };
-                }
-                if all > 0.0 { sum / all } else { 0.0 }
-            };
-            for side in 0..2 {
-                received.sides[side] += seen[k][side] * through * from.weight;
+            if let Some((g, side, ray)) = self.ray(from, k, k, time) {
+                let visible = passes(&ray);
+                share[k].add(side, g, visible);
+                probes.add(side, 1.0, visible);
             }
-            received.quarters[k] = (seen[k][0] + seen[k][1]) * through;
+        }
+        if probes.is_mixed() {
+            for (k, from) in element.points.iter().enumerate() {
+                for quarter in (0..4).filter(|&quarter| quarter != k) {
+                    if let Some((g, side, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) {
+                        share[k].add(side, g, passes(&ray));
+                    }
+                }
+            }
+        }
+        let mut all = Share::default();
+        share.iter().for_each(|share| all.merge(share));
+        let mut received = Received::default();
+        for k in 0..4 {
+            for side in 0..2 {
+                let through = share[k].of(side).or(all.of(side)).unwrap_or(1.0);
+                received.quarters[k][side] = seen[k][side] * through;
+            }
         }
         received
+    }
+}
+
+/// How much of what leaves an emitter arrives, on each side of a receiver.
+#[derive(Clone, Copy, Debug, Default)]
+struct Share {
+    passed: [f32; 2],
+    sent: [f32; 2],
+}
+
+impl Share {
+    fn add(&mut self, side: usize, g: f32, passes: bool) {
+        self.sent[side] += g;
+        self.passed[side] += if passes { g } else { 0.0 };
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for side in 0..2 {
+            self.sent[side] += other.sent[side];
+            self.passed[side] += other.passed[side];
+        }
+    }
+
+    /// The share on a side, if anything was sent there.
+    fn of(&self, side: usize) -> Option<f32> {
+        (self.sent[side] > 0.0).then(|| self.passed[side] / self.sent[side])
+    }
+
+    /// Whether some of it passes and some does not.
+    fn is_mixed(&self) -> bool {
+        let (passed, sent) = (self.passed[0] + self.passed[1], self.sent[0] + self.sent[1]);
+        sent == 0.0 || (passed > 0.0 && passed < sent)
     }
 }
 

@@ -119,15 +119,16 @@ impl Seen {
         for Pixel { hit, surface, side, factor } in &self.0 {
             let Some((leaf, uv)) = cut.mesh.leaf(scene.world(), hit, surface) else { continue };
             let (received, pixels) = &mut all[leaf.element as usize];
-            let factor = factor * area / cut.elements[leaf.element as usize].area;
-            received.sides[*side] += factor;
-            received.quarters[leaf.domain().quarter_of(uv)] += 4.0 * factor;
+            let element = &cut.elements[leaf.element as usize];
+            let quarter = leaf.domain().quarter_of(uv);
+            let factor = factor * area / (element.area * element.points[quarter].weight);
+            received.quarters[quarter][*side] += factor;
             *pixels += 1;
         }
         let answer = |&id: &u32| {
             let (received, pixels) = all[id as usize];
-            let even = received.sides[0] + received.sides[1];
-            Received { quarters: if pixels < ENOUGH { [even; 4] } else { received.quarters }, ..received }
+            let even = received.sides(&cut.elements[id as usize]);
+            if pixels < ENOUGH { Received { quarters: [even; 4] } } else { received }
         };
         ids.iter().map(answer).collect()
     }

@@ -56,6 +56,23 @@ impl Domain {
         }
     }
 
+    /// The weights of four values, one in the middle of each quarter, that make the value at a point of the linear function that they
+    /// determine best.
+    pub fn weights(&self, uv: Vec2) -> [f32; 4] {
+        match self {
+            Self::Triangle([a, b, c]) => {
+                let whole = (*b - *a).perp_dot(*c - *a);
+                let outer = |a: Vec2, b: Vec2| 2.0 * (a - uv).perp_dot(b - uv) / whole - 2.0 / 3.0 + 0.25;
+                [outer(*b, *c), outer(*c, *a), outer(*a, *b), 0.25]
+            }
+            Self::Rectangle([a, b, _, d]) => {
+                let along = |side: Vec2| (uv - *a).dot(side) / side.length_squared() - 0.5;
+                let (x, y) = (along(*b - *a), along(*d - *a));
+                [0.25 - x - y, 0.25 + x - y, 0.25 + x + y, 0.25 - x + y]
+            }
+        }
+    }
+
     /// Which of the quarters a point lies in.
     pub fn quarter_of(&self, uv: Vec2) -> usize {
         match self {

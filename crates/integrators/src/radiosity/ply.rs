@@ -30,7 +30,7 @@ pub(crate) fn encode(scene: &Scene, solution: &Solution, view: &View, color_spac
             let corners = outline.iter().map(|corner| {
                 (cut.mesh.vertices()[corner.vertex as usize].p, radiosity(view.at_vertex(corner.vertex)))
             });
-            let fan: Vec<_> = std::iter::once((center.p.p, radiosity(&element.irradiance))).chain(corners).collect();
+            let fan: Vec<_> = std::iter::once((center.p.p, radiosity(&element.irradiance()))).chain(corners).collect();
             if fan.iter().all(|(_, light)| light.is_black()) {
                 continue;
             }

@@ -128,15 +128,20 @@ impl Solution {
         };
         let mut sent = vec![[Bands::ZERO; 2]; self.cut.patches.len()];
         for (element, received) in self.cut.elements.iter_mut().zip(&received) {
-            if received.sides == [0.0; 2] {
+            let sides = received.sides(element);
+            if sides == [0.0; 2] {
                 continue;
             }
-            (0..2).for_each(|i| element.irradiance[i] += all * received.sides[i]);
-            let arrived = received.sides.map(|factor| Bands::splat(factor * element.area));
+            for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
+                for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0) {
+                    *light += all * factor;
+                }
+            }
+            let arrived = sides.map(|factor| Bands::splat(factor * element.area));
             let scattered = element.albedo.scatter(&arrived);
             (0..2).for_each(|i| sent[element.patch as usize][i] += scattered[i]);
             let faced = &mut self.cut.patches[element.patch as usize].faced;
-            (0..2).for_each(|i| faced[i] |= received.sides[i] > 0.0);
+            (0..2).for_each(|i| faced[i] |= sides[i] > 0.0);
         }
         self.cut.patches[patch as usize].unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
         for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
@@ -168,12 +173,10 @@ impl Solution {
         let time = self.cut.mesh.time();
         let shine = |element: &Element, stats: &mut RayStats| {
             let mut lit = Lit::default();
-            for (point, quarter) in element.points.iter().zip(&mut lit.quarters) {
+            for (point, sides) in element.points.iter().zip(&mut lit.quarters) {
                 let context = LightSampleContext { p: point.p, n: point.n, ns: Normal3::ZERO, time };
                 let arrived = lights.iter().map(|&light| from_light(scene, &wavelengths, light, &context, stats));
-                let sides = arrived.fold([Bands::ZERO; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-                (0..2).for_each(|i| lit.sides[i] += sides[i] * point.weight);
-                *quarter = wavelengths.luminance(&(sides[0] + sides[1]));
+                *sides = arrived.fold([Bands::ZERO; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
             }
             lit
         };
@@ -181,15 +184,18 @@ impl Solution {
         let ids: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
         let lit = each_element(&self.cut, &ids, control, stats, shine)?;
         let power = |(element, lit): (&Element, &Lit)| {
-            element.area * wavelengths.luminance(&(lit.sides[0] + lit.sides[1]))
+            let Lit { quarters } = lit;
+            let quarter = |k: usize| wavelengths.luminance(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight;
+            element.area * (0..4).map(quarter).sum::<f32>()
         };
         self.total += self.cut.elements.iter().zip(&lit).map(power).sum::<f32>();
         let lit = self.receive(scene, 1.0, |cut, ids| each_element(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
-            (0..2).for_each(|i| element.irradiance[i] += lit.sides[i]);
-            let scattered = element.albedo.scatter(&lit.sides);
+            element.quarters = lit.quarters;
+            let sides = element.irradiance();
+            let scattered = element.albedo.scatter(&sides);
             let patch = &mut self.cut.patches[element.patch as usize];
-            (0..2).for_each(|i| patch.faced[i] |= !lit.sides[i].is_black());
+            (0..2).for_each(|i| patch.faced[i] |= !sides[i].is_black());
             if let Some(once) = patch.unshot.get_mut(1) {
                 (0..2).for_each(|i| once[i] += scattered[i] * element.area);
             }
@@ -214,10 +220,11 @@ impl Solution {
             fresh.iter().zip(answers).for_each(|(&id, answer)| received[id as usize] = answer);
             let is_coarse = |&id: &u32| {
                 let element = &self.cut.elements[id as usize];
-                let quarters = received[id as usize].quarters();
-                let least = quarters.iter().copied().fold(f32::INFINITY, f32::min);
-                let most = quarters.iter().copied().fold(0.0, f32::max);
-                let here = self.wavelengths.luminance(&(element.irradiance[0] + element.irradiance[1]));
+                let quarters = received[id as usize].luminances(&self.wavelengths);
+                let least = quarters.into_iter().fold(f32::INFINITY, f32::min);
+                let most = quarters.into_iter().fold(0.0, f32::max);
+                let [outer, inner] = element.irradiance();
+                let here = self.wavelengths.luminance(&(outer + inner));
                 let contrast = (most - least) * luminance;
                 element.level < self.settings.subdivision && contrast > self.settings.gradient * here.max(even)
             };
@@ -263,26 +270,25 @@ impl Solution {
 
 /// What arrives at an element.
 trait Arrival: Clone + Default {
-    /// At each quarter, on both sides.
-    fn quarters(&self) -> &[f32; 4];
+    /// At each quarter, on both sides; of a shot, in parts of its luminance.
+    fn luminances(&self, wavelengths: &Wavelengths) -> [f32; 4];
 }
 
 impl Arrival for Received {
-    fn quarters(&self) -> &[f32; 4] {
-        &self.quarters
+    fn luminances(&self, _: &Wavelengths) -> [f32; 4] {
+        self.quarters.map(|[outer, inner]| outer + inner)
     }
 }
 
-/// Light from lights that are no surfaces.
+/// Irradiance from lights that are no surfaces, on both sides of each quarter.
 #[derive(Clone, Default)]
 struct Lit {
-    sides: [Bands; 2],
-    quarters: [f32; 4],
+    quarters: [[Bands; 2]; 4],
 }
 
 impl Arrival for Lit {
-    fn quarters(&self) -> &[f32; 4] {
-        &self.quarters
+    fn luminances(&self, wavelengths: &Wavelengths) -> [f32; 4] {
+        self.quarters.map(|[outer, inner]| wavelengths.luminance(&(outer + inner)))
     }
 }
 

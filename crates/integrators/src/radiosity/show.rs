@@ -1,6 +1,6 @@
 //! From a solution to a picture.
 //!
-//! *Interpolated*: every vertex has the mean irradiance of the elements around it, and light changes linearly over the fan of triangles between an
+//! *Interpolated*: every vertex has the mean of the irradiances that the elements around it have there, as their quarters tell, and light changes linearly over the fan of triangles between an
 //! element's centre, which has the element's own irradiance, and its outline. What is seen is L = L_e + (ρ E + τ E′)/π with the albedo of the very
 //! point, so that textures are sharp, E being the irradiance of the side that is seen and E′ that of the other.
 //!
@@ -47,11 +47,12 @@ impl View {
         for (element, outline) in elements.iter().zip(&outlines) {
             for corner in outline {
                 let (sum, count) = &mut sums[corner.vertex as usize];
-                (0..2).for_each(|i| sum[i] += element.irradiance[i]);
+                let here = element.irradiance_at(&mesh.cell(element.cell).domain(), corner.uv);
+                (0..2).for_each(|i| sum[i] += here[i]);
                 *count += 1.0;
             }
         }
-        let vertices = sums.into_iter().map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip())).collect();
+        let vertices = sums.into_iter().map(|(sum, count)| sum.map(|side| (side * f32::max(count, 1.0).recip()).max(Bands::ZERO))).collect();
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
@@ -72,9 +73,9 @@ impl View {
             }
         }
         let (_, [wc, wa, wb], [a, b]) = best;
-        let middle = &solution.cut.elements[leaf.element as usize].irradiance;
+        let middle = solution.cut.elements[leaf.element as usize].irradiance();
         let (a, b) = (&self.vertices[a.vertex as usize], &self.vertices[b.vertex as usize]);
-        [0, 1].map(|i| (middle[i] * wc + a[i] * wa + b[i] * wb).map(|x| x.max(0.0)) + self.ambient)
+        [0, 1].map(|i| (middle[i] * wc + a[i] * wa + b[i] * wb).max(Bands::ZERO) + self.ambient)
     }
 
     /// The irradiance of both sides at a vertex.
@@ -185,8 +186,9 @@ impl View {
 /// The radiance that elements send back along a ray, emission apart.
 fn found(scene: &Scene, solution: &Solution, ray: Ray, stats: &mut RayStats) -> Bands {
     let Some((hit, surface)) = first_solid(scene, ray, stats) else { return Bands::ZERO };
-    let Some((leaf, _)) = solution.cut.mesh.leaf(scene.world(), &hit, &surface) else { return Bands::ZERO };
-    solution.cut.elements[leaf.element as usize].radiosity()[seen_side(&surface)] * FRAC_1_PI
+    let Some((leaf, uv)) = solution.cut.mesh.leaf(scene.world(), &hit, &surface) else { return Bands::ZERO };
+    let quarter = leaf.domain().quarter_of(uv);
+    solution.cut.elements[leaf.element as usize].radiosity(quarter)[seen_side(&surface)] * FRAC_1_PI
 }
 
 /// The side of a surface that a ray has met: the outer (0) or the inner (1).

@@ -99,7 +99,9 @@ impl Cut {
         let make = |&(whole, cell): &(u32, u32)| {
             let whole = &self.elements[whole as usize];
             let part = Element::new(scene, mesh, wavelengths, cell, whole.patch, whole.level + 1);
-            Element { irradiance: whole.irradiance, ..part }
+            let domain = mesh.cell(whole.cell).domain();
+            let inherited = whole.quarters[domain.quarter_of(mesh.cell(cell).domain().center())];
+            Element { quarters: [inherited; 4], ..part }
         };
         let made: Vec<Element> = parts.par_iter().map(make).collect();
         let mut changed = Vec::with_capacity(made.len());
