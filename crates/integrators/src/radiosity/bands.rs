@@ -6,7 +6,7 @@
 //! falls with the square of BANDS for smooth spectra. With 32 bands, daylight on the walls of the measured Cornell box is right to
 //! 0.1 % in each of X, Y and Z; with 16, to 0.4 %. Colours are then right in every single sample, without the noise of random wavelengths.
 
-use spectrum::{N, SampledSpectrum, SampledWavelengths, y_from};
+use spectrum::{N, SampledSpectrum, SampledWavelengths, xyz_from};
 use std::ops::{Add, AddAssign, Mul};
 
 /// How often [`N`] wavelengths there are.
@@ -97,8 +97,8 @@ impl std::iter::Sum for Bands {
 #[derive(Clone, Debug)]
 pub(crate) struct Wavelengths {
     groups: [SampledWavelengths; GROUPS],
-    /// What each value counts in luminance.
-    luminance: Bands,
+    /// What each value counts in X + Y + Z.
+    weights: Bands,
 }
 
 impl Wavelengths {
@@ -108,11 +108,12 @@ impl Wavelengths {
         let groups = std::array::from_fn(|i| SampledWavelengths::sample_visible(place(i)));
         let weight = |lambda: &SampledWavelengths, i: usize| {
             let unit = SampledSpectrum::new(std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
-            y_from(&unit, lambda) / GROUPS as f32
+            let xyz = xyz_from(&unit, lambda);
+            (xyz.x + xyz.y + xyz.z) / GROUPS as f32
         };
-        let luminance =
+        let weights =
             groups.each_ref().map(|lambda| SampledSpectrum::new(std::array::from_fn(|i| weight(lambda, i))));
-        Self { groups, luminance: Bands(luminance) }
+        Self { groups, weights: Bands(weights) }
     }
 
     /// The groups of wavelengths.
@@ -138,16 +139,16 @@ impl Wavelengths {
         Some(pair)
     }
 
-    /// Luminance, up to a constant.
-    pub fn luminance(&self, bands: &Bands) -> f32 {
-        (*bands * self.luminance).0.iter().map(|group| group.average()).sum::<f32>() * N as f32
+    /// X + Y + Z, up to a constant: how much light of any colour counts.
+    pub fn brightness(&self, bands: &Bands) -> f32 {
+        (*bands * self.weights).0.iter().map(|group| group.average()).sum::<f32>() * N as f32
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use spectrum::{Spectrum, RgbColorSpace, xyz_from};
+    use spectrum::{Spectrum, RgbColorSpace};
 
     /// X, Y and Z of a spectrum, by `n` equal parts of the visible distribution.
     fn xyz(spectrum: &Spectrum, n: usize) -> [f64; 3] {

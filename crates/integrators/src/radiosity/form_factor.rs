@@ -15,7 +15,7 @@
 //! emitter, with G = cosθ_i cosθ_j / r². One ray for each of the four points tells whether anything is in the way; where they differ, there are
 //! four for each.
 //!
-//! A bent cell emits as the flat polygon of its corners. Sources: [Baum 1989], [Cohen 1993 §4.6, §4.10].
+//! A bent cell emits as the flat polygon of its corners, and not to itself. Sources: [Baum 1989], [Cohen 1993 §4.6, §4.10].
 
 use geometry::{RayStats, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, Ray, Vector3};

@@ -41,7 +41,7 @@ pub(crate) struct Solution {
     settings: RadiositySettings,
     /// Whether the lights that are no surfaces have shone.
     begun: bool,
-    /// Luminance of all light that there is to send.
+    /// Brightness of all light that there is to send.
     total: f32,
     /// How often patches have shot.
     pub shots: u32,
@@ -54,19 +54,19 @@ impl Solution {
         let cut = Cut::new(scene, settings, &wavelengths, depth as usize);
         let settings = settings.clone();
         let mut solution = Self { wavelengths, cut, settings, begun: depth == 0, total: 0.0, shots: 0 };
-        solution.total = solution.unshot_luminance();
+        solution.total = solution.unshot_brightness();
         solution
     }
 
-    /// The luminance of what is still to be sent, as a power.
-    fn unshot_luminance(&self) -> f32 {
+    /// The brightness of what is still to be sent, as a power.
+    fn unshot_brightness(&self) -> f32 {
         let patches = self.cut.patches.iter();
-        patches.flat_map(|patch| [0, 1].map(|side| self.wavelengths.luminance(&patch.unshot(side)))).sum()
+        patches.flat_map(|patch| [0, 1].map(|side| self.wavelengths.brightness(&patch.unshot(side)))).sum()
     }
 
     /// The share of all light that is still to be sent.
     pub fn unshot_share(&self) -> f32 {
-        if self.total > 0.0 { self.unshot_luminance() / self.total } else { 0.0 }
+        if self.total > 0.0 { self.unshot_brightness() / self.total } else { 0.0 }
     }
 
     /// Shoots until no more than a share of all light is left to be sent.
@@ -88,9 +88,9 @@ impl Solution {
         let mut best = (0.0, None);
         for (id, patch) in (0..).zip(&self.cut.patches) {
             for side in 0..2 {
-                let luminance = self.wavelengths.luminance(&patch.unshot(side));
-                if luminance > best.0 {
-                    best = (luminance, Some((id, side)));
+                let brightness = self.wavelengths.brightness(&patch.unshot(side));
+                if brightness > best.0 {
+                    best = (brightness, Some((id, side)));
                 }
             }
         }
@@ -110,20 +110,22 @@ impl Solution {
         let Patch { cell, area, ref unshot, .. } = self.cut.patches[patch as usize];
         let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
         let all: Bands = layers.iter().copied().sum();
-        let luminance = self.wavelengths.luminance(&all);
+        let brightness = self.wavelengths.brightness(&all);
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
                 let emitter = Emitter::new(scene, &self.cut.mesh, cell, side);
-                self.receive(scene, luminance, |cut, ids| {
-                    each_element(cut, ids, control, stats, |element, stats| {
-                        emitter.shine(scene, element, time, stats)
+                self.receive(scene, brightness, |cut, ids| {
+                    each_element(cut, ids, control, stats, |element, stats| match element.patch == patch {
+                        // What is bent stands off its chord, and would see it: from behind, as if it filled the sky.
+                        true => Received::default(),
+                        false => emitter.shine(scene, element, time, stats),
                     })
                 })?
             }
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
                 let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
-                self.receive(scene, luminance, |cut, ids| Ok(seen.received(scene, cut, area, ids)))?
+                self.receive(scene, brightness, |cut, ids| Ok(seen.received(scene, cut, area, ids)))?
             }
         };
         let mut sent = vec![[Bands::ZERO; 2]; self.cut.patches.len()];
@@ -185,7 +187,7 @@ impl Solution {
         let lit = each_element(&self.cut, &ids, control, stats, shine)?;
         let power = |(element, lit): (&Element, &Lit)| {
             let Lit { quarters } = lit;
-            let quarter = |k: usize| wavelengths.luminance(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight;
+            let quarter = |k: usize| wavelengths.brightness(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight;
             element.area * (0..4).map(quarter).sum::<f32>()
         };
         self.total += self.cut.elements.iter().zip(&lit).map(power).sum::<f32>();
@@ -203,11 +205,11 @@ impl Solution {
         Ok(())
     }
 
-    /// Asks all elements what they receive of light of this luminance, and those again that are cut because of it.
+    /// Asks all elements what they receive of light of this brightness, and those again that are cut because of it.
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
-        luminance: f32,
+        brightness: f32,
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
     ) -> Result<Vec<T>, Cancelled> {
         let area: f32 = self.cut.patches.iter().map(|patch| patch.area).sum();
@@ -220,12 +222,12 @@ impl Solution {
             fresh.iter().zip(answers).for_each(|(&id, answer)| received[id as usize] = answer);
             let is_coarse = |&id: &u32| {
                 let element = &self.cut.elements[id as usize];
-                let quarters = received[id as usize].luminances(&self.wavelengths);
+                let quarters = received[id as usize].brightnesses(&self.wavelengths);
                 let least = quarters.into_iter().fold(f32::INFINITY, f32::min);
                 let most = quarters.into_iter().fold(0.0, f32::max);
                 let [outer, inner] = element.irradiance();
-                let here = self.wavelengths.luminance(&(outer + inner));
-                let contrast = (most - least) * luminance;
+                let here = self.wavelengths.brightness(&(outer + inner));
+                let contrast = (most - least) * brightness;
                 element.level < self.settings.subdivision && contrast > self.settings.gradient * here.max(even)
             };
             let coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
@@ -270,12 +272,12 @@ impl Solution {
 
 /// What arrives at an element.
 trait Arrival: Clone + Default {
-    /// At each quarter, on both sides; of a shot, in parts of its luminance.
-    fn luminances(&self, wavelengths: &Wavelengths) -> [f32; 4];
+    /// At each quarter, on both sides; of a shot, in parts of its brightness.
+    fn brightnesses(&self, wavelengths: &Wavelengths) -> [f32; 4];
 }
 
 impl Arrival for Received {
-    fn luminances(&self, _: &Wavelengths) -> [f32; 4] {
+    fn brightnesses(&self, _: &Wavelengths) -> [f32; 4] {
         self.quarters.map(|[outer, inner]| outer + inner)
     }
 }
@@ -287,8 +289,8 @@ struct Lit {
 }
 
 impl Arrival for Lit {
-    fn luminances(&self, wavelengths: &Wavelengths) -> [f32; 4] {
-        self.quarters.map(|[outer, inner]| wavelengths.luminance(&(outer + inner)))
+    fn brightnesses(&self, wavelengths: &Wavelengths) -> [f32; 4] {
+        self.quarters.map(|[outer, inner]| wavelengths.brightness(&(outer + inner)))
     }
 }
 
