@@ -79,6 +79,17 @@ pub(crate) struct SamplePoint {
     pub weight: f32,
 }
 
+/// Where an element stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    /// The patch that it is a part of.
+    pub patch: u32,
+    /// The quarter of that patch in which its middle lies.
+    pub quarter: usize,
+    /// How often its patch was quartered to make it.
+    pub level: u32,
+}
+
 /// What receives light.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
@@ -86,7 +97,9 @@ pub(crate) struct Element {
     pub cell: u32,
     /// The patch that it is a part of.
     pub patch: u32,
-    /// How often its patch was halved to make it.
+    /// The quarter of that patch in which its middle lies.
+    pub quarter: usize,
+    /// How often its patch was quartered to make it.
     pub level: u32,
     pub area: f32,
     pub points: [SamplePoint; 4],
@@ -97,7 +110,8 @@ pub(crate) struct Element {
 
 impl Element {
     /// A leaf without light.
-    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, patch: u32, level: u32) -> Self {
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, place: Place) -> Self {
+        let Place { patch, quarter, level } = place;
         let world = scene.world();
         let leaf = mesh.cell(cell);
         let quarters = leaf.domain().quarters();
@@ -115,7 +129,7 @@ impl Element {
             SamplePoint { p: surface.p, n: surface.n, weight }
         };
         let points = [point(0), point(1), point(2), point(3)];
-        Self { cell, patch, level, area, points, albedo, quarters: [[Bands::ZERO; 2]; 4] }
+        Self { cell, patch, quarter, level, area, points, albedo, quarters: [[Bands::ZERO; 2]; 4] }
     }
 
     /// What fell on its outer and inner side.
@@ -133,6 +147,16 @@ impl Element {
             let beyond = (most + least * -1.0) * 0.5;
             at[i].max(least + beyond * -1.0).min(most + beyond)
         })
+    }
+
+    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in each of its own.
+    pub fn spread(&self, brightness: f32, arrived: [f32; 4]) -> [f32; 4] {
+        if self.level > 0 {
+            return std::array::from_fn(|quarter| if quarter == self.quarter { brightness } else { 0.0 });
+        }
+        let parts: [f32; 4] = std::array::from_fn(|k| arrived[k] * self.points[k].weight);
+        let sum: f32 = parts.iter().sum();
+        parts.map(|part| if sum > 0.0 { brightness * part / sum } else { 0.0 })
     }
 
     /// What leaves its two sides in one quarter, emission apart.
@@ -167,6 +191,8 @@ pub(crate) struct Patch {
     pub emitted: [Bands; 2],
     /// Light that has arrived and been scattered but not been sent on, as power from either side, by how often it was scattered.
     pub unshot: Vec<[Bands; 2]>,
+    /// How the brightness of that light is spread over the quarters.
+    pub spread: [[f32; 2]; 4],
     /// Which sides have faced a patch that shot.
     pub faced: [bool; 2],
 }
@@ -183,7 +209,14 @@ impl Patch {
         if let Some(first) = unshot.first_mut() {
             *first = emitted.map(|side| side * area);
         }
-        Self { cell, area, emitted, unshot, faced: [false; 2] }
+        let even = emitted.each_ref().map(|side| wavelengths.brightness(side) * area / 4.0);
+        Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
+    }
+
+    /// How much of what one side has to send comes from each quarter, in parts of the mean.
+    pub fn evenness(&self, side: usize) -> [f32; 4] {
+        let sum: f32 = self.spread.iter().map(|sides| sides[side]).sum();
+        self.spread.map(|sides| if sum > 0.0 { 4.0 * sides[side] / sum } else { 1.0 })
     }
 
     /// All that one side has to send.

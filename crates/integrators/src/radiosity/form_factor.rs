@@ -13,7 +13,8 @@
 //!
 //! **Occluded**, the closed form is multiplied by the share of light that gets through, Σ G V / Σ G over rays to points of the
 //! emitter, with G = cosθ_i cosθ_j / r². One ray for each of the four points tells whether anything is in the way; where they differ, there are
-//! four for each.
+//! four for each, one to each quarter of the emitter. Where quarters shine unevenly, as on a floor half below a block, G counts by the light of
+//! its quarter.
 //!
 //! A bent cell emits as the flat polygon of its corners, and not to itself. Sources: [Baum 1989], [Cohen 1993 §4.6, §4.10].
 
@@ -22,7 +23,7 @@ use math::{Normal3, Point3, Point3Error, Ray, Vector3};
 use scene::{Interfaces, Scene};
 use std::f32::consts::TAU;
 
-use super::element::{Element, SamplePoint};
+use super::element::{Element, Patch, SamplePoint};
 use super::mesh::{Domain, Mesh};
 
 /// The form factor from a point with unit normal `n` at the origin to a polygon that turns counter-clockwise about its emitting
@@ -59,6 +60,9 @@ pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
     (0..len).map(side).sum::<f32>() / -TAU
 }
 
+/// A quarter with less than this part of the mean light sends none.
+const DARK: f32 = 1e-3;
+
 /// A cell that sends light.
 pub(crate) struct Emitter {
     /// Counter-clockwise about the emitting side.
@@ -68,6 +72,8 @@ pub(crate) struct Emitter {
     n: Normal3,
     /// The middles of the quarters of its quarters.
     points: [[(Point3Error, Normal3); 4]; 4],
+    /// The light of each quarter, in parts of the mean.
+    light: [f32; 4],
 }
 
 /// What an element receives of one shot of unit radiosity.
@@ -87,9 +93,9 @@ impl Received {
 
 impl Emitter {
     /// A cell that emits to the side of its normal (0), or to the other one (1).
-    pub fn new(scene: &Scene, mesh: &Mesh, cell: u32, side: usize) -> Self {
+    pub fn new(scene: &Scene, mesh: &Mesh, patch: &Patch, side: usize) -> Self {
         let world = scene.world();
-        let cell = mesh.cell(cell);
+        let cell = mesh.cell(patch.cell);
         let mut corners: Vec<Point3> =
             cell.corners().iter().map(|corner| mesh.vertices()[corner.vertex as usize].p).collect();
         let turn = if side == 0 { 1.0 } else { -1.0 };
@@ -106,7 +112,7 @@ impl Emitter {
         if area.dot(n) < 0.0 {
             corners.reverse();
         }
-        Self { corners, center, n, points }
+        Self { corners, center, n, points, light: patch.evenness(side) }
     }
 
     /// The form factor from a point with unit normal `n` to the emitter, nothing between.
@@ -145,21 +151,25 @@ impl Emitter {
             return Received::default();
         }
         let mut passes = |ray: &Ray| !scene.occluded(ray, Ray::SHADOW_END, Interfaces::Pass, stats);
-        let mut share = [Share::default(); 4];
-        let mut probes = Share::default();
+        // One ray for each point of the receiver, to a quarter that shines.
+        let mut probes = [None; 4];
         for (k, from) in element.points.iter().enumerate() {
-            if let Some((g, side, ray)) = self.ray(from, k, k, time) {
-                let visible = passes(&ray);
-                share[k].add(side, g, visible);
-                probes.add(side, 1.0, visible);
+            let quarter = (0..4).map(|i| (i + k) % 4).find(|&quarter| self.light[quarter] > DARK).unwrap_or(k);
+            if let Some((_, _, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) {
+                probes[k] = Some((quarter, passes(&ray)));
             }
         }
-        if probes.is_mixed() {
-            for (k, from) in element.points.iter().enumerate() {
-                for quarter in (0..4).filter(|&quarter| quarter != k) {
-                    if let Some((g, side, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) {
-                        share[k].add(side, g, passes(&ray));
-                    }
+        let mut answers = probes.iter().flatten().map(|&(_, visible)| visible);
+        let first = answers.next();
+        let all_alike = first.filter(|first| answers.all(|visible| visible == *first));
+        let mut share = [Share::default(); 4];
+        for (k, from) in element.points.iter().enumerate() {
+            for quarter in 0..4 {
+                if let Some((g, side, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) {
+                    let known = all_alike.or(probes[k].filter(|probe| probe.0 == quarter).map(|probe| probe.1));
+                    let shines = self.light[quarter] > DARK;
+                    let visible = shines && known.unwrap_or_else(|| passes(&ray));
+                    share[k].add(side, g, if visible { self.light[quarter] } else { 0.0 });
                 }
             }
         }
@@ -184,9 +194,9 @@ struct Share {
 }
 
 impl Share {
-    fn add(&mut self, side: usize, g: f32, passes: bool) {
+    fn add(&mut self, side: usize, g: f32, light: f32) {
         self.sent[side] += g;
-        self.passed[side] += if passes { g } else { 0.0 };
+        self.passed[side] += g * light;
     }
 
     fn merge(&mut self, other: &Self) {
@@ -199,12 +209,6 @@ impl Share {
     /// The share on a side, if anything was sent there.
     fn of(&self, side: usize) -> Option<f32> {
         (self.sent[side] > 0.0).then(|| self.passed[side] / self.sent[side])
-    }
-
-    /// Whether some of it passes and some does not.
-    fn is_mixed(&self) -> bool {
-        let (passed, sent) = (self.passed[0] + self.passed[1], self.sent[0] + self.sent[1]);
-        sent == 0.0 || (passed > 0.0 && passed < sent)
     }
 }
 

@@ -113,7 +113,7 @@ impl Solution {
         let brightness = self.wavelengths.brightness(&all);
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
-                let emitter = Emitter::new(scene, &self.cut.mesh, cell, side);
+                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[patch as usize], side);
                 self.receive(scene, brightness, |cut, ids| {
                     each_element(cut, ids, control, stats, |element, stats| match element.patch == patch {
                         // What is bent stands off its chord, and would see it: from behind, as if it filled the sky.
@@ -128,6 +128,9 @@ impl Solution {
                 self.receive(scene, brightness, |cut, ids| Ok(seen.received(scene, cut, area, ids)))?
             }
         };
+        let source = &mut self.cut.patches[patch as usize];
+        source.unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
+        source.spread.iter_mut().for_each(|sides| sides[side] = 0.0);
         let mut sent = vec![[Bands::ZERO; 2]; self.cut.patches.len()];
         for (element, received) in self.cut.elements.iter_mut().zip(&received) {
             let sides = received.sides(element);
@@ -142,10 +145,14 @@ impl Solution {
             let arrived = sides.map(|factor| Bands::splat(factor * element.area));
             let scattered = element.albedo.scatter(&arrived);
             (0..2).for_each(|i| sent[element.patch as usize][i] += scattered[i]);
-            let faced = &mut self.cut.patches[element.patch as usize].faced;
-            (0..2).for_each(|i| faced[i] |= sides[i] > 0.0);
+            let Patch { faced, spread, .. } = &mut self.cut.patches[element.patch as usize];
+            for i in 0..2 {
+                faced[i] |= sides[i] > 0.0;
+                let brightness = self.wavelengths.brightness(&(scattered[i] * all));
+                let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
+                element.spread(brightness, arrived).iter().zip(&mut *spread).for_each(|(b, to)| to[i] += b);
+            }
         }
-        self.cut.patches[patch as usize].unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
         for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
             if *sent != [Bands::ZERO; 2] {
                 for (unshot, layer) in patch.unshot.iter_mut().skip(1).zip(&layers) {
@@ -197,7 +204,12 @@ impl Solution {
             let sides = element.irradiance();
             let scattered = element.albedo.scatter(&sides);
             let patch = &mut self.cut.patches[element.patch as usize];
-            (0..2).for_each(|i| patch.faced[i] |= !sides[i].is_black());
+            for i in 0..2 {
+                patch.faced[i] |= !sides[i].is_black();
+                let brightness = self.wavelengths.brightness(&scattered[i]) * element.area;
+                let arrived = lit.brightnesses(&self.wavelengths);
+                element.spread(brightness, arrived).iter().zip(&mut patch.spread).for_each(|(b, to)| to[i] += b);
+            }
             if let Some(once) = patch.unshot.get_mut(1) {
                 (0..2).for_each(|i| once[i] += scattered[i] * element.area);
             }

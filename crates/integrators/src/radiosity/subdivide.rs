@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use scene::Scene;
 
 use super::bands::Wavelengths;
-use super::element::{Element, Patch, albedo_at};
+use super::element::{Element, Patch, Place, albedo_at};
 use super::mesh::Mesh;
 use super::RadiositySettings;
 
@@ -39,7 +39,8 @@ impl Cut {
             .par_iter()
             .map(|&(id, cell)| {
                 let patch = Patch::new(scene, &mesh, wavelengths, cell, depth);
-                (patch, Element::new(scene, &mesh, wavelengths, cell, id, 0))
+                let place = Place { patch: id, quarter: 0, level: 0 };
+                (patch, Element::new(scene, &mesh, wavelengths, cell, place))
             })
             .collect();
         ids.iter().for_each(|&(id, cell)| mesh.set_element(cell, id));
@@ -98,9 +99,12 @@ impl Cut {
         let mesh = &self.mesh;
         let make = |&(whole, cell): &(u32, u32)| {
             let whole = &self.elements[whole as usize];
-            let part = Element::new(scene, mesh, wavelengths, cell, whole.patch, whole.level + 1);
-            let domain = mesh.cell(whole.cell).domain();
-            let inherited = whole.quarters[domain.quarter_of(mesh.cell(cell).domain().center())];
+            let center = mesh.cell(cell).domain().center();
+            let quarter_of = |cell: u32| mesh.cell(cell).domain().quarter_of(center);
+            let quarter = quarter_of(self.patches[whole.patch as usize].cell);
+            let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
+            let part = Element::new(scene, mesh, wavelengths, cell, place);
+            let inherited = whole.quarters[quarter_of(whole.cell)];
             Element { quarters: [inherited; 4], ..part }
         };
         let made: Vec<Element> = parts.par_iter().map(make).collect();
