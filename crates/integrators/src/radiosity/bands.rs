@@ -1,10 +1,12 @@
 //! Light at fixed wavelengths.
 //!
 //! A radiosity solution is made once and looked at by every pixel, so that it has wavelengths of its own: [`BANDS`] of them,
-//! λ_i = P⁻¹((i + ½)/BANDS), where P is the distribution from which paths draw their wavelengths ([`SampledWavelengths::sample_visible`]).
-//! The sensor's integral ∫ L(λ) c̄(λ) dλ becomes the midpoint rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS, whose error
-//! falls with the square of BANDS for smooth spectra. With 32 bands, daylight on the walls of the measured Cornell box is right to
-//! 0.1 % in each of X, Y and Z; with 16, to 0.4 %. Colours are then right in every single sample, without the noise of random wavelengths.
+//! λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which paths draw their wavelengths ([`SampledWavelengths::sample_visible`]).
+//! The sensor's integral ∫ L(λ) c̄(λ) dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS, which is good
+//! because the integrand vanishes at both ends. With 32 bands, what is left is mostly the steps of the sensor's tables, of a nanometre
+//! each, and depends on where the bands fall: 0.2 to 0.6 % for s = ½, a quarter of a per cent at most in X, Y and Z of daylight, of coloured
+//! daylight and of the lamp of the measured Cornell box for s = 0.65. With 16 bands it is 1 %, with 64 it is 0.2 %. Colours are
+//! then right in every single sample, without the noise of random wavelengths.
 
 use spectrum::{N, SampledSpectrum, SampledWavelengths, xyz_from};
 use std::ops::{Add, AddAssign, Mul};
@@ -14,6 +16,9 @@ const GROUPS: usize = 8;
 
 /// How many wavelengths there are.
 pub(crate) const BANDS: usize = GROUPS * N;
+
+/// Where in its part of the distribution a wavelength stands.
+const PLACE: f32 = 0.65;
 
 /// A quantity at all wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -104,7 +109,7 @@ pub(crate) struct Wavelengths {
 impl Wavelengths {
     /// All wavelengths; or, for scenes that ask for the same ones in every sample, those alone.
     pub fn new(jitter: bool) -> Self {
-        let place = |i: usize| if jitter { (i as f32 + 0.5) / BANDS as f32 } else { 0.5 };
+        let place = |i: usize| if jitter { (i as f32 + PLACE) / BANDS as f32 } else { 0.5 };
         let groups = std::array::from_fn(|i| SampledWavelengths::sample_visible(place(i)));
         let weight = |lambda: &SampledWavelengths, i: usize| {
             let unit = SampledSpectrum::new(std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
@@ -146,28 +151,47 @@ impl Wavelengths {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 mod tests {
     use super::*;
-    use spectrum::{Spectrum, RgbColorSpace};
+    use spectrum::{PiecewiseLinear, Rgb, RgbColorSpace, Spectrum};
 
-    /// X, Y and Z of a spectrum, by `n` equal parts of the visible distribution.
-    fn xyz(spectrum: &Spectrum, n: usize) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for i in 0..n / N {
-            let lambda = SampledWavelengths::sample_visible((i as f32 + 0.5) / n as f32);
-            let xyz = xyz_from(&spectrum.sample(&lambda), &lambda);
-            [xyz.x, xyz.y, xyz.z].iter().zip(&mut sum).for_each(|(x, sum)| *sum += f64::from(*x) * N as f64 / n as f64);
-        }
-        sum
+    /// X, Y and Z of a spectrum at groups of wavelengths.
+    fn xyz(spectrum: &Spectrum, groups: &[SampledWavelengths]) -> [f64; 3] {
+        let values = groups.iter().map(|lambda| xyz_from(&spectrum.sample(lambda), lambda));
+        let sum = values.fold([0.0; 3], |sum, xyz| {
+            [sum[0] + f64::from(xyz.x), sum[1] + f64::from(xyz.y), sum[2] + f64::from(xyz.z)]
+        });
+        sum.map(|x| x / groups.len() as f64)
     }
 
     #[test]
     fn bands_make_the_colours() {
-        for space in [RgbColorSpace::srgb(), RgbColorSpace::rec2020()] {
-            let (found, exact) = (xyz(&space.illuminant(), BANDS), xyz(&space.illuminant(), 1 << 16));
-            let coarse = xyz(&space.illuminant(), 16);
-            println!("{found:?} {coarse:?} {exact:?}");
+        let srgb = RgbColorSpace::srgb();
+        let lamp = [400.0, 0.0, 500.0, 8.0, 600.0, 15.6, 700.0, 18.4];
+        let spectra = [
+            srgb.illuminant(),
+            RgbColorSpace::aces2065_1().illuminant(),
+            Spectrum::rgb_illuminant(srgb, Rgb::new(0.9, 0.2, 0.05)),
+            PiecewiseLinear::from_interleaved(&lamp).unwrap().into(),
+        ];
+        let many: Vec<_> =
+            (0..1 << 14).map(|i| SampledWavelengths::sample_visible((i as f32 + 0.5) / (1 << 14) as f32)).collect();
+        for spectrum in spectra {
+            let (found, exact) = (xyz(&spectrum, Wavelengths::new(true).groups()), xyz(&spectrum, &many));
+            for (found, exact) in found.into_iter().zip(exact) {
+                assert!((found / exact - 1.0).abs() < 2.5e-3, "{found}, not {exact}");
+            }
         }
-        panic!();
+    }
+
+    #[test]
+    fn brightness_is_that_of_all_colours() {
+        let wavelengths = Wavelengths::new(true);
+        let light = RgbColorSpace::srgb().illuminant();
+        let bands = wavelengths.sample(|lambda| light.sample(lambda));
+        let expected: f64 = xyz(&light, wavelengths.groups()).iter().sum();
+        let found = f64::from(wavelengths.brightness(&bands));
+        assert!((found / expected - 1.0).abs() < 1e-5, "{found}, not {expected}");
     }
 }

@@ -145,7 +145,7 @@ impl Element {
             let [a, b, c, d] = self.quarters.each_ref().map(|sides| sides[i]);
             let (least, most) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
             let beyond = (most + least * -1.0) * 0.5;
-            at[i].max(least + beyond * -1.0).min(most + beyond)
+            at[i].max(least + beyond * -1.0).min(most + beyond).max(Bands::ZERO)
         })
     }
 
@@ -209,14 +209,19 @@ impl Patch {
         if let Some(first) = unshot.first_mut() {
             *first = emitted.map(|side| side * area);
         }
-        let even = emitted.each_ref().map(|side| wavelengths.brightness(side) * area / 4.0);
+        let even = emitted.map(|side| if depth > 0 { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
         Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
     }
 
     /// How much of what one side has to send comes from each quarter, in parts of the mean.
     pub fn evenness(&self, side: usize) -> [f32; 4] {
-        let sum: f32 = self.spread.iter().map(|sides| sides[side]).sum();
+        let sum = self.brightness(side);
         self.spread.map(|sides| if sum > 0.0 { 4.0 * sides[side] / sum } else { 1.0 })
+    }
+
+    /// How bright all is that one side has to send.
+    pub fn brightness(&self, side: usize) -> f32 {
+        self.spread.iter().map(|sides| sides[side]).sum()
     }
 
     /// All that one side has to send.

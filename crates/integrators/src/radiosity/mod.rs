@@ -42,6 +42,8 @@ mod ply;
 mod shooting;
 mod show;
 mod subdivide;
+#[cfg(test)]
+mod tests;
 
 use std::path::PathBuf;
 

@@ -60,8 +60,7 @@ impl Solution {
 
     /// The brightness of what is still to be sent, as a power.
     fn unshot_brightness(&self) -> f32 {
-        let patches = self.cut.patches.iter();
-        patches.flat_map(|patch| [0, 1].map(|side| self.wavelengths.brightness(&patch.unshot(side)))).sum()
+        self.cut.patches.iter().map(|patch| patch.brightness(0) + patch.brightness(1)).sum()
     }
 
     /// The share of all light that is still to be sent.
@@ -88,7 +87,7 @@ impl Solution {
         let mut best = (0.0, None);
         for (id, patch) in (0..).zip(&self.cut.patches) {
             for side in 0..2 {
-                let brightness = self.wavelengths.brightness(&patch.unshot(side));
+                let brightness = patch.brightness(side);
                 if brightness > best.0 {
                     best = (brightness, Some((id, side)));
                 }
@@ -110,6 +109,7 @@ impl Solution {
         let Patch { cell, area, ref unshot, .. } = self.cut.patches[patch as usize];
         let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
         let all: Bands = layers.iter().copied().sum();
+        let sent_on: Bands = layers.iter().rev().skip(1).copied().sum();
         let brightness = self.wavelengths.brightness(&all);
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
@@ -148,7 +148,7 @@ impl Solution {
             let Patch { faced, spread, .. } = &mut self.cut.patches[element.patch as usize];
             for i in 0..2 {
                 faced[i] |= sides[i] > 0.0;
-                let brightness = self.wavelengths.brightness(&(scattered[i] * all));
+                let brightness = self.wavelengths.brightness(&(scattered[i] * sent_on));
                 let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
                 element.spread(brightness, arrived).iter().zip(&mut *spread).for_each(|(b, to)| to[i] += b);
             }
@@ -204,14 +204,13 @@ impl Solution {
             let sides = element.irradiance();
             let scattered = element.albedo.scatter(&sides);
             let patch = &mut self.cut.patches[element.patch as usize];
+            (0..2).for_each(|i| patch.faced[i] |= !sides[i].is_black());
+            let Some(once) = patch.unshot.get_mut(1) else { continue };
             for i in 0..2 {
-                patch.faced[i] |= !sides[i].is_black();
+                once[i] += scattered[i] * element.area;
                 let brightness = self.wavelengths.brightness(&scattered[i]) * element.area;
                 let arrived = lit.brightnesses(&self.wavelengths);
                 element.spread(brightness, arrived).iter().zip(&mut patch.spread).for_each(|(b, to)| to[i] += b);
-            }
-            if let Some(once) = patch.unshot.get_mut(1) {
-                (0..2).for_each(|i| once[i] += scattered[i] * element.area);
             }
         }
         Ok(())

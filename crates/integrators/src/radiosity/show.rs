@@ -52,7 +52,7 @@ impl View {
                 *count += 1.0;
             }
         }
-        let vertices = sums.into_iter().map(|(sum, count)| sum.map(|side| (side * f32::max(count, 1.0).recip()).max(Bands::ZERO))).collect();
+        let vertices = sums.into_iter().map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip())).collect();
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 

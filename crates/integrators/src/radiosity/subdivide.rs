@@ -104,8 +104,10 @@ impl Cut {
             let quarter = quarter_of(self.patches[whole.patch as usize].cell);
             let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
             let part = Element::new(scene, mesh, wavelengths, cell, place);
-            let inherited = whole.quarters[quarter_of(whole.cell)];
-            Element { quarters: [inherited; 4], ..part }
+            let domain = mesh.cell(whole.cell).domain();
+            let quarters = mesh.cell(cell).domain().quarters();
+            let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
+            Element { quarters: inherited, ..part }
         };
         let made: Vec<Element> = parts.par_iter().map(make).collect();
         let mut changed = Vec::with_capacity(made.len());
