@@ -10,6 +10,9 @@ use geometry::{Hit, RayStats, World};
 use math::Ray;
 use std::error::Error;
 
+/// Rays in a batch: those of a tile or a row, and a wave of paths.
+const BATCHES: [usize; 2] = [1024, 65536];
+
 /// What was measured on one mesh.
 pub struct Tracing {
     mesh: &'static str,
@@ -38,10 +41,14 @@ pub fn measure(
     let world = building::world(mesh.triangles()?);
     let sets = ray_sets(mesh, width, |ray| closest(&world, ray).map(|hit| (hit.t, hit.primitive as usize)));
     let device = embree.map(|embree| embree.device(1)).transpose()?;
-    let mut engines: Vec<Engine> = vec![
-        ("alhazen".to_owned(), Box::new(|set| trace(&world, set))),
-        ("alhazen, batches".to_owned(), Box::new(|set| trace_batches(&world, set))),
-    ];
+    let mut engines: Vec<Engine> = vec![("alhazen".to_owned(), Box::new(|set| trace(&world, set)))];
+    for size in BATCHES {
+        let world = &world;
+        engines.push((
+            format!("alhazen, batches of {size}"),
+            Box::new(move |set| trace_batches(world, set, size)),
+        ));
+    }
     if let Some(device) = &device {
         for (mode, robust) in [("", false), (", robust", true)] {
             let scene = device.prepare(mesh, SceneOptions { quality: Quality::Medium, robust })?.commit();
@@ -119,13 +126,12 @@ pub fn trace(world: &World, set: &RaySet) -> Answer {
     answer
 }
 
-/// Traces a set through our engine, many rays at a time.
-pub fn trace_batches(world: &World, set: &RaySet) -> Answer {
-    const BATCH: usize = 1024;
+/// Traces a set through our engine, `size` rays at a time.
+pub fn trace_batches(world: &World, set: &RaySet, size: usize) -> Answer {
     let mut answer = Answer::default();
     let stats = &mut RayStats::default();
-    let (mut hits, mut occluded) = (vec![None; BATCH], [false; BATCH]);
-    for rays in set.rays.chunks(BATCH) {
+    let (mut hits, mut occluded) = (vec![None; size], vec![false; size]);
+    for rays in set.rays.chunks(size) {
         match set.query {
             Query::Closest => {
                 world.intersect_batch(rays, &keep_all, &mut hits[..rays.len()], stats);

@@ -94,14 +94,26 @@ impl Splatter<'_> {
             for x in reached.min[0]..reached.max[0] {
                 let offset = film - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                 let weight = f64::from(self.filter.evaluate(offset) / self.filter_integral);
-                let (tile, index) = Grid(self.bounds).find([x, y]);
-                let mut tile = lock(&self.sums.tiles[tile]);
-                for (sum, value) in tile[index].iter_mut().zip(rgb) {
-                    let term = weight * value;
-                    if ExactSum::can_add(term) {
-                        sum.add(term);
-                    }
-                }
+                self.add_rgb([x, y], rgb.map(|value| weight * value));
+            }
+        }
+    }
+
+    /// Adds the light `l` of one path to a pixel alone.
+    pub fn add_to_pixel(&self, pixel: [i32; 2], l: &SampledSpectrum, lambda: &SampledWavelengths) {
+        match self.gate.measure(l, lambda) {
+            Some(rgb) if self.bounds.contains(pixel) => self.add_rgb(pixel, rgb),
+            Some(_) => (),
+            None => self.gate.reject(pixel),
+        }
+    }
+
+    fn add_rgb(&self, pixel: [i32; 2], rgb: [f64; 3]) {
+        let (tile, index) = Grid(self.bounds).find(pixel);
+        let mut tile = lock(&self.sums.tiles[tile]);
+        for (sum, term) in tile[index].iter_mut().zip(rgb) {
+            if ExactSum::can_add(term) {
+                sum.add(term);
             }
         }
     }

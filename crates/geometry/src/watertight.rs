@@ -54,9 +54,7 @@ impl Sheared {
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
-        let size = ray.d.abs();
-        let x_leads = (size.x > size.y) & (size.x > size.z);
-        let axes = AXES[if x_leads { 0 } else { 2 - (size.y > size.z) as usize }];
+        let axes = AXES[main_axis(ray.d)];
         let d = ray.d.to_array();
         let d = axes.map(|a| d[a]);
         Self { axes, shear: [-d[0] / d[2], -d[1] / d[2], 1.0 / d[2]], o: ray.o, d: ray.d }
@@ -88,15 +86,10 @@ impl Sheared {
         unsafe {
             ShearedLanes {
                 axes,
-                shear: [0, 1, 2].map(|i| V::load(&rays.map(|ray| ray.shear[i]))),
-                o: axes.map(|a| V::load(&rays.map(|ray| ray.o[a]))),
+                shear: [0, 1, 2].map(|i| V::load(&std::array::from_fn(|lane| rays[lane].shear[i]))),
+                o: axes.map(|a| V::load(&std::array::from_fn(|lane| rays[lane].o[a]))),
             }
         }
-    }
-
-    /// The axis that the ray mostly follows.
-    pub fn axis(&self) -> usize {
-        self.axes[2]
     }
 
     /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
@@ -178,9 +171,7 @@ impl<V> ShearedLanes<V> {
         let [a, b, c] = [sheared(0), sheared(1), sheared(2)];
         let edge = |p: [V; 3], q: [V; 3]| {
             let yx = p[1].mul(q[0]);
-            // SAFETY: as the caller promises.
-            let negative = unsafe { V::splat(0.0) }.sub(yx);
-            let difference = p[0].mul_add(q[1], negative);
+            let difference = p[0].mul_sub(q[1], yx);
             difference.add(p[1].neg_mul_add(q[0], yx))
         };
         let e = [edge(b, c), edge(c, a), edge(a, b)];
@@ -224,6 +215,14 @@ impl<V> ShearedLanes<V> {
             b2: e[2].mul(inverse).store(),
         })
     }
+}
+
+/// The axis that a direction mostly follows.
+#[inline(always)]
+pub(crate) fn main_axis(d: Vec3) -> usize {
+    let size = d.abs();
+    let x_leads = (size.x > size.y) & (size.x > size.z);
+    if x_leads { 0 } else { 2 - (size.y > size.z) as usize }
 }
 
 #[inline]

@@ -46,7 +46,10 @@ fn agree(geometries: Vec<Geometry>, rays: impl IntoIterator<Item = Ray>) {
             assert_eq!(occluded[i], expected.is_some(), "{set:?} {:?} in a batch", rays[i]);
         }
         assert_eq!(together.rays, alone.rays);
-        assert!(together.extents >= alone.extents && together.primitives >= alone.primitives);
+        assert_eq!(
+            (together.extents > 0, together.primitives > 0),
+            (alone.extents > 0, alone.primitives > 0)
+        );
     }
 }
 

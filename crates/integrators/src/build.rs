@@ -5,14 +5,14 @@ use description::{
     SamplerKind, SceneDesc, SppmDesc, VcmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
-use sampling::{Randomize, Sampler};
+use sampling::{Randomize, Sampler, hash};
 use scene::Interfaces;
 use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::{
-    AmbientOcclusion, Integrator, Path, PathSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
-    RayCasting, RayIntegrator, SimplePath, Whitted, radiosity,
+    AmbientOcclusion, Bdpt, BdptSettings, Integrator, LightTracing, Path, PathSettings, PixelLoop, Radiosity,
+    RadiositySettings, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted, radiosity,
 };
 
 /// What [`build`] gives.
@@ -94,6 +94,14 @@ impl Builder<'_> {
         }
     }
 
+    /// The sampler of paths that begin at lights, which has nothing in common with that of the camera's.
+    fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
+        const LIGHTS: u32 = 0x6c69_6768;
+        let seed = hash(&[self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32, LIGHTS]) as u32;
+        let samples = of_camera.samples_per_pixel();
+        Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
+    }
+
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         match &self.desc.integrator.value {
             IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
@@ -124,10 +132,18 @@ impl Builder<'_> {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
             }
             &IntegratorDesc::LightTracing { max_depth } => {
-                self.instead_of("light-tracing", max_depth, false, sampler)
+                let light_sampler = self.light_sampler(&sampler);
+                Box::new(LightTracing::new(self.depth(max_depth), sampler, light_sampler))
             }
-            &IntegratorDesc::Bdpt { max_depth, regularize, .. } => {
-                self.instead_of("bdpt", max_depth, regularize, sampler)
+            &IntegratorDesc::Bdpt { max_depth, regularize, visualize_strategies, visualize_weights } => {
+                let settings = BdptSettings {
+                    max_depth: self.depth(max_depth),
+                    regularize,
+                    unweighted: visualize_strategies,
+                    weighted: visualize_weights,
+                };
+                let light_sampler = self.light_sampler(&sampler);
+                Box::new(Bdpt::new(settings, sampler, light_sampler))
             }
             &IntegratorDesc::Mlt(MltDesc { max_depth, regularize, .. }) => {
                 self.instead_of("mlt", max_depth, regularize, sampler)

@@ -1,24 +1,27 @@
 //! What the algorithms share at a surface: light that comes straight from lights, and surfaces that are not there to light.
 
 use geometry::RayStats;
-use math::{Point3Error, RayDifferential, offset_ray_origin};
+use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
 use sampling::Sampler;
 use scattering::{Bsdf, BxdfFlags, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightLiSample, LightSampleContext};
 use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-/// What light sampling needs to know of a surface that scatters as `flags` say. A point that scatters to one side only is moved to
-/// that side by its error, lest a light that passes through it be sampled from behind.
+/// What light sampling needs to know of a surface that scatters as `flags` say.
 pub(crate) fn light_context(surface: &SurfaceInteraction, flags: BxdfFlags) -> LightSampleContext {
-    let context = surface.light_context();
-    let s = &surface.surface;
+    on_its_side(surface.light_context(), surface.surface.wo, flags)
+}
+
+/// A point seen from `wo` that scatters to one side only is moved to that side by its error, lest a light that passes through it
+/// be sampled from behind.
+pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
     let side = match (flags.is_reflective(), flags.is_transmissive()) {
-        (true, false) => s.wo,
-        (false, true) => -s.wo,
+        (true, false) => wo,
+        (false, true) => -wo,
         _ => return context,
     };
-    LightSampleContext { p: Point3Error::exact(offset_ray_origin(s.p, s.n, side)), ..context }
+    LightSampleContext { p: Point3Error::exact(offset_ray_origin(context.p, context.n, side)), ..context }
 }
 
 /// What a surface scatters to `wo` of light that comes straight from a light: f·|cos|·L, before visibility and pdf.

@@ -12,6 +12,8 @@
 //! | [`RandomWalk`] | paths in uniform directions that meet light by chance |
 //! | [`SimplePath`] | paths by light sampling and BSDF sampling, each to be switched off |
 //! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
+//! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
+//! | [`Bdpt`] | paths from both ends, connected in all ways |
 //! | [`Radiosity`] | light between diffuse patches, from the brightest first |
 //!
 //! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
@@ -19,10 +21,13 @@
 //! adds direct light.
 
 mod ambient_occlusion;
+mod bdpt;
+mod bidirectional;
 mod build;
 mod control;
 mod direct;
 mod integrator;
+mod light_tracing;
 mod path;
 mod pixel_loop;
 mod radiosity;
@@ -33,9 +38,11 @@ mod simple_path;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
+pub use bdpt::{Bdpt, BdptSettings};
 pub use build::{Built, build};
 pub use control::{Cancelled, Control, Progress, ProgressSink};
 pub use integrator::{ByProduct, Integrator};
+pub use light_tracing::LightTracing;
 pub use path::{Path, PathSettings};
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use radiosity::{FormFactors, Radiosity, RadiositySettings};

@@ -45,81 +45,6 @@ impl<R: RayIntegrator> PixelLoop<R> {
     pub fn new(rays: R, sampler: Sampler) -> Self {
         Self { rays, sampler }
     }
-
-    /// Takes one sample of each pixel of a tile.
-    fn tile(
-        &self,
-        index: u32,
-        scene: &Scene,
-        filter: &Filter,
-        tile: &mut FilmTile,
-        control: &Control,
-    ) -> Result<RayStats, Cancelled> {
-        control.check()?;
-        let mut sampler = self.sampler.clone();
-        let mut stats = RayStats::default();
-        let bounds = tile.bounds();
-        for y in bounds.min[1]..bounds.max[1] {
-            for x in bounds.min[0]..bounds.max[0] {
-                sampler.start_pixel_sample([x, y], index, 0);
-                let u = sampler.get_1d();
-                let u = if scene.options().disable_wavelength_jitter { 0.5 } else { u };
-                let mut lambda = SampledWavelengths::sample_visible(u);
-                let camera_sample = camera_sample(scene, filter, [x, y], &mut sampler);
-                let l = self.radiance(scene, &camera_sample, &mut lambda, &mut sampler, &mut stats);
-                tile.add_sample([x, y], &l, &lambda, camera_sample.filter_weight);
-            }
-        }
-        Ok(stats)
-    }
-
-    /// The radiance that reaches the film there; black where the camera sees nothing.
-    fn radiance(
-        &self,
-        scene: &Scene,
-        sample: &CameraSample,
-        lambda: &mut SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> SampledSpectrum {
-        let Some(camera_ray) = camera_ray(scene, sample, sampler.samples_per_pixel()) else {
-            return SampledSpectrum::ZERO;
-        };
-        self.rays.li(scene, camera_ray.ray, lambda, sampler, stats) * camera_ray.weight
-    }
-}
-
-/// The ray of a camera sample, with differentials where they are of use; `None` where the camera sees nothing.
-pub(crate) fn camera_ray(
-    scene: &Scene,
-    sample: &CameraSample,
-    samples_per_pixel: u32,
-) -> Option<CameraRayDifferential> {
-    let camera = scene.camera();
-    let mut camera_ray = if scene.has_footprints() {
-        camera.generate_ray_differential(sample)?
-    } else {
-        let ray = camera.generate_ray(sample)?;
-        CameraRayDifferential { ray: ray.ray.into(), weight: ray.weight }
-    };
-    camera_ray.ray.scale(differential_scale(samples_per_pixel));
-    Some(camera_ray)
-}
-
-/// Where, when and through which point of the lens a sample of a pixel looks.
-pub(crate) fn camera_sample(
-    scene: &Scene,
-    filter: &Filter,
-    pixel: [i32; 2],
-    sampler: &mut Sampler,
-) -> CameraSample {
-    let place = filter.sample(sampler.get_pixel_2d());
-    let (time, lens) = (sampler.get_1d(), sampler.get_2d());
-    let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-    if scene.options().disable_pixel_jitter {
-        return CameraSample { film: center, lens: Vec2::splat(0.5), time: 0.5, filter_weight: 1.0 };
-    }
-    CameraSample { film: center + place.offset, lens, time, filter_weight: place.weight }
 }
 
 impl<R: RayIntegrator> Integrator for PixelLoop<R> {
@@ -139,12 +64,97 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
         let filter = film.filter().clone();
-        film.tiles_mut()
-            .into_par_iter()
-            .map(|mut tile| self.tile(pass, scene, &filter, &mut tile, control))
-            .try_reduce(RayStats::default, |mut sum, stats| {
-                sum += stats;
-                Ok(sum)
-            })
+        let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
+        pixels.add(film.tiles_mut(), control, |sample, sampler, stats| {
+            let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
+            let l = self.rays.li(scene, camera_ray.ray, &mut sample.lambda, sampler, stats);
+            l * camera_ray.weight
+        })
+    }
+}
+
+/// One sample of each pixel.
+#[derive(Clone, Copy)]
+pub(crate) struct PixelSamples<'a> {
+    /// Which sample.
+    pub index: u32,
+    pub scene: &'a Scene,
+    pub filter: &'a Filter,
+    pub sampler: &'a Sampler,
+}
+
+/// A sample of a pixel.
+pub(crate) struct PixelSample {
+    pub pixel: [i32; 2],
+    /// The wavelengths at which light is asked for.
+    pub lambda: SampledWavelengths,
+    /// The moment, in the scene's time.
+    pub time: f32,
+    /// The ray that it sees along; `None` where the camera sees nothing.
+    pub camera_ray: Option<CameraRayDifferential>,
+    /// Weight in the pixel.
+    pub filter_weight: f32,
+}
+
+impl PixelSamples<'_> {
+    /// Adds to each pixel of the tiles the light that `radiance` finds there, with the wavelengths as it leaves them. The
+    /// sampler that it is given goes on where the sample's own coordinates end.
+    pub fn add(
+        &self,
+        tiles: Vec<FilmTile>,
+        control: &Control,
+        radiance: impl Fn(&mut PixelSample, &mut Sampler, &mut RayStats) -> SampledSpectrum + Sync,
+    ) -> Result<RayStats, Cancelled> {
+        let tile = |mut tile: FilmTile| {
+            control.check()?;
+            let mut sampler = self.sampler.clone();
+            let mut stats = RayStats::default();
+            let bounds = tile.bounds();
+            for y in bounds.min[1]..bounds.max[1] {
+                for x in bounds.min[0]..bounds.max[0] {
+                    let mut sample = self.begin([x, y], &mut sampler);
+                    let l = radiance(&mut sample, &mut sampler, &mut stats);
+                    tile.add_sample([x, y], &l, &sample.lambda, sample.filter_weight);
+                }
+            }
+            Ok(stats)
+        };
+        tiles.into_par_iter().map(tile).try_reduce(RayStats::default, |mut sum, stats| {
+            sum += stats;
+            Ok(sum)
+        })
+    }
+
+    /// Sets the sampler to a pixel's sample and takes what the camera needs of it.
+    pub fn begin(&self, pixel: [i32; 2], sampler: &mut Sampler) -> PixelSample {
+        let options = self.scene.options();
+        sampler.start_pixel_sample(pixel, self.index, 0);
+        let u = sampler.get_1d();
+        let u = if options.disable_wavelength_jitter { 0.5 } else { u };
+        let lambda = SampledWavelengths::sample_visible(u);
+        let place = self.filter.sample(sampler.get_pixel_2d());
+        let (time, lens) = (sampler.get_1d(), sampler.get_2d());
+        let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
+        let sample = if options.disable_pixel_jitter {
+            CameraSample { film: center, lens: Vec2::splat(0.5), time: 0.5, filter_weight: 1.0 }
+        } else {
+            CameraSample { film: center + place.offset, lens, time, filter_weight: place.weight }
+        };
+        let time = self.scene.camera().sample_time(sample.time);
+        let camera_ray = self.camera_ray(&sample, sampler.samples_per_pixel());
+        PixelSample { pixel, lambda, time, camera_ray, filter_weight: sample.filter_weight }
+    }
+
+    fn camera_ray(&self, sample: &CameraSample, samples_per_pixel: u32) -> Option<CameraRayDifferential> {
+        let camera = self.scene.camera();
+        let camera_ray = if self.scene.has_footprints() {
+            camera.generate_ray_differential(sample)
+        } else {
+            camera.generate_ray(sample).map(|r| CameraRayDifferential { ray: r.ray.into(), weight: r.weight })
+        };
+        camera_ray.map(|mut camera_ray| {
+            camera_ray.ray.scale(differential_scale(samples_per_pixel));
+            camera_ray
+        })
     }
 }

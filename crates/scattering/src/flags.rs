@@ -1,6 +1,6 @@
 //! What kind of scattering a BxDF does, and what kind is asked of it.
 
-use std::ops::{BitAnd, BitOr, BitOrAssign};
+use std::ops::{BitAnd, BitOr, BitOrAssign, Not};
 
 /// A set of kinds of scattering: where to (reflection, transmission) and how widely (diffuse, glossy, specular).
 ///
@@ -156,6 +156,19 @@ pub enum TransportMode {
     Radiance,
     /// The path starts at a light and carries its power.
     Importance,
+}
+
+impl Not for TransportMode {
+    type Output = Self;
+
+    /// What paths from the other end carry.
+    #[inline]
+    fn not(self) -> Self {
+        match self {
+            Self::Radiance => Self::Importance,
+            Self::Importance => Self::Radiance,
+        }
+    }
 }
 
 #[cfg(test)]

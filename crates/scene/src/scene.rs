@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::interaction::{Footprint, SurfaceInteraction};
-use crate::light::{Light, LightId, LightLiSample, LightSampleContext, SceneSphere};
+use crate::light::{Light, LightId, LightLeSample, LightLiSample, LightSampleContext, SceneSphere};
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
@@ -226,6 +226,18 @@ impl Scene {
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
         self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
+    }
+
+    /// [`Light::sample_le`] of one of this scene's lights.
+    pub fn sample_emission(
+        &self,
+        light: LightId,
+        u_position: Point2,
+        u_direction: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLeSample> {
+        self.light(light).sample_le(u_position, u_direction, time, lambda, &self.textures)
     }
 
     /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the shading normal on the way.

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 pub use build::BuildQuality;
 use build::Corners;
 pub(crate) use build::Reference;
-pub(crate) use traverse::{Leaves, Walk};
+pub(crate) use traverse::Leaves;
 
 /// The most nodes above each other that a tree may have, for which rays have room to remember where to return.
 const MAX_DEPTH: usize = 96;

@@ -86,62 +86,91 @@ impl<V: Vector<WIDTH>> Slabs<V> {
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
     pub unsafe fn new(ray: &Ray, bounds: &Bounds3) -> Self {
-        let SlabsOfOne { first, inverse, near, far } = SlabsOfOne::new(ray, bounds);
+        let slack = slack(ray.o, bounds);
         // SAFETY: as the caller promises.
-        let splat = |v: [f32; 3]| v.map(|x| unsafe { V::splat(x) });
-        Self { first, inverse: splat(inverse), near: splat(near), far: splat(far) }
+        unsafe { Self::along(inverse(ray.d), ray.o, slack) }
     }
 
-    /// Several rays, one in each lane. All directions must have the same signs.
-    ///
     /// # Safety
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
-    pub unsafe fn each(rays: &[Ray; WIDTH], bounds: &Bounds3) -> Self {
-        let one = rays.each_ref().map(|ray| SlabsOfOne::new(ray, bounds));
+    unsafe fn along(inverse: Vec3, o: Vec3, slack: f32) -> Self {
+        let shift = Vec3::splat(slack).copysign(inverse);
         // SAFETY: as the caller promises.
-        let gather = |f: fn(&SlabsOfOne) -> &[f32; 3]| {
-            [0, 1, 2].map(|axis| unsafe { V::load(&one.each_ref().map(|slabs| f(slabs)[axis])) })
-        };
+        let splat = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
         Self {
-            first: one[0].first,
-            inverse: gather(|slabs| &slabs.inverse),
-            near: gather(|slabs| &slabs.near),
-            far: gather(|slabs| &slabs.far),
+            first: first_planes(inverse),
+            inverse: splat(inverse),
+            near: splat((o + shift) * inverse),
+            far: splat((o - shift) * inverse),
         }
     }
 }
 
-/// The numbers of one ray.
-struct SlabsOfOne {
-    first: [usize; 3],
-    inverse: [f32; 3],
-    near: [f32; 3],
-    far: [f32; 3],
+/// Eight rays from one point, and an interval around their directions [Reshetov et al. 2005].
+#[derive(Clone, Copy)]
+pub(crate) struct Beam<V> {
+    /// One in each lane.
+    rays: Slabs<V>,
+    /// Two, each in all lanes, whose inverse directions have the least and the greatest size along each axis, so that they meet
+    /// each plane before and after all others.
+    least: Slabs<V>,
+    greatest: Slabs<V>,
 }
 
-impl SlabsOfOne {
+impl<V: Vector<WIDTH>> Beam<V> {
+    /// All rays must come from the same point, and all directions must have the same signs.
+    ///
+    /// # Safety
+    /// The processor must have the instructions that `V` takes.
     #[inline(always)]
-    fn new(ray: &Ray, bounds: &Bounds3) -> Self {
-        let slack = Self::slack(ray, bounds);
-        // A ray along a slab is in it or not for all its length; a direction that is just not along it says
-        // the same within the slack, and has an inverse.
-        let least = ray.d.abs().max_element() * 1e-12;
-        let d =
-            Vec3::select(ray.d.abs().cmplt(Vec3::splat(least)), Vec3::splat(least).copysign(ray.d), ray.d);
-        let inverse = d.recip();
-        let shift = Vec3::splat(slack).copysign(inverse);
-        let near = ((ray.o + shift) * inverse).to_array();
-        let far = ((ray.o - shift) * inverse).to_array();
-        let inverse = inverse.to_array();
-        let first = [0, 1, 2].map(|axis| axis + 3 * (inverse[axis] < 0.0) as usize);
-        Self { first, inverse, near, far }
+    pub unsafe fn new(rays: &[(Ray, f32); WIDTH], bounds: &Bounds3) -> Self {
+        let o = rays[0].0.o;
+        let slack = slack(o, bounds);
+        let mut lanes = [[0.0; WIDTH]; 3];
+        let (mut least, mut greatest) = (Vec3::INFINITY, Vec3::ZERO);
+        for (lane, (ray, _)) in rays.iter().enumerate() {
+            let inverse = inverse(ray.d);
+            for axis in 0..3 {
+                lanes[axis][lane] = inverse[axis];
+            }
+            least = least.min(inverse.abs());
+            greatest = greatest.max(inverse.abs());
+        }
+        // SAFETY: as the caller promises.
+        unsafe {
+            let [mut rays, least, greatest] =
+                [greatest, least, greatest].map(|size| Slabs::along(size.copysign(rays[0].0.d), o, slack));
+            for axis in 0..3 {
+                let shift = slack.copysign(lanes[axis][0]);
+                rays.inverse[axis] = V::load(&lanes[axis]);
+                rays.near[axis] = rays.inverse[axis].mul(V::splat(o[axis] + shift));
+                rays.far[axis] = rays.inverse[axis].mul(V::splat(o[axis] - shift));
+            }
+            Self { rays, least, greatest }
+        }
     }
+}
 
-    #[inline(always)]
-    fn slack(ray: &Ray, bounds: &Bounds3) -> f32 {
-        (bounds.min.abs().max(bounds.max.abs()) + ray.o.abs()).max_element() * gamma(8)
-    }
+/// 1/d, along every axis a number.
+#[inline(always)]
+fn inverse(d: Vec3) -> Vec3 {
+    // A ray along a slab is in it or not for all its length; a direction that is just not along it says
+    // the same within the slack, and has an inverse.
+    let least = Vec3::splat(d.abs().max_element() * 1e-12);
+    Vec3::select(d.abs().cmplt(least), least.copysign(d), d).recip()
+}
+
+#[inline(always)]
+fn first_planes(inverse: Vec3) -> [usize; 3] {
+    let inverse = inverse.to_array();
+    [0, 1, 2].map(|axis| axis + 3 * (inverse[axis] < 0.0) as usize)
+}
+
+/// How far planes are moved.
+#[inline(always)]
+fn slack(o: Vec3, bounds: &Bounds3) -> f32 {
+    (bounds.min.abs().max(bounds.max.abs()) + o.abs()).max_element() * gamma(8)
 }
 
 impl WideNode {
@@ -196,10 +225,11 @@ impl WideNode {
     pub fn intersect_rays<V: Vector<WIDTH>>(
         &self,
         lane: usize,
-        rays: &Slabs<V>,
+        beam: &Beam<V>,
         t_max: V,
         zero: V,
     ) -> (V, u32) {
+        let rays = &beam.rays;
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = rays.first[axis];
@@ -214,6 +244,33 @@ impl WideNode {
                     last_plane.mul_sub_loosely(rays.inverse[axis], rays.far[axis]),
                 ]
             };
+            near = enter.max(near);
+            far = leave.min(far);
+        }
+        (near, near.le(far))
+    }
+
+    /// Where the first of the rays may enter each box, and a bit for each box that any may enter up to `t_max`.
+    #[inline(always)]
+    pub fn intersect_beam<V: Vector<WIDTH>>(&self, beam: &Beam<V>, t_max: V, zero: V) -> (V, u32) {
+        let Beam { least, greatest, .. } = beam;
+        let (mut near, mut far) = (zero, t_max);
+        for axis in 0..3 {
+            let first = least.first[axis];
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `beam` has the instructions.
+            let [first_plane, last_plane] = unsafe {
+                [
+                    V::load(self.planes.get_unchecked(first)),
+                    V::load(self.planes.get_unchecked(2 * axis + 3 - first)),
+                ]
+            };
+            // Should one of two be no number, then the second is.
+            let enter = first_plane
+                .mul_sub_loosely(least.inverse[axis], least.near[axis])
+                .min(first_plane.mul_sub_loosely(greatest.inverse[axis], greatest.near[axis]));
+            let leave = last_plane
+                .mul_sub_loosely(least.inverse[axis], least.far[axis])
+                .max(last_plane.mul_sub_loosely(greatest.inverse[axis], greatest.far[axis]));
             near = enter.max(near);
             far = leave.min(far);
         }

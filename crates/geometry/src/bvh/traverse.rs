@@ -8,7 +8,7 @@
 
 #![allow(unsafe_code)]
 
-use super::node::{Child, Slabs, WIDTH, WideNode};
+use super::node::{Beam, Child, Slabs, WIDTH, WideNode};
 use super::{Bvh, MAX_DEPTH};
 use crate::simd::{Simd, Vector};
 use math::Ray;
@@ -59,6 +59,38 @@ impl Waiting {
     }
 }
 
+/// What waits for eight rays: in the last bits of the distance, a bit for each ray that enters the box.
+#[derive(Clone, Copy)]
+struct Together(Waiting);
+
+impl Together {
+    const RAYS: u32 = (1 << WIDTH) - 1;
+
+    #[inline(always)]
+    fn new(near: f32, rays: u32, child: Child) -> Self {
+        Self(Waiting::new(f32::from_bits(near.to_bits() & !Self::RAYS | rays), child))
+    }
+
+    #[inline(always)]
+    fn rays(self) -> u32 {
+        self.0.near() & Self::RAYS
+    }
+
+    #[inline(always)]
+    unsafe fn pop(top: &mut *mut Waiting, t_max: f32) -> Self {
+        loop {
+            // SAFETY: the end lies below everything, and is never passed over.
+            let waiting = unsafe {
+                *top = top.sub(1);
+                **top
+            };
+            if waiting.near() & !Self::RAYS <= t_max.to_bits() {
+                return Self(waiting);
+            }
+        }
+    }
+}
+
 impl Bvh {
     /// Shows `leaves` the blocks that the ray may meet up to `t_max`, the nearest first, or with `ANY` in no
     /// order of distance. Returns the number of boxes tested, and whether `leaves` broke off. The ray must be finite.
@@ -91,7 +123,7 @@ impl Bvh {
                 while !next.is_leaf() {
                     let node = &*nodes.add(next.index());
                     extents += node.len() as u64;
-                    let ahead = |child| self.prefetch::<S, _>(leaves, child);
+                    let ahead = |child| self.prefetch::<S, _>(leaves.blocks(), child);
                     next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, ahead);
                 }
                 if next == Waiting::END.child() {
@@ -105,18 +137,19 @@ impl Bvh {
         }
     }
 
-    /// Takes eight rays through the tree together. `test` is given blocks and the end of each ray, which it may lower: below
-    /// zero when the ray is to go no further. Returns the number of boxes tested. The rays must be finite and have the
-    /// same signs.
+    /// Takes eight rays from one point through the tree together. `test` is given blocks, a bit for each ray that enters
+    /// the box around them, and the end of each ray, which it may lower: below zero when the ray is to go no further.
+    /// Returns the number of boxes tested. The rays must be finite and have the same signs.
     ///
     /// # Safety
     /// The processor must have the instructions of the set.
     #[inline(always)]
-    pub unsafe fn traverse_together<S: Simd>(
+    pub unsafe fn traverse_together<S: Simd, B>(
         &self,
-        rays: &[Ray; WIDTH],
+        blocks: &[B],
+        rays: &[(Ray, f32); WIDTH],
         t_max: &mut [f32; WIDTH],
-        mut test: impl FnMut(Range<usize>, &mut [f32; WIDTH]),
+        mut test: impl FnMut(Range<usize>, u32, &mut [f32; WIDTH]),
     ) -> u64 {
         let mut extents = 0;
         if self.nodes.is_empty() {
@@ -124,119 +157,56 @@ impl Bvh {
         }
         // SAFETY: as in `traverse`.
         unsafe {
-            let slabs = Slabs::<S::Eight>::each(rays, &self.bounds);
+            let beam = Beam::<S::Eight>::new(rays, &self.bounds);
             let zero = S::Eight::splat(0.0);
+            let mut furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
             push(&mut top, Waiting::END);
-            let mut next = Child::node(0);
+            let mut next = Together(Waiting::new(0.0, Child::node(0)));
             loop {
-                if next == Waiting::END.child() {
+                let child = next.0.child();
+                if child == Waiting::END.child() {
                     return extents;
                 }
-                if next.is_leaf() {
-                    test(next.blocks(), t_max);
+                if child.is_leaf() {
+                    test(child.blocks(), next.rays(), t_max);
+                    furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
                 } else {
-                    let node = self.nodes.get_unchecked(next.index());
+                    let node = self.nodes.get_unchecked(child.index());
                     let ends = S::Eight::load(t_max);
+                    let (near, mut entered) = node.intersect_beam(&beam, S::Eight::splat(furthest), zero);
+                    extents += node.len() as u64;
+                    let near = near.store();
                     let floor = top;
-                    for lane in 0..node.len() {
-                        let (near, hits) = node.intersect_rays(lane, &slabs, ends, zero);
+                    while entered != 0 {
+                        let lane = entered.trailing_zeros() as usize;
+                        entered &= entered - 1;
+                        let (_, hits) = node.intersect_rays(lane, &beam, ends, zero);
                         extents += WIDTH as u64;
                         if hits != 0 {
-                            // As whole numbers, of which many are compared at once.
-                            let nearest = near.store().map(f32::to_bits).into_iter().fold(u32::MAX, u32::min);
                             let child = *node.children().get_unchecked(lane);
-                            sink(&mut top, floor, Waiting::new(f32::from_bits(nearest), child));
+                            self.prefetch::<S, _>(blocks, child);
+                            sink(&mut top, floor, Together::new(*near.get_unchecked(lane), hits, child).0);
                         }
                     }
                 }
-                let furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
-                next = pop(&mut top, furthest);
+                next = Together::pop(&mut top, furthest);
             }
         }
     }
+
+    /// How many lines of a node or block are asked for. What is left of a node comes while these are computed with.
+    const AHEAD: usize = 3;
 
     /// Asks for a node or a block.
     #[inline(always)]
-    fn prefetch<S: Simd, L: Leaves>(&self, leaves: &L, child: Child) {
+    fn prefetch<S: Simd, B>(&self, blocks: &[B], child: Child) {
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
-        let block = leaves.blocks().as_ptr().wrapping_add(child.blocks().start).cast::<u8>();
+        let block = blocks.as_ptr().wrapping_add(child.blocks().start).cast::<u8>();
         let at = if child.is_leaf() { block } else { node };
-        for line in 0..size_of::<WideNode>() / 64 {
+        for line in 0..Self::AHEAD {
             S::prefetch(at.wrapping_add(64 * line));
-        }
-    }
-}
-
-/// A ray that passes a tree step by step, so that others can take steps while it waits for memory.
-pub(crate) struct Walk<S: Simd> {
-    slabs: Slabs<S::Eight>,
-    t_max: f32,
-    /// Whether the order of distance matters.
-    in_order: bool,
-    next: Child,
-    waiting: usize,
-    stack: [MaybeUninit<Waiting>; STACK],
-    /// The number of boxes tested.
-    pub extents: u64,
-}
-
-impl<S: Simd> Walk<S> {
-    /// A walk that is over.
-    ///
-    /// # Safety
-    /// The processor must have the instructions of the set.
-    #[inline(always)]
-    pub unsafe fn new(tree: &Bvh, ray: &Ray) -> Self {
-        let mut stack = [const { MaybeUninit::uninit() }; STACK];
-        stack[0] = MaybeUninit::new(Waiting::END);
-        // SAFETY: as the caller promises.
-        let slabs = unsafe { Slabs::new(ray, &tree.bounds) };
-        Self { slabs, t_max: 0.0, in_order: true, next: Waiting::END.child(), waiting: 1, stack, extents: 0 }
-    }
-
-    /// Puts a finite ray before the tree.
-    #[inline(always)]
-    pub fn start(&mut self, tree: &Bvh, ray: &Ray, t_max: f32, in_order: bool) {
-        if tree.nodes.is_empty() || t_max.is_nan() || t_max < 0.0 {
-            return;
-        }
-        // SAFETY: who has a walk has the instructions.
-        self.slabs = unsafe { Slabs::new(ray, &tree.bounds) };
-        self.t_max = t_max;
-        self.in_order = in_order;
-        self.next = Child::node(0);
-        self.waiting = 1;
-    }
-
-    /// Passes one node or leaf, and asks for the next. Whether that was the last.
-    ///
-    /// # Safety
-    /// The tree must be the one before which the ray was put.
-    #[inline(always)]
-    pub unsafe fn step(&mut self, tree: &Bvh, leaves: &mut impl Leaves) -> bool {
-        // SAFETY: as in `Bvh::traverse`.
-        unsafe {
-            let bottom = self.stack.as_mut_ptr().cast::<Waiting>();
-            let mut top = bottom.add(self.waiting);
-            if self.next.is_leaf() {
-                if self.next == Waiting::END.child() || leaves.test(self.next.blocks(), &mut self.t_max) {
-                    return true;
-                }
-                self.next = pop(&mut top, self.t_max);
-            } else {
-                let node = tree.nodes.get_unchecked(self.next.index());
-                self.extents += node.len() as u64;
-                self.next = if self.in_order {
-                    descend::<S, false>(node, &self.slabs, self.t_max, &mut top, |_| ())
-                } else {
-                    descend::<S, true>(node, &self.slabs, self.t_max, &mut top, |_| ())
-                };
-            }
-            self.waiting = top.offset_from_unsigned(bottom);
-            tree.prefetch::<S, _>(leaves, self.next);
-            false
         }
     }
 }
@@ -341,7 +311,6 @@ unsafe fn choose_nearest<S: Simd>(
     hits &= hits - 1;
     let b = waiting(lane);
     let (mut nearest, other) = (a.min(b), a.max(b));
-    ahead(nearest.child());
     ahead(other.child());
     // SAFETY: a node leaves at most seven children waiting.
     unsafe {
@@ -355,9 +324,9 @@ unsafe fn choose_nearest<S: Simd>(
             let lane = hits.trailing_zeros() as usize;
             hits &= hits - 1;
             let c = waiting(lane);
-            ahead(c.child());
             let other = c.max(nearest);
             nearest = c.min(nearest);
+            ahead(other.child());
             sink(top, floor, other);
         }
     }

@@ -83,8 +83,12 @@ impl Vector<4> for Four {
         unsafe { Self(_mm_fnmadd_ps(self.0, b.0, c.0)) }
     }
     #[inline(always)]
-    fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
+    fn mul_sub(self, b: Self, c: Self) -> Self {
         unsafe { Self(_mm_fmsub_ps(self.0, b.0, c.0)) }
+    }
+    #[inline(always)]
+    fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
+        self.mul_sub(b, c)
     }
     #[inline(always)]
     fn le(self, b: Self) -> u32 {
@@ -154,8 +158,12 @@ impl Vector<8> for Eight {
         unsafe { Self(_mm256_fnmadd_ps(self.0, b.0, c.0)) }
     }
     #[inline(always)]
-    fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
+    fn mul_sub(self, b: Self, c: Self) -> Self {
         unsafe { Self(_mm256_fmsub_ps(self.0, b.0, c.0)) }
+    }
+    #[inline(always)]
+    fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
+        self.mul_sub(b, c)
     }
     #[inline(always)]
     fn le(self, b: Self) -> u32 {

@@ -53,6 +53,8 @@ pub(crate) trait Vector<const N: usize>: Copy {
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// c − `self`·b, rounded once.
     fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// `self`·b − c, rounded once.
+    fn mul_sub(self, b: Self, c: Self) -> Self;
     /// `self`·b − c, rounded once or twice.
     fn mul_sub_loosely(self, b: Self, c: Self) -> Self;
     /// A bit for each lane where `self` ≤ b; none where either is NaN.

@@ -85,8 +85,12 @@ impl Vector<4> for Four {
         unsafe { Self(vfmsq_f32(c.0, self.0, b.0)) }
     }
     #[inline(always)]
-    fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
+    fn mul_sub(self, b: Self, c: Self) -> Self {
         unsafe { Self(vfmaq_f32(vnegq_f32(c.0), self.0, b.0)) }
+    }
+    #[inline(always)]
+    fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
+        self.mul_sub(b, c)
     }
     #[inline(always)]
     fn le(self, b: Self) -> u32 {

@@ -73,6 +73,10 @@ impl<V: Vector<4>> Vector<8> for Pair<V> {
         self.zip3(b, c, V::neg_mul_add)
     }
     #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self.zip3(b, c, V::mul_sub)
+    }
+    #[inline(always)]
     fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
         self.zip3(b, c, V::mul_sub_loosely)
     }

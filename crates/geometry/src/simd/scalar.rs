@@ -88,6 +88,10 @@ impl<const N: usize> Vector<N> for Lanes<N> {
         self.zip3(b, c, |a, b, c| (-a).mul_add(b, c))
     }
     #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self.zip3(b, c, |a, b, c| a.mul_add(b, -c))
+    }
+    #[inline(always)]
     fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
         self.zip3(b, c, |a, b, c| a * b - c)
     }

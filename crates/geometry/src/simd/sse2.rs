@@ -84,6 +84,10 @@ impl Vector<4> for Four {
         unsafe { Self(fused(_mm_xor_ps(self.0, _mm_set1_ps(-0.0)), b.0, c.0)) }
     }
     #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        unsafe { Self(fused(self.0, b.0, _mm_xor_ps(c.0, _mm_set1_ps(-0.0)))) }
+    }
+    #[inline(always)]
     fn mul_sub_loosely(self, b: Self, c: Self) -> Self {
         unsafe { Self(_mm_sub_ps(_mm_mul_ps(self.0, b.0), c.0)) }
     }

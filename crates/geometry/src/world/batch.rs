@@ -1,29 +1,32 @@
 //! Many rays at once.
 //!
-//! Rays that run side by side pass the tree together: each box and each triangle is tested against eight rays at once.
+//! Rays that run side by side from one point, as those of a camera do, pass the tree together: a beam around eight of them
+//! finds the boxes that any of them may enter, and these boxes and the triangles in them are tested against all eight at once.
 //!
-//! Other rays, alone, spend half of their time waiting for nodes and triangles to come from memory. Several pass the tree
-//! in turns: each passes one node or leaf, asks for the next, and lets the others go on while that is on its way.
+//! Other rays pass it one by one. Many with scattered origins do so in an order of their own, so that nodes and triangles of
+//! which one has just had need are at hand for the next.
 //!
 //! Each ray finds the very hit that it would find alone.
 
 #![allow(unsafe_code)]
 
-use super::group::{Trace, Triangles, goes_somewhere, in_order};
+use super::group::{Group, Trace, Triangles, goes_somewhere};
+use super::order::order;
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
 use super::{Hit, InstancePath, RayStats, World};
-use crate::bvh::{WIDTH, Walk};
+use crate::bvh::{Leaves, WIDTH};
 use crate::simd::{Simd, Task, Vector};
-use crate::watertight::{LaneHits, Sheared, ShearedLanes};
+use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
 use math::Ray;
 use std::ops::Range;
 
-/// Rays that take turns.
-const WALKS: usize = 8;
+/// How many rays ahead of its turn a ray is asked for from memory.
+const AHEAD: usize = 16;
 
 impl World {
-    /// What [`World::intersect`] says of each ray and its `t_max`.
+    /// What [`World::intersect`] says of each ray and its `t_max`. Rays of a camera are best given by rows or tiles, in any
+    /// number from eight on; rays with scattered origins by tens of thousands, for fewer are no faster than alone.
     ///
     /// # Panics
     /// When there are not as many hits as rays.
@@ -37,7 +40,7 @@ impl World {
         self.trace_batch(rays, |(ray, t_max)| Nearest::new(ray, *t_max, filter), hits, stats);
     }
 
-    /// What [`World::occluded`] says of each ray and its `t_max`.
+    /// What [`World::occluded`] says of each ray and its `t_max`. How many are best is as for [`World::intersect_batch`].
     ///
     /// # Panics
     /// When there are not as many answers as rays.
@@ -65,7 +68,6 @@ impl World {
             }
             return;
         }
-        stats.rays += rays.len() as u64;
         // SAFETY: worlds are only given sets that the processor has.
         unsafe { self.instruction_set.run(Batch { world: self, rays, question, answers, stats }) }
     }
@@ -80,66 +82,84 @@ struct Batch<'a, 'b, Q: Query, F> {
     stats: &'b mut RayStats,
 }
 
-/// A ray under way.
-struct Walker<S: Simd, Q> {
-    /// Which of the batch.
-    index: usize,
-    query: Q,
-    sheared: Sheared,
-    lanes: ShearedLanes<S::Four>,
-    walk: Walk<S>,
-}
-
 impl<'a, Q: Query, F: Fn(&'a (Ray, f32)) -> Q> Task for Batch<'a, '_, Q, F> {
     type Output = ();
 
     #[inline(always)]
     unsafe fn run<S: Simd>(self) {
         let Self { world, rays, question, answers, stats } = self;
-        let mut apart = Vec::new();
-        for (first, eight) in (0..).step_by(WIDTH).zip(rays.chunks(WIDTH)) {
-            match eight.try_into().ok().and_then(SideBySide::new) {
-                Some(rays) => {
-                    let mut queries = rays.rays.each_ref().map(&question);
+        if let Some(order) = order(rays) {
+            for (turn, &i) in order.iter().enumerate() {
+                if let Some(&ahead) = order.get(turn + AHEAD) {
+                    prefetch::<S, _>(&rays[ahead]);
+                    prefetch::<S, _>(&answers[ahead]);
+                }
+                answers[i] = world.trace(&rays[i].0, question(&rays[i]), stats);
+            }
+            return;
+        }
+        for (rays, answers) in rays.chunks(WIDTH).zip(answers.chunks_mut(WIDTH)) {
+            match rays.try_into() {
+                Ok(eight) if are_side_by_side(eight) => {
+                    stats.rays += WIDTH as u64;
+                    let mut queries = std::array::from_fn(|i| question(&rays[i]));
                     // SAFETY: the caller promises the instructions.
-                    unsafe { rays.trace::<S, Q>(world, &mut queries, stats) };
-                    for (i, query) in queries.into_iter().enumerate() {
-                        answers[first + i] = finish(world, &eight[i].0, query, stats);
+                    unsafe { SideBySide::new(eight).trace::<S, Q>(world, &mut queries, stats) };
+                    for ((answer, (ray, _)), query) in answers.iter_mut().zip(eight).zip(queries) {
+                        *answer = finish(world, ray, query, stats);
                     }
                 }
-                None => apart.extend(first..first + eight.len()),
+                _ => {
+                    for (answer, ray) in answers.iter_mut().zip(rays) {
+                        *answer = world.trace(&ray.0, question(ray), stats);
+                    }
+                }
             }
         }
-        // SAFETY: the caller promises the instructions.
-        unsafe { take_turns::<S, Q>(world, rays, apart, question, answers, stats) };
     }
 }
 
-/// Rays that are worth being taken together.
+/// Asks for something of less than two lines of the cache.
+#[inline(always)]
+fn prefetch<S: Simd, T>(what: &T) {
+    let first = (&raw const *what).cast::<u8>();
+    S::prefetch(first);
+    S::prefetch(first.wrapping_add(size_of::<T>() - 1));
+}
+
+/// How far apart the directions of rays side by side may be, in parts of their length.
+const SPREAD: f32 = 0.1;
+
+/// Whether rays are worth being taken together: they come from one point, go about the same way, with the same signs,
+/// and mostly along the same axis.
+#[inline(always)]
+fn are_side_by_side(rays: &[(Ray, f32); WIDTH]) -> bool {
+    let lead = &rays[0].0;
+    let axis = main_axis(lead.d);
+    let spread = lead.d.length_squared() * (SPREAD * SPREAD);
+    rays.iter().all(|(ray, t_max)| {
+        ray.o == lead.o
+            && goes_somewhere(ray)
+            && *t_max >= 0.0
+            && ray.d.distance_squared(lead.d) < spread
+            && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
+            && main_axis(ray.d) == axis
+    })
+}
+
+/// Rays that are taken together.
 struct SideBySide<'a> {
     rays: &'a [(Ray, f32); WIDTH],
     sheared: [Sheared; WIDTH],
 }
 
 impl<'a> SideBySide<'a> {
-    /// How far apart directions may be, in parts of their length.
-    const SPREAD: f32 = 0.1;
+    /// So few are tested against triangles one by one.
+    const FEW: u32 = 2;
 
-    fn new(rays: &'a [(Ray, f32); WIDTH]) -> Option<Self> {
-        let lead = &rays[0].0;
-        let spread = lead.d.length() * Self::SPREAD;
-        let beside = |(ray, t_max): &(Ray, f32)| {
-            goes_somewhere(ray)
-                && *t_max >= 0.0
-                && ray.o == lead.o
-                && ray.d.distance(lead.d) < spread
-                && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
-        };
-        if !rays.iter().all(beside) {
-            return None;
-        }
-        let sheared = rays.each_ref().map(|(ray, _)| Sheared::new(ray));
-        sheared.iter().all(|s| s.axis() == sheared[0].axis()).then_some(Self { rays, sheared })
+    #[inline(always)]
+    fn new(rays: &'a [(Ray, f32); WIDTH]) -> Self {
+        Self { rays, sheared: std::array::from_fn(|i| Sheared::new(&rays[i].0)) }
     }
 
     /// # Safety
@@ -147,24 +167,47 @@ impl<'a> SideBySide<'a> {
     #[inline(always)]
     unsafe fn trace<S: Simd, Q: Query>(&self, world: &World, queries: &mut [Q; WIDTH], stats: &mut RayStats) {
         let group = &world.groups[0];
-        let rays = self.rays.each_ref().map(|(ray, _)| *ray);
-        let mut t_max = self.rays.each_ref().map(|(_, t_max)| *t_max);
+        let mut t_max = std::array::from_fn(|i| self.rays[i].1);
         let mut primitives = 0;
         // SAFETY: the caller promises the instructions.
         unsafe {
             let lanes: ShearedLanes<S::Eight> = Sheared::each(&self.sheared);
-            let test = |blocks: Range<usize>, t_max: &mut [f32; WIDTH]| {
+            let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]| {
+                if entering.count_ones() <= Self::FEW {
+                    let mut entering = entering;
+                    while entering != 0 {
+                        let i = entering.trailing_zeros() as usize;
+                        entering &= entering - 1;
+                        if t_max[i] < 0.0 {
+                            continue;
+                        }
+                        let mut triangles = Triangles {
+                            group,
+                            instance: InstancePath::TOP,
+                            sheared: &self.sheared[i],
+                            lanes: &self.sheared[i].lanes::<{ Packet::WIDTH }, S::Four>(),
+                            query: &mut queries[i],
+                            primitives: 0,
+                        };
+                        if triangles.test(blocks.clone(), &mut t_max[i]) {
+                            t_max[i] = -1.0;
+                        }
+                        primitives += triangles.primitives;
+                    }
+                    return;
+                }
                 for packet in &group.packets()[blocks] {
                     for lane in 0..packet.len() {
                         primitives += WIDTH as u64;
                         let found = packet.intersect_rays(lane, &lanes, S::Eight::load(t_max));
                         if let Some(found) = found {
-                            self.offer(packet, lane, &found, queries, t_max);
+                            self.offer(group, packet, lane, &found, queries, t_max);
                         }
                     }
                 }
             };
-            stats.extents += group.triangles().traverse_together::<S>(&rays, &mut t_max, test);
+            stats.extents +=
+                group.triangles().traverse_together::<S, _>(group.packets(), self.rays, &mut t_max, test);
         }
         stats.primitives += primitives;
     }
@@ -172,6 +215,7 @@ impl<'a> SideBySide<'a> {
     #[inline(always)]
     fn offer<Q: Query>(
         &self,
+        group: &Group,
         packet: &Packet,
         lane: usize,
         found: &LaneHits<WIDTH>,
@@ -185,92 +229,10 @@ impl<'a> SideBySide<'a> {
             if t_max[i] < 0.0 {
                 continue;
             }
-            let sheared = &self.sheared[i];
-            let Some(hit) = packet.hit(lane, found, i, sheared, InstancePath::TOP) else { continue };
+            let (sheared, numbers) = (&self.sheared[i], group.numbers());
+            let Some(hit) = packet.hit(lane, found, i, sheared, numbers, InstancePath::TOP) else { continue };
             t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
         }
-    }
-}
-
-/// # Safety
-/// The processor must have the instructions of the set.
-#[inline(always)]
-unsafe fn take_turns<'a, S: Simd, Q: Query>(
-    world: &World,
-    rays: &'a [(Ray, f32)],
-    indices: Vec<usize>,
-    question: impl Fn(&'a (Ray, f32)) -> Q,
-    answers: &mut [Q::Answer],
-    stats: &mut RayStats,
-) {
-    let group = &world.groups[0];
-    let mut waiting = indices.into_iter();
-    let mut walkers: Vec<Walker<S, Q>> = Vec::with_capacity(WALKS);
-    for index in waiting.by_ref().take(WALKS) {
-        let ray = &rays[index].0;
-        let sheared = Sheared::new(ray);
-        // SAFETY: the caller promises the instructions.
-        let (lanes, walk) =
-            unsafe { (sheared.lanes::<{ Packet::WIDTH }, _>(), Walk::new(group.triangles(), ray)) };
-        let mut walker = Walker { index, query: question(&rays[index]), sheared, lanes, walk };
-        walker.start(world, ray);
-        walkers.push(walker);
-    }
-    let mut turn = 0;
-    while !walkers.is_empty() {
-        turn = if turn < walkers.len() { turn } else { 0 };
-        let walker = &mut walkers[turn];
-        // SAFETY: the caller promises the instructions, and there is no tree but that of the group.
-        if !unsafe { walker.step(world, stats) } {
-            turn += 1;
-            continue;
-        }
-        let last = walker.index;
-        let query = match waiting.next() {
-            Some(index) => {
-                let ray = &rays[index].0;
-                walker.index = index;
-                walker.sheared = Sheared::new(ray);
-                // SAFETY: the caller promises the instructions.
-                walker.lanes = unsafe { walker.sheared.lanes::<{ Packet::WIDTH }, _>() };
-                let query = std::mem::replace(&mut walker.query, question(&rays[index]));
-                walker.start(world, ray);
-                turn += 1;
-                query
-            }
-            None => {
-                let walker = walkers.swap_remove(turn);
-                stats.extents += walker.walk.extents;
-                walker.query
-            }
-        };
-        answers[last] = finish(world, &rays[last].0, query, stats);
-    }
-}
-
-impl<S: Simd, Q: Query> Walker<S, Q> {
-    #[inline(always)]
-    fn start(&mut self, world: &World, ray: &Ray) {
-        if goes_somewhere(ray) {
-            let t_max = self.query.t_max();
-            self.walk.start(world.groups[0].triangles(), ray, t_max, in_order::<Q>(t_max));
-        }
-    }
-
-    /// Passes one node or leaf. Whether that was the last.
-    ///
-    /// # Safety
-    /// The walk must be in the tree of the top group.
-    #[inline(always)]
-    unsafe fn step(&mut self, world: &World, stats: &mut RayStats) -> bool {
-        let group = &world.groups[0];
-        let Self { query, sheared, lanes, walk, .. } = self;
-        let mut triangles =
-            Triangles { group, instance: InstancePath::TOP, sheared, lanes, query, primitives: 0 };
-        // SAFETY: as the caller promises.
-        let over = unsafe { walk.step(group.triangles(), &mut triangles) };
-        stats.primitives += triangles.primitives;
-        over
     }
 }
 

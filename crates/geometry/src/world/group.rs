@@ -3,6 +3,7 @@
 
 #![allow(unsafe_code)]
 
+use super::numbers::Numbers;
 use super::packet::Packet;
 use super::query::Query;
 use super::spheres::Spheres;
@@ -40,6 +41,7 @@ pub(super) struct Trace<'a> {
 pub(super) struct Group {
     triangles: Bvh,
     packets: Vec<Packet>,
+    numbers: Numbers,
     spheres: Spheres,
     items: Bvh,
     /// In the order of the leaves of `items`.
@@ -90,23 +92,28 @@ impl Group {
                 unbounded.push(Item::Instance(id));
             }
         }
-        let corners = |r: &Reference| match &geometries[r.geometry() as usize] {
-            Geometry::Mesh(mesh) => Some(mesh.corners(r.primitive() as usize)),
-            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
+        let numbers = Numbers::new(members, geometries);
+        let corners = |r: &Reference| numbers.corners(r.primitive(), geometries);
+        let pack = |block: &[Reference]| {
+            let mut packet = Packet::EMPTY;
+            for number in block.iter().map(Reference::primitive) {
+                packet.push(numbers.corners(number, geometries).unwrap_or([Vec3::NAN; 3]), number);
+            }
+            packet
         };
-        let pack = |block: &[Reference]| packet(block, geometries);
-        let triangles = triangle_references(members, geometries);
+        let triangles = triangle_references(&numbers, geometries);
         let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, corners, pack);
         let item = |block: &[Reference]| items[block[0].primitive() as usize];
         let (boxes, item_list) = Bvh::build(boxes, quality, 1, |_| None, item);
         let spheres = Spheres::build(members, geometries, quality);
-        Self { triangles, packets, spheres, items: boxes, item_list, unbounded }
+        Self { triangles, packets, numbers, spheres, items: boxes, item_list, unbounded }
     }
 
     /// Brings triangles and sets of spheres up to date after they have moved, but leaves their trees as they are.
     pub fn refit_meshes_and_spheres(&mut self, geometries: &[Geometry]) {
         self.spheres.refit(geometries);
-        self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, geometries));
+        let numbers = &self.numbers;
+        self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, numbers, geometries));
     }
 
     /// The same for all else. `placed_groups` begin with the first one below the top group.
@@ -145,7 +152,7 @@ impl Group {
 
     /// Bytes of memory that the trees take.
     pub fn bytes(&self) -> usize {
-        let packets = size_of_val(&*self.packets);
+        let packets = size_of_val(&*self.packets) + self.numbers.bytes();
         let items = size_of_val(&*self.item_list) + size_of_val(&*self.unbounded);
         self.triangles.bytes() + packets + self.spheres.bytes() + self.items.bytes() + items
     }
@@ -199,6 +206,11 @@ impl Group {
         &self.packets
     }
 
+    /// Whose triangles they are.
+    pub fn numbers(&self) -> &Numbers {
+        &self.numbers
+    }
+
     /// The tree of triangles.
     pub fn triangles(&self) -> &Bvh {
         &self.triangles
@@ -212,7 +224,7 @@ pub(super) fn goes_somewhere(ray: &Ray) -> bool {
 
 /// Whether a tree is best passed in order of distance.
 #[inline(always)]
-pub(super) fn in_order<Q: Query>(t_max: f32) -> bool {
+fn in_order<Q: Query>(t_max: f32) -> bool {
     !Q::ANY || t_max < f32::INFINITY
 }
 
@@ -272,13 +284,15 @@ impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         // SAFETY: the tree was built over these packets.
         for packet in unsafe { self.group.packets.get_unchecked(blocks) } {
-            self.primitives += packet.len() as u64;
+            self.primitives += Packet::WIDTH as u64;
             let Some(found) = packet.intersect(self.lanes, *t_max) else { continue };
             let mut hits = found.hits;
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
                 hits &= hits - 1;
-                let Some(hit) = packet.hit(lane, &found, lane, self.sheared, self.instance) else { continue };
+                let (numbers, instance) = (&self.group.numbers, self.instance);
+                let hit = packet.hit(lane, &found, lane, self.sheared, numbers, instance);
+                let Some(hit) = hit else { continue };
                 if self.query.offer(hit) {
                     return true;
                 }
@@ -400,16 +414,16 @@ fn placed_bounds(placed: &Placed, bounds: &Bounds3) -> Bounds3 {
     moved.expand(moved.min.abs().max(moved.max.abs()).max_element() * gamma(8))
 }
 
-/// The triangles of all meshes whose corners are finite.
-fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<Reference> {
+/// The triangles of all meshes whose corners are finite; their numbers are the primitives.
+fn triangle_references(numbers: &Numbers, geometries: &[Geometry]) -> Vec<Reference> {
     let mut references = Vec::new();
     let some_are_missing = AtomicBool::new(false);
-    for &id in members {
+    for (id, first) in numbers.meshes() {
         if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
             let reference = |i: usize| {
                 let corners = mesh.corners(i);
                 if corners.iter().all(|p| p.is_finite()) {
-                    Reference::new(&Bounds3::around(corners), id.0, i as u32)
+                    Reference::new(&Bounds3::around(corners), 0, first + i as u32)
                 } else {
                     some_are_missing.store(true, Ordering::Relaxed);
                     Reference::none()
@@ -427,31 +441,17 @@ fn triangle_references(members: &[GeometryId], geometries: &[Geometry]) -> Vec<R
     references
 }
 
-fn packet(block: &[Reference], geometries: &[Geometry]) -> Packet {
-    let mut packet = Packet::EMPTY;
-    for reference in block {
-        let (geometry, primitive) = (reference.geometry(), reference.primitive());
-        if let Geometry::Mesh(mesh) = &geometries[geometry as usize] {
-            packet.push(mesh.corners(primitive as usize), (geometry, primitive));
-        }
-    }
-    packet
-}
-
 /// Fetches the corners of all triangles again. Nothing hits those that are not finite.
-fn renew_packet(packet: &mut Packet, geometries: &[Geometry]) -> Bounds3 {
+fn renew_packet(packet: &mut Packet, numbers: &Numbers, geometries: &[Geometry]) -> Bounds3 {
     let mut renewed = Packet::EMPTY;
     let mut bounds = Bounds3::EMPTY;
-    for id in (0..packet.len()).map(|lane| packet.id(lane)) {
-        if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
-            let corners = mesh.corners(id.1 as usize);
-            if corners.iter().all(|p| p.is_finite()) {
-                bounds = bounds.union(Bounds3::around(corners));
-                renewed.push(corners, id);
-            } else {
-                renewed.push([Vec3::NAN; 3], id);
-            }
+    for &number in packet.numbers() {
+        let corners = numbers.corners(number, geometries);
+        let finite = corners.filter(|corners| corners.iter().all(|p| p.is_finite()));
+        if let Some(corners) = finite {
+            bounds = bounds.union(Bounds3::around(corners));
         }
+        renewed.push(finite.unwrap_or([Vec3::NAN; 3]), number);
     }
     *packet = renewed;
     bounds

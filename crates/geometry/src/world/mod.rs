@@ -7,6 +7,8 @@
 mod batch;
 mod builder;
 mod group;
+mod numbers;
+mod order;
 mod packet;
 mod path;
 mod placed;

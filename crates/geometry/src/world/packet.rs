@@ -2,52 +2,51 @@
 
 #![allow(unsafe_code)]
 
-use super::{GeometryId, Hit, InstancePath};
+use super::numbers::Numbers;
+use super::{Hit, InstancePath};
 use crate::simd::Vector;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use math::{Vec2, Vec3};
 
 /// Triangles of one geometry or of many, corner by corner, axis by axis.
 #[derive(Clone, Debug)]
-#[repr(C, align(16))]
+#[repr(C, align(32))]
 pub(crate) struct Packet {
     corners: [[[f32; Packet::WIDTH]; 3]; 3],
-    /// Whose triangle each lane holds; no geometry where it is not in use.
-    geometries: [u32; Packet::WIDTH],
-    primitives: [u32; Packet::WIDTH],
+    /// The number of the triangle that each lane holds.
+    numbers: [u32; Packet::WIDTH],
 }
 
 impl Packet {
     /// Triangles in a packet.
     pub const WIDTH: usize = 4;
 
-    /// Unused lanes hold a triangle that nothing hits.
-    pub const EMPTY: Self = Self {
-        corners: [[[f32::NAN; Self::WIDTH]; 3]; 3],
-        geometries: [u32::MAX; Self::WIDTH],
-        primitives: [u32::MAX; Self::WIDTH],
-    };
+    /// The number of a lane that is not in use.
+    const NOTHING: u32 = u32::MAX;
 
-    pub fn push(&mut self, corners: [Vec3; 3], id: (u32, u32)) {
+    /// Unused lanes hold a triangle that nothing hits.
+    pub const EMPTY: Self =
+        Self { corners: [[[f32::NAN; Self::WIDTH]; 3]; 3], numbers: [Self::NOTHING; Self::WIDTH] };
+
+    pub fn push(&mut self, corners: [Vec3; 3], number: u32) {
         let lane = self.len();
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
             for axis in 0..3 {
                 lanes[axis][lane] = corner[axis];
             }
         }
-        (self.geometries[lane], self.primitives[lane]) = id;
+        self.numbers[lane] = number;
     }
 
     /// How many lanes are in use.
     #[inline(always)]
     pub fn len(&self) -> usize {
-        self.geometries.iter().map(|&id| (id != u32::MAX) as usize).sum()
+        self.numbers.iter().map(|&number| (number != Self::NOTHING) as u32).sum::<u32>() as usize
     }
 
-    /// Whose triangle a lane holds: geometry and primitive.
-    #[inline(always)]
-    pub fn id(&self, lane: usize) -> (u32, u32) {
-        (self.geometries[lane], self.primitives[lane])
+    /// The numbers of the triangles.
+    pub fn numbers(&self) -> &[u32] {
+        &self.numbers[..self.len()]
     }
 
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
@@ -88,13 +87,14 @@ impl Packet {
         found: &LaneHits<N>,
         of: usize,
         ray: &Sheared,
+        numbers: &Numbers,
         instance: InstancePath,
     ) -> Option<Hit> {
         let (mut t, mut uv) = (found.t[of], Vec2::new(found.b1[of], found.b2[of]));
         if found.doubts >> of & 1 != 0 {
             (t, uv) = ray.decide(&self.triangle(lane))?;
         }
-        let (geometry, primitive) = self.id(lane);
-        Some(Hit { t, uv, geometry: GeometryId(geometry), primitive, instance })
+        let (geometry, primitive) = numbers.id(self.numbers[lane]);
+        Some(Hit { t, uv, geometry, primitive, instance })
     }
 }

@@ -7,9 +7,9 @@ use std::ops::AddAssign;
 pub struct RayStats {
     /// Rays traced.
     pub rays: u64,
-    /// Tests of a ray against an extent (a bounding volume).
+    /// Tests of a ray, or of a beam around several, against an extent (a bounding volume).
     pub extents: u64,
-    /// Tests of a ray against a primitive.
+    /// Tests of a ray against a primitive. Triangles are tested by fours, which count as four however many there are.
     pub primitives: u64,
 }
 

@@ -223,11 +223,6 @@ impl Patch {
     pub fn brightness(&self, side: usize) -> f32 {
         self.spread.iter().map(|sides| sides[side]).sum()
     }
-
-    /// All that one side has to send.
-    pub fn unshot(&self, side: usize) -> Bands {
-        self.unshot.iter().map(|sides| sides[side]).sum()
-    }
 }
 
 /// The radiant exitance of the two sides of a cell, from 64 points.

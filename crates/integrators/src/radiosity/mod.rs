@@ -47,7 +47,7 @@ mod tests;
 
 use std::path::PathBuf;
 
-use film::{Film, FilmTile, Filter};
+use film::{Film, FilmTile};
 use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::Sampler;
@@ -55,7 +55,7 @@ use scene::Scene;
 use scene::light_sampler::{LightSampler, LightSamplerKind};
 use spectrum::RgbColorSpace;
 
-use crate::pixel_loop::{camera_ray, camera_sample};
+use crate::pixel_loop::PixelSamples;
 use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
@@ -184,14 +184,29 @@ impl Integrator for Radiosity {
         if pass <= steps {
             *film = film.blank();
         }
-        let picture = Picture { scene, solution, view, filter: film.filter().clone(), control };
         let index = if pass < steps { pass % samples } else { pass - steps };
-        let tiles = film.tiles_mut().into_par_iter();
-        let drawn = tiles.map(|mut tile| picture.tile(index, self.sampler.clone(), &mut tile));
-        stats += drawn.try_reduce(RayStats::default, |mut sum, stats| {
-            sum += stats;
-            Ok(sum)
-        })?;
+        let filter = film.filter().clone();
+        let pixels = PixelSamples { index, scene, filter: &filter, sampler: &self.sampler };
+        let (solution, view) = (&*solution, &*view);
+        let draw = |mut tile: FilmTile| {
+            control.check()?;
+            let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
+            let bounds = tile.bounds();
+            for y in bounds.min[1]..bounds.max[1] {
+                for x in bounds.min[0]..bounds.max[0] {
+                    let sample = pixels.begin([x, y], &mut sampler);
+                    let l = sample.camera_ray.map_or(Bands::ZERO, |camera| {
+                        view.radiance(scene, solution, camera.ray, &mut sampler, &mut stats) * camera.weight
+                    });
+                    for (l, lambda) in l.groups().iter().zip(solution.wavelengths.groups()) {
+                        tile.add_sample([x, y], l, lambda, sample.filter_weight);
+                    }
+                }
+            }
+            Ok(stats)
+        };
+        let drawn: Vec<RayStats> = film.tiles_mut().into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
+        drawn.into_iter().for_each(|some| stats += some);
         Ok(stats)
     }
 
@@ -210,38 +225,5 @@ impl Integrator for Radiosity {
             ("unshot light", format!("{:.3} %", 100.0 * solution.unshot_share())),
             ("patch memory", format!("{:.1} MB", solution.bytes() as f64 * 1e-6)),
         ]
-    }
-}
-
-/// What all tiles of a picture share.
-struct Picture<'a> {
-    scene: &'a Scene,
-    solution: &'a Solution,
-    view: &'a View,
-    filter: Filter,
-    control: &'a Control,
-}
-
-impl Picture<'_> {
-    /// Takes one sample of each pixel of a tile.
-    fn tile(&self, index: u32, mut sampler: Sampler, tile: &mut FilmTile) -> Result<RayStats, Cancelled> {
-        self.control.check()?;
-        let mut stats = RayStats::default();
-        let bounds = tile.bounds();
-        for y in bounds.min[1]..bounds.max[1] {
-            for x in bounds.min[0]..bounds.max[0] {
-                sampler.start_pixel_sample([x, y], index, 0);
-                let sample = camera_sample(self.scene, &self.filter, [x, y], &mut sampler);
-                let ray = camera_ray(self.scene, &sample, sampler.samples_per_pixel());
-                let l = ray.map_or(Bands::ZERO, |camera| {
-                    let Self { scene, solution, view, .. } = self;
-                    view.radiance(scene, solution, camera.ray, &mut sampler, &mut stats) * camera.weight
-                });
-                for (l, lambda) in l.groups().iter().zip(self.solution.wavelengths.groups()) {
-                    tile.add_sample([x, y], l, lambda, sample.filter_weight);
-                }
-            }
-        }
-        Ok(stats)
     }
 }

@@ -134,7 +134,7 @@ fn energy_is_conserved_while_shooting() {
         let settings = RadiositySettings { max_depth: 25, form_factors, ..settings(0.34) };
         let mut solution = Solution::new(&scene, &settings, settings.max_depth);
         let power = |solution: &Solution| {
-            let unshot = solution.cut.patches.iter().map(|patch| patch.unshot(0) + patch.unshot(1));
+            let unshot = solution.cut.patches.iter().flat_map(|patch| &patch.unshot).map(|sides| sides[0] + sides[1]);
             f64::from(unshot.sum::<Bands>().mean())
         };
         let all = power(&solution);

@@ -35,7 +35,6 @@ fn what_is_drawn_is_drawn_without_a_word() {
 fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
     for (name, integrator) in [
         ("simplevolpath", IntegratorDesc::SimpleVolPath { max_depth: 5 }),
-        ("light-tracing", IntegratorDesc::LightTracing { max_depth: 5 }),
         ("mlt", IntegratorDesc::Mlt(MltDesc::default())),
         ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
     ] {

@@ -1,0 +1,275 @@
+//! Small scenes, each hard in its own way.
+
+/// A scene as text, but for its film and algorithm.
+pub struct Scene {
+    pub name: &'static str,
+    /// Most scattering events.
+    pub max_depth: u32,
+    /// Samples that path tracing needs to be a reference.
+    pub path_samples: u32,
+    /// Whether the camera looks into mirrors or through glass, where light paths cannot find it.
+    pub has_mirrors: bool,
+    camera: &'static str,
+    world: &'static str,
+}
+
+impl Scene {
+    pub fn text(&self) -> String {
+        format!(
+            "{}\nFilm \"rgb\" \"integer xresolution\" 20 \"integer yresolution\" 20 \"bool savefp16\" false\n\
+             PixelFilter \"box\" \"float xradius\" 0.5 \"float yradius\" 0.5\n\
+             Sampler \"independent\" \"integer pixelsamples\" 1\nWorldBegin\n{}",
+            self.camera, self.world
+        )
+    }
+}
+
+const IN_A_BOX: &str = "LookAt 0 -0.95 0  0 0 -0.1  0 0 1 Camera \"perspective\" \"float fov\" 80";
+const ABOVE: &str = "LookAt 0 -4 3  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40";
+
+macro_rules! walls {
+    () => {
+        r#"
+        Material "diffuse" "rgb reflectance" [0.7 0.7 0.7]
+        Shape "bilinearmesh" "point3 P" [-1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1]
+        Shape "bilinearmesh" "point3 P" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]
+        Shape "bilinearmesh" "point3 P" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]
+        Shape "bilinearmesh" "point3 P" [-1 -1 1  1 -1 1  -1 1 1  1 1 1]
+        Material "diffuse" "rgb reflectance" [0.6 0.1 0.1]
+        Shape "bilinearmesh" "point3 P" [-1 -1 -1  -1 1 -1  -1 -1 1  -1 1 1]
+        Material "diffuse" "rgb reflectance" [0.1 0.5 0.2]
+        Shape "bilinearmesh" "point3 P" [1 -1 -1  1 1 -1  1 -1 1  1 1 1]
+        "#
+    };
+}
+
+macro_rules! ceiling_lamp {
+    () => {
+        r#"
+        AttributeBegin AreaLightSource "diffuse" "rgb L" [8 7 6]
+        Shape "bilinearmesh" "point3 P" [-0.3 -0.3 0.95  -0.3 0.3 0.95  0.3 -0.3 0.95  0.3 0.3 0.95]
+        AttributeEnd
+        "#
+    };
+}
+
+macro_rules! floor {
+    () => {
+        r#"
+        Material "diffuse" "rgb reflectance" [0.6 0.6 0.5]
+        Shape "bilinearmesh" "point3 P" [-3 -3 0  3 -3 0  -3 3 0  3 3 0]
+        "#
+    };
+}
+
+pub const SCENES: [Scene; 15] = [
+    Scene {
+        name: "a diffuse box",
+        max_depth: 4,
+        path_samples: 16,
+        has_mirrors: false,
+        camera: IN_A_BOX,
+        world: concat!(
+            walls!(),
+            ceiling_lamp!(),
+            r#"Material "diffuse" "rgb reflectance" [0.5 0.5 0.7]
+            Translate 0.3 0.3 -0.6 Shape "sphere" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "a glossy box",
+        max_depth: 3,
+        path_samples: 32,
+        has_mirrors: false,
+        camera: IN_A_BOX,
+        world: concat!(
+            walls!(),
+            ceiling_lamp!(),
+            r#"Material "conductor" "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k" "float roughness" 0.4
+            Shape "bilinearmesh" "point3 P" [-0.99 -1 -0.99  0.99 -1 -0.99  -0.99 0.9 -0.9  0.99 0.9 -0.9]
+            Material "dielectric" "float roughness" 0.5
+            Translate -0.3 0.2 -0.3 Shape "sphere" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "the caustic of a glass ball",
+        max_depth: 4,
+        path_samples: 256,
+        has_mirrors: true,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"Material "dielectric" AttributeBegin Translate 0 0 0.7 Shape "sphere" "float radius" 0.5 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [10 10 10] Translate 0.8 0.5 2.5 ReverseOrientation
+            Shape "disk" "float radius" 0.5"#
+        ),
+    },
+    Scene {
+        name: "a room of mirrors",
+        max_depth: 5,
+        path_samples: 64,
+        has_mirrors: true,
+        camera: IN_A_BOX,
+        world: concat!(
+            walls!(),
+            ceiling_lamp!(),
+            r#"Material "conductor" "float roughness" 0
+            Shape "bilinearmesh" "point3 P" [-0.9 0.95 -0.9  0.9 0.95 -0.9  -0.9 0.95 0.9  0.9 0.95 0.9]
+            Shape "bilinearmesh" "point3 P" [0.95 -0.9 -0.9  0.95 0.9 -0.9  0.95 -0.9 0.9  0.95 0.9 0.9]
+            Translate -0.3 0.2 -0.5 Shape "sphere" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "many small lights",
+        max_depth: 3,
+        path_samples: 64,
+        has_mirrors: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"Material "diffuse" Translate 0 0 0.3
+            AreaLightSource "diffuse" "rgb L" [30 10 3] AttributeBegin Translate 0.9 0 0.2 Shape "sphere" "float radius" 0.05 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [3 10 30] AttributeBegin Translate -0.9 0 0.5 Shape "sphere" "float radius" 0.1 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [3 30 3] AttributeBegin Translate 0 0.9 0.3 Shape "cylinder" "float radius" 0.05 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [20 20 20] AttributeBegin Translate 0 -0.9 0.1 Rotate 40 1 0 0 Shape "disk" "float radius" 0.2 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [9 2 9] "bool twosided" true AttributeBegin Translate 0 0 0.8 Rotate 90 1 0 0 Shape "disk" "float radius" 0.2 AttributeEnd
+            LightSource "point" "point3 from" [1.5 1.5 1] "rgb I" [0.2 0.3 0.4]
+            LightSource "spot" "point3 from" [-1.5 1.5 1] "point3 to" [0 0 0] "float coneangle" 25 "rgb I" [3 1 1]"#
+        ),
+    },
+    Scene {
+        name: "a sky and a sun",
+        max_depth: 3,
+        path_samples: 32,
+        has_mirrors: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "infinite" "rgb L" [0.3 0.4 0.6]
+            LightSource "distant" "point3 from" [1 -1 2] "point3 to" [0 0 0] "rgb L" [1 0.9 0.7]
+            Material "diffuse" "rgb reflectance" [0.8 0.3 0.3]
+            Translate 0 0 0.5 Shape "sphere" "float radius" 0.5"#
+        ),
+    },
+    Scene {
+        name: "a door that is almost closed",
+        max_depth: 4,
+        path_samples: 512,
+        has_mirrors: false,
+        camera: IN_A_BOX,
+        world: concat!(
+            walls!(),
+            r#"Material "diffuse" "rgb reflectance" [0.5 0.5 0.5]
+            Shape "bilinearmesh" "point3 P" [0.2 0.1 -1  0.2 1 -1  0.2 0.1 1  0.2 1 1]
+            Shape "bilinearmesh" "point3 P" [0.2 0.1 -1  0.85 0.1 -1  0.2 0.1 1  0.85 0.1 1]
+            AreaLightSource "diffuse" "rgb L" [60 60 50]
+            Shape "bilinearmesh" "point3 P" [0.4 0.5 0.5  0.4 0.9 0.5  0.8 0.5 0.5  0.8 0.9 0.5]"#
+        ),
+    },
+    Scene {
+        name: "a thin lens",
+        max_depth: 2,
+        path_samples: 64,
+        has_mirrors: false,
+        camera: "LookAt 0 -4 3  0 0 0.3  0 0 1\n\
+            Camera \"perspective\" \"float fov\" 40 \"float lensradius\" 0.3 \"float focaldistance\" 4",
+        world: concat!(
+            floor!(),
+            r#"LightSource "point" "point3 from" [1 1 2] "rgb I" [3 3 2]
+            AttributeBegin Translate 0 -1.5 0.3 Shape "sphere" "float radius" 0.3 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [5 5 9] Translate 0.5 1.5 0.5 Shape "sphere" "float radius" 0.3"#
+        ),
+    },
+    Scene {
+        name: "a prism",
+        max_depth: 4,
+        path_samples: 256,
+        has_mirrors: true,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"AttributeBegin Material "dielectric" "spectrum eta" "glass-F11" Translate 0 0 0.7
+            Shape "sphere" "float radius" 0.5 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [10 10 10] Translate 0.8 0.5 2.5 ReverseOrientation
+            Shape "disk" "float radius" 0.6"#
+        ),
+    },
+    Scene {
+        name: "parallel rays",
+        max_depth: 3,
+        path_samples: 16,
+        has_mirrors: false,
+        camera: "LookAt 0 -4 3  0 0 0.3  0 0 1 Camera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -1.5 1.5]",
+        world: concat!(
+            floor!(),
+            r#"Translate 0 0 0.5 Shape "sphere" "float radius" 0.5
+            AreaLightSource "diffuse" "rgb L" [5 5 9] Translate 0.8 0 0.6 Shape "sphere" "float radius" 0.2"#
+        ),
+    },
+    Scene {
+        name: "all around",
+        max_depth: 2,
+        path_samples: 32,
+        has_mirrors: false,
+        camera: "LookAt 0 0 0  0 1 0  0 0 1 Camera \"spherical\" \"string mapping\" \"equirectangular\"",
+        world: concat!(walls!(), ceiling_lamp!()),
+    },
+    Scene {
+        name: "motion",
+        max_depth: 3,
+        path_samples: 32,
+        has_mirrors: false,
+        camera: "TransformTimes 0 1 LookAt 0 -4 3  0 0 0.3  0 0 1\n\
+            Camera \"perspective\" \"float fov\" 40 \"float shutteropen\" 0 \"float shutterclose\" 1",
+        world: concat!(
+            floor!(),
+            r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [5 5 9]
+            Translate 0.8 0.6 1.6 Shape "sphere" "float radius" 0.2 AttributeEnd
+            Material "diffuse" ActiveTransform EndTime Translate 1 0 0.5 ActiveTransform All
+            Translate -0.5 0 0.5 Shape "sphere" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "bent normals",
+        max_depth: 3,
+        path_samples: 64,
+        has_mirrors: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"Material "diffuse" "rgb reflectance" [0.8 0.8 0.8]
+            Shape "trianglemesh" "point3 P" [-1 -1 0.2  1 -1 0.2  1 1 0.2  -1 1 0.2]
+            "normal N" [-0.5 -0.5 1  0.5 -0.5 1  0.5 0.5 1  -0.5 0.5 1] "integer indices" [0 1 2 0 2 3]
+            AreaLightSource "diffuse" "rgb L" [10 10 10] Translate 0.8 0.5 1.5 ReverseOrientation
+            Shape "disk" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "a pool",
+        max_depth: 5,
+        path_samples: 256,
+        has_mirrors: true,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"AttributeBegin Material "dielectric" "float eta" 1.33
+            Shape "bilinearmesh" "point3 P" [-1 -1 0.5  1 -1 0.5  -1 1 0.5  1 1 0.5] AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [4 4 4] Translate 0.8 0.5 2.5 ReverseOrientation
+            Shape "disk" "float radius" 1"#
+        ),
+    },
+    Scene {
+        name: "interfaces and cut out surfaces",
+        max_depth: 3,
+        path_samples: 64,
+        has_mirrors: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"AttributeBegin Material "interface" Translate 0 0 1 Shape "sphere" "float radius" 0.9 AttributeEnd
+            AttributeBegin Translate 0 0 1 Shape "disk" "float alpha" 0.5 "float radius" 0.8 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [10 10 10] Translate 0.3 0.2 1.5 ReverseOrientation
+            Shape "disk" "float radius" 0.3"#
+        ),
+    },
+];

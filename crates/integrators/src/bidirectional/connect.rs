@@ -1,0 +1,186 @@
+//! Ends of subpaths become whole paths: one function for each kind of strategy.
+
+use geometry::RayStats;
+use math::{Normal3, Point2, Point3Error, Ray};
+use sampling::Sampler;
+use scene::camera::CameraWiSample;
+use scene::light::LightId;
+use scene::{Interfaces, SurfaceInteraction};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::{Bidirectional, Vertex, Walk, hero_only};
+
+/// What a strategy has found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    /// Light that arrives, as if there were no other strategy.
+    pub l: SampledSpectrum,
+    /// The strategy's weight among all that find the path.
+    pub weight: f32,
+    /// Vertices of the light subpath.
+    pub s: u32,
+    /// Vertices of the camera subpath.
+    pub t: u32,
+}
+
+impl Found {
+    /// The weighted light.
+    pub fn weighted(&self) -> SampledSpectrum {
+        self.l * self.weight
+    }
+}
+
+/// What a light subpath has found, and where on the film.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnFilm {
+    /// Position in pixels.
+    pub film: Point2,
+    /// What was found.
+    pub found: Found,
+}
+
+impl Bidirectional<'_> {
+    /// s = 0: the camera subpath, whose last vertex is `before`, has met a surface that may emit.
+    pub fn emitted(
+        &self,
+        walk: &Walk,
+        surface: &SurfaceInteraction,
+        before: Option<&Vertex>,
+    ) -> Option<Found> {
+        let light = surface.area_light?;
+        let l = walk.beta * self.scene.emitted(surface, surface.surface.wo, &walk.lambda);
+        let s = &surface.surface;
+        (!l.is_black()).then(|| self.met(walk, l, light, before, Some((s.p.p, s.n))))
+    }
+
+    /// s = 0: the camera subpath has left the scene.
+    pub fn escaped<'a>(
+        &'a self,
+        walk: &'a Walk,
+        before: Option<&'a Vertex>,
+    ) -> impl Iterator<Item = Found> + 'a {
+        self.scene.infinite_lights().iter().filter_map(move |&light| {
+            let l = walk.beta * self.scene.light(light).le(&walk.ray.ray, &walk.lambda);
+            (!l.is_black()).then(|| self.met(walk, l, light, before, None))
+        })
+    }
+
+    fn met(
+        &self,
+        walk: &Walk,
+        l: SampledSpectrum,
+        light: LightId,
+        before: Option<&Vertex>,
+        place: super::light_end::Place,
+    ) -> Found {
+        let weight = before.map_or(1.0, |before| {
+            let (context, wi) = (before.light_context(), walk.ray.ray.d);
+            let partial = &walk.partial;
+            let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
+            let end = self.light_end(light, &context, wi, place, direct);
+            weight(end.direct * partial.vcm, end.emission / end.cos_theta * partial.vc)
+        });
+        let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
+        Found { l, weight, s: 0, t: walk.depth + 2 }
+    }
+
+    /// s = 1: a point on a light is chosen for the vertex.
+    pub fn direct(
+        &self,
+        vertex: &Vertex,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+    ) -> Option<Found> {
+        let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
+        let context = vertex.light_context();
+        let (light, pmf) = self.lights.seen_from.sample(&context, u)?;
+        let sample = self.scene.sample_light(light, &context, u_light, lambda, false)?;
+        let wi = sample.wi;
+        let l = vertex.scattered(wi) * sample.l / (pmf * sample.pdf);
+        if l.is_black() {
+            return None;
+        }
+        let visible = match sample.p {
+            Some(p) => self.visible(vertex, p, sample.n, stats),
+            None => {
+                let ray = Ray::spawn(vertex.p, vertex.n, wi, vertex.time);
+                !self.scene.occluded(&ray, f32::INFINITY, Interfaces::Pass, stats)
+            }
+        };
+        if !visible {
+            return None;
+        }
+        let place = sample.p.map(|p| (p.p, sample.n));
+        let direct = match place {
+            Some((p, Normal3::ZERO)) => pmf * vertex.p.p.distance_squared(p),
+            _ => pmf * sample.pdf,
+        };
+        let end = self.light_end(light, &context, wi, place, direct);
+        let by_chance = if end.is_delta { 0.0 } else { vertex.pdf(wi) / direct };
+        let from_light = end.emission * vertex.cos_theta(wi) / (direct * end.cos_theta);
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
+        Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
+    }
+
+    /// s, t ≥ 2: two surfaces are connected.
+    pub fn connect(&self, camera: &Vertex, light: &Vertex, stats: &mut RayStats) -> Option<Found> {
+        let way = light.p.p - camera.p.p;
+        let distance_squared = way.length_squared();
+        let wi = way / distance_squared.sqrt();
+        let l = camera.scattered(wi) * light.scattered(-wi) / distance_squared;
+        if l.is_black() || !l.is_finite() || !self.visible(camera, light.p, light.n, stats) {
+            return None;
+        }
+        let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
+        let to_camera = light.pdf(-wi) * camera.cos_theta(wi) / distance_squared;
+        let weight = weight(
+            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi)),
+            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi)),
+        );
+        let hero = camera.hero_only || light.hero_only;
+        Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
+    }
+
+    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses, if what arrives there is of
+    /// any use on the film.
+    pub fn see(
+        &self,
+        vertex: &Vertex,
+        u: Point2,
+        is_of_use: impl FnOnce(Point2) -> bool,
+        stats: &mut RayStats,
+    ) -> Option<OnFilm> {
+        let camera = self.scene.camera();
+        let sample = camera.sample_wi(vertex.p.p, vertex.time, u)?;
+        let CameraWiSample { we, wi, pdf, film, p, n } = sample;
+        if !is_of_use(film) {
+            return None;
+        }
+        let l = vertex.scattered(wi) * (we / pdf);
+        if l.is_black() || !self.visible(vertex, Point3Error::exact(p), n, stats) {
+            return None;
+        }
+        let (pdf_position, pdf_direction) = camera.pdf_we(&Ray::new(p, -wi, vertex.time));
+        let pdf_area =
+            if camera.is_parallel() { pdf_position } else { pdf_direction / vertex.p.p.distance_squared(p) }
+                * vertex.cos_theta(wi);
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
+        let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
+        Some(OnFilm { film, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
+    }
+
+    fn found(&self, l: SampledSpectrum, hero: bool, weight: f32, s: u32, t: u32) -> Found {
+        Found { l: if hero { hero_only(l) } else { l }, weight, s, t }
+    }
+
+    fn visible(&self, from: &Vertex, p: Point3Error, n: Normal3, stats: &mut RayStats) -> bool {
+        !self.scene.occluded(&from.ray_to(p, n), Ray::SHADOW_END, Interfaces::Pass, stats)
+    }
+}
+
+/// The weight of a strategy beside which others have densities with these sums of ratios. Ratios beyond all numbers leave it none.
+fn weight(of_light: f32, of_camera: f32) -> f32 {
+    let sum = 1.0 + of_light + of_camera;
+    if sum.is_nan() { 0.0 } else { 1.0 / sum }
+}

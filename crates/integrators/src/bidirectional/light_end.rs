@@ -1,0 +1,65 @@
+//! The light's end of a path: with which densities the strategies find it.
+//!
+//! A surface that looks for light chooses the point on it with the density `direct`; the light sends a ray from there to the surface
+//! with the density `emission`. The first is per solid angle at the surface, the second per area and solid angle at the light. A
+//! light at a point is chosen with a delta per area, which is d² per solid angle; deltas cancel in all ratios, and count as 1.
+
+use math::{Normal3, Point3, Ray, Vector3};
+use scene::light::{LightId, LightSampleContext};
+
+use super::Bidirectional;
+
+/// Densities at the light's end of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightEnd {
+    /// Density per solid angle with which the surface chooses the point, or direction, on the light.
+    pub direct: f32,
+    /// Density per area and solid angle with which the light sends the ray.
+    pub emission: f32,
+    /// |cos| at the light's surface; 1 where it has none.
+    pub cos_theta: f32,
+    /// Whether rays cannot meet the light.
+    pub is_delta: bool,
+}
+
+/// A point on a light and its normal there, zero where it has none; `None` if the light is infinitely far away.
+pub(crate) type Place = Option<(Point3, Normal3)>;
+
+impl Bidirectional<'_> {
+    /// The end at a light that is seen from a surface along the unit direction `wi`, chosen from there with the density `direct`.
+    pub fn light_end(
+        &self,
+        light: LightId,
+        context: &LightSampleContext,
+        wi: Vector3,
+        place: Place,
+        direct: f32,
+    ) -> LightEnd {
+        let source = self.scene.light(light);
+        let (pdf_position, pdf_direction) = match place {
+            Some((p, n)) => {
+                let (position, direction) = source.pdf_le(p, n, -wi);
+                (if n == Normal3::ZERO { 1.0 } else { position }, direction)
+            }
+            None => {
+                let ray = Ray::new(context.p.p, wi, context.time);
+                let (position, direction) = source.pdf_le_infinite(&ray);
+                (position, if source.is_delta() { 1.0 } else { direction })
+            }
+        };
+        let emission = self.lights.emitting.pmf(light) * pdf_position * pdf_direction;
+        let cos_theta = place.map_or(1.0, |(_, n)| if n == Normal3::ZERO { 1.0 } else { n.dot(wi).abs() });
+        LightEnd { direct, emission, cos_theta, is_delta: source.is_delta() }
+    }
+
+    /// The density with which a surface chooses the light and the point or direction on it.
+    pub fn direct_pdf(&self, light: LightId, context: &LightSampleContext, wi: Vector3, place: Place) -> f32 {
+        let source = self.scene.light(light);
+        let pdf = match place {
+            Some((p, Normal3::ZERO)) => context.p.p.distance_squared(p),
+            None if source.is_delta() => 1.0,
+            _ => source.pdf_li(context, wi, false),
+        };
+        self.lights.seen_from.pmf(context, light) * pdf
+    }
+}

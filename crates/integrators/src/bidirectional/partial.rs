@@ -1,0 +1,107 @@
+//! Weights of strategies without looking at the path twice.
+//!
+//! The balance heuristic gives strategy i of a path the weight w_i = p_i / Σ p_j, the p being the densities with which the
+//! strategies make the path (times the number of paths that each may take) [Veach 1997 §9.2]. Written 1/w_i = 1 + Σ p_j/p_i over
+//! j ≠ i, the sum falls into two: strategies that have more of the path made from the camera, and those that have more made from
+//! the light. Each part is a sum over one subpath's vertices, and goes from vertex to vertex by a recursion; so a subpath carries
+//! three numbers, and a strategy needs only what is known at its two ends ([Georgiev 2012]; [van Antwerpen 2011]).
+//!
+//! With p→ the density per area with which the subpath made a vertex from the one before, p← that with which the other subpath
+//! would, g← the factor from solid angle to area in p←, and η = nπr² for n light subpaths merged within the radius r:
+//!
+//! ```text
+//! d_vcm = 1 / p→
+//! d_vc  = g←/p→ · (η + d_vcm' + p←'·d_vc')
+//! d_vm  = g←/p→ · (1 + d_vcm'/η + p←'·d_vm')
+//! ```
+//!
+//! where ' marks the vertex before and p←' is per solid angle. What is specular can neither be connected nor merged: its
+//! d_vcm is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the factors of the vertex that it
+//! will arrive at, which [`Partial::arrive`] supplies.
+
+use super::light_end::LightEnd;
+
+/// What a subpath carries for its weights.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Partial {
+    pub vcm: f32,
+    pub vc: f32,
+    pub vm: f32,
+}
+
+/// How strategies share paths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Balance {
+    /// Light subpaths in a pass, for each sample of a pixel: the number that each may be connected to the camera.
+    pub light_paths: f32,
+    /// η: merging counts so much more than connecting; 0 without merging.
+    pub merging: f32,
+}
+
+impl Balance {
+    /// For as many light subpaths, without merging.
+    pub fn connecting(light_paths: usize) -> Self {
+        Self { light_paths: light_paths as f32, merging: 0.0 }
+    }
+
+    /// For as many light subpaths, merged within a radius.
+    pub fn merging(light_paths: usize, radius: f32) -> Self {
+        let n = light_paths as f32;
+        Self { light_paths: n, merging: n * std::f32::consts::PI * radius * radius }
+    }
+
+    /// 1/η, or 0 without merging.
+    fn per_merging(&self) -> f32 {
+        if self.merging > 0.0 { 1.0 / self.merging } else { 0.0 }
+    }
+
+    /// What a camera subpath begins with, whose first direction has the density `pdf` on the film (per pixel).
+    pub fn at_camera(&self, pdf: f32) -> Partial {
+        Partial { vcm: self.light_paths / pdf, vc: 0.0, vm: 0.0 }
+    }
+
+    /// What a light subpath has at its first surface, where it arrives at `cos_theta` to the normal.
+    pub fn at_light(&self, end: &LightEnd, cos_theta: f32) -> Partial {
+        let scale = end.cos_theta / (end.emission * cos_theta);
+        let vc = if end.is_delta { 0.0 } else { scale };
+        Partial { vcm: end.direct * scale, vc, vm: vc * self.per_merging() }
+    }
+
+    /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
+    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
+    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32) -> f32 {
+        self.merging + partial.vcm + pdf_back * partial.vc
+    }
+
+    /// The same for merging, to be used as it is.
+    pub fn merging_back(&self, partial: &Partial, pdf_back: f32) -> f32 {
+        self.per_merging() * partial.vcm + pdf_back * partial.vm
+    }
+
+    /// Leaves a vertex along a direction of the density `pdf`, at `cos_theta` to the normal; `pdf_back` is the density of the way
+    /// back.
+    pub fn leave(&self, partial: &Partial, pdf: f32, pdf_back: f32, cos_theta: f32) -> Partial {
+        Partial {
+            vcm: 1.0 / pdf,
+            vc: cos_theta / pdf * self.connecting_back(partial, pdf_back),
+            vm: cos_theta / pdf * (1.0 + self.merging_back(partial, pdf_back)),
+        }
+    }
+}
+
+impl Partial {
+    /// Leaves a vertex in the one direction that a specular lobe has.
+    pub fn leave_specular(&self, cos_theta: f32) -> Self {
+        Self { vcm: 0.0, vc: self.vc * cos_theta, vm: self.vm * cos_theta }
+    }
+
+    /// Arrives at a surface at `cos_theta` to its normal from a distance whose square is given; from a direction without a place the
+    /// square is 1.
+    pub fn arrive(&self, distance_squared: f32, cos_theta: f32) -> Self {
+        Self {
+            vcm: self.vcm * distance_squared / cos_theta,
+            vc: self.vc / cos_theta,
+            vm: self.vm / cos_theta,
+        }
+    }
+}

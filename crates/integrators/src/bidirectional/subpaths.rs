@@ -1,0 +1,73 @@
+//! Whole subpaths, told vertex by vertex.
+
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::camera::CameraRayDifferential;
+use spectrum::SampledWavelengths;
+
+use super::{Bidirectional, Found, Vertex, Walk};
+
+/// What a camera subpath comes by.
+pub(crate) enum OnTheWay<'a> {
+    /// A light that it met by chance.
+    Light(Found),
+    /// A surface from which it will go on.
+    Vertex(&'a Vertex),
+}
+
+impl Bidirectional<'_> {
+    /// Follows a light subpath, and visits the vertices that others can be connected to.
+    pub fn light_subpath(
+        &self,
+        time: f32,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+        mut visit: impl FnMut(&Vertex, &mut Sampler, &mut RayStats),
+    ) {
+        let Some(mut walk) = Walk::from_light(self, time, *lambda, sampler) else { return };
+        while walk.depth < self.max_depth {
+            let Some(mut surface) = walk.meet(stats) else { return };
+            let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
+            if vertex.is_connectible() {
+                visit(&vertex, sampler, stats);
+            }
+            if !walk.leave(&vertex, &surface, sampler) {
+                return;
+            }
+        }
+    }
+
+    /// Follows a camera subpath, and visits what it comes by: every vertex, and every light.
+    pub fn camera_subpath(
+        &self,
+        camera_ray: &CameraRayDifferential,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
+        mut visit: impl FnMut(OnTheWay, &mut Sampler, &mut RayStats),
+    ) {
+        let mut walk = Walk::from_camera(self, camera_ray, *lambda);
+        let mut before: Option<Vertex> = None;
+        loop {
+            let Some(mut surface) = walk.meet(stats) else {
+                for found in self.escaped(&walk, before.as_ref()) {
+                    visit(OnTheWay::Light(found), sampler, stats);
+                }
+                return;
+            };
+            if let Some(found) = self.emitted(&walk, &surface, before.as_ref()) {
+                visit(OnTheWay::Light(found), sampler, stats);
+            }
+            if walk.depth == self.max_depth {
+                return;
+            }
+            let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
+            visit(OnTheWay::Vertex(&vertex), sampler, stats);
+            if !walk.leave(&vertex, &surface, sampler) {
+                return;
+            }
+            before = Some(vertex);
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Weights from the recursion against weights from the densities of all strategies, path by path.
+
+use std::sync::Arc;
+
+use description::{
+    AreaLightDesc, CameraKind, LensDesc, MaterialKind, MeshDesc, RoughnessDesc, SceneDesc, ScreenDesc,
+    ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
+};
+use geometry::RayStats;
+use math::{Normal3, Point2, Point3, Vec2, Vec3};
+use sampling::Sampler;
+use sampling::sampler::Independent;
+use scattering::{Directions, TransportMode};
+use scene::Scene;
+use scene::camera::{CameraRayDifferential, CameraSample};
+use scene::light::LightId;
+use spectrum::SampledWavelengths;
+
+use super::{Balance, Bidirectional, Lights, Vertex, Walk};
+
+const LIGHT_PATHS: usize = 37;
+
+/// The inside of a cube whose walls are diffuse or rough metal, with two lamps.
+fn room() -> Scene {
+    let mut desc = SceneDesc::default();
+    let rough = RoughnessDesc::isotropic(0.6);
+    let materials = [
+        MaterialKind::Diffuse { reflectance: 0.7.into() },
+        MaterialKind::Dielectric { eta: SpectrumDesc::Constant(1.5), roughness: rough },
+    ]
+    .map(|kind| desc.materials.push(kind.into()));
+    let mut quad = |corner: Vec3, x: Vec3, y: Vec3, material: usize, light: Option<f32>| {
+        let mesh = MeshDesc {
+            indices: Arc::new([[0, 1, 2], [0, 2, 3]]),
+            positions: Arc::new([corner, corner + x, corner + x + y, corner + y]),
+            ..MeshDesc::default()
+        };
+        let area_light = light.map(|scale| {
+            let light = AreaLightDesc { scale, ..AreaLightDesc::new(SpectrumDesc::Constant(1.0)) };
+            desc.area_lights.push(light)
+        });
+        let material = Some(materials[material]);
+        desc.shapes.push(ShapeDesc { material, area_light, ..ShapeKind::Triangles(mesh).into() });
+    };
+    let (x, y, z) = (Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0);
+    let (low, high) = (Vec3::splat(-1.0), Vec3::splat(1.0));
+    for (i, (corner, side_x, side_y)) in
+        [(low, x, y), (low, y, z), (low, z, x), (high, -y, -x), (high, -z, -y), (high, -x, -z)]
+            .into_iter()
+            .enumerate()
+    {
+        quad(corner, side_x, side_y, i % 2, None);
+    }
+    quad(Vec3::new(-0.5, -0.5, 0.9), Vec3::Y, Vec3::X, 0, Some(5.0));
+    quad(Vec3::new(-0.8, -0.2, -0.6), Vec3::Y * 0.2, Vec3::Z * 0.7, 1, Some(2.0));
+    desc.film.resolution = [100, 100];
+    desc.camera.kind =
+        CameraKind::Perspective { fov: 80.0, screen: ScreenDesc::default(), lens: LensDesc::default() };
+    desc.camera.camera_from_world = TransformDesc::translation(0.0, 0.0, 0.9);
+    scene::compile(&desc).expect("a scene").scene
+}
+
+/// A path from a light to the camera: its scattering vertices, from the light's side.
+struct Path<'a> {
+    light: (LightId, Point3, Normal3),
+    surfaces: Vec<&'a Vertex>,
+    camera: Point3,
+}
+
+/// The density with which a step from one place to another is made, per area at the other.
+fn per_area(pdf: f32, from: Point3, to: Point3, n: Normal3) -> f64 {
+    let way = to - from;
+    f64::from(pdf * n.dot(way.normalize()).abs() / way.length_squared())
+}
+
+impl Path<'_> {
+    fn place(&self, index: usize) -> (Point3, Normal3) {
+        let vertex = self.surfaces[index];
+        (vertex.p.p, vertex.n)
+    }
+
+    /// The density of scattering at one surface, on the way from a place to another.
+    fn scattered(&self, index: usize, from: Point3, to: (Point3, Normal3), mode: TransportMode) -> f64 {
+        let vertex = self.surfaces[index];
+        let (wo, wi) = ((from - vertex.p.p).normalize(), (to.0 - vertex.p.p).normalize());
+        per_area(vertex.bsdf.pdf(wo, wi, mode, Directions::All), vertex.p.p, to.0, to.1)
+    }
+
+    /// Where the step before or after a surface begins, seen from the light: index 0 is the light.
+    fn before(&self, index: usize) -> Point3 {
+        if index == 0 { self.light.1 } else { self.place(index - 1).0 }
+    }
+
+    fn after(&self, index: usize) -> Point3 {
+        if index + 1 == self.surfaces.len() { self.camera } else { self.place(index + 1).0 }
+    }
+
+    /// The density, per area, with which a light subpath of `s` vertices makes the path's first ones.
+    fn light_density(&self, paths: &Bidirectional, s: usize) -> f64 {
+        let (light, p, n) = self.light;
+        if s == 0 {
+            return 1.0;
+        }
+        let first = self.place(0);
+        let context = self.surfaces[0].light_context();
+        let wi = (p - first.0).normalize();
+        let source = paths.scene.light(light);
+        if s == 1 {
+            let pmf = paths.lights.seen_from.pmf(&context, light);
+            return per_area(pmf * source.pdf_li(&context, wi, false), first.0, p, n);
+        }
+        let (pdf_position, pdf_direction) = source.pdf_le(p, n, -wi);
+        let mut density = f64::from(paths.lights.emitting.pmf(light) * pdf_position)
+            * per_area(pdf_direction, p, first.0, first.1);
+        for index in 0..s - 2 {
+            let (from, to) = (self.before(index), self.place(index + 1));
+            density *= self.scattered(index, from, to, TransportMode::Importance);
+        }
+        density
+    }
+
+    /// The same for a camera subpath, the lens counted, whose film position is one of a pixel.
+    fn camera_density(&self, paths: &Bidirectional, t: usize) -> f64 {
+        if t == 1 {
+            return LIGHT_PATHS as f64;
+        }
+        let last = self.surfaces.len() - 1;
+        let to = self.place(last);
+        let ray = math::Ray::new(self.camera, (to.0 - self.camera).normalize(), 0.0);
+        let mut density = per_area(paths.scene.camera().pdf_we(&ray).1, self.camera, to.0, to.1);
+        for index in ((last + 3 - t).max(1)..=last).rev() {
+            let (from, to) = (self.after(index), self.place(index - 1));
+            density *= self.scattered(index, from, to, TransportMode::Radiance);
+        }
+        if t == self.surfaces.len() + 2 {
+            let (_, p, n) = self.light;
+            density *= self.scattered(0, self.after(0), (p, n), TransportMode::Radiance);
+        }
+        density
+    }
+
+    /// The weight of the strategy with `s` vertices on the light's side, by the densities of all.
+    fn weight(&self, paths: &Bidirectional, s: u32) -> f64 {
+        let vertices = self.surfaces.len() + 2;
+        let density = |s: usize| self.light_density(paths, s) * self.camera_density(paths, vertices - s);
+        let all: f64 = (0..vertices).map(density).sum();
+        density(s as usize) / all
+    }
+}
+
+#[test]
+fn weights_are_those_of_the_densities_of_all_strategies() {
+    let scene = room();
+    let lights = Lights::of(&scene);
+    let balance = Balance::connecting(LIGHT_PATHS);
+    let paths = Bidirectional { scene: &scene, lights: &lights, balance, max_depth: 4, regularize: false };
+    let lambda = SampledWavelengths::sample_visible(0.4);
+    let mut sampler = Sampler::Independent(Independent::new(1, 3));
+    let stats = &mut RayStats::default();
+    let mut seen = [0; 4];
+    let mut check = |path: &Path, s: u32, weight: f32, kind: usize| {
+        let expected = path.weight(&paths, s);
+        let difference = (f64::from(weight) - expected).abs();
+        assert!(
+            difference < 2e-3 * expected + 1e-6,
+            "s = {s} of {}: {weight} {expected}",
+            path.surfaces.len()
+        );
+        seen[kind] += 1;
+    };
+    for index in 0..2000 {
+        sampler.start_pixel_sample([index, 0], 0, 0);
+        // The sampler's next numbers choose the light and its ray.
+        let mut replay = sampler.clone();
+        let (light, _) = lights.emitting.sample(replay.get_1d()).expect("a light");
+        let sample =
+            scene.sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda).expect("a ray");
+        let start = (light, sample.p.expect("a place").p, sample.n);
+        let mut light_subpath = Vec::new();
+        paths.light_subpath(0.0, &lambda, &mut sampler, stats, |vertex, _, _| light_subpath.push(*vertex));
+
+        let film = Point2::from(sampler.get_2d()) * 100.0;
+        let sample = CameraSample { film, lens: Vec2::ZERO, time: 0.0, filter_weight: 1.0 };
+        let ray = scene.camera().generate_ray(&sample).expect("a ray");
+        let camera = ray.ray.o;
+        let ray = CameraRayDifferential { ray: ray.ray.into(), weight: ray.weight };
+
+        for (i, vertex) in light_subpath.iter().enumerate() {
+            let surfaces = light_subpath[..=i].iter().collect();
+            if let Some(found) = paths.see(vertex, Vec2::ZERO, |_| true, stats) {
+                check(&Path { light: start, surfaces, camera }, found.found.s, found.found.weight, 0);
+            }
+        }
+
+        let mut walk = Walk::from_camera(&paths, &ray, lambda);
+        let mut camera_subpath: Vec<Vertex> = Vec::new();
+        while let Some(mut surface) = walk.meet(stats) {
+            let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
+            if let Some(found) = paths.emitted(&walk, &surface, camera_subpath.last())
+                && !camera_subpath.is_empty()
+            {
+                let light = (surface.area_light.expect("a light"), surface.p(), surface.surface.n);
+                let surfaces = from_light(camera_subpath.len());
+                check(&Path { light, surfaces, camera }, found.s, found.weight, 1);
+            }
+            if walk.depth == paths.max_depth {
+                break;
+            }
+            let vertex = walk.arrive(&mut surface, &mut sampler).expect("no interfaces here");
+            camera_subpath.push(vertex);
+            let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
+
+            let mut replay = sampler.clone();
+            if let Some(found) = paths.direct(&vertex, &lambda, &mut sampler, stats) {
+                let (u, u_light) = (replay.get_1d(), replay.get_2d());
+                let context = vertex.light_context();
+                let (light, _) = lights.seen_from.sample(&context, u).expect("a light");
+                let sample = scene.sample_light(light, &context, u_light, &lambda, false).expect("a point");
+                let light = (light, sample.p.expect("a place").p, sample.n);
+                let surfaces = from_light(camera_subpath.len());
+                check(&Path { light, surfaces, camera }, found.s, found.weight, 2);
+            }
+            for (i, light) in light_subpath.iter().enumerate() {
+                if let Some(found) = paths.connect(&vertex, light, stats) {
+                    let mut surfaces: Vec<_> = light_subpath[..=i].iter().collect();
+                    surfaces.extend(from_light(camera_subpath.len()));
+                    check(&Path { light: start, surfaces, camera }, found.s, found.weight, 3);
+                }
+            }
+            if !walk.leave(&vertex, &surface, &mut sampler) {
+                break;
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
+}

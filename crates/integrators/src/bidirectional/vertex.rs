@@ -1,0 +1,93 @@
+//! Where a subpath scatters.
+
+use math::{Normal3, Point3Error, Ray, Vector3};
+use scattering::{Bsdf, TransportMode};
+use scene::light::LightSampleContext;
+use spectrum::SampledSpectrum;
+
+use super::Partial;
+use crate::direct::on_its_side;
+
+/// A vertex of a subpath.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    /// Position.
+    pub p: Point3Error,
+    /// Geometric normal.
+    pub n: Normal3,
+    /// Unit direction to the vertex before.
+    pub wo: Vector3,
+    /// Moment in the scene's time.
+    pub time: f32,
+    /// How it scatters.
+    pub bsdf: Bsdf,
+    /// What arrives along `wo`, of importance (from the camera) or power (from a light), over the subpath's density.
+    pub beta: SampledSpectrum,
+    /// Whether only the first wavelength is left.
+    pub hero_only: bool,
+    /// For the weights.
+    pub partial: Partial,
+    /// Scattering events on the subpath, this one included.
+    pub depth: u32,
+    /// What the subpath carries.
+    pub mode: TransportMode,
+}
+
+impl Vertex {
+    /// What lights need to know of it.
+    #[inline]
+    pub fn light_context(&self) -> LightSampleContext {
+        let context = LightSampleContext { p: self.p, n: self.n, ns: self.bsdf.frame.z, time: self.time };
+        on_its_side(context, self.wo, self.bsdf.flags())
+    }
+
+    /// Whether other vertices can be connected to it.
+    #[inline]
+    pub fn is_connectible(&self) -> bool {
+        self.bsdf.flags().is_non_specular()
+    }
+
+    /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to it.
+    #[inline]
+    pub fn scattered(&self, wi: Vector3) -> SampledSpectrum {
+        self.beta * self.bsdf.f(self.wo, wi, self.mode) * self.cosine(wi)
+    }
+
+    /// The cosine that scattering towards `wi` is multiplied by: with the shading normal, and for light with the correction that
+    /// keeps its energy ([Veach 1997 §5.3.2]).
+    #[inline]
+    pub fn cosine(&self, wi: Vector3) -> f32 {
+        let ns = self.bsdf.frame.z;
+        match self.mode {
+            TransportMode::Radiance => wi.dot(ns).abs(),
+            TransportMode::Importance => {
+                let cos_wo = self.wo.dot(self.n).abs();
+                if cos_wo == 0.0 { 0.0 } else { (self.wo.dot(ns) * wi.dot(self.n)).abs() / cos_wo }
+            }
+        }
+    }
+
+    /// Density per solid angle with which this subpath goes on along `wi`.
+    #[inline]
+    pub fn pdf(&self, wi: Vector3) -> f32 {
+        self.bsdf.pdf(self.wo, wi, self.mode, scattering::Directions::All)
+    }
+
+    /// Density per solid angle with which a subpath of the other kind that comes from `wi` goes on along `wo`.
+    #[inline]
+    pub fn pdf_back(&self, wi: Vector3) -> f32 {
+        self.bsdf.pdf(wi, self.wo, !self.mode, scattering::Directions::All)
+    }
+
+    /// |cos| of a direction to the geometric normal.
+    #[inline]
+    pub fn cos_theta(&self, w: Vector3) -> f32 {
+        self.n.dot(w).abs()
+    }
+
+    /// The ray to another point, with the normal of its surface if there is one; to be followed to [`Ray::SHADOW_END`].
+    #[inline]
+    pub fn ray_to(&self, p: Point3Error, n: Normal3) -> Ray {
+        Ray::between(self.p, self.n, p, n, self.time)
+    }
+}

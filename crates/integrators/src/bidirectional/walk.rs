@@ -1,0 +1,189 @@
+//! From vertex to vertex, from the camera or from a light.
+//!
+//! A walk follows its ray to a surface ([`Walk::meet`]), which may be a vertex ([`Walk::arrive`]) or let the ray pass, and leaves the
+//! vertex along a direction that its BSDF chooses ([`Walk::leave`]). From the second vertex on it ends with probability 1 − q by
+//! Russian roulette, where q is how much of what began is still carried, at most 1; the weights of strategies do not know of it,
+//! which costs nothing but a little efficiency.
+
+use geometry::RayStats;
+use math::RayDifferential;
+use sampling::Sampler;
+use scattering::{Directions, TransportMode};
+use scene::SurfaceInteraction;
+use scene::camera::CameraRayDifferential;
+use scene::light::LightId;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::light_end::Place;
+use super::{Bidirectional, Partial, Vertex};
+use crate::direct::pass_through;
+
+/// A subpath on its way to its next surface.
+#[derive(Clone)]
+pub(crate) struct Walk<'a> {
+    paths: &'a Bidirectional<'a>,
+    /// Where it goes.
+    pub ray: RayDifferential,
+    /// What it carries along the ray, over its density.
+    pub beta: SampledSpectrum,
+    /// For the weights, without what the next surface adds.
+    pub partial: Partial,
+    /// Wavelengths that are left of it.
+    pub lambda: SampledWavelengths,
+    /// Scattering events so far.
+    pub depth: u32,
+    /// The share of what began that it carries, but for what refraction does to radiance.
+    share: SampledSpectrum,
+    /// Way since the vertex before.
+    distance: f32,
+    rough_before: bool,
+    origin: Origin,
+    mode: TransportMode,
+}
+
+/// Where the ray comes from.
+#[derive(Clone, Copy, Debug)]
+enum Origin {
+    /// From a place.
+    Place,
+    /// From a direction without a place: a camera of parallel rays.
+    Direction,
+    /// From a light.
+    Light(LightId, Place),
+}
+
+impl<'a> Walk<'a> {
+    /// From the camera along one of its rays.
+    pub fn from_camera(
+        paths: &'a Bidirectional,
+        camera_ray: &CameraRayDifferential,
+        lambda: SampledWavelengths,
+    ) -> Self {
+        let camera = paths.scene.camera();
+        let (pdf_position, pdf_direction) = camera.pdf_we(&camera_ray.ray.ray);
+        let parallel = camera.is_parallel();
+        let pdf = if parallel { pdf_position } else { pdf_direction };
+        let beta = SampledSpectrum::splat(camera_ray.weight);
+        let origin = if parallel { Origin::Direction } else { Origin::Place };
+        let partial = paths.balance.at_camera(pdf);
+        Self::new(paths, camera_ray.ray, (beta, partial), lambda, (origin, TransportMode::Radiance))
+    }
+
+    /// From one of the lights, chosen by its power; `None` where no light leaves.
+    pub fn from_light(
+        paths: &'a Bidirectional,
+        time: f32,
+        lambda: SampledWavelengths,
+        sampler: &mut Sampler,
+    ) -> Option<Self> {
+        let (u, u_position, u_direction) = (sampler.get_1d(), sampler.get_2d(), sampler.get_2d());
+        let (light, pmf) = paths.lights.emitting.sample(u)?;
+        let sample = paths.scene.sample_emission(light, u_position, u_direction, time, &lambda)?;
+        let start = (sample.beta() / pmf, Partial::default());
+        let origin = (Origin::Light(light, sample.p.map(|p| (p.p, sample.n))), TransportMode::Importance);
+        Some(Self::new(paths, sample.ray.into(), start, lambda, origin))
+    }
+
+    fn new(
+        paths: &'a Bidirectional,
+        ray: RayDifferential,
+        (beta, partial): (SampledSpectrum, Partial),
+        lambda: SampledWavelengths,
+        (origin, mode): (Origin, TransportMode),
+    ) -> Self {
+        Self {
+            paths,
+            ray,
+            beta,
+            partial,
+            lambda,
+            depth: 0,
+            share: SampledSpectrum::ONE,
+            distance: 0.0,
+            rough_before: false,
+            origin,
+            mode,
+        }
+    }
+
+    /// The surface that the ray meets; `None` if it leaves the scene.
+    pub fn meet(&mut self, stats: &mut RayStats) -> Option<SurfaceInteraction> {
+        let (surface, t) = self.paths.scene.intersect(&self.ray.ray, f32::INFINITY, stats)?;
+        self.distance += t;
+        Some(surface)
+    }
+
+    /// The vertex at a surface that was met; `None` if the ray passes it, to be followed on.
+    pub fn arrive(&mut self, surface: &mut SurfaceInteraction, sampler: &mut Sampler) -> Option<Vertex> {
+        let Some(mut bsdf) = self.paths.scene.bsdf(surface, &self.ray, &mut self.lambda, sampler) else {
+            let t = self.ray.ray.o.distance(surface.p());
+            self.ray = pass_through(&self.ray, surface, t);
+            return None;
+        };
+        if self.paths.regularize && self.rough_before {
+            bsdf.regularize();
+        }
+        self.depth += 1;
+        let s = &surface.surface;
+        let mut vertex = Vertex {
+            p: s.p,
+            n: s.n,
+            wo: s.wo,
+            time: s.time,
+            bsdf,
+            beta: self.beta,
+            hero_only: self.lambda.secondary_terminated(),
+            partial: Partial::default(),
+            depth: self.depth,
+            mode: self.mode,
+        };
+        let cos_theta = vertex.cos_theta(vertex.wo);
+        vertex.partial = match &self.origin {
+            Origin::Place => self.partial.arrive(self.distance * self.distance, cos_theta),
+            Origin::Direction => self.partial.arrive(1.0, cos_theta),
+            &Origin::Light(light, place) => {
+                let context = vertex.light_context();
+                let direct = self.paths.direct_pdf(light, &context, vertex.wo, place);
+                let end = self.paths.light_end(light, &context, vertex.wo, place, direct);
+                self.paths.balance.at_light(&end, cos_theta)
+            }
+        };
+        Some(vertex)
+    }
+
+    /// Leaves a vertex along a direction of its BSDF; `false` if it ends there.
+    pub fn leave(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
+        let (uc, u) = (sampler.get_1d(), sampler.get_2d());
+        let Some(sample) = vertex.bsdf.sample_f(vertex.wo, uc, u, vertex.mode, Directions::All) else {
+            return false;
+        };
+        let scale = sample.f * (vertex.cosine(sample.wi) / sample.pdf);
+        let cos_theta = vertex.cos_theta(sample.wi);
+        let balance = self.paths.balance;
+        self.partial = if sample.flags.is_specular() {
+            vertex.partial.leave_specular(cos_theta)
+        } else {
+            let pdf = if sample.pdf_is_proportional { vertex.pdf(sample.wi) } else { sample.pdf };
+            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta)
+        };
+        self.rough_before |= !sample.flags.is_specular();
+        self.beta *= scale;
+        self.share *= scale;
+        if vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {
+            self.share *= sample.eta * sample.eta;
+        }
+        self.origin = Origin::Place;
+        self.distance = 0.0;
+        self.ray = surface.spawn_scattered(&self.ray, &sample);
+
+        let survival = self.share.max_component();
+        if self.depth > 1 && survival < 1.0 {
+            if survival <= 0.0 || sampler.get_1d() >= survival {
+                return false;
+            }
+            self.beta /= survival;
+            self.share /= survival;
+        }
+        !self.beta.is_black()
+    }
+}

@@ -1,0 +1,113 @@
+//! Light tracing: particles from the lights, as nature has it.
+//!
+//! A light subpath leaves a light, chosen in proportion to power, and goes from surface to surface as the BSDFs say. No ray of it
+//! would ever hit a pinhole, so each of its vertices x is connected to the camera: if nothing stands between them, the pixel of
+//! the film that x is seen in receives
+//!
+//! ```text
+//! β·f(x)·|cos θ|·W_e / p_lens
+//! ```
+//!
+//! where β is the flux that arrived over the density of the subpath, W_e the camera's importance and p_lens the density of the
+//! point on the lens. With n subpaths, 1/n of the sum over all is the picture.
+//!
+//! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and costs nothing extra. It fails
+//! where the camera looks into a mirror or through glass, which no vertex can be connected through: they stay black but for what is
+//! behind them not (there is nothing: even a mirror's picture needs rays from the eye). And it wastes: most rays reach
+//! nothing that the camera sees, which is what made tracing from the eye win; the summary says how many. The lights themselves,
+//! at depth 0, are seen along one camera ray for each pixel, since those far away are nowhere on a subpath.
+//!
+//! Unbiased for what it can see. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use film::Film;
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::Scene;
+use spectrum::SampledSpectrum;
+
+use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay};
+use crate::pixel_loop::PixelSamples;
+use crate::{Cancelled, Control, Integrator};
+
+/// Light tracing.
+#[derive(Debug)]
+pub struct LightTracing {
+    max_depth: u32,
+    sampler: Sampler,
+    light_sampler: Sampler,
+    lights: Lights,
+    rays: u64,
+    reached: AtomicU64,
+}
+
+impl LightTracing {
+    /// With paths of at most `max_depth` scattering events, and a sampler for each end.
+    pub fn new(max_depth: u32, sampler: Sampler, light_sampler: Sampler) -> Self {
+        let (lights, reached) = (Lights::none(), AtomicU64::new(0));
+        Self { max_depth, sampler, light_sampler, lights, rays: 0, reached }
+    }
+}
+
+impl Integrator for LightTracing {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene) {
+        self.lights = Lights::of(scene);
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let paths = Bidirectional {
+            scene,
+            lights: &self.lights,
+            balance: Balance::connecting(film.pixel_bounds().area()),
+            max_depth: self.max_depth,
+            regularize: false,
+        };
+        let seen = Bidirectional { max_depth: 0, ..paths };
+        let filter = film.filter().clone();
+        let (tiles, splatter) = film.tiles_and_splatter();
+        let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
+        let stats = pixels.add(tiles, control, |sample, sampler, stats| {
+            let lambda = &sample.lambda;
+            let mut light_sampler = self.light_sampler.clone();
+            light_sampler.start_pixel_sample(sample.pixel, pass, 0);
+            let mut reached = 0;
+            paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, |vertex, sampler, stats| {
+                let u = sampler.get_2d();
+                if let Some(seen) = paths.see(vertex, u, |film| splatter.reaches(film), stats) {
+                    splatter.add(seen.film, &seen.found.l, lambda);
+                    reached += 1;
+                }
+            });
+            splatter.add_paths(1);
+            self.reached.fetch_add(reached, Ordering::Relaxed);
+            let mut l = SampledSpectrum::ZERO;
+            if let Some(camera_ray) = &sample.camera_ray {
+                seen.camera_subpath(camera_ray, lambda, sampler, stats, |on_the_way, _, _| {
+                    if let OnTheWay::Light(found) = on_the_way {
+                        l += found.l;
+                    }
+                });
+            }
+            l
+        })?;
+        self.rays += stats.rays;
+        Ok(stats)
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        let reached = self.reached.load(Ordering::Relaxed);
+        let share = 100.0 * reached as f64 / self.rays.max(1) as f64;
+        vec![("reached", format!("{share:.2} % of the rays ended on the film, {reached} of {}", self.rays))]
+    }
+}
