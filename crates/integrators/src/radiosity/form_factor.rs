@@ -16,7 +16,7 @@
 //! four for each, one to each quarter of the emitter. Where quarters shine unevenly, as on a floor half below a block, G counts by the light of
 //! its quarter.
 //!
-//! A bent cell emits as the flat polygon of its corners, and not to itself. Sources: [Baum 1989], [Cohen 1993 §4.6, §4.10].
+//! A bent cell emits as the flat polygon of its corners, and not to itself. Sources: [Baum 1989], [Cohen 1993].
 
 use geometry::{RayStats, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, Ray, Vector3};

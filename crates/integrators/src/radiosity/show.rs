@@ -6,7 +6,7 @@
 //!
 //! *Gathered*: direct light is sampled as by paths, one light a sample, and indirect light is what rays in random directions of the cosine's density
 //! find on the elements. Shadows are then as sharp as they are, and errors of the solution count only after one more diffuse reflection
-//! ([Lischinski 1993]; [Cohen 1993 §9.5]). Surfaces that have no elements (planes without end, formulas, solids, curves) are always
+//! ([Lischinski 1993]; [Cohen 1993]). Surfaces that have no elements (planes without end, formulas, solids, curves) are always
 //! shown so; they take light but pass none on.
 
 use geometry::{Hit, RayStats, SurfacePoint};
