@@ -1,7 +1,9 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
 use description::{
-    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, Randomization, SamplerKind, SppmDesc, VcmDesc,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, FormFactorsDesc, IntegratorDesc,
+    LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow,
+    RadiosityDesc, Randomization, SamplerKind, SppmDesc, VcmDesc,
 };
 
 use crate::settings::{light_sampler, max_depth, regularize};

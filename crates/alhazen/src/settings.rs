@@ -3,11 +3,13 @@
 use std::str::FromStr;
 
 use description::{
-    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, SamplerKind, SceneDesc, SppmDesc, VcmDesc,
+    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, SamplerKind,
+    SceneDesc, SppmDesc, VcmDesc,
 };
 
 use crate::names::{
-    FILTERS, FORM_FACTORS, LIGHT_SAMPLERS, MLT_TECHNIQUES, PHOTON_KERNELS, PHOTON_MAPPING_SHOWS, QUALITIES, SAMPLERS,
+    FILTERS, FORM_FACTORS, LIGHT_SAMPLERS, MLT_TECHNIQUES, PHOTON_KERNELS, PHOTON_MAPPING_SHOWS, QUALITIES,
+    SAMPLERS,
 };
 
 /// A setting that can be changed by name.

@@ -44,7 +44,7 @@ fn means(image: &Image, side: usize) -> (f64, Vec<f64>) {
 }
 
 fn job(name: &str, overrides: &Overrides) -> Job {
-    let mut desc = import(&scene(name), &Files).unwrap().desc;
+    let mut desc = import(&scene(name), &Files).desc;
     overrides.apply(&mut desc).unwrap();
     Job::compile(&desc).unwrap().job
 }
@@ -80,7 +80,8 @@ fn distance(a: &Image, b: &Image) -> f64 {
 
 #[test]
 fn every_pass_is_better_than_the_last() {
-    let settings = [("tolerance", "0.01"), ("steps", "5"), ("patchsize", "120"), ("disablepixeljitter", "true")];
+    let settings =
+        [("tolerance", "0.01"), ("steps", "5"), ("patchsize", "120"), ("disablepixeljitter", "true")];
     let overrides = overrides("radiosity", 32, 1, &settings);
     let last = render_scene(&scene("cornell-box.pbrt"), &overrides);
     let mut distances = Vec::new();
@@ -128,7 +129,9 @@ fn the_light_is_saved_as_a_mesh() {
     let mesh = read_ply(bytes).unwrap();
     assert!(mesh.quads.is_empty() && mesh.triangles.len() > 1000);
     // In the world's coordinates, within the room.
-    let inside = mesh.positions.iter().all(|p| p.cmpge(alhazen::math::Vec3::splat(-1e-4)).all() && p.cmple(alhazen::math::Vec3::splat(6.001)).all());
+    let inside = mesh.positions.iter().all(|p| {
+        p.cmpge(alhazen::math::Vec3::splat(-1e-4)).all() && p.cmple(alhazen::math::Vec3::splat(6.001)).all()
+    });
     assert!(inside);
     let area = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);

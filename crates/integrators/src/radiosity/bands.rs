@@ -175,8 +175,9 @@ mod tests {
             Spectrum::rgb_illuminant(srgb, Rgb::new(0.9, 0.2, 0.05)),
             PiecewiseLinear::from_interleaved(&lamp).unwrap().into(),
         ];
-        let many: Vec<_> =
-            (0..1 << 14).map(|i| SampledWavelengths::sample_visible((i as f32 + 0.5) / (1 << 14) as f32)).collect();
+        let many: Vec<_> = (0..1 << 14)
+            .map(|i| SampledWavelengths::sample_visible((i as f32 + 0.5) / (1 << 14) as f32))
+            .collect();
         for spectrum in spectra {
             let (found, exact) = (xyz(&spectrum, Wavelengths::new(true).groups()), xyz(&spectrum, &many));
             for (found, exact) in found.into_iter().zip(exact) {

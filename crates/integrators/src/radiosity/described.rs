@@ -75,7 +75,8 @@ pub(crate) fn warnings(desc: &SceneDesc) -> Vec<Diagnostic> {
             ShapeKind::Curve(_) => "a curve",
             _ => return None,
         };
-        let message = format!("{what} cannot be cut into patches; radiosity lights it, but it passes no light on");
+        let message =
+            format!("{what} cannot be cut into patches; radiosity lights it, but it passes no light on");
         Some(Diagnostic::warning("no-patches", message, shape.origin.span))
     });
     of_material.chain(of_shape).collect()

@@ -62,8 +62,11 @@ fn mean_albedo(bsdf: &Bsdf) -> [SampledSpectrum; 2] {
         let place = |i: usize| (i as f32 + 0.5) / STRATA as f32;
         let (x, y) = (i % STRATA, i / STRATA);
         let wo = bsdf.frame.from_local(warp::sample_cosine_hemisphere(Vec2::new(place(x), place(y))));
-        let (uc, u) = (place((x + y) % STRATA), Vec2::new(place((x + 2 * y) % STRATA), place((2 * x + y) % STRATA)));
-        let Some(sample) = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All) else { continue };
+        let (uc, u) =
+            (place((x + y) % STRATA), Vec2::new(place((x + 2 * y) % STRATA), place((2 * x + y) % STRATA)));
+        let Some(sample) = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All) else {
+            continue;
+        };
         let cos_theta = bsdf.render_to_local(sample.wi).z;
         shares[usize::from(cos_theta < 0.0)] += sample.f * (cos_theta.abs() / sample.pdf);
     }
@@ -123,7 +126,9 @@ impl Element {
                 return SamplePoint { p: Point3Error::exact(Point3::ZERO), n: Normal3::ZERO, weight: 0.0 };
             };
             let weight = if area > 0.0 { areas[i] / area } else { 0.0 };
-            let here = albedo_at(scene, mesh.primitive(leaf), &surface, wavelengths).unwrap_or_default().scaled(weight);
+            let here = albedo_at(scene, mesh.primitive(leaf), &surface, wavelengths)
+                .unwrap_or_default()
+                .scaled(weight);
             albedo.reflectance += here.reflectance;
             albedo.transmittance += here.transmittance;
             SamplePoint { p: surface.p, n: surface.n, weight }
@@ -209,7 +214,8 @@ impl Patch {
         if let Some(first) = unshot.first_mut() {
             *first = emitted.map(|side| side * area);
         }
-        let even = emitted.map(|side| if depth > 0 { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
+        let even =
+            emitted.map(|side| if depth > 0 { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
         Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
     }
 

@@ -16,7 +16,8 @@
 //! four for each, one to each quarter of the emitter. Where quarters shine unevenly, as on a floor half below a block, G counts by the light of
 //! its quarter.
 //!
-//! A bent cell emits as the flat polygon of its corners, and not to itself. Sources: [Baum 1989], [Cohen 1993].
+//! Where a shot brings next to nothing, a single ray decides, each time to another point. A bent cell emits as the flat polygon of its
+//! corners, with the light of its whole area, and not to itself. Sources: [Baum 1989], [Cohen 1993].
 
 use geometry::{RayStats, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, Ray, Vector3};
@@ -74,6 +75,11 @@ pub(crate) struct Emitter {
     points: [[(Point3Error, Normal3); 4]; 4],
     /// The light of each quarter, in parts of the mean.
     light: [f32; 4],
+    /// Its area, in parts of that of the flat polygon.
+    bulge: f32,
+    /// Where no more than this arrives, one ray decides, to the point of the receiver whose turn it is.
+    faint: f32,
+    turn: usize,
 }
 
 /// What an element receives of one shot of unit radiosity.
@@ -92,7 +98,7 @@ impl Received {
 }
 
 impl Emitter {
-    /// A cell that emits to the side of its normal (0), or to the other one (1).
+    /// A patch that emits to the side of its normal (0), or to the other one (1).
     pub fn new(scene: &Scene, mesh: &Mesh, patch: &Patch, side: usize) -> Self {
         let world = scene.world();
         let cell = mesh.cell(patch.cell);
@@ -112,15 +118,26 @@ impl Emitter {
         if area.dot(n) < 0.0 {
             corners.reverse();
         }
-        Self { corners, center, n, points, light: patch.evenness(side) }
+        let flat = 0.5 * area.length();
+        let bulge = if flat > 0.0 { patch.area / flat } else { 0.0 };
+        Self { corners, center, n, points, light: patch.evenness(side), bulge, faint: 0.0, turn: 0 }
     }
 
-    /// The form factor from a point with unit normal `n` to the emitter, nothing between.
-    fn seen_from(&self, p: Point3, n: Normal3) -> f32 {
+    /// Where no more than the irradiance `faint` arrives of unit radiosity, one ray decides instead of four or more; which one
+    /// changes with `turn`.
+    pub fn hastily(self, faint: f32, turn: u32) -> Self {
+        Self { faint, turn: turn as usize % 4, ..self }
+    }
+
+    /// The form factors from the two sides of a point with unit normal `n` to the emitter, nothing between.
+    fn seen_from(&self, p: Point3, n: Normal3) -> [f32; 2] {
         let mut polygon = [Vector3::ZERO; 4];
         let polygon = &mut polygon[..self.corners.len()];
         polygon.iter_mut().zip(&self.corners).for_each(|(to, corner)| *to = *corner - p);
-        point_to_polygon(n, polygon).max(0.0)
+        [n, -n].map(|n| {
+            let is_above = polygon.iter().any(|corner| n.dot(*corner) > 0.0);
+            if is_above { point_to_polygon(n, polygon).max(0.0) * self.bulge } else { 0.0 }
+        })
     }
 
     /// Whether it emits towards a point at all.
@@ -144,7 +161,7 @@ impl Emitter {
         let mut seen = [[0.0; 2]; 4];
         for (seen, from) in seen.iter_mut().zip(&element.points) {
             if self.faces(from.p.p) {
-                *seen = [self.seen_from(from.p.p, from.n), self.seen_from(from.p.p, -from.n)];
+                *seen = self.seen_from(from.p.p, from.n);
             }
         }
         if seen == [[0.0; 2]; 4] {
@@ -153,8 +170,11 @@ impl Emitter {
         let mut passes = |ray: &Ray| !scene.occluded(ray, Ray::SHADOW_END, Interfaces::Pass, stats);
         // One ray for each point of the receiver, to a quarter that shines.
         let mut probes = [None; 4];
-        for (k, from) in element.points.iter().enumerate() {
-            let quarter = (0..4).map(|i| (i + k) % 4).find(|&quarter| self.light[quarter] > DARK).unwrap_or(k);
+        let is_faint = seen.iter().flatten().all(|&factor| factor <= self.faint);
+        let asked = if is_faint { self.turn..self.turn + 1 } else { 0..4 };
+        for (k, from) in element.points.iter().enumerate().filter(|(k, _)| asked.contains(k)) {
+            let quarter =
+                (0..4).map(|i| (i + k) % 4).find(|&quarter| self.light[quarter] > DARK).unwrap_or(k);
             if let Some((_, _, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) {
                 probes[k] = Some((quarter, passes(&ray)));
             }
@@ -166,7 +186,8 @@ impl Emitter {
         for (k, from) in element.points.iter().enumerate() {
             for quarter in 0..4 {
                 if let Some((g, side, ray)) = self.ray(from, quarter, (quarter + k) % 4, time) {
-                    let known = all_alike.or(probes[k].filter(|probe| probe.0 == quarter).map(|probe| probe.1));
+                    let known =
+                        all_alike.or(probes[k].filter(|probe| probe.0 == quarter).map(|probe| probe.1));
                     let shines = self.light[quarter] > DARK;
                     let visible = shines && known.unwrap_or_else(|| passes(&ray));
                     share[k].add(side, g, if visible { self.light[quarter] } else { 0.0 });
@@ -236,7 +257,8 @@ mod tests {
     fn parallel_unit_squares() {
         // Howell's catalogue, C-11, for X = Y = 1.
         let root = 2f64.sqrt();
-        let exact = 2.0 / PI * ((4.0f64 / 3.0).sqrt().ln() + 2.0 * root * (1.0 / root).atan() - 2.0 * (PI / 4.0));
+        let exact =
+            2.0 / PI * ((4.0f64 / 3.0).sqrt().ln() + 2.0 * root * (1.0 / root).atan() - 2.0 * (PI / 4.0));
         let square = [v(0.0, 0.0, 1.0), v(0.0, 1.0, 1.0), v(1.0, 1.0, 1.0), v(1.0, 0.0, 1.0)];
         let found = to_rectangle(24, |s, t| (v(s, t, 0.0), Normal3::Z), &square);
         assert!((found / exact - 1.0).abs() < 1e-3, "{found}, not {exact}");
@@ -269,9 +291,7 @@ mod tests {
         // Rings of equal area; a polygon of many corners is one of many triangles around its centre.
         let ring = |i: usize| {
             let p = v(((i as f32 + 0.5) / 64.0).sqrt(), 0.0, 0.0);
-            let triangle = |k: usize| {
-                [v(0.0, 0.0, 1.0) - p, disk[k] - p, disk[(k + 1) % SIDES] - p]
-            };
+            let triangle = |k: usize| [v(0.0, 0.0, 1.0) - p, disk[k] - p, disk[(k + 1) % SIDES] - p];
             (0..SIDES).map(|k| f64::from(point_to_polygon(Normal3::Z, &triangle(k)))).sum::<f64>()
         };
         let found = (0..64).map(ring).sum::<f64>() / 64.0;
@@ -282,7 +302,8 @@ mod tests {
     fn what_is_below_the_horizon_does_not_count() {
         // A wall that goes on below is the wall that ends at the horizon.
         let wall = |low: f32| [v(1.0, -1.0, low), v(1.0, -1.0, 2.0), v(1.0, 1.0, 2.0), v(1.0, 1.0, low)];
-        let (cut, whole) = (point_to_polygon(Normal3::Z, &wall(-3.0)), point_to_polygon(Normal3::Z, &wall(0.0)));
+        let (cut, whole) =
+            (point_to_polygon(Normal3::Z, &wall(-3.0)), point_to_polygon(Normal3::Z, &wall(0.0)));
         assert!(cut > 0.05 && (cut - whole).abs() < 1e-6, "{cut}, {whole}");
         assert_eq!(point_to_polygon(-Normal3::Z, &wall(0.5)), 0.0);
     }

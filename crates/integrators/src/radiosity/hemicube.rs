@@ -67,8 +67,12 @@ impl Hemicube {
             } else {
                 let (face, below) = ((row - n) / (n / 2), (row - n) % (n / 2));
                 let z = (below as f32 + 0.5) * step;
-                let (x, y) = [(1.0, place(column)), (-1.0, place(column)), (place(column), 1.0), (place(column), -1.0)]
-                    [face as usize % 4];
+                let (x, y) = [
+                    (1.0, place(column)),
+                    (-1.0, place(column)),
+                    (place(column), 1.0),
+                    (place(column), -1.0),
+                ][face as usize % 4];
                 (Vector3::new(x, y, z), z)
             };
             let turned = Vector3::new(d.x * cos - d.y * sin, d.x * sin + d.y * cos, d.z);
@@ -143,7 +147,8 @@ mod tests {
         for resolution in [16, 64, 256] {
             let cube = Hemicube::new(resolution, 3);
             let pixels = (0..cube.rows()).flat_map(|row| cube.row(row));
-            let (sum, up) = pixels.fold((0.0, 0.0), |(sum, up), (d, factor)| (sum + factor, up + factor * d.z));
+            let (sum, up) =
+                pixels.fold((0.0, 0.0), |(sum, up), (d, factor)| (sum + factor, up + factor * d.z));
             let error = 4.0 / (resolution * resolution) as f32 + 1e-5;
             assert!((sum - 1.0).abs() < error, "{resolution}: {sum}");
             // ∫ cos²θ dω / π = 2/3.

@@ -78,7 +78,8 @@ impl Domain {
         match self {
             Self::Triangle([a, b, c]) => {
                 let whole = (*b - *a).perp_dot(*c - *a);
-                let weights = [(*b - uv).perp_dot(*c - uv), (*c - uv).perp_dot(*a - uv), (*a - uv).perp_dot(*b - uv)];
+                let weights =
+                    [(*b - uv).perp_dot(*c - uv), (*c - uv).perp_dot(*a - uv), (*a - uv).perp_dot(*b - uv)];
                 weights.iter().position(|w| w / whole > 0.5).unwrap_or(3)
             }
             Self::Rectangle([a, b, _, d]) => {
@@ -382,7 +383,8 @@ impl Mesh {
     /// The leaf that a ray has hit, and where on its primitive; `None` on what has no cells.
     pub fn leaf(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(&Cell, Vec2)> {
         let root = self.roots.get(&(hit.geometry, hit.instance))?[hit.primitive as usize]?;
-        let uv = if matches!(world.geometry(hit.geometry), Geometry::Spheres(_)) { surface.uv } else { hit.uv };
+        let uv =
+            if matches!(world.geometry(hit.geometry), Geometry::Spheres(_)) { surface.uv } else { hit.uv };
         let mut cell = self.cell(root);
         while let Some(first) = cell.children {
             // The second and third corner of the first half are the ends of the cut.
@@ -410,7 +412,8 @@ impl Mesh {
             return;
         }
         let (uv, middle) = self.middle(world, cell, side);
-        let Some(vertex) = self.vertices.find(&middle).filter(|&v| self.cut.contains(&side_key(side, v))) else {
+        let Some(vertex) = self.vertices.find(&middle).filter(|&v| self.cut.contains(&side_key(side, v)))
+        else {
             return;
         };
         let middle = Corner { vertex, uv };

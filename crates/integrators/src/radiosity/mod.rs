@@ -168,7 +168,9 @@ impl Integrator for Radiosity {
     ) -> Result<RayStats, Cancelled> {
         let steps = self.steps();
         let samples = self.sampler.samples_per_pixel();
-        let Some(State { solution, view, lights, mesh }) = &mut self.state else { return Ok(RayStats::default()) };
+        let Some(State { solution, view, lights, mesh }) = &mut self.state else {
+            return Ok(RayStats::default());
+        };
         let mut stats = RayStats::default();
         if pass < steps {
             let share = self.settings.tolerance.powf((pass + 1) as f32 / steps as f32);
@@ -205,7 +207,8 @@ impl Integrator for Radiosity {
             }
             Ok(stats)
         };
-        let drawn: Vec<RayStats> = film.tiles_mut().into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
+        let drawn: Vec<RayStats> =
+            film.tiles_mut().into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
         drawn.into_iter().for_each(|some| stats += some);
         Ok(stats)
     }

@@ -6,15 +6,20 @@
 //! is not a light at 255. Each side that gets or gives light has vertices and triangles of its own; those of an inner side turn the other way.
 
 use math::DVec3;
-use spectrum::{RgbColorSpace, xyz_from};
 use scene::Scene;
+use spectrum::{RgbColorSpace, xyz_from};
 
 use super::bands::Bands;
 use super::shooting::Solution;
 use super::show::View;
 
 /// Writes the mesh.
-pub(crate) fn encode(scene: &Scene, solution: &Solution, view: &View, color_space: &RgbColorSpace) -> Vec<u8> {
+pub(crate) fn encode(
+    scene: &Scene,
+    solution: &Solution,
+    view: &View,
+    color_space: &RgbColorSpace,
+) -> Vec<u8> {
     let world_from_render = scene.camera().transform().world_from_render();
     let cut = &solution.cut;
     let mut vertices: Vec<(DVec3, [f32; 3], bool)> = Vec::new();
@@ -26,11 +31,13 @@ pub(crate) fn encode(scene: &Scene, solution: &Solution, view: &View, color_spac
         let center = cut.mesh.surface(scene.world(), cell.primitive, cell.domain().center());
         let Some(center) = center else { continue };
         for side in 0..2 {
-            let radiosity = |irradiance: &[Bands; 2]| element.albedo.scatter(irradiance)[side] + emitted[side];
+            let radiosity =
+                |irradiance: &[Bands; 2]| element.albedo.scatter(irradiance)[side] + emitted[side];
             let corners = outline.iter().map(|corner| {
                 (cut.mesh.vertices()[corner.vertex as usize].p, radiosity(view.at_vertex(corner.vertex)))
             });
-            let fan: Vec<_> = std::iter::once((center.p.p, radiosity(&element.irradiance()))).chain(corners).collect();
+            let fan: Vec<_> =
+                std::iter::once((center.p.p, radiosity(&element.irradiance()))).chain(corners).collect();
             if fan.iter().all(|(_, light)| light.is_black()) {
                 continue;
             }
@@ -49,7 +56,8 @@ pub(crate) fn encode(scene: &Scene, solution: &Solution, view: &View, color_spac
             }
         }
     }
-    let brightest = vertices.iter().filter(|vertex| !vertex.2).flat_map(|vertex| vertex.1).fold(0.0, f32::max);
+    let brightest =
+        vertices.iter().filter(|vertex| !vertex.2).flat_map(|vertex| vertex.1).fold(0.0, f32::max);
     let scale = if brightest > 0.0 { brightest.recip() } else { 1.0 };
     let header = format!(
         "ply\nformat binary_little_endian 1.0\ncomment radiosity: vertex colours, and linear RGB in scene units\n\

@@ -27,12 +27,15 @@ use scene::{Interfaces, Scene};
 use spectrum::SampledSpectrum;
 
 use super::bands::{Bands, Wavelengths};
-use super::element::{Element, Patch};
+use super::element::{Albedo, Element, Patch};
 use super::form_factor::{Emitter, Received};
 use super::hemicube::Hemicube;
 use super::subdivide::Cut;
 use super::{FormFactors, RadiositySettings};
 use crate::{Cancelled, Control};
+
+/// The part of all light, spread evenly, below which an irradiance is next to nothing.
+const FAINT: f32 = 1e-3;
 
 /// The state of a solution.
 pub(crate) struct Solution {
@@ -82,6 +85,11 @@ impl Solution {
         Ok(stats)
     }
 
+    /// The brightness of all light there is to send, spread over all surfaces.
+    fn even(&self) -> f32 {
+        self.total / self.cut.patches.iter().map(|patch| patch.area).sum::<f32>()
+    }
+
     /// The side of a patch that has most to send.
     fn brightest(&self) -> Option<(u32, usize)> {
         let mut best = (0.0, None);
@@ -113,7 +121,8 @@ impl Solution {
         let brightness = self.wavelengths.brightness(&all);
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
-                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[patch as usize], side);
+                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[patch as usize], side)
+                    .hastily(FAINT * self.even() / brightness, self.shots);
                 self.receive(scene, brightness, |cut, ids| {
                     each_element(cut, ids, control, stats, |element, stats| match element.patch == patch {
                         // What is bent stands off its chord, and would see it: from behind, as if it filled the sky.
@@ -138,19 +147,32 @@ impl Solution {
                 continue;
             }
             for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
-                for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0) {
+                for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0)
+                {
                     *light += all * factor;
                 }
             }
-            let arrived = sides.map(|factor| Bands::splat(factor * element.area));
-            let scattered = element.albedo.scatter(&arrived);
-            (0..2).for_each(|i| sent[element.patch as usize][i] += scattered[i]);
-            let Patch { faced, spread, .. } = &mut self.cut.patches[element.patch as usize];
-            for i in 0..2 {
-                faced[i] |= sides[i] > 0.0;
-                let brightness = self.wavelengths.brightness(&(scattered[i] * sent_on));
-                let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
-                element.spread(brightness, arrived).iter().zip(&mut *spread).for_each(|(b, to)| to[i] += b);
+            let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
+            let patch = &mut self.cut.patches[element.patch as usize];
+            for (i, power) in sides.map(|factor| factor * element.area).into_iter().enumerate() {
+                if power == 0.0 {
+                    continue;
+                }
+                patch.faced[i] = true;
+                let Albedo { reflectance, transmittance } = &element.albedo;
+                for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
+                    if albedo.is_black() {
+                        continue;
+                    }
+                    let scattered = *albedo * power;
+                    sent[element.patch as usize][side] += scattered;
+                    let brightness = self.wavelengths.brightness(&(scattered * sent_on));
+                    element
+                        .spread(brightness, arrived)
+                        .iter()
+                        .zip(&mut patch.spread)
+                        .for_each(|(b, to)| to[side] += b);
+                }
             }
         }
         for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
@@ -184,7 +206,8 @@ impl Solution {
             let mut lit = Lit::default();
             for (point, sides) in element.points.iter().zip(&mut lit.quarters) {
                 let context = LightSampleContext { p: point.p, n: point.n, ns: Normal3::ZERO, time };
-                let arrived = lights.iter().map(|&light| from_light(scene, &wavelengths, light, &context, stats));
+                let arrived =
+                    lights.iter().map(|&light| from_light(scene, &wavelengths, light, &context, stats));
                 *sides = arrived.fold([Bands::ZERO; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
             }
             lit
@@ -194,7 +217,9 @@ impl Solution {
         let lit = each_element(&self.cut, &ids, control, stats, shine)?;
         let power = |(element, lit): (&Element, &Lit)| {
             let Lit { quarters } = lit;
-            let quarter = |k: usize| wavelengths.brightness(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight;
+            let quarter = |k: usize| {
+                wavelengths.brightness(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight
+            };
             element.area * (0..4).map(quarter).sum::<f32>()
         };
         self.total += self.cut.elements.iter().zip(&lit).map(power).sum::<f32>();
@@ -210,7 +235,11 @@ impl Solution {
                 once[i] += scattered[i] * element.area;
                 let brightness = self.wavelengths.brightness(&scattered[i]) * element.area;
                 let arrived = lit.brightnesses(&self.wavelengths);
-                element.spread(brightness, arrived).iter().zip(&mut patch.spread).for_each(|(b, to)| to[i] += b);
+                element
+                    .spread(brightness, arrived)
+                    .iter()
+                    .zip(&mut patch.spread)
+                    .for_each(|(b, to)| to[i] += b);
             }
         }
         Ok(())
@@ -223,8 +252,7 @@ impl Solution {
         brightness: f32,
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
     ) -> Result<Vec<T>, Cancelled> {
-        let area: f32 = self.cut.patches.iter().map(|patch| patch.area).sum();
-        let even = self.total / area;
+        let even = self.even();
         let mut received = Vec::new();
         let mut fresh: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
         while !fresh.is_empty() {
@@ -239,7 +267,8 @@ impl Solution {
                 let [outer, inner] = element.irradiance();
                 let here = self.wavelengths.brightness(&(outer + inner));
                 let contrast = (most - least) * brightness;
-                element.level < self.settings.subdivision && contrast > self.settings.gradient * here.max(even)
+                element.level < self.settings.subdivision
+                    && contrast > self.settings.gradient * here.max(even)
             };
             let coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
             fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
@@ -266,7 +295,8 @@ impl Solution {
         // Light that was scattered last counts once; what was scattered less often, as often as it may be scattered yet.
         let mut series = Bands::splat(1.0);
         for layer in (0..depth).rev() {
-            let unshot: Bands = patches.iter().map(|patch| patch.unshot[layer][0] + patch.unshot[layer][1]).sum();
+            let unshot: Bands =
+                patches.iter().map(|patch| patch.unshot[layer][0] + patch.unshot[layer][1]).sum();
             ambient += unshot * series * area.recip();
             series = Bands::splat(1.0) + series * rho;
         }
@@ -346,7 +376,8 @@ fn from_light(
         let Some((l, sample)) = sample_light(scene, wavelengths, light, context, u) else { continue };
         if arrives(scene, context, &sample, stats) {
             let cos_theta = sample.wi.dot(context.n);
-            sides[usize::from(cos_theta < 0.0)] += l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
+            sides[usize::from(cos_theta < 0.0)] +=
+                l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
         }
     }
     sides

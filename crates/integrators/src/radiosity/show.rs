@@ -41,7 +41,8 @@ impl View {
     pub fn new(scene: &Scene, solution: &Solution, lights: &LightSampler, gather: u32) -> Self {
         let mesh = &solution.cut.mesh;
         let elements = &solution.cut.elements;
-        let outline = |element: &super::element::Element| mesh.outline(scene.world(), mesh.cell(element.cell));
+        let outline =
+            |element: &super::element::Element| mesh.outline(scene.world(), mesh.cell(element.cell));
         let outlines: Vec<Vec<Corner>> = elements.par_iter().map(outline).collect();
         let mut sums = vec![([Bands::ZERO; 2], 0.0); mesh.vertices().len()];
         for (element, outline) in elements.iter().zip(&outlines) {
@@ -52,7 +53,10 @@ impl View {
                 *count += 1.0;
             }
         }
-        let vertices = sums.into_iter().map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip())).collect();
+        let vertices = sums
+            .into_iter()
+            .map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip()))
+            .collect();
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
@@ -65,7 +69,8 @@ impl View {
             let side = [outline[i], outline[(i + 1) % outline.len()]];
             let [a, b] = side.map(|corner| corner.uv);
             let whole = (a - center).perp_dot(b - center);
-            let (wa, wb) = ((uv - center).perp_dot(b - center) / whole, (a - center).perp_dot(uv - center) / whole);
+            let (wa, wb) =
+                ((uv - center).perp_dot(b - center) / whole, (a - center).perp_dot(uv - center) / whole);
             // The one that holds the point, or nearly does: of its two outer weights none is negative.
             let least = wa.min(wb);
             if least > best.0 {

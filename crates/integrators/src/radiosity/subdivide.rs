@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 use scene::Scene;
 
+use super::RadiositySettings;
 use super::bands::Wavelengths;
 use super::element::{Element, Patch, Place, albedo_at};
 use super::mesh::Mesh;
-use super::RadiositySettings;
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.
 const PATCHES_PER_RADIUS: f32 = 6.0;

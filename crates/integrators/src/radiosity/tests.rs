@@ -48,7 +48,9 @@ fn furnished(mut desc: SceneDesc) -> Scene {
     let area_light = Some(desc.area_lights.push(light));
     let lamp = MeshDesc {
         indices: Arc::new([[0, 2, 1], [0, 3, 2]]),
-        positions: [[0.3, 0.3], [0.7, 0.3], [0.7, 0.6], [0.3, 0.6]].map(|[x, y]| Point3::new(x, y, 0.95)).into(),
+        positions: [[0.3, 0.3], [0.7, 0.3], [0.7, 0.6], [0.3, 0.6]]
+            .map(|[x, y]| Point3::new(x, y, 0.95))
+            .into(),
         ..MeshDesc::default()
     };
     desc.shapes.push(ShapeDesc { area_light, ..ShapeKind::Triangles(lamp).into() });
@@ -109,7 +111,8 @@ fn a_hemicube_agrees_within_its_resolution() {
     for resolution in [32, 256] {
         let mut stats = RayStats::default();
         let cube = Hemicube::new(resolution, 0);
-        let seen = cube.look(&scene, &solution.cut.mesh, patch.cell, 0, &Control::default(), &mut stats).unwrap();
+        let seen =
+            cube.look(&scene, &solution.cut.mesh, patch.cell, 0, &Control::default(), &mut stats).unwrap();
         let received = seen.received(&scene, &solution.cut, patch.area, &ids);
         let mut sum = 0.0;
         for ((received, element), exact) in received.iter().zip(&solution.cut.elements).zip(&exact) {
@@ -119,7 +122,10 @@ fn a_hemicube_agrees_within_its_resolution() {
             let pixels = exact * element.area / patch.area * (resolution * resolution) as f32;
             let far = (element.points[0].p.p - solution.cut.elements[7].points[0].p.p).length() > 0.9;
             let bound = (1.5 / pixels.sqrt() + 0.03) * exact;
-            assert!(!far || *exact == 0.0 || (found - exact).abs() < bound, "{resolution}: {found}, not {exact}");
+            assert!(
+                !far || *exact == 0.0 || (found - exact).abs() < bound,
+                "{resolution}: {found}, not {exact}"
+            );
         }
         assert!((sum - 1.0).abs() < 2e-3, "{resolution}: {sum}");
     }
@@ -134,7 +140,8 @@ fn energy_is_conserved_while_shooting() {
         let settings = RadiositySettings { max_depth: 25, form_factors, ..settings(0.34) };
         let mut solution = Solution::new(&scene, &settings, settings.max_depth);
         let power = |solution: &Solution| {
-            let unshot = solution.cut.patches.iter().flat_map(|patch| &patch.unshot).map(|sides| sides[0] + sides[1]);
+            let unshot =
+                solution.cut.patches.iter().flat_map(|patch| &patch.unshot).map(|sides| sides[0] + sides[1]);
             f64::from(unshot.sum::<Bands>().mean())
         };
         let all = power(&solution);
@@ -182,7 +189,9 @@ fn the_sky_is_an_emitter() {
     desc.shapes.push(ball.into());
     let scene = compile(&desc);
     let solution = solved(&scene, &RadiositySettings { subdivision: 0, ..settings(0.2) });
-    let sky = solution.wavelengths.sample(|lambda| scene.lights()[0].le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda));
+    let sky = solution
+        .wavelengths
+        .sample(|lambda| scene.lights()[0].le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda));
     let area: f32 = solution.cut.elements.iter().map(|element| element.area).sum();
     let mean: f32 = solution.cut.elements.iter().map(|e| e.irradiance()[0].mean() * e.area / area).sum();
     let expected = sky.mean() * std::f32::consts::PI;

@@ -1,7 +1,8 @@
 //! Light transport algorithms.
 
 use description::{
-    FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, SppmDesc, Stated, VcmDesc,
+    FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel,
+    PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, SppmDesc, Stated, VcmDesc,
 };
 
 use super::Builder;
