@@ -183,9 +183,6 @@ impl Integrator for Radiosity {
                 *mesh = ply::encode(scene, solution, view, self.color_space);
             }
         }
-        if pass <= steps {
-            *film = film.blank();
-        }
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, filter: &filter, sampler: &self.sampler };
@@ -207,9 +204,14 @@ impl Integrator for Radiosity {
             }
             Ok(stats)
         };
-        let drawn: Vec<RayStats> =
-            film.tiles_mut().into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
+        // A better solution makes a new picture, which takes the place of the old one when it is whole.
+        let mut better = (pass <= steps).then(|| film.blank());
+        let tiles = better.as_mut().unwrap_or(film).tiles_mut();
+        let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
         drawn.into_iter().for_each(|some| stats += some);
+        if let Some(better) = better {
+            *film = better;
+        }
         Ok(stats)
     }
 

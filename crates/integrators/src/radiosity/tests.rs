@@ -137,7 +137,7 @@ fn energy_is_conserved_while_shooting() {
     let reflectances = [0.7, 0.4, 0.6, 0.3, 0.5, 0.8];
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), reflectances));
     for form_factors in [FormFactors::Analytic, FormFactors::Hemicube { resolution: 64 }] {
-        let settings = RadiositySettings { max_depth: 25, form_factors, ..settings(0.34) };
+        let settings = RadiositySettings { max_depth: 12, form_factors, subdivision: 1, ..settings(0.5) };
         let mut solution = Solution::new(&scene, &settings, settings.max_depth);
         let power = |solution: &Solution| {
             let unshot =
@@ -203,7 +203,7 @@ fn the_sky_is_an_emitter() {
 #[test]
 fn there_are_no_cracks() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.7, 0.4, 0.6, 0.3, 0.5, 0.8]));
-    let settings = RadiositySettings { gradient: 0.05, ..settings(0.3) };
+    let settings = RadiositySettings { tolerance: 0.02, ..settings(0.5) };
     let solution = solved(&scene, &settings);
     let view = view(&scene, &solution);
     let mut sides: HashMap<[u32; 2], Vec<Vec<f32>>> = HashMap::new();
@@ -224,7 +224,7 @@ fn there_are_no_cracks() {
     assert!(anchored > 20, "{anchored} T-vertices");
     let most = sides.values().flatten().flatten().copied().fold(0.0, f32::max);
     let shared: Vec<_> = sides.values().filter(|lights| lights.len() == 2).collect();
-    assert!(shared.len() > 1000 && sides.values().all(|lights| lights.len() <= 2));
+    assert!(shared.len() > 500 && sides.values().all(|lights| lights.len() <= 2));
     for lights in shared {
         for (a, b) in lights[0].iter().zip(&lights[1]) {
             assert!((a - b).abs() < 1e-5 * most, "{a} and {b}");
@@ -235,7 +235,7 @@ fn there_are_no_cracks() {
 #[test]
 fn every_point_has_its_leaf() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
-    let solution = solved(&scene, &settings(0.3));
+    let solution = solved(&scene, &RadiositySettings { tolerance: 0.1, ..settings(0.5) });
     let rng = &mut Rng::new(1, 0);
     let area: f32 = solution.cut.patches.iter().map(|patch| patch.area).sum();
     let expected = 6.0 + 0.12 + 4.0 * std::f32::consts::PI * 0.04;
