@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use description::SceneDesc;
+use description::{IntegratorDesc, SceneDesc};
 
 use crate::names::{ACCELERATORS, INTEGRATORS, integrator_called};
 use crate::settings::{SETTINGS, mlt, set_samples_per_pixel};
@@ -32,6 +32,12 @@ pub struct Overrides {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverrideError(String);
 
+impl OverrideError {
+    pub(crate) fn new(message: String) -> Self {
+        Self(message)
+    }
+}
+
 impl fmt::Display for OverrideError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
@@ -44,27 +50,21 @@ impl Overrides {
     /// Changes the scene; the first change that makes no sense is the error.
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
         if let Some(name) = &self.integrator {
-            let changed = integrator_called(name, &mut desc.integrator).ok_or_else(|| {
-                OverrideError(format!(
-                    "no integrator is called `{name}`; there are {}",
-                    INTEGRATORS.join(", ")
-                ))
-            })?;
+            let changed = integrator_called(name, &mut desc.integrator)
+                .ok_or_else(|| unknown("integrator", name, &INTEGRATORS))?;
             desc.integrator.value = changed;
         }
         if let Some(name) = &self.accelerator {
             let called = ACCELERATORS.into_iter().find(|(known, _)| known == name);
-            let (_, changed) = called.ok_or_else(|| {
-                let names = ACCELERATORS.map(|(name, _)| name).join(", ");
-                OverrideError(format!("no accelerator is called `{name}`; there are {names}"))
-            })?;
+            let (_, changed) =
+                called.ok_or_else(|| unknown("accelerator", name, &ACCELERATORS.map(|(name, _)| name)))?;
             desc.accelerator.value = changed;
         }
         for (name, value) in &self.settings {
-            let setting = SETTINGS.iter().find(|setting| setting.name == name).ok_or_else(|| {
-                let names: Vec<_> = SETTINGS.iter().map(|setting| setting.name).collect();
-                OverrideError(format!("no setting is called `{name}`; there are {}", names.join(", ")))
-            })?;
+            let setting = SETTINGS
+                .iter()
+                .find(|setting| setting.name == name)
+                .ok_or_else(|| unknown("setting", name, &SETTINGS.each_ref().map(|setting| setting.name)))?;
             (setting.apply)(desc, value)
                 .map_err(|reason| OverrideError(format!("cannot set {name} to `{value}`: {reason}")))?;
         }
@@ -97,16 +97,28 @@ impl Overrides {
         if let Some(seed) = self.seed {
             desc.options.seed = seed;
             desc.sampler.seed = Some(seed);
+            if let IntegratorDesc::Sppm(sppm) = &mut desc.integrator.value {
+                sppm.seed = None;
+            }
         }
         Ok(())
     }
+}
+
+/// There is no such name; with the nearest one, or all.
+fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
+    let instead = match import::closest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("there are {}", known.join(", ")),
+    };
+    OverrideError(format!("no {what} is called `{name}`; {instead}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::settings::{max_depth, regularize};
-    use description::{AcceleratorDesc, FilterDesc, IntegratorDesc, LightSamplerDesc, SamplerKind};
+    use description::{AcceleratorDesc, FilterDesc, LightSamplerDesc, SamplerKind, SppmDesc};
 
     fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {
         let mut desc = SceneDesc::default();
@@ -218,5 +230,10 @@ mod tests {
         let desc = desc.unwrap();
         assert_eq!((desc.film.resolution, desc.film.pixel_bounds), ([100, 50], Some([99, 100, 49, 50])));
         assert_eq!((desc.options.seed, desc.sampler.seed), (7, Some(7)));
+
+        let photons = SppmDesc { seed: Some(3), ..SppmDesc::default() };
+        let mut desc = SceneDesc { integrator: IntegratorDesc::Sppm(photons).into(), ..SceneDesc::default() };
+        Overrides { seed: Some(7), ..Overrides::default() }.apply(&mut desc).unwrap();
+        assert_eq!(desc.integrator.value, IntegratorDesc::Sppm(SppmDesc::default()), "no seed of its own");
     }
 }

@@ -1,5 +1,6 @@
 //! Developed films written to files.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use image::{Chromaticities, Format, Image, ImageError, WriteOptions};
@@ -9,11 +10,9 @@ use spectrum::{Rgb, RgbColorSpace};
 /// header says; other formats cannot tell their colour space, and get sRGB.
 pub fn write_picture(picture: &Image, path: impl AsRef<Path>) -> Result<(), ImageError> {
     let path = path.as_ref();
-    let options = WriteOptions::default();
-    match (Format::from_name(&path.to_string_lossy()), color_space(picture.metadata.chromaticities)) {
-        (Some(Format::Exr), _) | (_, None) => image::write(picture, path, &options),
-        (_, Some(space)) => image::write(&in_srgb(picture, space), path, &options),
-    }
+    let keeps_space = Format::from_name(&path.to_string_lossy()) == Some(Format::Exr);
+    let written = if keeps_space { Cow::Borrowed(picture) } else { in_srgb(picture) };
+    image::write(&written, path, &WriteOptions::default())
 }
 
 /// The colour space with these primaries, unless it is sRGB, or none that is known.
@@ -23,14 +22,16 @@ fn color_space(chromaticities: Option<Chromaticities>) -> Option<&'static RgbCol
         .filter(|&space| space != RgbColorSpace::srgb())
 }
 
-fn in_srgb(picture: &Image, space: &RgbColorSpace) -> Image {
+/// The picture in the colour space of screens.
+pub(crate) fn in_srgb(picture: &Image) -> Cow<'_, Image> {
+    let Some(space) = color_space(picture.metadata.chromaticities) else { return Cow::Borrowed(picture) };
     let matrix = space.convert(RgbColorSpace::srgb());
     let mut converted = Image::from_fn(picture.width(), picture.height(), ["R", "G", "B"], |x, y| {
         Rgb::from(matrix.apply_f32(picture.rgb(x, y))).to_array()
     });
     converted.metadata = picture.metadata.clone();
     converted.metadata.chromaticities = None;
-    converted
+    Cow::Owned(converted)
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! The command line as clap sees it: every command, option, unit and default.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use alhazen::Overrides;
+use alhazen::compare::Contender;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Renders scenes by following light.
@@ -25,6 +27,11 @@ pub enum Command {
     /// Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second Ctrl-C ends the
     /// program at once.
     Render(Box<Render>),
+    /// Render a scene by several algorithms, and report how far each is from a reference.
+    ///
+    /// All get the same time, or the same number of samples. The report has the pictures beside the reference, maps of
+    /// their errors, error over time, bias and noise apart, efficiency and rays. Ctrl-C ends with a report of what has been done.
+    Compare(Box<Compare>),
     /// Look at scene files.
     #[command(subcommand)]
     Scene(Scene),
@@ -38,6 +45,7 @@ impl Command {
     pub fn json(&self) -> bool {
         match self {
             Self::Render(render) => render.json,
+            Self::Compare(compare) => compare.json,
             Self::Scene(Scene::Check(check)) => check.json,
             Self::Image(Image::Diff(diff)) => diff.json,
             Self::Image(Image::Convert(convert)) => convert.json,
@@ -59,15 +67,40 @@ pub struct Render {
     /// The algorithm; see the list below. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
+    /// Samples per pixel. [default: the scene's]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub spp: Option<u32>,
+    /// Other changes to the scene.
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Say nothing but errors.
+    #[arg(long, conflicts_with = "json")]
+    pub quiet: bool,
+    /// Write one JSON object to standard output instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl Render {
+    /// The changes to the scene that the options ask for.
+    pub fn overrides(&self) -> Overrides {
+        Overrides {
+            integrator: self.integrator.clone(),
+            samples_per_pixel: self.spp,
+            ..self.changes.overrides()
+        }
+    }
+}
+
+/// Options that change a scene, and how it is rendered, for one algorithm as for many.
+#[derive(Args, Debug)]
+pub struct Changes {
     /// What spares rays the test of every primitive: bvh, or none, for the same picture without it. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub accelerator: Option<String>,
     /// Change a setting; see the list below. Can be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
     pub set: Vec<(String, String)>,
-    /// Samples per pixel. [default: the scene's]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
-    pub spp: Option<u32>,
     /// Width and height of the whole image in pixels. [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     pub resolution: Option<[i32; 2]>,
@@ -84,28 +117,62 @@ pub struct Render {
     /// Threads to render with; their number never changes the picture. [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Say nothing but errors.
-    #[arg(long, conflicts_with = "json")]
-    pub quiet: bool,
-    /// Write one JSON object to standard output instead of text, errors too.
-    #[arg(long)]
-    pub json: bool,
 }
 
-impl Render {
+impl Changes {
     /// The changes to the scene that the options ask for.
     pub fn overrides(&self) -> Overrides {
         Overrides {
-            integrator: self.integrator.clone(),
             accelerator: self.accelerator.clone(),
             settings: self.set.clone(),
-            samples_per_pixel: self.spp,
             resolution: self.resolution,
             crop: self.crop,
             pixel: self.pixel,
             seed: self.seed,
+            ..Overrides::default()
         }
     }
+}
+
+/// Options of `alhazen compare`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
+#[command(group = clap::ArgGroup::new("budget").required(true).args(["time", "spp"]))]
+pub struct Compare {
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard input.
+    pub scene: PathBuf,
+    /// The algorithms, see the list below, parted by commas. Each may have settings of its own: path,path:maxdepth=8.
+    #[arg(long, value_name = "NAME,NAME,…", required = true, value_delimiter = ',')]
+    pub integrators: Vec<Contender>,
+    /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each algorithm renders two pictures, from different
+    /// seeds, so that noise and bias can be told apart. Samplers `stratified` and `paddedsobol` are as uneven as `independent` here.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub time: Option<Duration>,
+    /// Samples per pixel of each picture.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub spp: Option<u32>,
+    /// The picture to measure errors against. [default: one is rendered]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["reference_with", "reference_spp"])]
+    pub reference: Option<PathBuf>,
+    /// The algorithm that renders the reference. [default: the first one listed]
+    #[arg(long, value_name = "NAME")]
+    pub reference_with: Option<Contender>,
+    /// Samples per pixel of the reference. [default: 16 times the time or samples of one picture]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub reference_spp: Option<u32>,
+    /// Write the report here: a page that opens without a network; the same in numbers goes beside it, as .json. [default: the scene's
+    /// name with .html, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Changes to the scene, for all.
+    #[command(flatten)]
+    pub changes: Changes,
+    /// Say nothing but errors.
+    #[arg(long, conflicts_with = "json")]
+    pub quiet: bool,
+    /// Write the report's numbers to standard output, as one JSON object instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Commands about scene files.
@@ -217,6 +284,22 @@ fn key_value(text: &str) -> Result<(String, String), String> {
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
+fn time(text: &str) -> Result<Duration, String> {
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[number.len()..].trim() {
+        "" | "s" => Some(1.0),
+        "ms" => Some(1e-3),
+        "min" | "m" => Some(60.0),
+        "h" => Some(3600.0),
+        _ => None,
+    };
+    let seconds = unit.zip(number.trim().parse().ok()).map(|(unit, number): (f64, f64)| unit * number);
+    seconds
+        .filter(|&seconds| seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "it is written 30s, 1.5min or 2h".into())
+}
+
 fn resolution(text: &str) -> Result<[i32; 2], String> {
     let numbers =
         text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
@@ -297,6 +380,34 @@ mod tests {
         };
         assert_eq!(render.overrides(), expected);
         assert_eq!(render.output, [PathBuf::from("a.exr"), PathBuf::from("b.png")]);
+    }
+
+    fn compare(arguments: &[&str]) -> Result<Compare, String> {
+        let cli = Cli::try_parse_from(["alhazen", "compare", "a.pbrt"].iter().chain(arguments));
+        match cli.map_err(|error| error.to_string())?.command {
+            Command::Compare(compare) => Ok(*compare),
+            other => Err(format!("{other:?}")),
+        }
+    }
+
+    #[test]
+    fn comparisons_have_algorithms_and_one_limit() {
+        let compared = compare(&["--integrators", "path,path:maxdepth=8", "--time", "1.5min"]).unwrap();
+        assert_eq!(compared.time, Some(Duration::from_secs(90)));
+        let names: Vec<String> = compared.integrators.iter().map(ToString::to_string).collect();
+        assert_eq!(names, ["path", "path:maxdepth=8"]);
+        let named = ["--integrators", "path"];
+        for arguments in [
+            &["--spp", "4"][..],
+            &named,
+            &[&named[..], &["--time", "1s", "--spp", "4"]].concat(),
+            &[&named[..], &["--time", "0s"]].concat(),
+            &[&named[..], &["--time", "1 day"]].concat(),
+            &["--integrators", "path,", "--spp", "4"],
+            &[&named[..], &["--spp", "4", "--reference", "a.exr", "--reference-spp", "4"]].concat(),
+        ] {
+            assert!(compare(arguments).is_err(), "{arguments:?}");
+        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod args;
 mod bar;
+mod compare;
 mod console;
 mod diagnostics;
 mod failure;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
     let done = |()| ExitCode::SUCCESS;
     let result = match &cli.command {
         Command::Render(arguments) => render::render(arguments),
+        Command::Compare(arguments) => compare::compare(arguments),
         Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
         Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
         Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),

@@ -1,4 +1,4 @@
-//! Where pictures go: names and folders are checked before anything long begins.
+//! Where pictures and reports go: names and folders are checked before anything long begins.
 
 use std::fs::{self, OpenOptions};
 use std::path::Path;
@@ -15,6 +15,12 @@ pub fn check(path: &Path) -> Result<(), String> {
             "cannot tell the format of the output {shown} by its extension; there are {known}"
         ));
     }
+    check_place(path)
+}
+
+/// Whether a file can be written to `path`, whatever its extension.
+pub fn check_place(path: &Path) -> Result<(), String> {
+    let shown = path.display();
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),

@@ -25,7 +25,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     for path in &arguments.output {
         output::check(path).map_err(Failure::Usage)?;
     }
-    start_threads(arguments.threads)?;
+    start_threads(arguments.changes.threads)?;
     let interrupt = Interrupt::listen()?;
     let talkative = !arguments.quiet && !arguments.json;
 
@@ -110,7 +110,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
 }
 
 /// Makes the threads that everything runs on.
-fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
+pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
     let mut builder = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = threads {
         builder = builder.num_threads(threads.into());
@@ -118,7 +118,8 @@ fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
     builder.build_global().map_err(|error| Failure::Input(format!("cannot start threads: {error}")))
 }
 
-fn scene_failure(imported: Imported) -> Failure {
+/// The failure that a wrong scene is.
+pub fn scene_failure(imported: Imported) -> Failure {
     Failure::Scene { diagnostics: imported.diagnostics, sources: imported.sources }
 }
 
@@ -126,7 +127,7 @@ fn scene_failure(imported: Imported) -> Failure {
 /// extension of OpenEXR, in the current folder.
 fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
     let said = &desc.film.filename;
-    let path = if said.span.is_none() { named_after(scene) } else { PathBuf::from(&said.value) };
+    let path = if said.span.is_none() { named_after(scene, "exr") } else { PathBuf::from(&said.value) };
     output::check(&path).map_err(|problem| {
         Failure::Input(format!("{problem}\nThe scene names this output; `-o FILE` names another."))
     })?;
@@ -155,10 +156,10 @@ fn named_beside(picture: &Path, name: &str) -> PathBuf {
 }
 
 /// "scenes/room.pbrt.gz" gives "room.exr".
-fn named_after(scene: &Path) -> PathBuf {
+pub fn named_after(scene: &Path, extension: &str) -> PathBuf {
     let name = scene.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.split('.').next().filter(|stem| !stem.is_empty() && *stem != "-").unwrap_or("picture");
-    PathBuf::from(format!("{stem}.exr"))
+    PathBuf::from(format!("{stem}.{extension}"))
 }
 
 #[cfg(test)]
@@ -179,7 +180,7 @@ mod tests {
             (".hidden", "picture.exr"),
             ("..", "picture.exr"),
         ] {
-            assert_eq!(named_after(Path::new(scene)), Path::new(picture));
+            assert_eq!(named_after(Path::new(scene), "exr"), Path::new(picture));
         }
     }
 }

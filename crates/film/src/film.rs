@@ -111,12 +111,18 @@ impl Gate {
         self.rejected.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The sensor's response to light, not beyond the largest one; `None` for light that is no number.
-    pub(crate) fn measure(&self, l: &SampledSpectrum, lambda: &SampledWavelengths) -> Option<[f64; 3]> {
+    /// The sensor's response to light that counts one in `samples` of a pixel, not beyond what a whole sample may have; `None` for
+    /// light that is no number.
+    pub(crate) fn measure(
+        &self,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+        samples: f32,
+    ) -> Option<[f64; 3]> {
         let mut rgb = self.sensor.to_sensor_rgb(l, lambda);
-        let largest = rgb.max_component();
-        if largest > self.max_component_value {
-            rgb *= self.max_component_value / largest;
+        let (largest, limit) = (rgb.max_component(), self.max_component_value * samples);
+        if largest > limit {
+            rgb *= limit / largest;
         }
         let rgb = rgb.to_array().map(f64::from);
         (l.is_finite() && rgb.into_iter().all(ExactSum::can_add)).then_some(rgb)
@@ -136,7 +142,7 @@ impl Gate {
         weight: f32,
     ) {
         let weight = f64::from(weight);
-        let terms = self.measure(l, lambda).map(|rgb| rgb.map(|c| weight * c));
+        let terms = self.measure(l, lambda, 1.0).map(|rgb| rgb.map(|c| weight * c));
         match terms {
             Some(terms) if terms.into_iter().chain([weight]).all(ExactSum::can_add) => {
                 pixel.rgb.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));

@@ -84,7 +84,7 @@ impl Splatter<'_> {
 
     /// Adds the light `l` of one path that arrives at a film position.
     pub fn add(&self, film: Point2, l: &SampledSpectrum, lambda: &SampledWavelengths) {
-        let Some(rgb) = self.gate.measure(l, lambda) else {
+        let Some(rgb) = self.measure(l, lambda) else {
             let center = film.clamp(Vec2::splat(-1e9), Vec2::splat(1e9)).floor();
             self.gate.reject([center.x as i32, center.y as i32]);
             return;
@@ -101,11 +101,16 @@ impl Splatter<'_> {
 
     /// Adds the light `l` of one path to a pixel alone.
     pub fn add_to_pixel(&self, pixel: [i32; 2], l: &SampledSpectrum, lambda: &SampledWavelengths) {
-        match self.gate.measure(l, lambda) {
+        match self.measure(l, lambda) {
             Some(rgb) if self.bounds.contains(pixel) => self.add_rgb(pixel, rgb),
             Some(_) => (),
             None => self.gate.reject(pixel),
         }
+    }
+
+    /// Of as many paths as there are pixels, one arrives at each on average.
+    fn measure(&self, l: &SampledSpectrum, lambda: &SampledWavelengths) -> Option<[f64; 3]> {
+        self.gate.measure(l, lambda, self.bounds.area() as f32)
     }
 
     fn add_rgb(&self, pixel: [i32; 2], rgb: [f64; 3]) {

@@ -66,6 +66,28 @@ fn splats_and_samples_add_up() {
 }
 
 #[test]
+fn the_largest_component_of_a_splat_is_that_of_a_sample() {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = RESOLUTION;
+    desc.film.save_fp16 = false;
+    desc.film.max_component_value = 3.0;
+    desc.filter.value = FilterDesc::Box { radius: [0.5, 0.5] };
+    let mut film = compile(&desc).expect("a film").film;
+    let pixels = (RESOLUTION[0] * RESOLUTION[1]) as f32;
+    let (below, above) = (Vec2::new(3.5, 4.5), Vec2::new(6.5, 4.5));
+    splat(&mut film, below, 0.5 * pixels);
+    splat(&mut film, above, 1e6 * pixels);
+    count(&mut film, pixels as u64);
+    let mut measure = film.blank();
+    let lambda = SampledWavelengths::sample_visible(0.3);
+    measure.add_sample([0, 0], &SampledSpectrum::new([0.5; 4]), &lambda, 1.0);
+    measure.add_sample([1, 0], &SampledSpectrum::new([1e6; 4]), &lambda, 1.0);
+    for (splat, sample) in [([3, 4], [0, 0]), ([6, 4], [1, 0])] {
+        assert!((green(&film, splat) / green(&measure, sample) - 1.0).abs() < 1e-5, "{splat:?}");
+    }
+}
+
+#[test]
 fn order_and_merging_do_not_change_a_bit() {
     let mut random = Random::new(5);
     let splats: Vec<_> = (0..500)

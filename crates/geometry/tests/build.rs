@@ -129,7 +129,7 @@ fn spatial_splits_save_tests_of_thin_triangles() {
 #[test]
 fn a_refitted_world_equals_a_new_one() {
     let rng = &mut Rng::new(51, 0);
-    let bump = |bump: f32| ball(60, bump, &Transform::IDENTITY);
+    let bump = |bump: f32| ball(90, bump, &Transform::IDENTITY);
     let place = |x: f32| Shape::from(Sphere::whole(&Transform::translate(Vec3::X * x), false, 0.4));
     let rays = rays(rng, 500, 3.0);
     for quality in QUALITIES {

@@ -17,6 +17,7 @@ use description::{Diagnostic, SceneDesc, SourceMap};
 
 pub use assets::{AssetSource, Files, MemoryAssets};
 pub use mesh::{Mesh, MeshError, read_obj, read_ply};
+pub use suggest::closest;
 
 /// What came of reading a scene.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! "Did you mean …": the nearest of some names.
 
 /// The candidate that a mistyped name most likely means, if any is near enough.
-pub(crate) fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     // Long names would make the comparison slow, and nobody mistypes them this way.
     if name.len() > 64 {

@@ -13,11 +13,9 @@ mod traverse;
 use math::Bounds3;
 pub(crate) use node::WIDTH;
 use node::WideNode;
-use rayon::prelude::*;
 
 pub use build::BuildQuality;
-use build::Corners;
-pub(crate) use build::Reference;
+pub(crate) use build::{Extent, Primitives, Reference};
 pub(crate) use traverse::Leaves;
 
 /// The most nodes above each other that a tree may have, for which rays have room to remember where to return.
@@ -31,24 +29,16 @@ pub(crate) struct Bvh {
 }
 
 impl Bvh {
-    /// Builds over references with finite bounds; leaves hold blocks of `width` references, a power of two. `block`
-    /// makes a block of its references.
-    pub fn build<B: Send>(
-        references: Vec<Reference>,
-        quality: BuildQuality,
-        width: usize,
-        corners: impl Corners,
-        block: impl Fn(&[Reference]) -> B + Sync + Send,
-    ) -> (Self, Vec<B>) {
-        let built = build::build(references, quality, width, corners);
+    /// Builds a tree, and the blocks of its leaves.
+    pub fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> (Self, Vec<P::Block>) {
+        let built = build::build(primitives, quality);
         assert!(built.depth <= MAX_DEPTH, "splits halve sets that are deep");
-        let blocks = built.blocks().map(block).collect();
-        (Self { bounds: built.bounds, nodes: built.nodes }, blocks)
+        (Self { bounds: built.bounds, nodes: built.nodes }, built.blocks)
     }
 
     /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its box.
     pub fn refit<B: Send>(&mut self, blocks: &mut [B], renew: impl Fn(&mut B) -> Bounds3 + Sync) {
-        self.bounds = build::refit(&mut self.nodes, blocks, &renew);
+        self.bounds = build::refit(&mut self.nodes, blocks, renew);
     }
 
     /// Bytes of memory taken.

@@ -214,8 +214,15 @@ impl WideNode {
         }
     }
 
+    /// The box around all children.
+    pub fn bounds(&self) -> Bounds3 {
+        let min = |axis: usize| self.planes[axis].into_iter().fold(f32::INFINITY, f32::min);
+        let max = |axis: usize| self.planes[axis].into_iter().fold(f32::NEG_INFINITY, f32::max);
+        Bounds3 { min: [0, 1, 2].map(min).into(), max: [3, 4, 5].map(max).into() }
+    }
+
     #[cfg(test)]
-    pub fn bounds(&self, lane: usize) -> Bounds3 {
+    pub fn bounds_of(&self, lane: usize) -> Bounds3 {
         let corner = |first: usize| [0, 1, 2].map(|axis| self.planes[first + axis][lane]).into();
         Bounds3 { min: corner(0), max: corner(3) }
     }

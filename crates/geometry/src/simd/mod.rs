@@ -73,6 +73,16 @@ pub(crate) trait Simd: Copy {
     fn prefetch(_: *const u8) {}
 }
 
+/// Asks for the line of the cache where a value begins, soon to be read, with what every processor has.
+#[inline(always)]
+pub(crate) fn prefetch<T>(value: &T) {
+    #[cfg(target_arch = "x86_64")]
+    type Least = sse2::Sse2;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Least = scalar::Scalar;
+    Least::prefetch(std::ptr::from_ref(value).cast());
+}
+
 /// Something that is written for all sets.
 pub(crate) trait Task {
     type Output;

@@ -4,21 +4,16 @@
 #![allow(unsafe_code)]
 
 use super::numbers::Numbers;
-use super::packet::Packet;
+use super::packet::{MeshTriangles, Packet};
 use super::query::Query;
 use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
-use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
+use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
 use math::{Bounds3, Ray, Vec3, gamma};
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Meshes with fewer triangles are not worth another thread.
-const PARALLEL: usize = 4096;
 
 /// Everything in a group but its triangles.
 #[derive(Clone, Copy, Debug)]
@@ -58,11 +53,9 @@ impl Group {
     ) -> Self {
         let mut items = Vec::new();
         let mut unbounded = Vec::new();
-        let mut boxes = Vec::new();
         let mut add_item = |item, bounds: Bounds3| {
             if is_finite(&bounds) {
-                boxes.push(Reference::new(&bounds, 0, items.len() as u32));
-                items.push(item);
+                items.push((item, bounds));
             }
         };
         for &id in members {
@@ -93,20 +86,10 @@ impl Group {
             }
         }
         let numbers = Numbers::new(members, geometries);
-        let corners = |r: &Reference| numbers.corners(r.primitive(), geometries);
-        let pack = |block: &[Reference]| {
-            let mut packet = Packet::EMPTY;
-            for number in block.iter().map(Reference::primitive) {
-                packet.push(numbers.corners(number, geometries).unwrap_or([Vec3::NAN; 3]), number);
-            }
-            packet
-        };
-        let triangles = triangle_references(&numbers, geometries);
-        let (triangles, packets) = Bvh::build(triangles, quality, Packet::WIDTH, corners, pack);
-        let item = |block: &[Reference]| items[block[0].primitive() as usize];
-        let (boxes, item_list) = Bvh::build(boxes, quality, 1, |_| None, item);
+        let (triangles, packets) = Bvh::build(&MeshTriangles::new(&numbers, geometries), quality);
+        let (items, item_list) = Bvh::build(&BoundedItems(items), quality);
         let spheres = Spheres::build(members, geometries, quality);
-        Self { triangles, packets, numbers, spheres, items: boxes, item_list, unbounded }
+        Self { triangles, packets, numbers, spheres, items, item_list, unbounded }
     }
 
     /// Brings triangles and sets of spheres up to date after they have moved, but leaves their trees as they are.
@@ -414,44 +397,41 @@ fn placed_bounds(placed: &Placed, bounds: &Bounds3) -> Bounds3 {
     moved.expand(moved.min.abs().max(moved.max.abs()).max_element() * gamma(8))
 }
 
-/// The triangles of all meshes whose corners are finite; their numbers are the primitives.
-fn triangle_references(numbers: &Numbers, geometries: &[Geometry]) -> Vec<Reference> {
-    let mut references = Vec::new();
-    let some_are_missing = AtomicBool::new(false);
-    for (id, first) in numbers.meshes() {
-        if let Geometry::Mesh(mesh) = &geometries[id.0 as usize] {
-            let reference = |i: usize| {
-                let corners = mesh.corners(i);
-                if corners.iter().all(|p| p.is_finite()) {
-                    Reference::new(&Bounds3::around(corners), 0, first + i as u32)
-                } else {
-                    some_are_missing.store(true, Ordering::Relaxed);
-                    Reference::none()
-                }
-            };
-            match mesh.len() {
-                0..PARALLEL => references.extend((0..mesh.len()).map(reference)),
-                n => references.par_extend((0..n).into_par_iter().map(reference)),
-            }
-        }
+/// What has a box of its own.
+struct BoundedItems(Vec<(Item, Bounds3)>);
+
+impl Primitives for BoundedItems {
+    type Block = Item;
+
+    fn width(&self) -> usize {
+        1
     }
-    if some_are_missing.into_inner() {
-        references.retain(|r| !r.is_none());
+
+    fn geometries(&self) -> Vec<(u32, usize)> {
+        vec![(0, self.0.len())]
     }
-    references
+
+    fn extent(&self, _: u32, item: u32) -> Option<Extent> {
+        Some(Extent::from(&self.0[item as usize].1))
+    }
+
+    fn block(&self, items: &[Reference]) -> (Item, Extent) {
+        let (item, bounds) = &self.0[items[0].primitive() as usize];
+        (*item, bounds.into())
+    }
 }
 
 /// Fetches the corners of all triangles again. Nothing hits those that are not finite.
 fn renew_packet(packet: &mut Packet, numbers: &Numbers, geometries: &[Geometry]) -> Bounds3 {
     let mut renewed = Packet::EMPTY;
     let mut bounds = Bounds3::EMPTY;
-    for &number in packet.numbers() {
+    for (lane, &number) in packet.numbers().iter().enumerate() {
         let corners = numbers.corners(number, geometries);
         let finite = corners.filter(|corners| corners.iter().all(|p| p.is_finite()));
         if let Some(corners) = finite {
             bounds = bounds.union(Bounds3::around(corners));
         }
-        renewed.push(finite.unwrap_or([Vec3::NAN; 3]), number);
+        renewed.set(lane, finite.unwrap_or([Vec3::NAN; 3]), number);
     }
     *packet = renewed;
     bounds

@@ -3,7 +3,9 @@
 #![allow(unsafe_code)]
 
 use super::numbers::Numbers;
-use super::{Hit, InstancePath};
+use super::{Geometry, GeometryId, Hit, InstancePath};
+use crate::TriangleMesh;
+use crate::bvh::{Extent, Primitives, Reference};
 use crate::simd::Vector;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use math::{Vec2, Vec3};
@@ -28,8 +30,9 @@ impl Packet {
     pub const EMPTY: Self =
         Self { corners: [[[f32::NAN; Self::WIDTH]; 3]; 3], numbers: [Self::NOTHING; Self::WIDTH] };
 
-    pub fn push(&mut self, corners: [Vec3; 3], number: u32) {
-        let lane = self.len();
+    /// Fills a lane. Lanes are filled in order, so that those in use come first.
+    #[inline]
+    pub fn set(&mut self, lane: usize, corners: [Vec3; 3], number: u32) {
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
             for axis in 0..3 {
                 lanes[axis][lane] = corner[axis];
@@ -96,5 +99,75 @@ impl Packet {
         }
         let (geometry, primitive) = numbers.id(self.numbers[lane]);
         Some(Hit { t, uv, geometry, primitive, instance })
+    }
+}
+
+/// The triangles of a group's meshes.
+pub(super) struct MeshTriangles<'a> {
+    /// Each with the number of its first triangle.
+    meshes: Vec<(u32, &'a TriangleMesh)>,
+}
+
+impl<'a> MeshTriangles<'a> {
+    /// Those that have numbers.
+    pub fn new(numbers: &Numbers, geometries: &'a [Geometry]) -> Self {
+        let mesh = |(id, first): (GeometryId, u32)| match &geometries[id.0 as usize] {
+            Geometry::Mesh(mesh) => Some((first, &**mesh)),
+            Geometry::Shapes(_) | Geometry::Spheres(_) | Geometry::Curves(_) => None,
+        };
+        Self { meshes: numbers.meshes().filter_map(mesh).collect() }
+    }
+
+    #[inline(always)]
+    fn mesh(&self, index: u32) -> &TriangleMesh {
+        self.meshes[index as usize].1
+    }
+}
+
+impl Primitives for MeshTriangles<'_> {
+    type Block = Packet;
+
+    fn width(&self) -> usize {
+        Packet::WIDTH
+    }
+
+    fn geometries(&self) -> Vec<(u32, usize)> {
+        (0..).zip(self.meshes.iter().map(|(_, mesh)| mesh.len())).collect()
+    }
+
+    #[inline(always)]
+    fn extent(&self, mesh: u32, triangle: u32) -> Option<Extent> {
+        Extent::around_finite(self.mesh(mesh).corners(triangle as usize))
+    }
+
+    #[inline(always)]
+    fn prefetch_indices(&self, mesh: u32, triangle: u32) {
+        self.mesh(mesh).prefetch_indices(triangle as usize);
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, mesh: u32, triangle: u32) {
+        self.mesh(mesh).prefetch_corners(triangle as usize);
+    }
+
+    #[inline(always)]
+    fn corners(&self, mesh: u32, triangle: u32) -> Option<[Vec3; 3]> {
+        Some(self.mesh(mesh).corners(triangle as usize))
+    }
+
+    #[inline(always)]
+    fn block(&self, triangles: &[Reference]) -> (Packet, Extent) {
+        // Nothing but loads, so that many are under way at once.
+        let mut corners = [[Vec3::NAN; 3]; Packet::WIDTH];
+        for (corners, r) in corners.iter_mut().zip(triangles) {
+            *corners = self.mesh(r.geometry()).corners(r.primitive() as usize);
+        }
+        let mut packet = Packet::EMPTY;
+        let mut extent = Extent::EMPTY;
+        for (lane, (r, corners)) in triangles.iter().zip(corners).enumerate() {
+            packet.set(lane, corners, self.meshes[r.geometry() as usize].0 + r.primitive());
+            extent = extent.union(Extent::around_finite(corners).unwrap_or(Extent::EMPTY));
+        }
+        (packet, extent)
     }
 }

@@ -10,11 +10,10 @@
 use super::group::{Trace, visit};
 use super::query::Query;
 use super::{Geometry, GeometryId, Hit};
-use crate::bvh::{BuildQuality, Bvh, Leaves, Reference};
+use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::sphere_set::SphereSet;
 use math::{Bounds3, MACHINE_EPSILON, Ray, Vec2, Vec3};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// All spheres of a group.
@@ -26,19 +25,7 @@ pub(super) struct Spheres {
 
 impl Spheres {
     pub fn build(members: &[GeometryId], geometries: &[Geometry], quality: BuildQuality) -> Self {
-        let mut references = Vec::new();
-        for &id in members {
-            if let Geometry::Spheres(set) = &geometries[id.0 as usize] {
-                let finite = |i: usize| {
-                    let bounds = set.bounds(i);
-                    let finite = bounds.min.is_finite() && bounds.max.is_finite();
-                    finite.then(|| Reference::new(&bounds, id.0, i as u32))
-                };
-                references.par_extend((0..set.len()).into_par_iter().filter_map(finite));
-            }
-        }
-        let pack = |block: &[Reference]| Packet::new(block, geometries);
-        let (tree, packets) = Bvh::build(references, quality, Packet::WIDTH, |_| None, pack);
+        let (tree, packets) = Bvh::build(&Sets { members, geometries }, quality);
         Self { tree, packets }
     }
 
@@ -64,6 +51,44 @@ impl Spheres {
         trace.stats.extents += extents;
         trace.stats.primitives += primitives;
         stop
+    }
+}
+
+/// The spheres of all sets.
+struct Sets<'a> {
+    members: &'a [GeometryId],
+    geometries: &'a [Geometry],
+}
+
+impl Primitives for Sets<'_> {
+    type Block = Packet;
+
+    fn width(&self) -> usize {
+        Packet::WIDTH
+    }
+
+    fn geometries(&self) -> Vec<(u32, usize)> {
+        let len = |&id: &GeometryId| match &self.geometries[id.0 as usize] {
+            Geometry::Spheres(set) => Some((id.0, set.len())),
+            Geometry::Mesh(_) | Geometry::Shapes(_) | Geometry::Curves(_) => None,
+        };
+        self.members.iter().filter_map(len).collect()
+    }
+
+    #[inline]
+    fn extent(&self, geometry: u32, sphere: u32) -> Option<Extent> {
+        match &self.geometries[geometry as usize] {
+            Geometry::Spheres(set) => {
+                let bounds = set.bounds(sphere as usize);
+                (bounds.min.is_finite() && bounds.max.is_finite()).then(|| Extent::from(&bounds))
+            }
+            Geometry::Mesh(_) | Geometry::Shapes(_) | Geometry::Curves(_) => None,
+        }
+    }
+
+    fn block(&self, spheres: &[Reference]) -> (Packet, Extent) {
+        let (packet, bounds) = Packet::new(spheres, self.geometries);
+        (packet, Extent::from(&bounds))
     }
 }
 
@@ -170,8 +195,8 @@ impl Packet {
     /// Spheres in a packet.
     const WIDTH: usize = 8;
 
-    /// Lanes that are not in use have a centre that nothing is near to.
-    fn new(block: &[Reference], geometries: &[Geometry]) -> Self {
+    /// A packet, and the box around it. Lanes that are not in use have a centre that nothing is near to.
+    fn new(block: &[Reference], geometries: &[Geometry]) -> (Self, Bounds3) {
         let mut packet = Self {
             center: [[f32::NAN; Self::WIDTH]; 3],
             radius: [0.0; Self::WIDTH],
@@ -181,8 +206,8 @@ impl Packet {
         for (id, reference) in packet.ids.iter_mut().zip(block) {
             *id = (reference.geometry(), reference.primitive());
         }
-        packet.renew(geometries);
-        packet
+        let bounds = packet.renew(geometries);
+        (packet, bounds)
     }
 
     /// Takes the spheres from their sets again; gives the box around them. Spheres that are not finite are met by nothing.

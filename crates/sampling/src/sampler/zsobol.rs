@@ -2,7 +2,8 @@
 //! curve permuted at random: neighbouring pixels take complementary points, and error looks like blue noise
 //! [Ahmed 2020], [Pharr 2023 §8.7.3].
 //!
-//! A number of samples that is no power of two is rounded up to one. Beyond it, each further round has scrambles and
+//! Another seed permutes digits and scrambles points otherwise: with scrambles alone, which all pixels share, the errors of two seeds
+//! would have much in common. A number of samples that is no power of two is rounded up to one. Beyond it, each further round has scrambles and
 //! permutations of its own.
 
 use super::Randomize;
@@ -17,6 +18,8 @@ pub struct ZSobol {
     base4_digits: u32,
     randomize: Randomize,
     seed: u32,
+    /// What makes the permutations of a seed differ from those of seed 0, for which it is 0.
+    seed_key: u32,
     morton_index: u64,
     dimension: u32,
     /// What makes a further round differ from the first, for which it is 0.
@@ -29,7 +32,17 @@ impl ZSobol {
         let log2_samples = samples_per_pixel.clamp(1, 1 << 31).next_power_of_two().ilog2();
         let side = resolution[0].max(resolution[1]).max(1) as u32;
         let base4_digits = side.next_power_of_two().ilog2() + log2_samples.div_ceil(2);
-        ZSobol { log2_samples, base4_digits, randomize, seed, morton_index: 0, dimension: 0, round: 0 }
+        let seed_key = key(seed);
+        ZSobol {
+            log2_samples,
+            base4_digits,
+            randomize,
+            seed,
+            seed_key,
+            morton_index: 0,
+            dimension: 0,
+            round: 0,
+        }
     }
 
     pub(super) fn samples_per_pixel(&self) -> u32 {
@@ -39,7 +52,7 @@ impl ZSobol {
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
         let round = index >> self.log2_samples;
         let index = index & (self.samples_per_pixel() - 1);
-        self.round = if round == 0 { 0 } else { hash(&[round]) as u32 };
+        self.round = key(round);
         self.morton_index = (encode_morton(pixel) << self.log2_samples) | index as u64;
         self.dimension = dimension;
     }
@@ -69,7 +82,7 @@ impl ZSobol {
     /// The Morton index with each base-4 digit permuted by the digits above it; below them there is one binary digit if
     /// the number of samples is not a power of four.
     fn permuted_index(&self) -> u64 {
-        let key = 0x5555_5555u32.wrapping_mul(self.dimension) ^ self.round;
+        let key = 0x5555_5555u32.wrapping_mul(self.dimension) ^ self.round ^ self.seed_key;
         let choose = |above: u64| mix_bits(above ^ key as u64);
         let last = self.log2_samples & 1;
         let mut index = 0;
@@ -84,6 +97,11 @@ impl ZSobol {
         }
         index
     }
+}
+
+/// A number that has nothing to do with those of neighbouring seeds or rounds; 0 for 0.
+fn key(number: u32) -> u32 {
+    if number == 0 { 0 } else { hash(&[number]) as u32 }
 }
 
 /// Where permutation number `permutation` of 24 sends a base-4 digit.
@@ -140,6 +158,26 @@ mod tests {
         assert_eq!(encode_morton([1, 0]), 1);
         assert_eq!(encode_morton([0, 1]), 2);
         assert_eq!(encode_morton([2, 2]), 12);
+    }
+
+    #[test]
+    fn pictures_of_different_seeds_have_nothing_in_common() {
+        // Which half of [0, 1) a pixel's only sample lies in, as a sign.
+        let signs = |seed: u32| -> Vec<f64> {
+            let mut sampler = ZSobol::new(1, [64, 64], Randomize::FastOwen, seed);
+            let pixels = (0..64).flat_map(|y| (0..64).map(move |x| [x, y]));
+            let sign = |pixel| {
+                sampler.start_pixel_sample(pixel, 0, 0);
+                if sampler.get_1d() < 0.5 { -1.0 } else { 1.0 }
+            };
+            pixels.map(sign).collect()
+        };
+        for seeds in [[0, 1], [1, 2], [5, 77]] {
+            let [a, b] = seeds.map(signs);
+            let correlation = a.iter().zip(&b).map(|(a, b)| a * b).sum::<f64>() / a.len() as f64;
+            // Five standard deviations of 4096 independent signs.
+            assert!(correlation.abs() < 5.0 / 64.0, "seeds {seeds:?}: {correlation}");
+        }
     }
 
     #[test]

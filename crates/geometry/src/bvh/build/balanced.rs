@@ -15,7 +15,8 @@ pub(super) fn plant(mut references: Vec<Reference>, blocks: Blocks) -> Planted {
     let mut inner = vec![Inner::default(); references.len()];
     let extent = Extent::around(&references);
     let tree = grow(&mut references, &mut inner, 0, extent, blocks, 0);
-    Planted { references, inner, tree }
+    let size = tree.as_node(&inner);
+    Planted { references, inner, root: tree.root, size }
 }
 
 /// Brings the references into order and fills in `inner`, which is as long. `first` is the index of the first

@@ -2,11 +2,12 @@
 //!
 //! The bits of a centroid's quantised coordinates, interleaved, are its place on a curve that visits space
 //! octant by octant. Primitives are sorted along the curve, and a range of them is divided where the highest
-//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach 2009]). The
-//! smallest ranges are divided so that blocks are full.
+//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach 2009]). The smallest
+//! ranges are cut into full blocks. These are made before there is a tree, which then grows over blocks, so
+//! that primitives are looked up three times: for the range of their centroids, their codes and their blocks.
 
 use super::balanced::PARALLEL;
-use super::bins::centroids;
+use super::primitives::{MAX_WIDTH, Numbering, Primitives};
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Grown, Inner, Planted};
 use math::Vec4;
@@ -16,30 +17,62 @@ use rayon::prelude::*;
 const BITS: u32 = 30;
 /// Bits sorted by at a time.
 const DIGIT: u32 = 10;
-/// How many keys a thread sorts into digits at a time.
+/// How many keys a thread works on at a time.
 const PART: usize = 1 << 16;
-/// Ranges of so many blocks are divided between blocks, and of so many are not divided.
-const FULL_BLOCKS: u32 = 4;
+/// Ranges that fill no more than so many blocks are cut into full ones.
+const FULL_BLOCKS: usize = 4;
+/// Ranges of so many blocks are not divided.
 const LEAF_BLOCKS: usize = 2;
+/// Memory is asked for what is in a block so many blocks before that is made, and twice as many for what leads there.
+const AHEAD: usize = 8;
 
-/// Brings references into order and grows a tree over them.
-pub(super) fn plant(references: Vec<Reference>, blocks: Blocks) -> Planted {
-    let keys = sorted_keys(&references);
-    let references: Vec<_> = keys.par_iter().map(|key| references[(key >> BITS) as usize]).collect();
+/// Makes blocks, and grows a tree over them: each reference is a block.
+pub(super) fn plant<P: Primitives>(primitives: &P) -> (Planted, Vec<P::Block>) {
+    let numbering = Numbering::of(primitives);
+    let keys = sorted_keys(primitives, &numbering);
+    let starts = starts(&keys, 0, primitives.width());
+    let start = |block: usize| starts.get(block).map_or(keys.len(), |&start| start as usize);
+    let members = |block| {
+        let keys = &keys[start(block)..start(block + 1)];
+        keys.iter().map(|key| numbering.id((key >> BITS) as usize))
+    };
+    let block = |block: usize| {
+        members(block + 2 * AHEAD)
+            .for_each(|(geometry, primitive)| primitives.prefetch_indices(geometry, primitive));
+        members(block + AHEAD).for_each(|(geometry, primitive)| primitives.prefetch(geometry, primitive));
+        let mut references = [Reference::none(); MAX_WIDTH];
+        for (reference, (geometry, primitive)) in references.iter_mut().zip(members(block)) {
+            *reference = Reference::new(Extent::EMPTY, geometry, primitive);
+        }
+        let (made, extent) = primitives.block(&references[..members(block).len()]);
+        (Reference::new(extent, 0, block as u32), made)
+    };
+    let (mut references, mut blocks) = (Vec::new(), Vec::new());
+    let made = (0..starts.len()).into_par_iter().with_min_len(PARALLEL / 4).map(block);
+    made.unzip_into_vecs(&mut references, &mut blocks);
+    let codes: Vec<_> = starts.iter().map(|&start| code(keys[start as usize])).collect();
     let mut inner = vec![Inner::default(); references.len()];
-    let tree = grow(&references, &keys, &mut inner, 0, blocks);
-    Planted { references, inner, tree }
+    let tree = grow(&codes, &references, &mut inner, 0);
+    let size = tree.as_node(&inner);
+    (Planted { references, inner, root: tree.root, size }, blocks)
 }
 
-/// In the order of their codes: the code in the low bits, the index of the reference above.
-fn sorted_keys(references: &[Reference]) -> Vec<u64> {
-    let code = Coder::new(&centroids(references));
-    let mut keys: Vec<u64> = references
-        .par_iter()
-        .enumerate()
-        .with_min_len(PARALLEL)
-        .map(|(i, r)| (i as u64) << BITS | code.of(r) as u64)
-        .collect();
+/// The code of a key.
+fn code(key: u64) -> u32 {
+    key as u32 & ((1 << BITS) - 1)
+}
+
+/// All primitives in the order of their codes: the code in the low bits, the number of the primitive above.
+fn sorted_keys(primitives: &impl Primitives, numbering: &Numbering) -> Vec<u64> {
+    const NOTHING: u64 = u64::MAX;
+    let coder = Coder::new(&numbering.centroids(primitives));
+    let mut keys = numbering.map(primitives, |number, _, _, extent| match extent {
+        Some(extent) => (number as u64) << BITS | coder.of(&extent) as u64,
+        None => NOTHING,
+    });
+    if keys.contains(&NOTHING) {
+        keys.retain(|&key| key != NOTHING);
+    }
     let mut sorted = vec![0; keys.len()];
     for shift in (0..BITS).step_by(DIGIT as usize) {
         sort_by_digit(&keys, &mut sorted, shift);
@@ -92,47 +125,76 @@ impl Coder {
         Self { min: centroids.low(), scale: if scale.is_finite() { scale } else { 0.0 } }
     }
 
-    fn of(&self, r: &Reference) -> u32 {
-        let at = (r.extent().doubled_centroid() - self.min).truncate() * self.scale;
-        spread(at.x as u32) << 2 | spread(at.y as u32) << 1 | spread(at.z as u32)
+    #[inline]
+    fn of(&self, extent: &Extent) -> u32 {
+        /// A number below 2²² added to this stands, rounded, in the low bits.
+        const ROUND: Vec4 = Vec4::splat(12_582_912.0);
+        let at = (extent.doubled_centroid() - self.min) * self.scale + ROUND;
+        let [x, y, z, _] = at.to_array().map(|at| spread(at.to_bits()));
+        x << 2 | y << 1 | z
     }
 }
 
-/// Puts two zeros between the bits of a number of ten.
+/// Puts two zeros between the ten low bits of a number.
+#[inline]
 fn spread(x: u32) -> u32 {
-    let x = x.min(0x3ff);
+    let x = x & 0x3ff;
     let x = (x | x << 16) & 0x030000ff;
     let x = (x | x << 8) & 0x0300f00f;
     let x = (x | x << 4) & 0x030c30c3;
     (x | x << 2) & 0x09249249
 }
 
-/// `first` is the index of the first reference.
-fn grow(references: &[Reference], keys: &[u64], inner: &mut [Inner], first: usize, blocks: Blocks) -> Grown {
-    let n = keys.len();
-    if n <= LEAF_BLOCKS * blocks.width() {
-        return Grown::leaf(Extent::around(references), n as u32, blocks);
+/// Where blocks begin. `first` is the index of the first key.
+fn starts(keys: &[u64], first: usize, width: usize) -> Vec<u32> {
+    if keys.len() <= PART {
+        let mut list = Vec::with_capacity(keys.len() / width * 3 / 2);
+        add_starts(keys, first, width, &mut list);
+        return list;
     }
-    let middle = middle(keys, blocks);
-    let (left_references, right_references) = references.split_at(middle);
-    let (left_keys, right_keys) = keys.split_at(middle);
-    let (left_inner, right_inner) = inner.split_at_mut(middle);
-    let mut left = || grow(left_references, left_keys, left_inner, first, blocks);
-    let mut right = || grow(right_references, right_keys, right_inner, first + middle, blocks);
-    let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
-    let (grown, node) = Grown::join(&left, &right, first + middle, blocks);
-    inner[middle] = node;
-    grown
+    let (left, right) = keys.split_at(middle(keys, code));
+    let right = || starts(right, first + left.len(), width);
+    let (mut list, right) = rayon::join(|| starts(left, first, width), right);
+    list.extend(right);
+    list
+}
+
+fn add_starts(keys: &[u64], first: usize, width: usize, list: &mut Vec<u32>) {
+    if keys.len() <= FULL_BLOCKS * width {
+        list.extend((first..first + keys.len()).step_by(width).map(|start| start as u32));
+        return;
+    }
+    let (left, right) = keys.split_at(middle(keys, code));
+    add_starts(left, first, width, list);
+    add_starts(right, first + left.len(), width, list);
 }
 
 /// Where the right half of a range begins.
-fn middle(keys: &[u64], blocks: Blocks) -> usize {
-    let code = |key: u64| key as u32 & ((1 << BITS) - 1);
-    let (first, last) = (code(keys[0]), code(keys[keys.len() - 1]));
-    let count = blocks.count(keys.len() as u32);
-    if count <= FULL_BLOCKS || first == last {
-        return (count / 2) as usize * blocks.width();
+fn middle<T: Copy>(range: &[T], code: impl Fn(T) -> u32) -> usize {
+    let (first, last) = (code(range[0]), code(range[range.len() - 1]));
+    if first == last {
+        return range.len() / 2;
     }
     let highest = (first ^ last).ilog2();
-    keys.partition_point(|&key| code(key) >> highest == first >> highest)
+    range.partition_point(|&key| code(key) >> highest == first >> highest)
+}
+
+/// Grows a tree over blocks, whose first primitives have `codes`, and fills in `inner`. `first` is the index of the first
+/// block.
+fn grow(codes: &[u32], blocks: &[Reference], inner: &mut [Inner], first: usize) -> Grown {
+    let n = blocks.len();
+    if n <= LEAF_BLOCKS {
+        let extent = blocks.iter().fold(Extent::EMPTY, |all, block| all.union(block.extent()));
+        return Grown::leaf(extent, n as u32, Blocks::of(1));
+    }
+    let middle = middle(codes, |code| code);
+    let (left_codes, right_codes) = codes.split_at(middle);
+    let (left_blocks, right_blocks) = blocks.split_at(middle);
+    let (left_inner, right_inner) = inner.split_at_mut(middle);
+    let mut left = || grow(left_codes, left_blocks, left_inner, first);
+    let mut right = || grow(right_codes, right_blocks, right_inner, first + middle);
+    let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
+    let (grown, node) = Grown::join(&left, &right, first + middle, Blocks::of(1));
+    inner[middle] = node;
+    grown
 }

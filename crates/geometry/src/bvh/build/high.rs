@@ -24,12 +24,13 @@ pub(super) fn plant(mut references: Vec<Reference>, corners: &impl Corners, bloc
     let mut inner = vec![Inner::default(); references.len()];
     let builder = Builder { corners, blocks, least_overlap: OVERLAP * extent.half_area() };
     let tree = builder.grow(Set { references: &mut references, count, extent }, &mut inner, 0, 0);
-    close_gaps(Planted { references, inner, tree })
+    let size = tree.as_node(&inner);
+    close_gaps(Planted { references, inner, root: tree.root, size })
 }
 
 /// Moves everything to the front, where some of the room was not needed.
 fn close_gaps(planted: Planted) -> Planted {
-    let Planted { mut references, inner, mut tree } = planted;
+    let Planted { mut references, inner, root, size } = planted;
     let mut used = 0;
     let place = |r: &Reference| {
         let here = used;
@@ -43,9 +44,9 @@ fn close_gaps(planted: Planted) -> Planted {
         node.halves = node.halves.map(place);
         closed[border as usize] = node;
     }
-    tree.root = place(tree.root);
+    let root = if root > 0 { place(root) } else { 0 };
     references.retain(|r| !r.is_none());
-    Planted { references, inner: closed, tree }
+    Planted { references, inner: closed, root, size }
 }
 
 /// References in the first places of some room, and a box around them.

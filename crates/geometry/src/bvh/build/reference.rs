@@ -1,6 +1,6 @@
 //! Boxes as the builders see them.
 
-use math::{Bounds3, Vec4};
+use math::{Bounds3, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// A box as (low, −high): the union of two boxes is then a minimum, twice. The lanes w mean nothing here; a
@@ -26,6 +26,15 @@ impl Extent {
     #[inline]
     pub fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), minus_high: self.minus_high.min(other.minus_high) }
+    }
+
+    /// The box around three points, unless one of them is not finite.
+    #[inline(always)]
+    pub fn around_finite(points: [Vec3; 3]) -> Option<Self> {
+        let [a, b, c] = points.map(|p| p.extend(0.0));
+        let nothing = a * 0.0 + b * 0.0 + c * 0.0;
+        let extent = Self { low: a.min(b).min(c), minus_high: -a.max(b).max(c) };
+        (nothing == Vec4::ZERO).then_some(extent)
     }
 
     /// What both share.
@@ -120,16 +129,11 @@ impl Reference {
 
     /// Not in use.
     pub fn none() -> Self {
-        Self::with_ids(Extent::EMPTY, Self::NOTHING, Self::NOTHING)
+        Self::new(Extent::EMPTY, Self::NOTHING, Self::NOTHING)
     }
 
     #[inline]
-    pub fn new(bounds: &Bounds3, geometry: u32, primitive: u32) -> Self {
-        Self::with_ids(bounds.into(), geometry, primitive)
-    }
-
-    #[inline]
-    fn with_ids(extent: Extent, geometry: u32, primitive: u32) -> Self {
+    pub fn new(extent: Extent, geometry: u32, primitive: u32) -> Self {
         let Extent { mut low, mut minus_high } = extent;
         (low.w, minus_high.w) = (f32::from_bits(geometry), f32::from_bits(primitive));
         Self(Extent { low, minus_high })
@@ -138,7 +142,7 @@ impl Reference {
     /// The same primitive, of which only what lies in `extent` counts.
     #[inline]
     pub fn within(&self, extent: Extent) -> Self {
-        Self::with_ids(extent, self.geometry(), self.primitive())
+        Self::new(extent, self.geometry(), self.primitive())
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! What every tree must be, whatever it is built over and however.
 
-use super::{BuildQuality, Built, Reference, build};
+use super::{BuildQuality, Built, Extent, Primitives, Reference, build};
 use crate::bvh::node::WideNode;
 use math::{Bounds3, Vec3};
 use sampling::Rng;
@@ -42,10 +42,46 @@ fn inputs() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
     inputs
 }
 
-fn built(triangles: &[[Vec3; 3]], quality: BuildQuality, width: usize) -> Built {
-    let reference = |(i, t): (usize, &[Vec3; 3])| Reference::new(&Bounds3::around(*t), 7, i as u32);
-    let references = triangles.iter().enumerate().map(reference).collect();
-    build(references, quality, width, |r| Some(triangles[r.primitive() as usize]))
+struct Triangles<'a> {
+    corners: &'a [[Vec3; 3]],
+    width: usize,
+}
+
+impl Primitives for Triangles<'_> {
+    type Block = Vec<Reference>;
+
+    fn width(&self) -> usize {
+        self.width
+    }
+
+    fn geometries(&self) -> Vec<(u32, usize)> {
+        vec![(3, 0), (7, self.corners.len())]
+    }
+
+    fn extent(&self, _: u32, triangle: u32) -> Option<Extent> {
+        Extent::around_finite(self.corners[triangle as usize])
+    }
+
+    fn corners(&self, _: u32, triangle: u32) -> Option<[Vec3; 3]> {
+        Some(self.corners[triangle as usize])
+    }
+
+    /// Whole triangles, or parts of them where they are known.
+    fn block(&self, triangles: &[Reference]) -> (Vec<Reference>, Extent) {
+        let part = |r: &Reference| match r.extent().is_empty() {
+            true => {
+                Reference::new(self.extent(7, r.primitive()).expect("finite"), r.geometry(), r.primitive())
+            }
+            false => *r,
+        };
+        let parts: Vec<_> = triangles.iter().map(part).collect();
+        let extent = Extent::around(&parts);
+        (parts, extent)
+    }
+}
+
+fn built(corners: &[[Vec3; 3]], quality: BuildQuality, width: usize) -> Built<Vec<Reference>> {
+    build(&Triangles { corners, width }, quality)
 }
 
 fn contains(outer: &Bounds3, inner: &Bounds3) -> bool {
@@ -53,11 +89,11 @@ fn contains(outer: &Bounds3, inner: &Bounds3) -> bool {
 }
 
 /// Walks a subtree: each node and block is met once, and lies in the box of its parent.
-fn walk(built: &Built, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bounds3) {
+fn walk(built: &Built<Vec<Reference>>, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bounds3) {
     seen.0[node] += 1;
     let wide: &WideNode = &built.nodes[node];
     for lane in 0..wide.len() {
-        let (child, inside) = (wide.children()[lane], wide.bounds(lane));
+        let (child, inside) = (wide.children()[lane], wide.bounds_of(lane));
         assert!(contains(bounds, &inside));
         if !child.is_leaf() {
             walk(built, child.index(), seen, &inside);
@@ -65,8 +101,7 @@ fn walk(built: &Built, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bo
         }
         for block in child.blocks() {
             seen.1[block] += 1;
-            let range = built.blocks[block].clone();
-            for r in &built.references[range.start as usize..range.end as usize] {
+            for r in &built.blocks[block] {
                 assert!(contains(&inside, &r.extent().bounds()));
             }
         }
@@ -83,7 +118,7 @@ fn every_primitive_is_in_the_boxes_above_it() {
                 walk(&built, 0, &mut seen, &built.bounds);
                 assert!(seen.0.iter().chain(&seen.1).all(|&n| n == 1), "{name} {quality:?} {width}");
                 let mut parts = vec![Bounds3::EMPTY; triangles.len()];
-                for r in &built.references {
+                for r in built.blocks.iter().flatten() {
                     assert_eq!(r.geometry(), 7);
                     let part = &mut parts[r.primitive() as usize];
                     *part = part.union(r.extent().bounds());
@@ -92,7 +127,10 @@ fn every_primitive_is_in_the_boxes_above_it() {
                     assert!(contains(part, &Bounds3::around(*triangle)), "{name} {quality:?} {width}");
                 }
                 let most = if quality == BuildQuality::High { 2 * triangles.len() } else { triangles.len() };
-                assert!(built.references.len() <= most, "{name} {quality:?} {width}");
+                assert!(
+                    built.blocks.iter().map(Vec::len).sum::<usize>() <= most,
+                    "{name} {quality:?} {width}"
+                );
                 assert!(built.blocks.iter().all(|b| (1..=width).contains(&b.len())));
             }
         }
@@ -110,9 +148,10 @@ fn cut_triangles_have_no_gaps() {
     };
     let triangles: Vec<[Vec3; 3]> = (0..500).map(strip).collect();
     let built = built(&triangles, BuildQuality::High, 4);
-    assert!(built.references.len() > 600, "{} parts of 500 triangles", built.references.len());
+    let count = built.blocks.iter().map(Vec::len).sum::<usize>();
+    assert!(count > 600, "{count} parts of 500 triangles");
     let mut parts = vec![Vec::new(); triangles.len()];
-    for r in &built.references {
+    for r in built.blocks.iter().flatten() {
         parts[r.primitive() as usize].push(r.extent().bounds());
     }
     for (parts, [a, b, c]) in parts.iter().zip(&triangles) {
@@ -138,7 +177,7 @@ fn any_number_of_threads_builds_the_same_tree() {
         let bytes = [1, 2, 7].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             let built = pool.install(|| built(&triangles, quality, 4));
-            format!("{:?} {:?} {:?}", built.nodes, built.blocks, built.references)
+            format!("{:?} {:?}", built.nodes, built.blocks)
         });
         assert!(bytes[0] == bytes[1] && bytes[1] == bytes[2], "{quality:?}");
     }

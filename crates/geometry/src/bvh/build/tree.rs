@@ -112,7 +112,10 @@ impl Inner {
 pub(super) struct Planted {
     pub references: Vec<Reference>,
     pub inner: Vec<Inner>,
-    pub tree: Grown,
+    /// Border of the root; 0 for a leaf.
+    pub root: u32,
+    /// What all becomes, at least one wide node.
+    pub size: Size,
 }
 
 /// A tree over a range.
@@ -139,24 +142,25 @@ impl Grown {
     pub fn join(left: &Self, right: &Self, border: usize, blocks: Blocks) -> (Self, Inner) {
         let extent = left.extent.union(right.extent);
         let count = left.count + right.count;
-        // By i − 1: the cost of sharing i branches between the halves, and how many the left one gets.
-        let mut shared = [(f32::INFINITY, 1); WIDTH];
-        for branches in 2..=WIDTH {
-            let best = &mut shared[branches - 1];
-            for k in 1..branches {
-                let cost = left.cost[k - 1] + right.cost[branches - k - 1];
-                if cost < best.0 {
-                    *best = (cost, k);
-                }
+        // By i − 1: the cost of sharing i branches between the halves, and how many the left one gets. All i at a time, so
+        // that this becomes vector code without a branch: the right half has no cost for less than one branch.
+        let mut right_cost = [f32::INFINITY; 2 * WIDTH];
+        right_cost[WIDTH..].copy_from_slice(&right.cost);
+        let (mut shared_cost, mut left_shares) = ([f32::INFINITY; WIDTH], [1; WIDTH]);
+        for k in 1..WIDTH {
+            for i in 0..WIDTH {
+                let cost = left.cost[k - 1] + right_cost[WIDTH + i - k];
+                let is_less = cost < shared_cost[i];
+                shared_cost[i] = if is_less { cost } else { shared_cost[i] };
+                left_shares[i] = if is_less { k as u32 } else { left_shares[i] };
             }
         }
-        let size_of = |left_share: usize, branches: usize| {
-            left.size[left_share - 1].plus(right.size[branches - left_share - 1])
+        let size_of = |left_share: u32, branches: usize| {
+            left.size[left_share as usize - 1].plus(right.size[branches - left_share as usize - 1])
         };
-        let (opened, left_share) = shared[WIDTH - 1];
-        let below = size_of(left_share, WIDTH);
-        let mut plan = (left_share as u32) << (3 * WIDTH);
-        let as_node = extent.half_area() * NODE_COST + opened;
+        let below = size_of(left_shares[WIDTH - 1], WIDTH);
+        let mut plan = left_shares[WIDTH - 1] << (3 * WIDTH);
+        let as_node = extent.half_area() * NODE_COST + shared_cost[WIDTH - 1];
         let as_leaf = extent.half_area() * blocks.count(count) as f32;
         let is_leaf = blocks.count(count) <= LARGEST_LEAF && as_leaf <= as_node;
         let (one, one_size) = if is_leaf {
@@ -168,11 +172,11 @@ impl Grown {
         let mut cost = [one; WIDTH];
         let mut size = [one_size; WIDTH];
         for i in 1..WIDTH {
-            let (opened, left_share) = shared[i];
+            let (opened, left_share) = (shared_cost[i], left_shares[i]);
             if opened > cost[i - 1] {
                 (cost[i], size[i]) = (cost[i - 1], size[i - 1]);
             } else {
-                plan |= (left_share as u32) << (3 * i);
+                plan |= left_share << (3 * i);
                 (cost[i], size[i]) = (opened, size_of(left_share, i + 1));
             }
         }

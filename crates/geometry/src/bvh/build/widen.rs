@@ -1,8 +1,8 @@
 //! From the binary tree to wide nodes.
 //!
-//! Nodes are written parent first, then the subtrees one after another, each as a whole; so are the blocks of
-//! the leaves, those right below a node before those further down. The sizes of subtrees are known before, so
-//! that threads can write to parts of one array.
+//! Nodes are written parent first, then the subtrees one after another, each as a whole; the blocks of the leaves are
+//! written in the order of the references. The sizes of subtrees are known before, so that threads can write to parts
+//! of one array.
 //!
 //! The children of a node are ordered by what they promise to a ray that looks for any hit, which begins with the last: the
 //! chance of a hit in a box that the ray enters, over the expected cost of the search there ([Ize & Hansen 2011]). In a leaf
@@ -27,11 +27,13 @@ pub(super) struct Wide {
     pub depth: usize,
 }
 
-/// Cuts a binary tree over at least one reference.
+/// Cuts a binary tree.
 pub(super) fn widen(planted: &Planted, blocks: Blocks) -> Wide {
-    let Planted { references, inner, tree } = planted;
-    let whole = Branch { range: 0..references.len() as u32, root: tree.root };
-    let size = tree.as_node(inner);
+    let Planted { references, inner, root, size } = planted;
+    if references.is_empty() {
+        return Wide { nodes: Vec::new(), blocks: Vec::new(), extent: Extent::EMPTY, depth: 0 };
+    }
+    let whole = Branch { range: 0..references.len() as u32, root: *root };
     let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];
     let mut list = vec![0..0; size.blocks as usize];
     let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
@@ -119,6 +121,7 @@ impl Part<'_> {
 }
 
 /// What is known of a subtree once it is written.
+#[derive(Clone, Copy)]
 struct Written {
     extent: Extent,
     /// How many nodes are above each other.
@@ -129,6 +132,8 @@ struct Written {
 }
 
 impl Written {
+    const NOTHING: Self = Self { extent: Extent::EMPTY, depth: 0, chance: 0.0, cost: 0.0 };
+
     fn leaf(references: &[Reference], blocks: u32) -> Self {
         let extent = Extent::around(references);
         let area: f32 = references.iter().map(|r| r.extent().half_area()).sum();
@@ -170,35 +175,43 @@ impl Writer<'_> {
     /// Writes a node and all below it.
     fn write(&self, node: &Branch, mut part: Part) -> Written {
         let branches = Branches::below(self.inner, node);
-        let mut children = Vec::with_capacity(WIDTH);
         let here = part.take(Size { nodes: 1, blocks: 0 });
-        for leaf in branches.list().iter().filter(|branch| branch.root == 0) {
-            let count = self.blocks.count(leaf.len());
-            let mine = part.take(Size { nodes: 0, blocks: count });
-            let starts = leaf.range.clone().step_by(self.blocks.width());
-            for (block, start) in mine.blocks.iter_mut().zip(starts) {
-                *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
+        let mut children = [(Written::NOTHING, Child::NOTHING); WIDTH];
+        let children = &mut children[..branches.len];
+        let mut for_others = Vec::new();
+        for (branch, (written, child)) in branches.list().iter().zip(&mut *children) {
+            if branch.root == 0 {
+                (*written, *child) = self.write_leaf(branch, &mut part);
+                continue;
             }
-            let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
-            let child = Child::leaf(mine.first_block as usize, count as usize);
-            children.push((Written::leaf(references, count), child));
-        }
-        let mut below = Vec::new();
-        for branch in branches.list().iter().filter(|branch| branch.root > 0) {
             let mine = part.take(self.inner[branch.root as usize].as_node());
-            let child = Child::node(mine.first_node as usize);
-            if node.len() > PARALLEL {
-                below.push((branch, mine, child));
-            } else {
-                children.push((self.write(branch, mine), child));
+            *child = Child::node(mine.first_node as usize);
+            match node.len() > PARALLEL {
+                true => for_others.push((written, branch, mine)),
+                false => *written = self.write(branch, mine),
             }
         }
-        let written = |(branch, mine, child)| (self.write(branch, mine), child);
-        children.par_extend(below.into_par_iter().map(written));
+        if !for_others.is_empty() {
+            let write =
+                |(written, branch, mine): (&mut Written, &Branch, Part)| *written = self.write(branch, mine);
+            for_others.into_par_iter().for_each(write);
+        }
         children.sort_by(|(a, _), (b, _)| a.promise().total_cmp(&b.promise()));
         let mut wide = WideNode::EMPTY;
         children.iter().for_each(|(below, child)| wide.push(&below.extent.bounds(), *child));
         here.nodes[0] = wide;
-        Written::node(&children)
+        Written::node(children)
+    }
+
+    /// Writes the blocks of a leaf.
+    fn write_leaf(&self, leaf: &Branch, part: &mut Part) -> (Written, Child) {
+        let count = self.blocks.count(leaf.len());
+        let mine = part.take(Size { nodes: 0, blocks: count });
+        let starts = leaf.range.clone().step_by(self.blocks.width());
+        for (block, start) in mine.blocks.iter_mut().zip(starts) {
+            *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
+        }
+        let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
+        (Written::leaf(references, count), Child::leaf(mine.first_block as usize, count as usize))
     }
 }

@@ -1,0 +1,239 @@
+//! A plan on its way to a comparison: checked, rendered, measured.
+
+use description::{Diagnostic, SceneDesc};
+use image::flip::{PIXELS_PER_DEGREE, hdr_flip};
+use image::{Image, Window};
+use integrators::{Cancelled, Control};
+use scene::Scene;
+
+use super::measure::{measure, reference_noise};
+use super::twins::Twins;
+use super::{
+    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
+};
+use crate::{OverrideError, Overrides};
+
+/// The samples per pixel that samplers are made for where time is the limit.
+const TIMED_SAMPLES: u32 = 1 << 16;
+
+/// How many times a contender's budget a reference gets that is not told otherwise: its noise is then a sixteenth of the variance
+/// of who rendered it.
+const REFERENCE_FACTOR: u32 = 16;
+
+/// A plan that makes sense, with its scene compiled.
+pub struct Laboratory {
+    setup: Setup,
+    scene: Scene,
+    contenders: Vec<Entry>,
+    reference: ReferencePlan,
+}
+
+/// A contender with the scene as it renders it.
+struct Entry {
+    name: String,
+    desc: SceneDesc,
+}
+
+enum ReferencePlan {
+    Picture(Box<Reference>),
+    /// To be rendered as two halves, each of which may take so much.
+    Render(Box<Entry>, Budget),
+}
+
+impl Laboratory {
+    /// Finds all that is wrong with a plan for a scene, or makes everything that it needs; and tells what will be drawn otherwise
+    /// than described.
+    pub fn new(scene: &SceneDesc, plan: Plan) -> Result<(Self, Vec<Diagnostic>), PlanError> {
+        let entry = |contender: &Contender, budget| entry(scene, &plan.overrides, contender, budget);
+        let contenders: Vec<Entry> = plan
+            .contenders
+            .iter()
+            .map(|contender| entry(contender, plan.budget))
+            .collect::<Result<_, _>>()?;
+        let first =
+            contenders.first().ok_or_else(|| PlanError::Plan("there is no integrator to compare".into()))?;
+
+        let mut warnings = Vec::new();
+        let compiled = scene::compile(&first.desc).map_err(PlanError::Scene)?;
+        warnings.extend(compiled.warnings);
+        let film = film::compile(&first.desc).map_err(PlanError::Scene)?.film;
+        let (bounds, desc) = (film.pixel_bounds(), &first.desc);
+        let setup = Setup {
+            title: plan.title,
+            resolution: film.full_resolution(),
+            pixel_bounds: [bounds.min[0], bounds.max[0], bounds.min[1], bounds.max[1]],
+            budget: plan.budget,
+            seed: desc.sampler.seed.unwrap_or(desc.options.seed),
+            threads: plan.threads,
+            filter: format!("{:?}", desc.filter.value),
+            changes: changes(&plan.overrides),
+        };
+        let reference = match plan.reference {
+            ReferenceSource::Picture { name, picture } => {
+                let picture = fitting(&name, &picture, &setup).map_err(PlanError::Reference)?;
+                ReferencePlan::Picture(Box::new(Reference { source: name, picture, noise: None }))
+            }
+            ReferenceSource::Render { by, samples_per_pixel } => {
+                let half = match samples_per_pixel {
+                    Some(samples) => Budget::Samples(samples.div_ceil(2)),
+                    None => plan.budget.times(REFERENCE_FACTOR / 2),
+                };
+                ReferencePlan::Render(
+                    Box::new(entry(by.as_ref().unwrap_or(&plan.contenders[0]), half)?),
+                    half,
+                )
+            }
+        };
+        let laboratory = Self { setup, scene: compiled.scene, contenders, reference };
+        for entry in laboratory.entries() {
+            let (_, said) = Twins::new(&entry.desc, laboratory.setup.seed).map_err(PlanError::Scene)?;
+            warnings.extend(said.into_iter().filter(|said| !warnings.contains(said)).collect::<Vec<_>>());
+        }
+        Ok((laboratory, warnings))
+    }
+
+    fn entries(&self) -> impl Iterator<Item = &Entry> {
+        let reference = match &self.reference {
+            ReferencePlan::Picture(_) => None,
+            ReferencePlan::Render(entry, _) => Some(&**entry),
+        };
+        self.contenders.iter().chain(reference)
+    }
+
+    /// Renders the reference, then all contenders in turn, on the threads of rayon's current pool, and measures them. `begin` is
+    /// told what comes next, and gives what controls it; of the passes it hears, one is a pass of both pictures.
+    ///
+    /// After a cancellation the comparison is of what has been done. `Err` means that there is nothing to compare: no contender
+    /// has done a pass.
+    pub fn compare(self, mut begin: impl FnMut(&str) -> Control) -> Result<Comparison, Cancelled> {
+        let Self { setup, scene, contenders, reference } = self;
+        let reference = match reference {
+            ReferencePlan::Picture(reference) => *reference,
+            ReferencePlan::Render(entry, half) => {
+                let control = begin(&format!("reference by {}", entry.name));
+                // Seeds of its own: a picture judged by its own samples would look better than it is.
+                render_reference(&entry, half, setup.seed.wrapping_add(2), &scene, &control)?
+            }
+        };
+        let (mut runs, mut missing) = (Vec::new(), Vec::new());
+        let mut interrupted = false;
+        for entry in &contenders {
+            let run =
+                if interrupted { None } else { run(entry, &setup, &scene, &reference, &begin(&entry.name)) };
+            interrupted |= run.as_ref().is_none_or(|run| run.interrupted);
+            match run {
+                Some(run) => runs.push(run),
+                None => missing.push(entry.name.clone()),
+            }
+        }
+        if runs.is_empty() { Err(Cancelled) } else { Ok(Comparison { setup, reference, runs, missing }) }
+    }
+}
+
+/// A contender's scene. Pictures are measured in single floats, and seeds are the laboratory's.
+fn entry(
+    scene: &SceneDesc,
+    overrides: &Overrides,
+    contender: &Contender,
+    budget: Budget,
+) -> Result<Entry, PlanError> {
+    let samples = match budget {
+        Budget::Time(_) => TIMED_SAMPLES,
+        Budget::Samples(samples) => samples,
+    };
+    let overrides = Overrides { samples_per_pixel: Some(samples), ..overrides.clone() };
+    let wrong = |error: OverrideError| PlanError::Plan(error.to_string());
+    let mut desc = contender.scene(scene, &overrides).map_err(wrong)?;
+    desc.film.save_fp16 = false;
+    Ok(Entry { name: contender.title(&desc), desc })
+}
+
+/// What is changed for all, as `key=value`.
+fn changes(overrides: &Overrides) -> Vec<String> {
+    let accelerator = overrides.accelerator.iter().map(|name| format!("accelerator={name}"));
+    accelerator.chain(overrides.settings.iter().map(|(key, value)| format!("{key}={value}"))).collect()
+}
+
+/// The part of a reference that is rendered.
+fn fitting(name: &str, picture: &Image, setup: &Setup) -> Result<Image, String> {
+    let [x0, x1, y0, y1] = setup.pixel_bounds;
+    let [width, height] = setup.resolution;
+    let size = [picture.width() as i32, picture.height() as i32];
+    if size == [x1 - x0, y1 - y0] {
+        return Ok(picture.clone());
+    }
+    if size == [width, height] {
+        return picture.crop(Window { min: [x0, y0], max: [x1, y1] }).map_err(|error| error.to_string());
+    }
+    Err(format!(
+        "the reference {name} has {} × {} pixels, not the scene's {} × {}",
+        size[0],
+        size[1],
+        x1 - x0,
+        y1 - y0
+    ))
+}
+
+fn render_reference(
+    entry: &Entry,
+    half: Budget,
+    seed: i32,
+    scene: &Scene,
+    control: &Control,
+) -> Result<Reference, Cancelled> {
+    let mut twins = twins(entry, seed);
+    twins.render(scene, half, control, |_| ())?;
+    let halves = twins.pictures();
+    let picture = Image::from_fn(halves[0].width(), halves[0].height(), ["R", "G", "B"], |x, y| {
+        let [a, b] = [0, 1].map(|half: usize| halves[half].rgb(x, y));
+        std::array::from_fn(|c| (a[c] + b[c]) / 2.0)
+    });
+    let mut reference = Reference {
+        source: format!(
+            "{}, twice {} passes in {:.1} s",
+            entry.name,
+            twins.effort().passes,
+            2.0 * twins.effort().seconds
+        ),
+        noise: Some(reference_noise(&halves, &picture)),
+        picture,
+    };
+    reference.picture.metadata = halves[0].metadata.clone();
+    Ok(reference)
+}
+
+/// Renders and measures one contender; `None` where it was cancelled before a pass was done.
+fn run(entry: &Entry, setup: &Setup, scene: &Scene, reference: &Reference, control: &Control) -> Option<Run> {
+    let mut twins = twins(entry, setup.seed);
+    let mut checkpoints = Vec::new();
+    let outcome = twins.render(scene, setup.budget, control, |twins| {
+        let effort = twins.effort();
+        checkpoints.push(Checkpoint {
+            passes: effort.passes,
+            seconds: effort.seconds,
+            rays: effort.rays,
+            measure: measure(&twins.pictures(), &reference.picture, reference.noise),
+        });
+    });
+    if checkpoints.is_empty() {
+        return None;
+    }
+    let pictures = twins.pictures();
+    let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
+    Some(Run {
+        name: entry.name.clone(),
+        settings: format!("{:?}", entry.desc.integrator.value),
+        sampler: format!("{:?}", entry.desc.sampler.kind),
+        notes: twins.notes(),
+        checkpoints,
+        pictures,
+        flip,
+        interrupted: outcome.is_err(),
+    })
+}
+
+fn twins(entry: &Entry, seed: i32) -> Twins {
+    let (twins, _) =
+        Twins::new(&entry.desc, seed).expect("invariant: these were built before, with another seed");
+    twins
+}

@@ -1,0 +1,156 @@
+//! The pictures of a page, and maps of their errors, as data that stands in the page itself.
+
+use image::false_color::signed_false_color;
+use image::metrics::RELATIVE_EPSILON;
+use image::{Format, Image, WriteOptions, encode};
+
+use crate::compare::Comparison;
+use crate::picture::in_srgb;
+
+/// Side of a block over which errors are averaged, in pixels.
+const BLOCK: u32 = 8;
+
+/// The share of a map's values that its scale is to hold.
+const WITHIN_SCALE: f64 = 0.98;
+
+/// Every picture of a page as a data URI.
+pub struct Maps {
+    pub reference: String,
+    pub runs: Vec<RunMaps>,
+    /// The relative error that has the full colour.
+    pub scale: f32,
+    /// The same, of errors over blocks.
+    pub block_scale: f32,
+}
+
+/// Those of one run.
+pub struct RunMaps {
+    pub picture: String,
+    pub error: String,
+    pub blocks: String,
+}
+
+impl Maps {
+    pub fn new(comparison: &Comparison) -> Self {
+        let reference = &comparison.reference.picture;
+        let errors: Vec<Image> =
+            comparison.runs.iter().map(|run| error_map(reference, &run.pictures[..1])).collect();
+        let blocks: Vec<Image> =
+            comparison.runs.iter().map(|run| block_means(&error_map(reference, &run.pictures))).collect();
+        let (scale, block_scale) = (scale(&errors), scale(&blocks));
+        let runs =
+            comparison.runs.iter().zip(errors.iter().zip(&blocks)).map(|(run, (error, blocks))| RunMaps {
+                picture: data_uri(&in_srgb(&run.pictures[0])),
+                error: colored(error, scale),
+                blocks: colored(blocks, block_scale),
+            });
+        Self { reference: data_uri(&in_srgb(reference)), runs: runs.collect(), scale, block_scale }
+    }
+}
+
+/// The mean error of some pictures at each pixel as a share of the reference: the mean over channels of (x − r) / √(r² + 0.01).
+fn error_map(reference: &Image, pictures: &[Image]) -> Image {
+    Image::from_fn(reference.width(), reference.height(), ["Y"], |x, y| {
+        let r = reference.rgb(x, y);
+        let error = |picture: &Image| {
+            let value = picture.rgb(x, y);
+            (0..3).map(|c| (value[c] - r[c]) / r[c].hypot(RELATIVE_EPSILON.sqrt() as f32)).sum::<f32>() / 3.0
+        };
+        [pictures.iter().map(error).sum::<f32>() / pictures.len() as f32]
+    })
+}
+
+/// Each pixel the mean of its block.
+fn block_means(map: &Image) -> Image {
+    let [width, height] = [map.width(), map.height()].map(|side| side.div_ceil(BLOCK));
+    let means = Image::from_fn(width, height, ["Y"], |x, y| {
+        let columns = x * BLOCK..((x + 1) * BLOCK).min(map.width());
+        let rows = y * BLOCK..((y + 1) * BLOCK).min(map.height());
+        let count = (columns.len() * rows.len()) as f32;
+        [rows.map(|y| columns.clone().map(|x| map.channel(x, y, 0)).sum::<f32>()).sum::<f32>() / count]
+    });
+    Image::from_fn(map.width(), map.height(), ["Y"], |x, y| [means.channel(x / BLOCK, y / BLOCK, 0)])
+}
+
+/// The error that has the full colour, a round number: 1, 2 or 5 times a power of ten. Nearly all values of a usual map are below it;
+/// one map that is worse than the others does not darken them.
+fn scale(maps: &[Image]) -> f32 {
+    let mut sizes: Vec<f32> = maps.iter().map(usual_limit).collect();
+    sizes.sort_by(f32::total_cmp);
+    let size = sizes[(sizes.len() - 1) / 2].max(1e-6);
+    let decade = 10f32.powf(size.log10().floor());
+    [1.0, 2.0, 5.0]
+        .map(|step| step * decade)
+        .into_iter()
+        .find(|&round| round >= size)
+        .unwrap_or(10.0 * decade)
+}
+
+/// The size that nearly all finite values of a map do not exceed; 1 where none is finite.
+fn usual_limit(map: &Image) -> f32 {
+    let mut sizes: Vec<f32> = map.values().map(f32::abs).filter(|size| size.is_finite()).collect();
+    if sizes.is_empty() {
+        return 1.0;
+    }
+    let place = ((sizes.len() - 1) as f64 * WITHIN_SCALE) as usize;
+    *sizes.select_nth_unstable_by(place, f32::total_cmp).1
+}
+
+fn colored(map: &Image, scale: f32) -> String {
+    data_uri(&signed_false_color(map, scale).expect("invariant: a map has a size"))
+}
+
+/// A picture for screens as a PNG inside a URI.
+fn data_uri(picture: &Image) -> String {
+    let png =
+        encode(picture, Format::Png, &WriteOptions::default()).expect("invariant: PNG takes any picture");
+    format!("data:image/png;base64,{}", base64(&png))
+}
+
+/// Three bytes as four characters, by RFC 4648.
+fn base64(bytes: &[u8]) -> String {
+    const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for group in bytes.chunks(3) {
+        let bits = group
+            .iter()
+            .enumerate()
+            .fold(0u32, |bits, (place, &byte)| bits | u32::from(byte) << (16 - 8 * place));
+        for place in 0..4 {
+            let character = ALPHABET[(bits >> (18 - 6 * place) & 63) as usize];
+            text.push(if place <= group.len() { char::from(character) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_become_characters() {
+        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
+        assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
+        assert_eq!(base64(&[255; 3]), "////");
+    }
+
+    #[test]
+    fn errors_have_a_sign_and_a_round_scale() {
+        let flat = |value: f32| Image::from_fn(10, 9, ["R", "G", "B"], |_, _| [value; 3]);
+        let map = error_map(&flat(2.0), &[flat(1.0), flat(2.2)]);
+        assert!((map.channel(3, 4, 0) + 0.2).abs() < 1e-3);
+        assert_eq!(scale(&[flat(100.0), map]), 0.2, "the better half decides");
+        assert_eq!(scale(&[flat(0.0)]), 1e-6);
+    }
+
+    #[test]
+    fn blocks_keep_the_mean() {
+        let map = Image::from_fn(10, 9, ["Y"], |x, y| [if x < 8 && y < 8 { (x % 2) as f32 } else { 3.0 }]);
+        let blocks = block_means(&map);
+        assert_eq!(
+            (blocks.channel(7, 7, 0), blocks.channel(9, 2, 0), blocks.channel(2, 8, 0)),
+            (0.5, 3.0, 3.0)
+        );
+    }
+}

@@ -1,0 +1,204 @@
+//! `alhazen compare`: one scene by several algorithms, and a report of how they did.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use alhazen::compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
+use alhazen::image::{Image, replace_file};
+use alhazen::import::{Files, import};
+use alhazen::integrators::{Control, Progress};
+
+use crate::args::Compare;
+use crate::bar::Bar;
+use crate::console::{say, warn};
+use crate::diagnostics;
+use crate::failure::{Failure, about_file};
+use crate::interrupt::{self, Interrupt};
+use crate::numbers::count;
+use crate::output;
+use crate::render::{named_after, scene_failure, start_threads};
+
+/// Renders a scene by several algorithms and writes the report.
+pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
+    let report = Report::new(arguments)?;
+    start_threads(arguments.changes.threads)?;
+    let reference = match &arguments.reference {
+        Some(path) => {
+            let picture = Image::open(path).map_err(|error| about_file(path, error))?;
+            ReferenceSource::Picture { name: path.display().to_string(), picture }
+        }
+        None => ReferenceSource::Render {
+            by: arguments.reference_with.clone(),
+            samples_per_pixel: arguments.reference_spp,
+        },
+    };
+    let interrupt = Interrupt::listen()?;
+    let talkative = !arguments.quiet && !arguments.json;
+
+    let mut imported = import(&arguments.scene, &Files);
+    if imported.has_errors() {
+        return Err(scene_failure(imported));
+    }
+    let plan = Plan {
+        title: arguments.scene.display().to_string(),
+        contenders: arguments.integrators.clone(),
+        budget: match (arguments.time, arguments.spp) {
+            (Some(time), _) => Budget::Time(time),
+            (None, spp) => Budget::Samples(spp.unwrap_or(1)),
+        },
+        reference,
+        overrides: arguments.changes.overrides(),
+        threads: rayon::current_num_threads(),
+    };
+    let laboratory = match Laboratory::new(&imported.desc, plan) {
+        Ok((laboratory, warnings)) => {
+            imported.diagnostics.extend(warnings);
+            laboratory
+        }
+        Err(PlanError::Plan(message)) => return Err(Failure::Usage(message)),
+        Err(PlanError::Reference(message)) => return Err(Failure::Input(message)),
+        Err(PlanError::Scene(errors)) => {
+            imported.diagnostics.extend(errors);
+            return Err(scene_failure(imported));
+        }
+    };
+    interrupt.begin_rendering();
+    if talkative {
+        diagnostics::print(&imported.diagnostics, &imported.sources);
+    }
+
+    let mut bar: Option<Arc<Bar>> = None;
+    let outcome = laboratory.compare(|name| {
+        if let Some(bar) = bar.take() {
+            bar.finish();
+        }
+        let new = Arc::new(Bar::named(talkative, name));
+        bar = Some(Arc::clone(&new));
+        let progress = Box::new(move |progress: &Progress| new.show(progress));
+        Control { cancel: interrupt.cancel(), progress: Some(progress) }
+    });
+    if let Some(bar) = bar {
+        bar.finish();
+    }
+    let Ok(comparison) = outcome else {
+        let message = "interrupted before anything could be compared; there is no report";
+        if arguments.json {
+            say(serde_json::json!({ "status": "interrupted" }))
+        } else {
+            warn(message)
+        }
+        return Ok(ExitCode::from(interrupt::EXIT_CODE));
+    };
+    report.write(&comparison)?;
+    let interrupted = comparison.interrupted();
+    if arguments.json {
+        let mut json = comparison.to_json();
+        let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
+        json["warnings"] = warnings;
+        json["outputs"] =
+            [&report.page, &report.numbers].map(|path| path.display().to_string()).as_slice().into();
+        say(json);
+    } else if talkative {
+        say(summary(&comparison, &report));
+    } else if interrupted {
+        warn("interrupted; the report is of what had been done");
+    }
+    Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+}
+
+/// Where the report goes.
+struct Report {
+    page: PathBuf,
+    numbers: PathBuf,
+}
+
+impl Report {
+    /// The files that the command line asks for, once it is sure that they can be written.
+    fn new(arguments: &Compare) -> Result<Self, Failure> {
+        let page = arguments.output.clone().unwrap_or_else(|| named_after(&arguments.scene, "html"));
+        let is_page = page.extension().is_some_and(|extension| {
+            ["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+        });
+        if !is_page {
+            let message = format!("the report {} is a page, so its extension is .html", page.display());
+            return Err(Failure::Usage(message));
+        }
+        let numbers = page.with_extension("json");
+        for path in [&page, &numbers] {
+            output::check_place(path).map_err(Failure::Usage)?;
+        }
+        Ok(Self { page, numbers })
+    }
+
+    fn write(&self, comparison: &Comparison) -> Result<(), Failure> {
+        let write = |path: &Path, text: String| {
+            replace_file(path, text.as_bytes()).map_err(|error| about_file(path, error))
+        };
+        let numbers = format!("{:#}\n", comparison.to_json());
+        write(&self.numbers, numbers).and(write(&self.page, comparison.to_html()))
+    }
+}
+
+/// The figures as a short table.
+fn summary(comparison: &Comparison, report: &Report) -> String {
+    let setup = &comparison.setup;
+    let [x0, x1, y0, y1] = setup.pixel_bounds;
+    let mut lines = Vec::new();
+    if comparison.interrupted() {
+        lines.push("interrupted; the report is of what had been done".into());
+    }
+    lines.push(format!(
+        "{}: {} × {} pixels, {} for each picture",
+        setup.title,
+        x1 - x0,
+        y1 - y0,
+        setup.budget
+    ));
+    let noise = comparison
+        .reference
+        .noise
+        .map_or("its noise is unknown".into(), |noise| format!("its own relMSE {:.2e}", noise.relative));
+    lines.push(format!("reference: {}, {noise}", comparison.reference.source));
+    let heads = ["", "passes", "seconds", "relMSE", "noise", "bias", "mean error", "efficiency", "rays/s"];
+    let mut rows = vec![heads.map(str::to_owned)];
+    rows.extend(comparison.runs.iter().map(|run| row(comparison, run)));
+    lines.extend(aligned(&rows));
+    for path in [&report.page, &report.numbers] {
+        lines.push(format!("  report   {}", path.display()));
+    }
+    lines.join("\n")
+}
+
+fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
+    let last = run.last();
+    let parts = last.measure.relative;
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    [
+        run.name.clone(),
+        last.passes.to_string(),
+        format!("{:.2}", last.seconds),
+        format!("{:.2e}", parts.error),
+        percent(parts.variance.sqrt()),
+        if parts.is_biased() { percent(parts.bias_squared.sqrt()) } else { "none seen".into() },
+        comparison.relative_mean_error(run).map_or("–".into(), |[error, deviation]| {
+            format!("{} ± {}", percent(error), percent(deviation))
+        }),
+        if run.efficiency() < 1.0 { format!("{:.2e}", run.efficiency()) } else { count(run.efficiency()) },
+        count(run.rays_per_second()),
+    ]
+}
+
+/// Rows of columns as wide as what stands in them; the first to the left, numbers to the right.
+fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
+    let widths: [usize; N] =
+        std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    let line = |row: &[String; N]| {
+        let cells = row.iter().zip(widths).enumerate().map(|(column, (cell, width))| match column {
+            0 => format!("  {cell:<width$}"),
+            _ => format!("  {cell:>width$}"),
+        });
+        cells.collect::<String>()
+    };
+    rows.iter().map(line).collect()
+}
