@@ -44,7 +44,7 @@ fn means(image: &Image, side: usize) -> (f64, Vec<f64>) {
 }
 
 fn job(name: &str, overrides: &Overrides) -> Job {
-    let mut desc = import(&scene(name), &Files).desc;
+    let mut desc = import(scene(name), &Files).desc;
     overrides.apply(&mut desc).unwrap();
     Job::compile(&desc).unwrap().job
 }

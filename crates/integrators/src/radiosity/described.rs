@@ -84,9 +84,10 @@ pub(crate) fn warnings(desc: &SceneDesc) -> Vec<Diagnostic> {
 
 /// Marks a material, and those that it mixes.
 fn mark(desc: &SceneDesc, material: Handle<MaterialDesc>, used: &mut [bool]) {
-    if !std::mem::replace(&mut used[material.index()], true) {
-        if let MaterialKind::Mix { materials, .. } = &desc.materials[material].kind {
-            materials.iter().for_each(|&part| mark(desc, part, used));
-        }
+    let is_new = !std::mem::replace(&mut used[material.index()], true);
+    if let MaterialKind::Mix { materials, .. } = &desc.materials[material].kind
+        && is_new
+    {
+        materials.iter().for_each(|&part| mark(desc, part, used));
     }
 }

@@ -196,14 +196,8 @@ impl Emitter {
         }
         let mut all = Share::default();
         share.iter().for_each(|share| all.merge(share));
-        let mut received = Received::default();
-        for k in 0..4 {
-            for side in 0..2 {
-                let through = share[k].of(side).or(all.of(side)).unwrap_or(1.0);
-                received.quarters[k][side] = seen[k][side] * through;
-            }
-        }
-        received
+        let through = |k: usize, side: usize| share[k].of(side).or(all.of(side)).unwrap_or(1.0);
+        Received { quarters: [0, 1, 2, 3].map(|k| [0, 1].map(|side| seen[k][side] * through(k, side))) }
     }
 }
 

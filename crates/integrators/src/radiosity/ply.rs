@@ -30,9 +30,8 @@ pub(crate) fn encode(
         let outline = view.outline(id);
         let center = cut.mesh.surface(scene.world(), cell.primitive, cell.domain().center());
         let Some(center) = center else { continue };
-        for side in 0..2 {
-            let radiosity =
-                |irradiance: &[Bands; 2]| element.albedo.scatter(irradiance)[side] + emitted[side];
+        for (side, emitted) in emitted.iter().enumerate() {
+            let radiosity = |irradiance: &[Bands; 2]| element.albedo.scatter(irradiance)[side] + *emitted;
             let corners = outline.iter().map(|corner| {
                 (cut.mesh.vertices()[corner.vertex as usize].p, radiosity(view.at_vertex(corner.vertex)))
             });
@@ -42,7 +41,7 @@ pub(crate) fn encode(
                 continue;
             }
             let first = vertices.len() as u32;
-            let is_light = !emitted[side].is_black();
+            let is_light = !emitted.is_black();
             vertices.extend(fan.iter().map(|(p, light)| {
                 let p = world_from_render.transform_point3(p.as_dvec3());
                 (p, rgb(solution, light, color_space), is_light)
