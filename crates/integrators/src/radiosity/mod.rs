@@ -13,8 +13,9 @@
 //! that passes light diffusely. Surfaces reflect on both sides. Shading normals count in the final gather alone. Things that move are where
 //! they are in the middle of the shutter's time.
 //!
-//! It has no noise but that of a final gather, and is biased: light is even over a patch that sends it and an element that receives it, and
-//! visibility is known from a few rays. `max_depth` counts as in all algorithms: light that was scattered more often is missing.
+//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a patch that sends it and of an element that
+//! receives it, and visibility is known from a few rays. In the Cornell box the mean of a gathered picture is right to 0.5 %, single
+//! places in the shadow of the blocks to 4 %; interpolated, shadows are as blurred as their elements are large. `max_depth` counts as in all algorithms: light that was scattered more often is missing.
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
@@ -30,7 +31,7 @@
 //! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
 //! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
 //!
-//! An element takes about 1 kB, a patch 256 bytes for each scattering event more. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
+//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering event more. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
 
 mod bands;
 mod described;
@@ -222,13 +223,13 @@ impl Integrator for Radiosity {
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {
-        let Some(State { solution, .. }) = &self.state else { return Vec::new() };
+        let Some(State { solution, view, .. }) = &self.state else { return Vec::new() };
         vec![
             ("patches", solution.cut.patches.len().to_string()),
             ("elements", solution.cut.elements.len().to_string()),
             ("shots", solution.shots.to_string()),
             ("unshot light", format!("{:.3} %", 100.0 * solution.unshot_share())),
-            ("patch memory", format!("{:.1} MB", solution.bytes() as f64 * 1e-6)),
+            ("patch memory", format!("{:.1} MB", (solution.bytes() + view.bytes()) as f64 * 1e-6)),
         ]
     }
 }

@@ -60,6 +60,12 @@ impl View {
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
+    /// Bytes of memory that it takes.
+    pub fn bytes(&self) -> usize {
+        let outlines: usize = self.outlines.iter().map(|outline| size_of_val(&**outline)).sum();
+        outlines + size_of_val(&*self.outlines) + size_of_val(&*self.vertices)
+    }
+
     /// The irradiance of both sides at a point of an element.
     pub fn irradiance(&self, solution: &Solution, leaf: &Cell, uv: Vec2) -> [Bands; 2] {
         let outline = &self.outlines[leaf.element as usize];
