@@ -2,7 +2,7 @@
 
 use description::{
     Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonKernel, PhotonMappingDesc,
-    PhotonMappingShow, Randomization, SamplerKind, SceneDesc, SppmDesc, VcmDesc,
+    PhotonMappingShow, RadiosityDesc, Randomization, SamplerKind, SceneDesc, SppmDesc, VcmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
@@ -12,8 +12,8 @@ use scene::texture::color_space;
 
 use crate::{
     AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Mlt, MltSettings, Path,
-    PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator,
-    SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted,
+    PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
+    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, radiosity,
 };
 
 /// What [`build`] gives.
@@ -175,6 +175,7 @@ impl Builder<'_> {
                 };
                 Box::new(Sppm::new(settings, sampler, self.photon_seed(seed)))
             }
+            IntegratorDesc::Radiosity(desc) => self.radiosity(desc, sampler),
             IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
         }
     }
@@ -216,6 +217,15 @@ impl Builder<'_> {
         };
         let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
         Box::new(Mlt::new(settings, sampler, seed))
+    }
+
+    fn radiosity(&mut self, desc: &RadiosityDesc, sampler: Sampler) -> Box<dyn Integrator> {
+        self.diagnostics.extend(radiosity::warnings(self.desc));
+        let settings = radiosity::settings(desc).unwrap_or_else(|errors| {
+            errors.into_iter().for_each(|(parameter, message)| self.error(message, parameter));
+            RadiositySettings::default()
+        });
+        Box::new(Radiosity::new(settings, sampler, color_space(self.desc.film.color_space)))
     }
 
     /// Path tracing where the author asked for something else.

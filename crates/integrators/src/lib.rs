@@ -18,6 +18,7 @@
 //! | [`PhotonMapping`] | photons from the lights, and camera rays that pick up the nearest |
 //! | [`Sppm`] | paths to the first diffuse surface, and the photons there |
 //! | [`Vcm`] | paths from both ends, connected and merged |
+//! | [`Radiosity`] | light between diffuse patches, from the brightest first |
 //!
 //! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
 //! that reaches the camera, and the depth of a path the number of its scattering events: depth 0 shows lights alone, depth 1
@@ -39,6 +40,7 @@ mod photon_grid;
 mod photon_map;
 mod photon_mapping;
 mod pixel_loop;
+mod radiosity;
 mod random_walk;
 mod ray_casting;
 mod render;
@@ -58,6 +60,7 @@ pub use path::{Path, PathSettings};
 pub use photon_map::Kernel;
 pub use photon_mapping::{PhotonMapping, PhotonMappingSettings};
 pub use pixel_loop::{PixelLoop, RayIntegrator};
+pub use radiosity::{FormFactors, Radiosity, RadiositySettings};
 pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;
 pub use render::{RenderReport, render};

@@ -174,7 +174,7 @@ impl PixelSamples<'_> {
     }
 
     /// Sets the sampler to a pixel's sample and takes what the camera needs of it.
-    fn begin(&self, moment: Option<&Moment>, pixel: [i32; 2], sampler: &mut Sampler) -> PixelSample {
+    pub fn begin(&self, moment: Option<&Moment>, pixel: [i32; 2], sampler: &mut Sampler) -> PixelSample {
         sampler.start_pixel_sample(pixel, self.index, 0);
         let wavelength = sampler.get_1d();
         let place = self.filter.sample(sampler.get_pixel_2d());

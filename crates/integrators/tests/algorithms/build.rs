@@ -2,9 +2,11 @@
 
 use alhazen_integrators::build;
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, PhotonMappingDesc, SamplerDesc,
-    SamplerKind, SceneDesc, Span, SppmDesc, Stated, VcmDesc,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, PhotonMappingDesc, RadiosityDesc,
+    SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind, Span, SppmDesc, Stated, VcmDesc,
 };
+
+use crate::support::{diffuse, glass, mirror, sphere};
 
 fn messages(diagnostics: &[Diagnostic]) -> Vec<&str> {
     diagnostics.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
@@ -37,13 +39,53 @@ fn what_is_drawn_is_drawn_without_a_word() {
 
 #[test]
 fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
-    for (name, integrator) in [("simplevolpath", IntegratorDesc::SimpleVolPath { max_depth: 5 })] {
-        let expected = format!("integrator `{name}` is not drawn yet; drawn as `path`");
-        assert_eq!(messages(&warnings(integrator)), [expected]);
-    }
+    let found = warnings(IntegratorDesc::SimpleVolPath { max_depth: 5 });
+    assert_eq!(messages(&found), ["integrator `simplevolpath` is not drawn yet; drawn as `path`"]);
     let light_sampler = LightSamplerDesc::Exhaustive;
     let found = warnings(IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler });
     assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
+}
+
+#[test]
+fn radiosity_tells_what_it_draws_otherwise() {
+    let mut desc = SceneDesc::default();
+    desc.integrator.value = IntegratorDesc::Radiosity(RadiosityDesc::default());
+    let (metal, paper, unused) = (mirror(&mut desc, 0.1), diffuse(&mut desc, 0.5), glass(&mut desc));
+    for material in [metal, paper, metal] {
+        desc.shapes.push(ShapeDesc { material, ..sphere(1.0).into() });
+    }
+    assert!(unused.is_some());
+    desc.shapes.push(ShapeKind::Plane.into());
+    let told = build(&desc).ok().unwrap().warnings;
+    assert_eq!(
+        messages(&told),
+        [
+            "this material is not diffuse; radiosity draws it by its albedo",
+            "a plane without end cannot be cut into patches; radiosity lights it, but it passes no light on",
+        ]
+    );
+}
+
+#[test]
+fn radiosity_refuses_settings_without_sense() {
+    let settings = RadiosityDesc {
+        max_depth: -1,
+        patch_size: Some(0.0),
+        tolerance: 1.0,
+        steps: 0,
+        ..RadiosityDesc::default()
+    };
+    let integrator = IntegratorDesc::Radiosity(settings).into();
+    let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+    assert_eq!(
+        messages(&errors),
+        [
+            "`maxdepth` is 0 or more, not -1",
+            "`steps` is 1 or more, not 0",
+            "`patchsize` is a number above 0, not 0",
+            "`tolerance` is between 0 and 1, not 1",
+        ]
+    );
 }
 
 fn with_sampler(kind: SamplerKind, pixel_samples: i32) -> SceneDesc {
