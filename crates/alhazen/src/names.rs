@@ -1,15 +1,15 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
 use description::{
-    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc,
-    MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow, Randomization, SamplerKind, SppmDesc,
-    VcmDesc,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, FormFactorsDesc, IntegratorDesc,
+    LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow,
+    RadiosityDesc, Randomization, SamplerKind, SppmDesc, VcmDesc,
 };
 
 use crate::settings::{light_sampler, max_depth, regularize};
 
 /// The names of the algorithms that can be chosen.
-pub const INTEGRATORS: [&str; 13] = [
+pub const INTEGRATORS: [&str; 14] = [
     "ray-casting",
     "whitted",
     "ambient-occlusion",
@@ -23,6 +23,7 @@ pub const INTEGRATORS: [&str; 13] = [
     "photon-mapping",
     "sppm",
     "vcm",
+    "radiosity",
 ];
 
 /// Acceleration structures that can be chosen.
@@ -37,6 +38,9 @@ pub(crate) const LIGHT_SAMPLERS: [(&str, LightSamplerDesc); 4] = [
     ("bvh", LightSamplerDesc::Bvh),
     ("exhaustive", LightSamplerDesc::Exhaustive),
 ];
+
+pub(crate) const FORM_FACTORS: [(&str, FormFactorsDesc); 2] =
+    [("analytic", FormFactorsDesc::Analytic), ("hemicube", FormFactorsDesc::Hemicube)];
 
 pub(crate) const MLT_TECHNIQUES: [(&str, MltTechnique); 2] =
     [("path", MltTechnique::Path), ("bdpt", MltTechnique::Bdpt)];
@@ -99,6 +103,7 @@ pub(crate) fn integrator_called(name: &str, current: &mut IntegratorDesc) -> Opt
             IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, ..PhotonMappingDesc::default() })
         }
         "sppm" => IntegratorDesc::Sppm(SppmDesc { max_depth, ..SppmDesc::default() }),
+        "radiosity" => IntegratorDesc::Radiosity(RadiosityDesc { max_depth, ..RadiosityDesc::default() }),
         "vcm" => IntegratorDesc::Vcm(VcmDesc { max_depth, ..VcmDesc::default() }),
         _ => IntegratorDesc::VolPath { max_depth, regularize, light_sampler },
     })
@@ -121,6 +126,7 @@ pub fn integrator_name(desc: &IntegratorDesc) -> &'static str {
         IntegratorDesc::PhotonMapping(_) => "photon-mapping",
         IntegratorDesc::Sppm(_) => "sppm",
         IntegratorDesc::Vcm(_) => "vcm",
+        IntegratorDesc::Radiosity(_) => "radiosity",
         IntegratorDesc::Function { .. } => "function",
     }
 }

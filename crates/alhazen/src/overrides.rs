@@ -168,9 +168,12 @@ mod tests {
             });
             let mut takes = |value| scenes.iter_mut().any(|desc| (setting.apply)(desc, value).is_ok());
             assert!(
-                ["7", "true", "power", "sobol", "box", "fast", "path", "cone", "photons"]
-                    .into_iter()
-                    .any(&mut takes),
+                [
+                    "7", "true", "power", "sobol", "box", "fast", "path", "cone", "photons", "hemicube",
+                    "a.ply"
+                ]
+                .into_iter()
+                .any(&mut takes),
                 "{}",
                 setting.name
             );

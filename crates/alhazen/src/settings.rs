@@ -3,12 +3,13 @@
 use std::str::FromStr;
 
 use description::{
-    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, SamplerKind, SceneDesc,
-    SppmDesc, VcmDesc,
+    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, SamplerKind,
+    SceneDesc, SppmDesc, VcmDesc,
 };
 
 use crate::names::{
-    FILTERS, LIGHT_SAMPLERS, MLT_TECHNIQUES, PHOTON_KERNELS, PHOTON_MAPPING_SHOWS, QUALITIES, SAMPLERS,
+    FILTERS, FORM_FACTORS, LIGHT_SAMPLERS, MLT_TECHNIQUES, PHOTON_KERNELS, PHOTON_MAPPING_SHOWS, QUALITIES,
+    SAMPLERS,
 };
 
 /// A setting that can be changed by name.
@@ -21,7 +22,7 @@ pub struct Setting {
 }
 
 /// Everything that [`Overrides`](crate::Overrides) can change by name.
-pub static SETTINGS: [Setting; 31] = [
+pub static SETTINGS: [Setting; 40] = [
     Setting {
         name: "maxdepth",
         help: "most bounces of a path after the camera's ray",
@@ -164,8 +165,12 @@ pub static SETTINGS: [Setting; 31] = [
     },
     Setting {
         name: "gather",
-        help: "photon-mapping: rays of a final gather; 0 for none",
-        apply: |desc, text| set(Some(&mut photon_mapping(desc)?.gather), text),
+        help: "photon-mapping, radiosity: rays of a final gather; 0 for none",
+        apply: |desc, text| match &mut desc.integrator.value {
+            IntegratorDesc::PhotonMapping(photon_mapping) => set(Some(&mut photon_mapping.gather), text),
+            IntegratorDesc::Radiosity(radiosity) => set(Some(&mut radiosity.gather), text),
+            _ => Err(NOT_HERE.into()),
+        },
     },
     Setting {
         name: "show",
@@ -181,6 +186,64 @@ pub static SETTINGS: [Setting; 31] = [
         apply: |desc, text| match &mut desc.integrator.value {
             IntegratorDesc::Vcm(vcm) => set(Some(&mut vcm.alpha), text),
             _ => Err(NOT_HERE.into()),
+        },
+    },
+    Setting {
+        name: "formfactors",
+        help: "radiosity: how form factors are found: analytic or hemicube",
+        apply: |desc, text| {
+            radiosity(desc)?.form_factors = choose(text, &FORM_FACTORS)?;
+            Ok(())
+        },
+    },
+    Setting {
+        name: "hemicuberesolution",
+        help: "radiosity: pixels along an edge of a hemicube",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.hemicube_resolution), text),
+    },
+    Setting {
+        name: "patchsize",
+        help: "radiosity: longest side of a patch, in scene units",
+        apply: |desc, text| {
+            radiosity(desc)?.patch_size = Some(parse(text)?);
+            Ok(())
+        },
+    },
+    Setting {
+        name: "subdivision",
+        help: "radiosity: how often an element may be quartered",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.subdivision), text),
+    },
+    Setting {
+        name: "gradient",
+        help: "radiosity: change of light across an element, in parts of what is there, above which it is quartered",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.gradient), text),
+    },
+    Setting {
+        name: "maxpatches",
+        help: "radiosity: most elements, unless there are more primitives",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.max_patches), text),
+    },
+    Setting {
+        name: "tolerance",
+        help: "radiosity: share of light that need not be sent",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.tolerance), text),
+    },
+    Setting {
+        name: "steps",
+        help: "radiosity: passes in which light is sent",
+        apply: |desc, text| set(Some(&mut radiosity(desc)?.steps), text),
+    },
+    Setting {
+        name: "mesh-out",
+        help: "radiosity: a file (.ply) for patches with their radiosity as vertex colours",
+        apply: |desc, text| {
+            let radiosity = radiosity(desc)?;
+            if !text.ends_with(".ply") {
+                return Err("its name ends in .ply".into());
+            }
+            radiosity.mesh_out = Some(text.into());
+            Ok(())
         },
     },
     Setting {
@@ -289,6 +352,13 @@ pub(crate) fn mlt(desc: &mut SceneDesc) -> Result<&mut MltDesc, String> {
     }
 }
 
+fn radiosity(desc: &mut SceneDesc) -> Result<&mut RadiosityDesc, String> {
+    match &mut desc.integrator.value {
+        IntegratorDesc::Radiosity(radiosity) => Ok(radiosity),
+        _ => Err(NOT_HERE.into()),
+    }
+}
+
 fn photon_mapping(desc: &mut SceneDesc) -> Result<&mut PhotonMappingDesc, String> {
     match &mut desc.integrator.value {
         IntegratorDesc::PhotonMapping(photon_mapping) => Ok(photon_mapping),
@@ -309,6 +379,7 @@ pub(crate) fn max_depth(desc: &mut IntegratorDesc) -> Option<&mut i32> {
         | IntegratorDesc::Mlt(MltDesc { max_depth, .. })
         | IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. })
         | IntegratorDesc::Vcm(VcmDesc { max_depth, .. })
+        | IntegratorDesc::Radiosity(RadiosityDesc { max_depth, .. })
         | IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => Some(max_depth),
         IntegratorDesc::RayCasting
         | IntegratorDesc::AmbientOcclusion { .. }

@@ -93,6 +93,8 @@ pub enum IntegratorDesc {
     Sppm(SppmDesc),
     /// Vertex connection and merging.
     Vcm(VcmDesc),
+    /// Radiosity by progressive shooting.
+    Radiosity(RadiosityDesc),
     /// Integrates an analytic function over the unit square instead of a scene: for the study of samplers.
     Function {
         /// The function's name.
@@ -239,6 +241,61 @@ pub struct SppmDesc {
 impl Default for SppmDesc {
     fn default() -> Self {
         Self { max_depth: 5, photons_per_iteration: None, radius: 1.0, seed: None }
+    }
+}
+
+/// How radiosity finds form factors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FormFactorsDesc {
+    /// By the closed form for polygons, with rays for what lies between.
+    #[default]
+    Analytic,
+    /// By a hemicube.
+    Hemicube,
+}
+
+/// Settings of radiosity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadiosityDesc {
+    /// See above.
+    pub max_depth: i32,
+    /// How form factors are found.
+    pub form_factors: FormFactorsDesc,
+    /// Pixels along an edge of a hemicube.
+    pub hemicube_resolution: i32,
+    /// Longest side of a patch in scene units; a sixth of the scene's radius if absent.
+    pub patch_size: Option<f32>,
+    /// How often an element may be quartered.
+    pub subdivision: i32,
+    /// The change of light across an element, in parts of what is there, above which it is quartered.
+    pub gradient: f32,
+    /// Most elements, unless there are more primitives.
+    pub max_patches: i32,
+    /// Share of light that need not be sent.
+    pub tolerance: f32,
+    /// Passes in which light is sent.
+    pub steps: i32,
+    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
+    pub gather: i32,
+    /// File for the elements with their radiosity as vertex colours.
+    pub mesh_out: Option<String>,
+}
+
+impl Default for RadiosityDesc {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            form_factors: FormFactorsDesc::Analytic,
+            hemicube_resolution: 128,
+            patch_size: None,
+            subdivision: 3,
+            gradient: 0.1,
+            max_patches: 50_000,
+            tolerance: 0.002,
+            steps: 8,
+            gather: 0,
+            mesh_out: None,
+        }
     }
 }
 

@@ -40,8 +40,8 @@ pub use diagnostic::{Diagnostic, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
 pub use integrator::{
-    IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc,
-    PhotonMappingShow, SppmDesc, VcmDesc,
+    FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel,
+    PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, SppmDesc, VcmDesc,
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
 pub use material::{

@@ -235,6 +235,9 @@ fn hits_lie_on_the_surface_and_know_its_derivatives() {
             assert_eq!(surface.time, 0.5);
             let cos = surface.dpdu.cross(surface.dpdv).normalize().dot(surface.n);
             assert!((cos.abs() - 1.0).abs() < 1e-3, "{name}: tangents lie in the surface");
+            let again = shape.surface_at(hit.uv, 0.5).expect("parameters");
+            assert!(again.p.p.distance(surface.p.p) < 1e-4, "{name}: the point with these parameters");
+            assert!(again.n.dot(surface.n) > 0.999 && again.wo == again.n && again.time == 0.5, "{name}");
             if surface.p.p.distance(sample.p.p) < 1e-5 {
                 assert!(surface.n.dot(sample.n) > 0.99, "{name}: one outside");
                 assert!((surface.uv - sample.uv).length() < 2e-3 || name.contains("sphere"), "{name}");

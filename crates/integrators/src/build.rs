@@ -1,8 +1,8 @@
 //! From what a scene's author said of algorithm and sampler to an integrator.
 
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, Randomization, SamplerKind,
-    SceneDesc, SppmDesc, VcmDesc,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonKernel, PhotonMappingDesc,
+    PhotonMappingShow, RadiosityDesc, Randomization, SamplerKind, SceneDesc, SppmDesc, VcmDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
@@ -11,8 +11,9 @@ use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::{
-    AmbientOcclusion, Bdpt, BdptSettings, Integrator, LightTracing, Mlt, MltSettings, Path, PathSettings,
-    PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
+    AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Mlt, MltSettings, Path,
+    PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
+    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, radiosity,
 };
 
 /// What [`build`] gives.
@@ -102,6 +103,13 @@ impl Builder<'_> {
         Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
     }
 
+    /// The seed of photons, which have nothing in common with the other samplers.
+    fn photon_seed(&self, seed: Option<i32>) -> u32 {
+        const PHOTONS: u32 = 0x7068_6f74;
+        let seed = seed.or(self.desc.sampler.seed).unwrap_or(self.desc.options.seed);
+        hash(&[seed as u32, PHOTONS]) as u32
+    }
+
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         match &self.desc.integrator.value {
             IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
@@ -146,16 +154,45 @@ impl Builder<'_> {
                 Box::new(Bdpt::new(settings, sampler, light_sampler))
             }
             IntegratorDesc::Mlt(desc) => self.mlt(desc, sampler),
-            IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. }) => {
-                self.instead_of("photon-mapping", *max_depth, false, sampler)
+            IntegratorDesc::PhotonMapping(desc) => {
+                let settings = self.photon_mapping(desc);
+                Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
             }
-            &IntegratorDesc::Vcm(VcmDesc { max_depth, .. }) => {
-                self.instead_of("vcm", max_depth, false, sampler)
+            &IntegratorDesc::Vcm(VcmDesc { max_depth, radius, alpha }) => {
+                if alpha.is_nan() || alpha <= 0.0 || alpha > 1.0 {
+                    self.error(format!("`alpha` is above 0 and at most 1, not {alpha}"), "alpha");
+                }
+                let radius = radius.map(|radius| self.radius(radius));
+                let settings = VcmSettings { max_depth: self.depth(max_depth), radius, alpha };
+                let light_sampler = self.light_sampler(&sampler);
+                Box::new(Vcm::new(settings, sampler, light_sampler, self.photon_seed(None)))
             }
-            &IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => {
-                self.instead_of("sppm", max_depth, false, sampler)
+            &IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed }) => {
+                let settings = SppmSettings {
+                    max_depth: self.depth(max_depth),
+                    photons_per_iteration: photons_per_iteration.map(|count| self.photons(count)),
+                    radius: self.radius(radius),
+                };
+                Box::new(Sppm::new(settings, sampler, self.photon_seed(seed)))
             }
+            IntegratorDesc::Radiosity(desc) => self.radiosity(desc, sampler),
             IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
+        }
+    }
+
+    fn photon_mapping(&mut self, desc: &PhotonMappingDesc) -> PhotonMappingSettings {
+        PhotonMappingSettings {
+            max_depth: self.depth(desc.max_depth),
+            photons: self.count(desc.photons, 0, "photons"),
+            caustic_photons: self.count(desc.caustic_photons, 0, "causticphotons"),
+            nearest: self.count(desc.nearest, 1, "nearest"),
+            radius: desc.radius.map(|radius| self.radius(radius)),
+            kernel: match desc.kernel {
+                PhotonKernel::Cone => Kernel::Cone,
+                PhotonKernel::Epanechnikov => Kernel::Epanechnikov,
+            },
+            gather: self.count(desc.gather, 0, "gather"),
+            show_photons: desc.show == PhotonMappingShow::Photons,
         }
     }
 
@@ -172,14 +209,23 @@ impl Builder<'_> {
             technique,
             max_depth: self.depth(desc.max_depth),
             regularize,
-            bootstrap_samples: self.count(desc.bootstrap_samples, "bootstrapsamples"),
-            chains: self.count(desc.chains, "chains"),
-            mutations_per_pixel: self.count(desc.mutations_per_pixel, "mutationsperpixel"),
+            bootstrap_samples: self.count(desc.bootstrap_samples, 1, "bootstrapsamples"),
+            chains: self.count(desc.chains, 1, "chains"),
+            mutations_per_pixel: self.count(desc.mutations_per_pixel, 1, "mutationsperpixel"),
             large_step_probability,
             sigma,
         };
         let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
         Box::new(Mlt::new(settings, sampler, seed))
+    }
+
+    fn radiosity(&mut self, desc: &RadiosityDesc, sampler: Sampler) -> Box<dyn Integrator> {
+        self.diagnostics.extend(radiosity::warnings(self.desc));
+        let settings = radiosity::settings(desc).unwrap_or_else(|errors| {
+            errors.into_iter().for_each(|(parameter, message)| self.error(message, parameter));
+            RadiositySettings::default()
+        });
+        Box::new(Radiosity::new(settings, sampler, color_space(self.desc.film.color_space)))
     }
 
     /// Path tracing where the author asked for something else.
@@ -227,12 +273,30 @@ impl Builder<'_> {
         })
     }
 
-    /// A number above 0; 1, and an error, where it is none.
-    fn count(&mut self, count: i32, parameter: &str) -> u32 {
-        u32::try_from(count).ok().filter(|&count| count > 0).unwrap_or_else(|| {
-            self.error(format!("`{parameter}` is a number above 0, not {count}"), parameter);
-            1
+    /// A number that is not below `least`; `least`, and an error, where it is.
+    fn count(&mut self, count: i32, least: u32, parameter: &str) -> u32 {
+        u32::try_from(count).ok().filter(|&count| count >= least).unwrap_or_else(|| {
+            self.error(format!("`{parameter}` is {least} or more, not {count}"), parameter);
+            least
         })
+    }
+
+    /// A positive number of photons; 1, and an error, where it is none.
+    fn photons(&mut self, count: i32) -> u32 {
+        if count <= 0 {
+            let message = format!("`photonsperiteration` is a number above 0, not {count}");
+            self.error(message, "photonsperiteration");
+        }
+        count.max(1) as u32
+    }
+
+    /// A distance within which photons count; 1, and an error, where it is none.
+    fn radius(&mut self, radius: f32) -> f32 {
+        if radius > 0.0 && radius.is_finite() {
+            return radius;
+        }
+        self.error(format!("`radius` is a distance above 0, not {radius}"), "radius");
+        1.0
     }
 
     fn error(&mut self, message: String, parameter: &str) {

@@ -69,7 +69,7 @@ impl Integrator for LightTracing {
         let paths = Bidirectional {
             scene,
             lights: &self.lights,
-            balance: Balance::connecting(film.pixel_bounds().area()),
+            balance: Balance::connecting(film.pixel_bounds().area() as f32),
             max_depth: self.max_depth,
             regularize: false,
         };

@@ -55,9 +55,11 @@ pub struct Path {
 }
 
 /// The surface that a ray comes from, as light sampling sees it, and the density of the ray's direction.
-struct Origin {
-    context: LightSampleContext,
-    pdf: f32,
+pub(crate) struct Origin {
+    /// The surface.
+    pub context: LightSampleContext,
+    /// Density per solid angle.
+    pub pdf: f32,
 }
 
 impl Path {
@@ -74,7 +76,7 @@ impl Path {
     }
 
     /// What a ray that leaves the scene brings.
-    fn escaped(
+    pub(crate) fn escaped(
         &self,
         scene: &Scene,
         ray: &RayDifferential,
@@ -88,7 +90,7 @@ impl Path {
     }
 
     /// What a ray that meets an emitting surface brings.
-    fn emitted(
+    pub(crate) fn emitted(
         &self,
         scene: &Scene,
         surface: &SurfaceInteraction,
@@ -103,7 +105,7 @@ impl Path {
 
     /// What a surface scatters to `wo` of the light from one point on one light, for all of them.
     #[doc(alias = "SampleLd")]
-    fn sample_ld<B: Scatter>(
+    pub(crate) fn sample_ld<B: Scatter>(
         &self,
         scene: &Scene,
         (surface, context): (&SurfaceInteraction, &LightSampleContext),
@@ -218,7 +220,7 @@ impl RayIntegrator for Path {
 }
 
 /// A direction of the BSDF's density, and that density.
-fn sample_onward<B: Scatter>(
+pub(crate) fn sample_onward<B: Scatter>(
     surface: &SurfaceInteraction,
     bsdf: &Bsdf<B>,
     sampler: &mut Sampler,

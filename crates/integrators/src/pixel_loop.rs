@@ -8,7 +8,7 @@ use film::{Film, FilmTile, Filter};
 use geometry::RayStats;
 use math::{RayDifferential, Vec2};
 use rayon::prelude::*;
-use sampling::Sampler;
+use sampling::{Sampler, hash};
 use scene::Scene;
 use scene::camera::{CameraRayDifferential, CameraSample, differential_scale};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -73,6 +73,43 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
     }
 }
 
+/// When a path is followed, and at which wavelengths.
+#[derive(Clone, Copy)]
+pub(crate) struct Moment {
+    /// The wavelengths.
+    pub lambda: SampledWavelengths,
+    /// The part of the shutter's time that has gone by.
+    shutter: f32,
+}
+
+impl Moment {
+    /// From two sample values in [0, 1), as far as the scene lets them choose.
+    pub fn new(scene: &Scene, wavelength: f32, shutter: f32) -> Self {
+        let options = scene.options();
+        let wavelength = if options.disable_wavelength_jitter { 0.5 } else { wavelength };
+        let shutter = if options.disable_pixel_jitter { 0.5 } else { shutter };
+        Self { lambda: SampledWavelengths::sample_visible(wavelength), shutter }
+    }
+
+    /// That which all paths of a pass share. Over the passes both are spread evenly: each step goes on by an irrational part of the
+    /// range. For wavelengths that is a quarter of the golden ratio, because four of them, a quarter apart, are taken at once.
+    pub fn of_pass(scene: &Scene, seed: u32, pass: u32) -> Self {
+        // Parts of 2³²: a quarter of the golden ratio, and √2 − 1.
+        const STEPS: [u32; 2] = [0x678d_de6e, 0x6a09_e667];
+        let [wavelength, shutter] = [0, 1].map(|i| {
+            let start = hash(&[seed, i]) as u32;
+            let bits = start.wrapping_add(pass.wrapping_mul(STEPS[i as usize]));
+            (bits >> 8) as f32 / (1 << 24) as f32
+        });
+        Self::new(scene, wavelength, shutter)
+    }
+
+    /// In the scene's time.
+    pub fn time(&self, scene: &Scene) -> f32 {
+        scene.camera().sample_time(self.shutter)
+    }
+}
+
 /// One sample of each pixel.
 #[derive(Clone, Copy)]
 pub(crate) struct PixelSamples<'a> {
@@ -105,6 +142,17 @@ impl PixelSamples<'_> {
         control: &Control,
         radiance: impl Fn(&mut PixelSample, &mut Sampler, &mut RayStats) -> SampledSpectrum + Sync,
     ) -> Result<RayStats, Cancelled> {
+        self.add_at(None, tiles, control, radiance)
+    }
+
+    /// The same; all samples have the wavelengths and the time of `moment`, if there is one.
+    pub fn add_at(
+        &self,
+        moment: Option<&Moment>,
+        tiles: Vec<FilmTile>,
+        control: &Control,
+        radiance: impl Fn(&mut PixelSample, &mut Sampler, &mut RayStats) -> SampledSpectrum + Sync,
+    ) -> Result<RayStats, Cancelled> {
         let tile = |mut tile: FilmTile| {
             control.check()?;
             let mut sampler = self.sampler.clone();
@@ -112,7 +160,7 @@ impl PixelSamples<'_> {
             let bounds = tile.bounds();
             for y in bounds.min[1]..bounds.max[1] {
                 for x in bounds.min[0]..bounds.max[0] {
-                    let mut sample = self.begin([x, y], &mut sampler);
+                    let mut sample = self.begin(moment, [x, y], &mut sampler);
                     let l = radiance(&mut sample, &mut sampler, &mut stats);
                     tile.add_sample([x, y], &l, &sample.lambda, sample.filter_weight);
                 }
@@ -126,23 +174,22 @@ impl PixelSamples<'_> {
     }
 
     /// Sets the sampler to a pixel's sample and takes what the camera needs of it.
-    pub fn begin(&self, pixel: [i32; 2], sampler: &mut Sampler) -> PixelSample {
-        let options = self.scene.options();
+    pub fn begin(&self, moment: Option<&Moment>, pixel: [i32; 2], sampler: &mut Sampler) -> PixelSample {
         sampler.start_pixel_sample(pixel, self.index, 0);
-        let u = sampler.get_1d();
-        let u = if options.disable_wavelength_jitter { 0.5 } else { u };
-        let lambda = SampledWavelengths::sample_visible(u);
+        let wavelength = sampler.get_1d();
         let place = self.filter.sample(sampler.get_pixel_2d());
         let (time, lens) = (sampler.get_1d(), sampler.get_2d());
+        let moment = moment.copied().unwrap_or_else(|| Moment::new(self.scene, wavelength, time));
         let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-        let sample = if options.disable_pixel_jitter {
-            CameraSample { film: center, lens: Vec2::splat(0.5), time: 0.5, filter_weight: 1.0 }
+        let (film, lens, filter_weight) = if self.scene.options().disable_pixel_jitter {
+            (center, Vec2::splat(0.5), 1.0)
         } else {
-            CameraSample { film: center + place.offset, lens, time, filter_weight: place.weight }
+            (center + place.offset, lens, place.weight)
         };
-        let time = self.scene.camera().sample_time(sample.time);
+        let sample = CameraSample { film, lens, time: moment.shutter, filter_weight };
         let camera_ray = camera_ray(self.scene, &sample, sampler.samples_per_pixel());
-        PixelSample { pixel, lambda, time, camera_ray, filter_weight: sample.filter_weight }
+        let time = moment.time(self.scene);
+        PixelSample { pixel, lambda: moment.lambda, time, camera_ray, filter_weight }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::light::{Light, LightId, LightLeSample, LightLiSample, LightSampleCont
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
-use geometry::{Hit, RayStats, World};
+use geometry::{Hit, RayStats, SurfacePoint, World};
 use math::{Point2, Ray, RayDifferential, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
@@ -121,23 +121,36 @@ impl Scene {
         t_max: f32,
         stats: &mut RayStats,
     ) -> Option<(SurfaceInteraction, f32)> {
-        let hit = self.world.intersect(ray, t_max, &|hit, ray| self.is_there(hit, ray), stats)?;
+        let hit = self.hit(ray, t_max, stats)?;
+        Some((self.interaction(&hit, self.world.surface(ray, &hit)), hit.t))
+    }
+
+    /// Where the nearest surface at 0 < t < `t_max` is met.
+    pub fn hit(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> Option<Hit> {
+        self.world.intersect(ray, t_max, &|hit, ray| self.is_there(hit, ray), stats)
+    }
+
+    /// What belongs to the primitive of a hit, at a point of its surface.
+    pub fn interaction(&self, hit: &Hit, surface: SurfacePoint) -> SurfaceInteraction {
         let entry = &self.entries[hit.geometry.0 as usize];
-        let interaction = SurfaceInteraction {
-            surface: self.world.surface(ray, &hit),
+        SurfaceInteraction {
+            surface,
             material: entry.material,
             area_light: entry.first_light.map(|first| LightId(first.0 + hit.primitive)),
             footprint: Footprint::default(),
-        };
-        Some((interaction, hit.t))
+        }
+    }
+
+    /// Whether a hit is on nothing but a change of medium.
+    pub fn is_interface(&self, hit: &Hit) -> bool {
+        let entry = &self.entries[hit.geometry.0 as usize];
+        matches!(self.materials.get(entry.material).material, Material::Interface)
     }
 
     /// Whether a surface that stops light lies at 0 < t < `t_max`.
     pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
         let stops = |hit: &Hit, ray: &Ray| {
-            let entry = &self.entries[hit.geometry.0 as usize];
-            let passes = interfaces == Interfaces::Pass
-                && matches!(self.materials.get(entry.material).material, Material::Interface);
+            let passes = interfaces == Interfaces::Pass && self.is_interface(hit);
             !passes && self.is_there(hit, ray)
         };
         self.world.occluded(ray, t_max, &stops, stats)
@@ -164,15 +177,24 @@ impl Scene {
     /// Whether a surface is there, where its alpha makes it come and go: it is with the probability alpha, decided by a hash
     /// of the ray and the place.
     fn is_there(&self, hit: &Hit, ray: &Ray) -> bool {
-        let Some(alpha) = self.entries[hit.geometry.0 as usize].alpha else { return true };
-        let s = self.world.surface(ray, hit);
-        let context = TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() };
-        let alpha = self.textures.float(alpha, &context);
+        let Some(texture) = self.entries[hit.geometry.0 as usize].alpha else { return true };
+        let alpha = self.alpha(texture, &self.world.surface(ray, hit));
         if alpha >= 1.0 {
             return true;
         }
         let words = [ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, hit.t].map(f32::to_bits);
         alpha > 0.0 && hash_float(&words) < alpha
+    }
+
+    /// How much of the surface is there, around a point of the primitive of a hit: from 0 to 1.
+    pub fn coverage(&self, hit: &Hit, surface: &SurfacePoint) -> f32 {
+        let texture = self.entries[hit.geometry.0 as usize].alpha;
+        texture.map_or(1.0, |texture| self.alpha(texture, surface).clamp(0.0, 1.0))
+    }
+
+    fn alpha(&self, texture: FloatTextureId, s: &SurfacePoint) -> f32 {
+        let context = TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() };
+        self.textures.float(texture, &context)
     }
 
     /// Radiance that arrives along a ray which leaves the scene.

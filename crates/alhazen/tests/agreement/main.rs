@@ -7,12 +7,14 @@ mod common;
 mod promises;
 mod scenes;
 
+use std::sync::LazyLock;
+
 use alhazen::Overrides;
 use alhazen::image::Image;
 use testkit::{Moments, welch_test};
 
 use common::{render_text, rgb_values};
-use scenes::{SCENES, Scene};
+use scenes::{POINT_LIGHT_IN_GLASS, SCENES, Scene};
 
 /// Pictures of each algorithm, with a seed each.
 const RUNS: i32 = 16;
@@ -24,13 +26,22 @@ const SIDE: usize = 5;
 struct Pictures(Vec<Moments>);
 
 impl Pictures {
-    fn new(scene: &Scene, integrator: &str, samples: u32, first_seed: i32) -> Self {
+    fn new(
+        scene: &Scene,
+        integrator: &str,
+        settings: &[(&str, &str)],
+        samples: u32,
+        first_seed: i32,
+    ) -> Self {
         let text = scene.text();
         let mut pictures = Self(Vec::new());
         for seed in first_seed..first_seed + RUNS {
+            let max_depth = scene.max_depth.to_string();
+            let max_depth = [("maxdepth", max_depth.as_str())];
+            let settings = settings.iter().chain(&max_depth);
             let overrides = Overrides {
                 integrator: Some(integrator.into()),
-                settings: vec![("maxdepth".into(), scene.max_depth.to_string())],
+                settings: settings.map(|&(name, value)| (name.into(), value.into())).collect(),
                 samples_per_pixel: Some(samples),
                 seed: Some(seed),
                 ..Overrides::default()
@@ -67,14 +78,19 @@ fn means(picture: &Image) -> Vec<f64> {
     sums.iter().map(|sum| sum / (SIDE * SIDE) as f64).collect()
 }
 
+/// What path tracing shows of each scene.
+static REFERENCES: LazyLock<Vec<Pictures>> = LazyLock::new(|| {
+    let reference = |scene: &Scene| Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+    SCENES.iter().map(reference).collect()
+});
+
 /// Holds an algorithm to path tracing on every scene that it can see all of.
-fn assert_agrees(integrator: &str, samples: u32, can: impl Fn(&Scene) -> bool) {
-    let scenes: Vec<_> = SCENES.iter().filter(|scene| can(scene)).collect();
+fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can: impl Fn(&Scene) -> bool) {
+    let scenes: Vec<_> = SCENES.iter().zip(&*REFERENCES).filter(|(scene, _)| can(scene)).collect();
     let mut failures = Vec::new();
-    for scene in &scenes {
-        let reference = Pictures::new(scene, "vol-path", scene.path_samples, 1000);
-        let found = Pictures::new(scene, integrator, samples, 0);
-        let differences = found.differences(&reference, scenes.len());
+    for &(scene, reference) in &scenes {
+        let found = Pictures::new(scene, integrator, settings, samples, 0);
+        let differences = found.differences(reference, scenes.len());
         failures.extend(differences.into_iter().map(|text| format!("{}, {text}", scene.name)));
     }
     assert!(failures.is_empty(), "{integrator} in\n{}", failures.join("\n"));
@@ -82,12 +98,60 @@ fn assert_agrees(integrator: &str, samples: u32, can: impl Fn(&Scene) -> bool) {
 
 #[test]
 fn bidirectional_paths_find_what_path_tracing_finds() {
-    assert_agrees("bdpt", 8, |_| true);
+    assert_agrees("bdpt", &[], 8, |_| true);
 }
 
 #[test]
 fn light_finds_what_path_tracing_finds() {
-    assert_agrees("light-tracing", 16, |scene| !scene.has_mirrors);
+    assert_agrees("light-tracing", &[], 16, |scene| !scene.has_mirrors);
+}
+
+#[test]
+fn connecting_and_merging_find_what_path_tracing_finds() {
+    assert_agrees("vcm", &[("radius", "0.03")], 8, |_| true);
+}
+
+#[test]
+fn photons_find_what_path_tracing_finds() {
+    // Light of one side of a wall without thickness is found on the other, within the radius.
+    let can = |scene: &Scene| scene.name != "a door that is almost closed";
+    assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, can);
+}
+
+#[test]
+fn light_that_path_tracing_never_meets_is_the_same_for_all_others() {
+    let scene = &POINT_LIGHT_IN_GLASS;
+    let reference = Pictures::new(scene, "light-tracing", &[], 32, 1000);
+    let photons = [("radius", "0.03"), ("photons", "4000")];
+    for (integrator, settings) in [("bdpt", &[][..]), ("vcm", &photons[..1]), ("sppm", &photons)] {
+        let differences = Pictures::new(scene, integrator, settings, 16, 0).differences(&reference, 3);
+        assert!(differences.is_empty(), "{integrator}: {}", differences.join("\n"));
+    }
+    let lost = Pictures::new(scene, "vol-path", &[], 4, 0);
+    assert!(lost.0.iter().all(|moments| moments.mean == 0.0));
+}
+
+/// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance: photons are blurred.
+const BLUR: f64 = 0.02;
+
+#[test]
+fn photon_maps_hold_nearly_what_path_tracing_finds() {
+    // Under a door photons seep.
+    let scenes = SCENES.iter().filter(|scene| scene.name != "a door that is almost closed");
+    let settings = [("photons", "2000"), ("causticphotons", "2000"), ("nearest", "20"), ("radius", "0.1")];
+    let mut failures = Vec::new();
+    for scene in scenes {
+        let reference = Pictures::new(scene, "vol-path", &[], scene.path_samples, 1000);
+        let found = Pictures::new(scene, "photon-mapping", &settings, 8, 0);
+        for (channel, (a, b)) in found.0.iter().zip(&reference.0).take(3).enumerate() {
+            let error = a.mean / b.mean - 1.0;
+            let deviation = (a.variance_of_mean() + b.variance_of_mean()).sqrt() / b.mean;
+            if error.abs() > BLUR + 4.0 * deviation {
+                failures.push(format!("{}, channel {channel}: {error} ± {deviation}", scene.name));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "photon-mapping in\n{}", failures.join("\n"));
 }
 
 #[test]

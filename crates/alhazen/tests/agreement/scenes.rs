@@ -273,3 +273,18 @@ pub const SCENES: [Scene; 15] = [
         ),
     },
 ];
+
+/// A scene that only light itself finds its way through.
+pub const POINT_LIGHT_IN_GLASS: Scene = Scene {
+    name: "a point light in glass",
+    max_depth: 5,
+    path_samples: 0,
+    has_mirrors: false,
+    camera: ABOVE,
+    world: concat!(
+        floor!(),
+        r#"LightSource "point" "point3 from" [0.1 0.5 3.2] "rgb I" [9 8 7]
+        AttributeBegin Material "dielectric" Translate 0 0.5 3.2 Shape "sphere" "float radius" 0.4 AttributeEnd
+        Material "diffuse" Translate 0 0 0.5 Shape "sphere" "float radius" 0.4"#
+    ),
+};

@@ -97,6 +97,19 @@ impl Cone {
         revolved_roots([0.0, 0.0, slope * slope], o - tip, d, -0.5 * tip)
     }
 
+    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
+        let (p, n) = self.at(uv);
+        self.quadric.ray_to(p, n, time)
+    }
+
+    /// The point with parameters (u, v) and its unit normal, in object space.
+    fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
+        let (sin, cos) = (uv.x as f64 * self.phi_max).sin_cos();
+        let out = self.radius * (1.0 - uv.y as f64);
+        (DVec3::new(cos * out, sin * out, self.height * uv.y as f64), self.normal(uv.x as f64))
+    }
+
     fn object_area(&self) -> f64 {
         0.5 * self.phi_max * self.radius * self.radius.hypot(self.height)
     }

@@ -3,7 +3,7 @@
 //! p(u, v) = (r cos φ, r sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled by area ([Pharr 2023
 //! §6.3]).
 
-use super::quadric::{Local, Quadric, first_hit, phi, roots, swept, unrounded};
+use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
@@ -81,6 +81,18 @@ impl Cylinder {
 
     pub(super) fn pdf_area(&self, n: Normal3) -> f32 {
         self.quadric.pdf_area(n, 1.0 / self.object_area())
+    }
+
+    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
+        let (p, n) = self.at(uv);
+        self.quadric.ray_to(p, n, time)
+    }
+
+    /// The point with parameters (u, v) and its unit normal, in object space.
+    fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
+        let n = self.normal(uv.x as f64);
+        (n * self.radius + DVec3::Z * between(self.z, uv.y as f64), n)
     }
 
     fn object_area(&self) -> f64 {

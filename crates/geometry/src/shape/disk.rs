@@ -4,7 +4,7 @@
 //! p(u, v) = (ρ cos φ, ρ sin φ, h), φ = u·φ_max, ρ = r − v·(r − r_i). Sampled by area: a whole disk
 //! concentrically, parts by uniform angle and uniform square of the radius ([Pharr 2023 §6.4]).
 
-use super::quadric::{Local, Quadric, phi, swept};
+use super::quadric::{Local, Quadric, between, phi, swept};
 use super::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
@@ -108,6 +108,19 @@ impl Disk {
 
     pub(super) fn normal(&self) -> Normal3 {
         self.quadric.normal(DVec3::Z)
+    }
+
+    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
+        let (p, n) = self.at(uv);
+        self.quadric.ray_to(p, n, time)
+    }
+
+    /// The point with parameters (u, v) and its unit normal, in object space.
+    fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
+        let (sin, cos) = (uv.x as f64 * self.phi_max).sin_cos();
+        let out = between([self.radius, self.inner_radius], uv.y as f64);
+        (DVec3::new(cos * out, sin * out, self.height), DVec3::Z)
     }
 
     fn object_area(&self) -> f64 {

@@ -91,6 +91,18 @@ impl Hyperboloid {
         self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
+    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
+        let (p, n) = self.at(uv);
+        self.quadric.ray_to(p, n, time)
+    }
+
+    /// The point with parameters (u, v) and its unit normal, in object space.
+    fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
+        let Local { p, n, .. } = self.local(uv.y as f64, uv.x as f64 * self.phi_max);
+        (p, n)
+    }
+
     /// With the origin in the waist, x² + y² = w² + (|ē|/e_z)²·z².
     fn roots(&self, o: DVec3, d: DVec3) -> Option<[f64; 2]> {
         let (radius, v) = self.waist;

@@ -196,6 +196,26 @@ impl Shape {
         }
     }
 
+    /// What is known of the surface where a [`ShapeHit`] has these parameters, seen from along its normal; `None` of shapes that
+    /// are not made of points with parameters in a square or triangle: planes, formulas and solids.
+    pub fn surface_at(&self, uv: Vec2, time: f32) -> Option<SurfacePoint> {
+        let ray = match self {
+            Self::Sphere(shape) => shape.ray_to(uv, time),
+            Self::Cylinder(shape) => shape.ray_to(uv, time),
+            Self::Cone(shape) => shape.ray_to(uv, time),
+            Self::Paraboloid(shape) => shape.ray_to(uv, time),
+            Self::Hyperboloid(shape) => shape.ray_to(uv, time),
+            Self::Disk(shape) => shape.ray_to(uv, time),
+            // These look at the parameters alone.
+            Self::BilinearPatch(_) | Self::Triangle(_) | Self::MovingTriangle(_) => {
+                Ray::new(Vec3::ZERO, Vec3::Z, time)
+            }
+            Self::Plane(_) | Self::Implicit(_) | Self::Solid(_) => return None,
+        };
+        let surface = self.surface(&ray, &ShapeHit { t: 1.0, uv });
+        Some(SurfacePoint { wo: surface.n, ..surface })
+    }
+
     /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where a quadric's transform is no similarity, and for
     /// bent patches.
     pub fn area(&self) -> f32 {

@@ -112,10 +112,22 @@ impl Paraboloid {
     fn place(&self, u: f64, v: f64) -> DVec3 {
         let powers = self.z.map(|z| (z + 0.25 * self.spread).powf(1.5));
         let z = between(powers, u).powf(2.0 / 3.0) - 0.25 * self.spread;
-        self.at(z.clamp(self.z[0], self.z[1]), v)
+        self.at_height(z.clamp(self.z[0], self.z[1]), v)
     }
 
-    fn at(&self, z: f64, u: f64) -> DVec3 {
+    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
+        let (p, n) = self.at(uv);
+        self.quadric.ray_to(p, n, time)
+    }
+
+    /// The point with parameters (u, v) and its unit normal, in object space.
+    fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
+        let p = self.at_height(between(self.z, uv.y as f64), uv.x as f64);
+        (p, self.normal(p))
+    }
+
+    fn at_height(&self, z: f64, u: f64) -> DVec3 {
         let (sin, cos) = (u * self.phi_max).sin_cos();
         let out = (self.spread * z).sqrt();
         DVec3::new(out * cos, out * sin, z)

@@ -7,7 +7,7 @@
 use crate::placement::{Placement, ROUNDING};
 use crate::shape::ShapeSample;
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DVec3, Normal3, Point3Error, Ray, Transform, Vec2};
+use math::{Bounds3, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec2};
 
 /// Where a quadric stands, and on which side its outside is.
 #[derive(Clone, Debug)]
@@ -68,6 +68,14 @@ impl Quadric {
     pub fn normal(&self, n: DVec3) -> Normal3 {
         let n = self.placement.unit_normal(n);
         if self.flips { -n } else { n }
+    }
+
+    /// The ray that comes down along the normal on a point, which it meets at t = 1. It begins so near by that no other part of
+    /// the surface lies between.
+    pub fn ray_to(&self, p: DVec3, n: DVec3, time: f32) -> Ray {
+        let (p, n) = (self.point(p).p, self.normal(n));
+        let height = (p.abs().max_element() * 1e-4).max(f32::MIN_POSITIVE / MACHINE_EPSILON);
+        Ray::new(p + n * height, n * -height, time)
     }
 
     /// The change of the unit normal in render space, on the shape's outside, from that of the unit normal in object space.

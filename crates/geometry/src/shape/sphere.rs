@@ -6,7 +6,7 @@
 //! with sin θ_max = r/d, the cosine is uniform in [cos θ_max, 1], so that the density is 1/(2π(1 − cos
 //! θ_max)). All else is sampled by area ([Pharr 2023 §6.2]).
 
-use super::quadric::{Local, Quadric, first_hit, phi, roots, swept, unrounded};
+use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::Placement;
 use crate::surface::SurfacePoint;
@@ -157,6 +157,19 @@ impl Sphere {
             let sin = radius / distance;
             Cone { axis: toward / distance, sin, one_minus_cos: sin * sin / (1.0 + (1.0 - sin * sin).sqrt()) }
         })
+    }
+
+    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
+        let (p, n) = self.at(uv);
+        self.quadric.ray_to(p, n, time)
+    }
+
+    /// The point with parameters (u, v) and its unit normal, in object space.
+    fn at(&self, uv: Vec2) -> (DVec3, DVec3) {
+        let theta = between(self.theta, uv.y as f64);
+        let n = direction(theta.cos(), uv.x as f64 * self.phi_max);
+        (n * self.radius, n)
     }
 
     fn object_area(&self) -> f64 {

@@ -12,6 +12,7 @@ use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{Sheared, ShearedLanes};
 use math::{Bounds3, Ray, Vec3, gamma};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// Everything in a group but its triangles.
@@ -120,6 +121,16 @@ impl Group {
     /// Whether other groups are placed in it.
     pub fn has_instances(&self) -> bool {
         self.item_list.iter().any(|item| matches!(item, Item::Instance(_)))
+    }
+
+    /// What is placed in it and can be hit, in the order of ids.
+    pub fn instances(&self) -> BTreeSet<InstanceId> {
+        let items = self.item_list.iter().chain(&self.unbounded);
+        let instance = |item: &Item| match item {
+            Item::Instance(id) => Some(*id),
+            Item::Shape(..) => None,
+        };
+        items.filter_map(instance).collect()
     }
 
     /// Bytes of memory that the trees take.

@@ -11,6 +11,7 @@ mod numbers;
 mod order;
 mod packet;
 mod path;
+mod placed;
 mod query;
 mod refit;
 mod spheres;

@@ -87,7 +87,7 @@ impl Integrator for Bdpt {
         let paths = Bidirectional {
             scene,
             lights: &self.lights,
-            balance: Balance::connecting(pixel_count),
+            balance: Balance::connecting(pixel_count as f32),
             max_depth: self.settings.max_depth,
             regularize: self.settings.regularize,
         };

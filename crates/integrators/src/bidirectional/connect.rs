@@ -9,6 +9,7 @@ use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Vertex, Walk, hero_only};
+use crate::photon_grid::Photon;
 
 /// What a strategy has found.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +79,8 @@ impl Bidirectional<'_> {
             let partial = &walk.partial;
             let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
             let end = self.light_end(light, &context, wi, place, direct);
-            weight(end.direct * partial.vcm, end.emission / end.cos_theta * partial.vc)
+            let by_light = self.balance.connecting_from_light(partial, before.cos_theta(wi));
+            weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
         let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
         Found { l, weight, s: 0, t: walk.depth + 2 }
@@ -119,7 +121,7 @@ impl Bidirectional<'_> {
         let end = self.light_end(light, &context, wi, place, direct);
         let by_chance = if end.is_delta { 0.0 } else { vertex.pdf(wi) / direct };
         let from_light = end.emission * vertex.cos_theta(wi) / (direct * end.cos_theta);
-        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), false);
         Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
     }
 
@@ -135,8 +137,8 @@ impl Bidirectional<'_> {
         let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
         let to_camera = light.pdf(-wi) * camera.cos_theta(wi) / distance_squared;
         let weight = weight(
-            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi)),
-            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi)),
+            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi), light.can_merge()),
+            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi), true),
         );
         let hero = camera.hero_only || light.hero_only;
         Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
@@ -165,9 +167,31 @@ impl Bidirectional<'_> {
         let pdf_area =
             if camera.is_parallel() { pdf_position } else { pdf_direction / vertex.p.p.distance_squared(p) }
                 * vertex.cos_theta(wi);
-        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi));
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.can_merge());
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
         Some(OnFilm { film, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
+    }
+
+    /// s, t ≥ 2: a photon is taken as if it had arrived at the vertex, near which it lies.
+    pub fn merge(&self, camera: &Vertex, photon: &Photon) -> Found {
+        let wi = photon.wo;
+        let l = self.merged(camera, photon);
+        let weight = weight(
+            self.balance.merging_back(&photon.partial, camera.pdf(wi)),
+            self.balance.merging_back(&camera.partial, camera.pdf_back(wi)),
+        );
+        Found { l, weight, s: photon.depth.into(), t: camera.depth + 1 }
+    }
+
+    /// The light of [`Self::merge`] alone.
+    pub fn merged(&self, camera: &Vertex, photon: &Photon) -> SampledSpectrum {
+        let wi = photon.wo;
+        // Power has been through the cosine of the surface, light is scattered by that of the shading.
+        let cos_theta = camera.cos_theta(wi);
+        let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
+        let f = camera.bsdf.f(camera.wo, wi, camera.mode);
+        let l = camera.beta * photon.beta * f * (cosines / self.balance.merging);
+        if camera.hero_only || photon.hero_only { hero_only(l) } else { l }
     }
 
     fn found(&self, l: SampledSpectrum, hero: bool, weight: f32, s: u32, t: u32) -> Found {

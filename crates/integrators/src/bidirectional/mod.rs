@@ -42,7 +42,7 @@ pub(crate) use connect::Found;
 pub(crate) use partial::{Balance, Partial};
 pub(crate) use subpaths::OnTheWay;
 pub(crate) use vertex::Vertex;
-use walk::Walk;
+pub(crate) use walk::Walk;
 
 /// What chooses lights.
 #[derive(Clone, Debug)]

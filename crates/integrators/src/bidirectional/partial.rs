@@ -16,8 +16,11 @@
 //! ```
 //!
 //! where ' marks the vertex before and p←' is per solid angle. What is specular can neither be connected nor merged: its
-//! d_vcm is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the factors of the vertex that it
-//! will arrive at, which [`Partial::arrive`] supplies.
+//! d_vcm is 0 and the sums lose those terms. What comes straight from a light is not merged either, because choosing a point on the
+//! light finds the same with less noise: next to a light the sums lose the terms η and 1. A [`Partial`] on its way between two vertices
+//! lacks the factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
+
+use std::f32::consts::PI;
 
 use super::light_end::LightEnd;
 
@@ -36,18 +39,25 @@ pub(crate) struct Balance {
     pub light_paths: f32,
     /// η: merging counts so much more than connecting; 0 without merging.
     pub merging: f32,
+    /// 1; 0 if light subpaths are not connected to anything, so that camera subpaths find light by chance or by choice alone.
+    pub connecting: f32,
 }
 
 impl Balance {
     /// For as many light subpaths, without merging.
-    pub fn connecting(light_paths: usize) -> Self {
-        Self { light_paths: light_paths as f32, merging: 0.0 }
+    pub fn connecting(light_paths: f32) -> Self {
+        Self { light_paths, merging: 0.0, connecting: 1.0 }
     }
 
-    /// For as many light subpaths, merged within a radius.
-    pub fn merging(light_paths: usize, radius: f32) -> Self {
-        let n = light_paths as f32;
-        Self { light_paths: n, merging: n * std::f32::consts::PI * radius * radius }
+    /// The same, and merging with other light subpaths within a radius.
+    pub fn merging(light_paths: usize, photon_paths: usize, radius: f32) -> Self {
+        let merging = photon_paths as f32 * (PI * radius * radius);
+        Self { merging, ..Self::connecting(light_paths as f32) }
+    }
+
+    /// For merging within a radius where camera subpaths end, which on their way find light by themselves.
+    pub fn at_the_end(photon_paths: usize, radius: f32) -> Self {
+        Self { connecting: 0.0, ..Self::merging(photon_paths, photon_paths, radius) }
     }
 
     /// 1/η, or 0 without merging.
@@ -67,10 +77,21 @@ impl Balance {
         Partial { vcm: end.direct * scale, vc, vm: vc * self.per_merging() }
     }
 
+    /// The sum over the strategies with s ≥ 2 for a camera subpath that has met a light, along a direction at `cos_theta` to the normal
+    /// of the vertex before; to be multiplied by the density with which the light sends light there. That vertex cannot be merged,
+    /// which was not known when it was left.
+    pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32) -> f32 {
+        let sum = partial.vc - self.connecting * self.merging * cos_theta * partial.vcm;
+        // Not `max`, which would hide what is no number.
+        if sum < 0.0 { 0.0 } else { sum }
+    }
+
     /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
-    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
-    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32) -> f32 {
-        self.merging + partial.vcm + pdf_back * partial.vc
+    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end. Whether it
+    /// could be merged there is `can_merge`.
+    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32, can_merge: bool) -> f32 {
+        let merging = if can_merge { self.merging } else { 0.0 };
+        self.connecting * (merging + partial.vcm + pdf_back * partial.vc)
     }
 
     /// The same for merging, to be used as it is.
@@ -80,11 +101,19 @@ impl Balance {
 
     /// Leaves a vertex along a direction of the density `pdf`, at `cos_theta` to the normal; `pdf_back` is the density of the way
     /// back.
-    pub fn leave(&self, partial: &Partial, pdf: f32, pdf_back: f32, cos_theta: f32) -> Partial {
+    pub fn leave(
+        &self,
+        partial: &Partial,
+        pdf: f32,
+        pdf_back: f32,
+        cos_theta: f32,
+        can_merge: bool,
+    ) -> Partial {
+        let merging = if can_merge { 1.0 } else { 0.0 };
         Partial {
             vcm: 1.0 / pdf,
-            vc: cos_theta / pdf * self.connecting_back(partial, pdf_back),
-            vm: cos_theta / pdf * (1.0 + self.merging_back(partial, pdf_back)),
+            vc: cos_theta / pdf * self.connecting_back(partial, pdf_back, can_merge),
+            vm: cos_theta / pdf * (merging + self.merging_back(partial, pdf_back)),
         }
     }
 }

@@ -45,6 +45,19 @@ impl Bidirectional<'_> {
         lambda: &SampledWavelengths,
         sampler: &mut Sampler,
         stats: &mut RayStats,
+        visit: impl FnMut(OnTheWay, &mut Sampler, &mut RayStats),
+    ) {
+        self.camera_subpath_to(|_| false, camera_ray, lambda, sampler, stats, visit);
+    }
+
+    /// The same, as far as the first vertex that is an end.
+    pub fn camera_subpath_to(
+        &self,
+        is_end: impl Fn(&Vertex) -> bool,
+        camera_ray: &CameraRayDifferential,
+        lambda: &SampledWavelengths,
+        sampler: &mut Sampler,
+        stats: &mut RayStats,
         mut visit: impl FnMut(OnTheWay, &mut Sampler, &mut RayStats),
     ) {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
@@ -64,7 +77,7 @@ impl Bidirectional<'_> {
             }
             let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
             visit(OnTheWay::Vertex(&vertex), sampler, stats);
-            if !walk.leave(&vertex, &surface, sampler) {
+            if is_end(&vertex) || !walk.leave(&vertex, &surface, sampler) {
                 return;
             }
             before = Some(vertex);

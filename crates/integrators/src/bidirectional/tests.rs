@@ -17,6 +17,7 @@ use scene::light::LightId;
 use spectrum::SampledWavelengths;
 
 use super::{Balance, Bidirectional, Lights, Vertex, Walk};
+use crate::photon_grid::Photon;
 
 const LIGHT_PATHS: usize = 37;
 
@@ -139,35 +140,72 @@ impl Path<'_> {
         density
     }
 
-    /// The weight of the strategy with `s` vertices on the light's side, by the densities of all.
-    fn weight(&self, paths: &Bidirectional, s: u32) -> f64 {
+    fn density(&self, paths: &Bidirectional, strategy: Strategy) -> f64 {
         let vertices = self.surfaces.len() + 2;
-        let density = |s: usize| self.light_density(paths, s) * self.camera_density(paths, vertices - s);
-        let all: f64 = (0..vertices).map(density).sum();
-        density(s as usize) / all
+        match strategy {
+            Strategy::Connect(s) => self.light_density(paths, s) * self.camera_density(paths, vertices - s),
+            Strategy::Merge(s) => {
+                let eta = f64::from(paths.balance.merging);
+                eta * self.light_density(paths, s) * self.camera_density(paths, vertices + 1 - s)
+            }
+        }
     }
+
+    /// The weight of a strategy by the densities of all.
+    fn weight(&self, paths: &Bidirectional, strategy: Strategy) -> f64 {
+        let vertices = self.surfaces.len() + 2;
+        let all = (0..vertices).map(Strategy::Connect).chain((3..vertices).map(Strategy::Merge));
+        self.density(paths, strategy) / all.map(|each| self.density(paths, each)).sum::<f64>()
+    }
+}
+
+/// How a path is made of a light subpath and another, by the number of vertices of the first.
+#[derive(Clone, Copy, Debug)]
+enum Strategy {
+    /// An edge between the two.
+    Connect(usize),
+    /// One vertex is the last of both.
+    Merge(usize),
 }
 
 #[test]
 fn weights_are_those_of_the_densities_of_all_strategies() {
+    assert_weights(Balance::connecting(LIGHT_PATHS as f32), Balance::connecting(LIGHT_PATHS as f32));
+}
+
+#[test]
+fn weights_are_those_of_the_densities_of_all_strategies_when_some_merge() {
+    for radius in [0.01, 0.1, 1.0] {
+        let balance = Balance::merging(LIGHT_PATHS, 2 * LIGHT_PATHS, radius);
+        assert_weights(balance, balance);
+    }
+}
+
+#[test]
+#[should_panic(expected = "Connect")]
+fn weights_for_another_radius_are_told_apart() {
+    let of = |radius| Balance::merging(LIGHT_PATHS, LIGHT_PATHS, radius);
+    assert_weights(of(0.2), of(0.201));
+}
+
+/// That the recursion with one balance gives the weights by the densities of another.
+fn assert_weights(balance: Balance, expected: Balance) {
     let scene = room();
     let lights = Lights::of(&scene);
-    let balance = Balance::connecting(LIGHT_PATHS);
     let paths = Bidirectional { scene: &scene, lights: &lights, balance, max_depth: 4, regularize: false };
     let lambda = SampledWavelengths::sample_visible(0.4);
     let mut sampler = Sampler::Independent(Independent::new(1, 3));
     let stats = &mut RayStats::default();
-    let mut seen = [0; 4];
-    let mut check = |path: &Path, s: u32, weight: f32, kind: usize| {
-        let expected = path.weight(&paths, s);
+    let mut seen = [0; 5];
+    let slow = Bidirectional { balance: expected, ..paths };
+    let mut check = |path: &Path, strategy: Strategy, weight: f32, kind: usize| {
+        let expected = path.weight(&slow, strategy);
         let difference = (f64::from(weight) - expected).abs();
-        assert!(
-            difference < 2e-3 * expected + 1e-6,
-            "s = {s} of {}: {weight} {expected}",
-            path.surfaces.len()
-        );
+        let surfaces = path.surfaces.len();
+        assert!(difference < 2e-3 * expected + 1e-6, "{strategy:?} of {surfaces}: {weight} {expected}");
         seen[kind] += 1;
     };
+    let connect = |s: u32| Strategy::Connect(s as usize);
     for index in 0..2000 {
         sampler.start_pixel_sample([index, 0], 0, 0);
         // The sampler's next numbers choose the light and its ray.
@@ -188,7 +226,12 @@ fn weights_are_those_of_the_densities_of_all_strategies() {
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
             if let Some(found) = paths.see(vertex, Vec2::ZERO, |_| true, stats) {
-                check(&Path { light: start, surfaces, camera }, found.found.s, found.found.weight, 0);
+                check(
+                    &Path { light: start, surfaces, camera },
+                    connect(found.found.s),
+                    found.found.weight,
+                    0,
+                );
             }
         }
 
@@ -201,7 +244,7 @@ fn weights_are_those_of_the_densities_of_all_strategies() {
             {
                 let light = (surface.area_light.expect("a light"), surface.p(), surface.surface.n);
                 let surfaces = from_light(camera_subpath.len());
-                check(&Path { light, surfaces, camera }, found.s, found.weight, 1);
+                check(&Path { light, surfaces, camera }, connect(found.s), found.weight, 1);
             }
             if walk.depth == paths.max_depth {
                 break;
@@ -218,13 +261,19 @@ fn weights_are_those_of_the_densities_of_all_strategies() {
                 let sample = scene.sample_light(light, &context, u_light, &lambda, false).expect("a point");
                 let light = (light, sample.p.expect("a place").p, sample.n);
                 let surfaces = from_light(camera_subpath.len());
-                check(&Path { light, surfaces, camera }, found.s, found.weight, 2);
+                check(&Path { light, surfaces, camera }, connect(found.s), found.weight, 2);
             }
             for (i, light) in light_subpath.iter().enumerate() {
                 if let Some(found) = paths.connect(&vertex, light, stats) {
                     let mut surfaces: Vec<_> = light_subpath[..=i].iter().collect();
                     surfaces.extend(from_light(camera_subpath.len()));
-                    check(&Path { light: start, surfaces, camera }, found.s, found.weight, 3);
+                    let path = Path { light: start, surfaces, camera };
+                    check(&path, connect(found.s), found.weight, 3);
+                    if balance.merging > 0.0 && light.can_merge() {
+                        let photon = Photon::from(light);
+                        let merged = paths.merge(&stepped(&paths.balance, &vertex, light), &photon);
+                        check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
+                    }
                 }
             }
             if !walk.leave(&vertex, &surface, &mut sampler) {
@@ -232,5 +281,16 @@ fn weights_are_those_of_the_densities_of_all_strategies() {
             }
         }
     }
-    assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
+    let kinds = if balance.merging > 0.0 { 5 } else { 4 };
+    assert!(seen[..kinds].iter().all(|&count| count > 50), "{seen:?}");
+}
+
+/// The vertex of a camera subpath that goes on from `before` to the place of another's.
+fn stepped(balance: &Balance, before: &Vertex, at: &Vertex) -> Vertex {
+    let way = at.p.p - before.p.p;
+    let wi = way.normalize();
+    let partial = balance
+        .leave(&before.partial, before.pdf(wi), before.pdf_back(wi), before.cos_theta(wi), true)
+        .arrive(way.length_squared(), at.cos_theta(wi));
+    Vertex { wo: -wi, partial, mode: before.mode, depth: before.depth + 1, ..*at }
 }

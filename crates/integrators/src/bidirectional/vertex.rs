@@ -47,6 +47,12 @@ impl Vertex {
         self.bsdf.flags().is_non_specular()
     }
 
+    /// Whether a vertex of the other kind could be merged with it: what comes straight from a light is not.
+    #[inline]
+    pub fn can_merge(&self) -> bool {
+        self.mode == TransportMode::Radiance || self.depth > 1
+    }
+
     /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to it.
     #[inline]
     pub fn scattered(&self, wi: Vector3) -> SampledSpectrum {

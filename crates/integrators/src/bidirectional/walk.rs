@@ -189,7 +189,7 @@ impl<'a> Walk<'a> {
             vertex.partial.leave_specular(cos_theta)
         } else {
             let pdf = if sample.pdf_is_proportional { vertex.pdf(sample.wi) } else { sample.pdf };
-            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta)
+            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta, vertex.can_merge())
         };
         self.rough_before |= !sample.flags.is_specular();
         self.beta *= scale;

@@ -152,7 +152,7 @@ impl Integrator for Mlt {
         let target: &dyn Target = match &self.technique {
             Technique::Path(path) => &CameraPaths { view, path },
             Technique::Bdpt(lights) => {
-                let balance = Balance { light_paths: view.area(), merging: 0.0 };
+                let balance = Balance::connecting(view.area());
                 let paths = Bidirectional { scene, lights, balance, max_depth, regularize };
                 &ConnectedPaths { view, paths }
             }

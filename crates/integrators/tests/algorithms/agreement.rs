@@ -11,7 +11,7 @@ use crate::support::{
 };
 
 /// A box of grey walls of different brightness with a lamp below its ceiling and a block on its floor.
-fn room() -> SceneDesc {
+pub fn room() -> SceneDesc {
     let mut desc = SceneDesc::default();
     for (wall, rho) in walls(1.0).into_iter().zip([0.7, 0.3, 0.5, 0.8, 0.2, 0.6]) {
         let material = diffuse(&mut desc, rho);

@@ -2,9 +2,11 @@
 
 use alhazen_integrators::build;
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, SamplerDesc, SamplerKind, SceneDesc, Span,
-    SppmDesc, Stated,
+    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, PhotonMappingDesc, RadiosityDesc,
+    SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind, Span, SppmDesc, Stated, VcmDesc,
 };
+
+use crate::support::{diffuse, glass, mirror, sphere};
 
 fn messages(diagnostics: &[Diagnostic]) -> Vec<&str> {
     diagnostics.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
@@ -27,6 +29,9 @@ fn what_is_drawn_is_drawn_without_a_word() {
         IntegratorDesc::Path { max_depth: 5, regularize: true, light_sampler },
         IntegratorDesc::VolPath { max_depth: 5, regularize: true, light_sampler },
         IntegratorDesc::Mlt(MltDesc::default()),
+        IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
+        IntegratorDesc::Sppm(SppmDesc::default()),
+        IntegratorDesc::Vcm(VcmDesc::default()),
     ] {
         assert_eq!(warnings(integrator), []);
     }
@@ -34,16 +39,53 @@ fn what_is_drawn_is_drawn_without_a_word() {
 
 #[test]
 fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
-    for (name, integrator) in [
-        ("simplevolpath", IntegratorDesc::SimpleVolPath { max_depth: 5 }),
-        ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
-    ] {
-        let expected = format!("integrator `{name}` is not drawn yet; drawn as `path`");
-        assert_eq!(messages(&warnings(integrator)), [expected]);
-    }
+    let found = warnings(IntegratorDesc::SimpleVolPath { max_depth: 5 });
+    assert_eq!(messages(&found), ["integrator `simplevolpath` is not drawn yet; drawn as `path`"]);
     let light_sampler = LightSamplerDesc::Exhaustive;
     let found = warnings(IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler });
     assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
+}
+
+#[test]
+fn radiosity_tells_what_it_draws_otherwise() {
+    let mut desc = SceneDesc::default();
+    desc.integrator.value = IntegratorDesc::Radiosity(RadiosityDesc::default());
+    let (metal, paper, unused) = (mirror(&mut desc, 0.1), diffuse(&mut desc, 0.5), glass(&mut desc));
+    for material in [metal, paper, metal] {
+        desc.shapes.push(ShapeDesc { material, ..sphere(1.0).into() });
+    }
+    assert!(unused.is_some());
+    desc.shapes.push(ShapeKind::Plane.into());
+    let told = build(&desc).ok().unwrap().warnings;
+    assert_eq!(
+        messages(&told),
+        [
+            "this material is not diffuse; radiosity draws it by its albedo",
+            "a plane without end cannot be cut into patches; radiosity lights it, but it passes no light on",
+        ]
+    );
+}
+
+#[test]
+fn radiosity_refuses_settings_without_sense() {
+    let settings = RadiosityDesc {
+        max_depth: -1,
+        patch_size: Some(0.0),
+        tolerance: 1.0,
+        steps: 0,
+        ..RadiosityDesc::default()
+    };
+    let integrator = IntegratorDesc::Radiosity(settings).into();
+    let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+    assert_eq!(
+        messages(&errors),
+        [
+            "`maxdepth` is 0 or more, not -1",
+            "`steps` is 1 or more, not 0",
+            "`patchsize` is a number above 0, not 0",
+            "`tolerance` is between 0 and 1, not 1",
+        ]
+    );
 }
 
 fn with_sampler(kind: SamplerKind, pixel_samples: i32) -> SceneDesc {
@@ -82,4 +124,57 @@ fn settings_without_sense_are_errors_at_their_place() {
         ["`pixelsamples` is a number above 0, not 0", "`maxdepth` is 0 or more, not -1"]
     );
     assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
+}
+
+#[test]
+fn photons_without_sense_are_errors_at_their_place() {
+    let names = ["photons", "causticphotons", "nearest", "radius", "gather"];
+    let spans = names.map(|name| (name, Span { start: name.len() as u32, ..Span::NONE }));
+    let origin = Origin { span: Span::NONE, parameters: spans.to_vec() };
+    let photons = PhotonMappingDesc {
+        photons: -1,
+        caustic_photons: -2,
+        nearest: 0,
+        radius: Some(f32::NAN),
+        gather: -3,
+        ..PhotonMappingDesc::default()
+    };
+    let integrator = Stated::new(IntegratorDesc::PhotonMapping(photons), origin);
+    let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+    assert_eq!(
+        messages(&errors),
+        [
+            "`photons` is 0 or more, not -1",
+            "`causticphotons` is 0 or more, not -2",
+            "`nearest` is 1 or more, not 0",
+            "`radius` is a distance above 0, not NaN",
+            "`gather` is 0 or more, not -3",
+        ]
+    );
+    assert!(errors.iter().zip(spans).all(|(error, (_, span))| error.is_error() && error.span() == span));
+}
+
+#[test]
+fn merging_needs_a_radius_a_rate_and_photons() {
+    let span = Span { start: 7, ..Span::NONE };
+    let parameters = ["radius", "alpha", "photonsperiteration"].map(|name| (name, span)).to_vec();
+    let errors = |integrator: IntegratorDesc| {
+        let origin = Origin { span: Span::NONE, parameters: parameters.clone() };
+        let integrator = Stated::new(integrator, origin);
+        let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
+        assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
+        messages(&errors).join("; ")
+    };
+    for (radius, alpha) in [(0.0, 0.0), (-1.0, 1.5), (f32::INFINITY, f32::NAN)] {
+        let vcm = VcmDesc { radius: Some(radius), alpha, ..VcmDesc::default() };
+        let expected = format!(
+            "`alpha` is above 0 and at most 1, not {alpha}; `radius` is a distance above 0, not {radius}"
+        );
+        assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
+    }
+    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: f32::NAN, ..SppmDesc::default() };
+    assert_eq!(
+        errors(IntegratorDesc::Sppm(sppm)),
+        "`photonsperiteration` is a number above 0, not 0; `radius` is a distance above 0, not NaN"
+    );
 }

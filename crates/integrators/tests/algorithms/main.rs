@@ -7,6 +7,8 @@ mod ambient_occlusion;
 mod build;
 mod direct_light;
 mod furnace;
+mod merging;
 mod mlt;
+mod photon_mapping;
 mod render_loop;
 mod support;

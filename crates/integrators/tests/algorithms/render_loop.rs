@@ -5,7 +5,10 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
 use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
-use description::{IntegratorDesc, LightSamplerDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc};
+use description::{
+    IntegratorDesc, LightSamplerDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc, SamplerKind,
+    SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
+};
 use film::Film;
 use geometry::RayStats;
 use math::RayDifferential;
@@ -42,7 +45,7 @@ fn bits(film: &Film) -> Vec<u32> {
     film.develop().values().map(f32::to_bits).collect()
 }
 
-fn picture(desc: &SceneDesc, threads: usize, control: &Control) -> (Film, Result<RayStats, Cancelled>) {
+pub fn picture(desc: &SceneDesc, threads: usize, control: &Control) -> (Film, Result<RayStats, Cancelled>) {
     let (scene, mut film) = (compile(desc), empty_film(desc));
     let mut integrator = build(desc).unwrap().integrator;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -52,6 +55,7 @@ fn picture(desc: &SceneDesc, threads: usize, control: &Control) -> (Film, Result
 
 #[test]
 fn threads_never_change_a_bit() {
+    let photons = PhotonMappingDesc { photons: 9000, caustic_photons: 9000, ..PhotonMappingDesc::default() };
     let integrators = [
         balls().integrator.value,
         IntegratorDesc::RayCasting,
@@ -59,6 +63,11 @@ fn threads_never_change_a_bit() {
         IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY },
         IntegratorDesc::RandomWalk { max_depth: 5 },
         IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+        IntegratorDesc::PhotonMapping(photons.clone()),
+        IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 2, ..photons.clone() }),
+        IntegratorDesc::PhotonMapping(PhotonMappingDesc { show: PhotonMappingShow::Photons, ..photons }),
+        IntegratorDesc::Sppm(SppmDesc { radius: 0.3, ..SppmDesc::default() }),
+        IntegratorDesc::Vcm(VcmDesc { radius: Some(0.3), ..VcmDesc::default() }),
     ];
     for integrator in integrators {
         let desc = SceneDesc { integrator: integrator.into(), ..balls() };

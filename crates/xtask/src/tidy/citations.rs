@@ -12,6 +12,7 @@ const REFERENCES: &str = "docs/references.md";
 
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
+    let texts: Vec<_> = citing_texts(tree).map(|(path, text)| (path, citations(&text), text)).collect();
     let mut entries = BTreeSet::new();
     let references = tree.text(REFERENCES).unwrap_or_default();
     for (number, line) in references.lines().enumerate() {
@@ -22,17 +23,17 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
             findings.push(Finding::new(REFERENCES, number + 1, format!("a second entry for `{key}`")));
         }
         let opening = format!("[{key}");
-        let cited = citing_texts(tree).any(|(_, text)| {
-            text.contains(&opening) || citations(&text).iter().any(|(_, cited)| cited == key)
+        let cited = texts.iter().any(|(_, citations, text)| {
+            citations.iter().any(|(_, cited)| cited == key) || text.contains(&opening)
         });
         if !cited {
             findings.push(Finding::new(REFERENCES, number + 1, format!("`{key}` is cited nowhere")));
         }
     }
-    for (path, text) in citing_texts(tree) {
-        for (line, key) in citations(&text) {
+    for (path, citations, _) in &texts {
+        for (line, key) in citations {
             if !entries.contains(key.as_str()) {
-                findings.push(Finding::new(path, line, format!("[{key}] does not stand in {REFERENCES}")));
+                findings.push(Finding::new(path, *line, format!("[{key}] does not stand in {REFERENCES}")));
             }
         }
     }
@@ -53,8 +54,9 @@ fn citing_texts(tree: &Tree) -> impl Iterator<Item = (&str, String)> {
 /// Lines and keys of the citations in a text. A citation may go over the end of a line.
 fn citations(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let next = text.lines().nth(number + 1).unwrap_or_default();
+    let all: Vec<&str> = text.lines().collect();
+    for (number, line) in all.iter().enumerate() {
+        let next = all.get(number + 1).copied().unwrap_or_default();
         let lines = format!("{line} {}", next.trim_start().trim_start_matches(['/', '!', '#']));
         for (at, _) in line.match_indices('[') {
             let Some((inside, _)) = lines[at + 1..].split_once(']') else { continue };

@@ -1,15 +1,15 @@
 //! Light transport algorithms.
 
 use description::{
-    IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc,
-    PhotonMappingShow, SppmDesc, Stated, VcmDesc,
+    FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel,
+    PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, SppmDesc, Stated, VcmDesc,
 };
 
 use super::Builder;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::Statement;
 
-const TYPES: [&str; 17] = [
+const TYPES: [&str; 18] = [
     "path",
     "volpath",
     "bdpt",
@@ -27,6 +27,7 @@ const TYPES: [&str; 17] = [
     "light-tracing",
     "photon-mapping",
     "vcm",
+    "radiosity",
 ];
 
 impl Builder<'_> {
@@ -82,6 +83,7 @@ fn integrator(reader: &mut Reader) -> Option<IntegratorDesc> {
             radius: radius(reader),
             alpha: reader.positive("alpha", VcmDesc::default().alpha),
         }),
+        "radiosity" => IntegratorDesc::Radiosity(radiosity(reader)),
         "function" => IntegratorDesc::Function {
             function: reader.string("function").map_or("step".into(), |function| function.value),
             skip_bad: reader.boolean("skipbad", true),
@@ -135,6 +137,27 @@ fn photon_mapping(reader: &mut Reader) -> PhotonMappingDesc {
             default.show,
             &[("radiance", PhotonMappingShow::Radiance), ("photons", PhotonMappingShow::Photons)],
         ),
+    }
+}
+
+fn radiosity(reader: &mut Reader) -> RadiosityDesc {
+    let default = RadiosityDesc::default();
+    RadiosityDesc {
+        max_depth: max_depth(reader),
+        form_factors: reader.choice(
+            "formfactors",
+            default.form_factors,
+            &[("analytic", FormFactorsDesc::Analytic), ("hemicube", FormFactorsDesc::Hemicube)],
+        ),
+        hemicube_resolution: reader.integer("hemicuberesolution", default.hemicube_resolution, 2..=4096),
+        patch_size: Some(reader.positive("patchsize", f32::INFINITY)).filter(|size| size.is_finite()),
+        subdivision: reader.integer("subdivision", default.subdivision, 0..=10),
+        gradient: reader.positive("gradient", default.gradient),
+        max_patches: reader.integer("maxpatches", default.max_patches, 1..=i32::MAX),
+        tolerance: reader.positive("tolerance", default.tolerance),
+        steps: reader.integer("steps", default.steps, 1..=i32::MAX),
+        gather: reader.integer("gather", default.gather, 0..=i32::MAX),
+        mesh_out: reader.string("mesh-out").map(|file| file.value),
     }
 }
 

@@ -1,0 +1,147 @@
+//! Radiosity from without: against path tracing, pass by pass, stopped, and as a mesh.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use alhazen::image::Image;
+use alhazen::import::{Files, import, read_ply};
+use alhazen::integrators::{ByProduct, Control};
+use alhazen::{Job, Overrides};
+
+use common::{render_scene, rgb_values};
+
+fn scene(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
+}
+
+fn overrides(integrator: &str, size: i32, samples: u32, settings: &[(&str, &str)]) -> Overrides {
+    let settings = [("filter", "box"), ("savefp16", "false")].iter().chain(settings);
+    Overrides {
+        integrator: Some(integrator.into()),
+        settings: settings.map(|&(name, value)| (name.into(), value.into())).collect(),
+        samples_per_pixel: Some(samples),
+        resolution: Some([size, size]),
+        ..Overrides::default()
+    }
+}
+
+/// The means of all values, and of those of each square of a number of pixels.
+fn means(image: &Image, side: usize) -> (f64, Vec<f64>) {
+    let width = image.width() as usize;
+    let columns = width / side;
+    let mut squares = vec![0.0; columns * (image.height() as usize / side)];
+    for (i, value) in rgb_values(image).enumerate() {
+        let (x, y) = (i / 3 % width, i / 3 / width);
+        squares[y / side * columns + x / side] += value / (3 * side * side) as f64;
+    }
+    (squares.iter().sum::<f64>() / squares.len() as f64, squares)
+}
+
+fn job(name: &str, overrides: &Overrides) -> Job {
+    let mut desc = import(scene(name), &Files).desc;
+    overrides.apply(&mut desc).unwrap();
+    Job::compile(&desc).unwrap().job
+}
+
+#[test]
+fn a_gathered_picture_has_the_light_of_path_tracing() {
+    let settings = [("maxdepth", "5"), ("gather", "1"), ("tolerance", "0.004"), ("patchsize", "90")];
+    let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 24, 96, &settings));
+    let reference = overrides("path", 24, 2048, &[("maxdepth", "5"), ("sampler", "sobol")]);
+    let reference = render_scene(&scene("cornell-box.pbrt"), &reference);
+    let ((found, _), (expected, _)) = (means(&found, 24), means(&reference, 24));
+    assert!((found / expected - 1.0).abs() < 0.005, "{found}, not {expected}");
+}
+
+#[test]
+#[ignore = "slow: fine patches, and a path-traced picture without visible noise"]
+fn a_gathered_picture_is_that_of_path_tracing() {
+    let settings = [("maxdepth", "5"), ("gather", "1"), ("patchsize", "35"), ("gradient", "0.05")];
+    let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 64, 1024, &settings));
+    let reference = overrides("path", 64, 8192, &[("maxdepth", "5"), ("sampler", "sobol")]);
+    let reference = render_scene(&scene("cornell-box.pbrt"), &reference);
+    let ((found, squares), (expected, expected_squares)) = (means(&found, 8), means(&reference, 8));
+    assert!((found / expected - 1.0).abs() < 0.005, "{found}, not {expected}");
+    for (i, (found, expected)) in squares.iter().zip(&expected_squares).enumerate() {
+        assert!((found / expected - 1.0).abs() < 0.02, "square {i}: {found}, not {expected}");
+    }
+}
+
+/// The squared distance of two pictures.
+fn distance(a: &Image, b: &Image) -> f64 {
+    rgb_values(a).zip(rgb_values(b)).map(|(a, b)| (a - b).powi(2)).sum()
+}
+
+#[test]
+fn every_pass_is_better_than_the_last() {
+    let settings = [
+        ("tolerance", "0.02"),
+        ("steps", "4"),
+        ("patchsize", "150"),
+        ("gradient", "0.3"),
+        ("disablepixeljitter", "true"),
+    ];
+    let overrides = overrides("radiosity", 32, 1, &settings);
+    let last = render_scene(&scene("cornell-box.pbrt"), &overrides);
+    let mut distances = Vec::new();
+    for passes in 1..=4 {
+        let mut job = job("cornell-box.pbrt", &overrides);
+        let mut control = Control::default();
+        let cancel = Arc::clone(&control.cancel);
+        control.progress = Some(Box::new(move |p| cancel.store(p.pass == passes, Ordering::Relaxed)));
+        assert!(job.render(&control).is_err());
+        distances.push(distance(&job.picture(), &last));
+    }
+    assert!(distances.is_sorted_by(|a, b| a > b), "{distances:?}");
+}
+
+#[test]
+fn a_pass_can_be_stopped() {
+    // Light that takes minutes to be sent in a single pass.
+    let settings = [("tolerance", "0.000001"), ("steps", "1"), ("patchsize", "20"), ("maxdepth", "50")];
+    let mut job = job("cornell-box.pbrt", &overrides("radiosity", 16, 1, &settings));
+    let control = Control::default();
+    let cancel = Arc::clone(&control.cancel);
+    let brake = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(1500));
+        cancel.store(true, Ordering::Relaxed);
+        Instant::now()
+    });
+    assert!(job.render(&control).is_err());
+    let took = brake.join().unwrap().elapsed();
+    assert!(took < Duration::from_secs(20), "{took:?}");
+}
+
+#[test]
+fn the_light_is_saved_as_a_mesh() {
+    let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
+    let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
+    assert!(job.by_products().is_empty(), "nothing is known before the first pass");
+    job.render(&Control::default()).unwrap();
+    let summary = job.summary();
+    let told = |name: &str| summary.iter().find(|(known, _)| *known == name).unwrap().1.clone();
+    assert!(told("elements").parse::<u32>().unwrap() > told("patches").parse::<u32>().unwrap());
+    assert!(told("patch memory").ends_with(" MB"));
+    let products = job.by_products();
+    let [ByProduct::File(path, bytes)] = &products[..] else { panic!("one file") };
+    assert_eq!(path, Path::new("somewhere/room.ply"));
+    let mesh = read_ply(bytes).unwrap();
+    assert!(mesh.quads.is_empty() && mesh.triangles.len() > 1000);
+    // In the world's coordinates, within the room.
+    let inside = mesh.positions.iter().all(|p| {
+        p.cmpge(alhazen::math::Vec3::splat(-1e-4)).all() && p.cmple(alhazen::math::Vec3::splat(6.001)).all()
+    });
+    assert!(inside);
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| mesh.positions[i as usize]);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    let walls = 2.0 * (5.0 * 6.0 + 5.0 * 2.7 + 6.0 * 2.7);
+    assert!(mesh.triangles.iter().map(area).sum::<f32>() > walls);
+}

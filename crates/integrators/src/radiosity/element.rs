@@ -1,0 +1,254 @@
+//! What carries light: elements that receive it, patches that send it on.
+//!
+//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb it sends on from its whole
+//! area evenly. An *element* is a leaf of the mesh within a patch; it remembers how much light fell on each of its two sides.
+//! Elements may be much finer than patches: light is sent on coarsely and received finely [Cohen 1986].
+
+use geometry::{Hit, SurfacePoint};
+use math::{Normal3, Point3, Point3Error, RayDifferential, Vec2};
+use sampling::sampler::Independent;
+use sampling::{Sampler, warp};
+use scattering::{Bsdf, Bxdf, Directions, TransportMode};
+use scene::{Scene, SurfaceInteraction};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::bands::{Bands, Wavelengths};
+use super::mesh::{Cell, Domain, Mesh};
+
+/// The shares of light that a surface sends back, and through, evenly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Albedo {
+    pub reflectance: Bands,
+    pub transmittance: Bands,
+}
+
+impl Albedo {
+    /// What leaves either side of a surface on whose sides this falls.
+    pub fn scatter(&self, sides: &[Bands; 2]) -> [Bands; 2] {
+        [0, 1].map(|i| self.reflectance * sides[i] + self.transmittance * sides[1 - i])
+    }
+
+    fn scaled(&self, factor: f32) -> Self {
+        Self { reflectance: self.reflectance * factor, transmittance: self.transmittance * factor }
+    }
+
+    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all directions. Bends the shading normal on the
+    /// way. `None`: nothing is there but a change of medium.
+    pub fn at(
+        scene: &Scene,
+        interaction: &mut SurfaceInteraction,
+        ray: &RayDifferential,
+        wavelengths: &Wavelengths,
+    ) -> Option<Self> {
+        // Only scenes that force diffuse surfaces ask it anything.
+        let mut sampler = Sampler::Independent(Independent::new(1, 0));
+        let pair = wavelengths.sample_pair(|lambda| {
+            let bsdf = scene.bsdf(interaction, ray, &mut lambda.clone(), &mut sampler)?;
+            Some(match bsdf.bxdf {
+                Bxdf::Diffuse(bxdf) => [bxdf.reflectance, SampledSpectrum::ZERO],
+                Bxdf::DiffuseTransmission(bxdf) => [bxdf.reflectance, bxdf.transmittance],
+                _ => mean_albedo(&bsdf),
+            })
+        });
+        pair.map(|[reflectance, transmittance]| Self { reflectance, transmittance })
+    }
+}
+
+/// ρ_hh by fixed samples, apart for the two sides.
+fn mean_albedo(bsdf: &Bsdf) -> [SampledSpectrum; 2] {
+    const STRATA: usize = 4;
+    let mut shares = [SampledSpectrum::ZERO; 2];
+    for i in 0..STRATA * STRATA {
+        let place = |i: usize| (i as f32 + 0.5) / STRATA as f32;
+        let (x, y) = (i % STRATA, i / STRATA);
+        let wo = bsdf.frame.from_local(warp::sample_cosine_hemisphere(Vec2::new(place(x), place(y))));
+        let (uc, u) =
+            (place((x + y) % STRATA), Vec2::new(place((x + 2 * y) % STRATA), place((2 * x + y) % STRATA)));
+        let Some(sample) = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All) else {
+            continue;
+        };
+        let cos_theta = bsdf.render_to_local(sample.wi).z;
+        shares[usize::from(cos_theta < 0.0)] += sample.f * (cos_theta.abs() / sample.pdf);
+    }
+    shares.map(|share| share.map(|x| (x / (STRATA * STRATA) as f32).min(1.0)))
+}
+
+/// The middle of a quarter of an element.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SamplePoint {
+    pub p: Point3Error,
+    pub n: Normal3,
+    /// The quarter's share of the area.
+    pub weight: f32,
+}
+
+/// Where an element stands.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    /// The patch that it is a part of.
+    pub patch: u32,
+    /// The quarter of that patch in which its middle lies.
+    pub quarter: usize,
+    /// How often its patch was quartered to make it.
+    pub level: u32,
+}
+
+/// What receives light.
+#[derive(Clone, Debug)]
+pub(crate) struct Element {
+    /// Its leaf.
+    pub cell: u32,
+    /// The patch that it is a part of.
+    pub patch: u32,
+    /// The quarter of that patch in which its middle lies.
+    pub quarter: usize,
+    /// How often its patch was quartered to make it.
+    pub level: u32,
+    pub area: f32,
+    pub points: [SamplePoint; 4],
+    pub albedo: Albedo,
+    /// What fell on its outer and inner side, in each quarter.
+    pub quarters: [[Bands; 2]; 4],
+}
+
+impl Element {
+    /// A leaf without light.
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, place: Place) -> Self {
+        let Place { patch, quarter, level } = place;
+        let world = scene.world();
+        let leaf = mesh.cell(cell);
+        let quarters = leaf.domain().quarters();
+        let areas = quarters.each_ref().map(|quarter| mesh.area(world, leaf, quarter));
+        let area: f32 = areas.iter().sum();
+        let mut albedo = Albedo::default();
+        let mut point = |i: usize| {
+            let Some(surface) = mesh.surface(world, leaf.primitive, quarters[i].center()) else {
+                return SamplePoint { p: Point3Error::exact(Point3::ZERO), n: Normal3::ZERO, weight: 0.0 };
+            };
+            let weight = if area > 0.0 { areas[i] / area } else { 0.0 };
+            let here = albedo_at(scene, mesh.primitive(leaf), &surface, wavelengths)
+                .unwrap_or_default()
+                .scaled(weight);
+            albedo.reflectance += here.reflectance;
+            albedo.transmittance += here.transmittance;
+            SamplePoint { p: surface.p, n: surface.n, weight }
+        };
+        let points = [point(0), point(1), point(2), point(3)];
+        Self { cell, patch, quarter, level, area, points, albedo, quarters: [[Bands::ZERO; 2]; 4] }
+    }
+
+    /// What fell on its outer and inner side.
+    pub fn irradiance(&self) -> [Bands; 2] {
+        weighted(&self.quarters, self.points.each_ref().map(|point| point.weight))
+    }
+
+    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of the quarters the change goes on as far
+    /// as it does in any direction, no further.
+    pub fn irradiance_at(&self, domain: &Domain, uv: Vec2) -> [Bands; 2] {
+        let at = weighted(&self.quarters, domain.weights(uv));
+        [0, 1].map(|i| {
+            let [a, b, c, d] = self.quarters.each_ref().map(|sides| sides[i]);
+            let (least, most) = (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)));
+            let beyond = (most + least * -1.0) * 0.5;
+            at[i].max(least + beyond * -1.0).min(most + beyond).max(Bands::ZERO)
+        })
+    }
+
+    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in each of its own.
+    pub fn spread(&self, brightness: f32, arrived: [f32; 4]) -> [f32; 4] {
+        if self.level > 0 {
+            return std::array::from_fn(|quarter| if quarter == self.quarter { brightness } else { 0.0 });
+        }
+        let parts: [f32; 4] = std::array::from_fn(|k| arrived[k] * self.points[k].weight);
+        let sum: f32 = parts.iter().sum();
+        parts.map(|part| if sum > 0.0 { brightness * part / sum } else { 0.0 })
+    }
+
+    /// What leaves its two sides in one quarter, emission apart.
+    pub fn radiosity(&self, quarter: usize) -> [Bands; 2] {
+        self.albedo.scatter(&self.quarters[quarter])
+    }
+}
+
+fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
+    [0, 1].map(|i| quarters.iter().zip(weights).map(|(sides, weight)| sides[i] * weight).sum())
+}
+
+/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a change of medium.
+pub(crate) fn albedo_at(
+    scene: &Scene,
+    primitive: &Hit,
+    surface: &SurfacePoint,
+    wavelengths: &Wavelengths,
+) -> Option<Albedo> {
+    let ray = RayDifferential::from(surface.spawn_ray(surface.n));
+    let mut interaction = scene.interaction(primitive, *surface);
+    let coverage = scene.coverage(primitive, surface);
+    Some(Albedo::at(scene, &mut interaction, &ray, wavelengths)?.scaled(coverage))
+}
+
+/// What sends light on.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch {
+    pub cell: u32,
+    pub area: f32,
+    /// What leaves its two sides of its own accord, per area.
+    pub emitted: [Bands; 2],
+    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how often it was scattered.
+    pub unshot: Vec<[Bands; 2]>,
+    /// How the brightness of that light is spread over the quarters.
+    pub spread: [[f32; 2]; 4],
+    /// Which sides have faced a patch that shot.
+    pub faced: [bool; 2],
+}
+
+impl Patch {
+    /// A patch that has not sent out its own light yet; it sends light that was scattered less than `depth` times.
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: usize) -> Self {
+        let area = {
+            let leaf = mesh.cell(cell);
+            leaf.domain().quarters().iter().map(|quarter| mesh.area(scene.world(), leaf, quarter)).sum()
+        };
+        let emitted = emission(scene, mesh, mesh.cell(cell), wavelengths);
+        let mut unshot = vec![[Bands::ZERO; 2]; depth];
+        if let Some(first) = unshot.first_mut() {
+            *first = emitted.map(|side| side * area);
+        }
+        let even =
+            emitted.map(|side| if depth > 0 { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
+        Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
+    }
+
+    /// How much of what one side has to send comes from each quarter, in parts of the mean.
+    pub fn evenness(&self, side: usize) -> [f32; 4] {
+        let sum = self.brightness(side);
+        self.spread.map(|sides| if sum > 0.0 { 4.0 * sides[side] / sum } else { 1.0 })
+    }
+
+    /// How bright all is that one side has to send.
+    pub fn brightness(&self, side: usize) -> f32 {
+        self.spread.iter().map(|sides| sides[side]).sum()
+    }
+}
+
+/// The radiant exitance of the two sides of a cell, from 64 points.
+fn emission(scene: &Scene, mesh: &Mesh, cell: &Cell, wavelengths: &Wavelengths) -> [Bands; 2] {
+    let hit = mesh.primitive(cell);
+    let at = |uv: Vec2| mesh.surface(scene.world(), cell.primitive, uv);
+    let is_light = at(cell.domain().center()).is_some_and(|s| scene.interaction(hit, s).area_light.is_some());
+    if !is_light {
+        return [Bands::ZERO; 2];
+    }
+    let quarters = cell.domain().quarters().into_iter().flat_map(|quarter| quarter.quarters());
+    let places = quarters.flat_map(|quarter| quarter.quarters());
+    let mut sum = [Bands::ZERO; 2];
+    for surface in places.filter_map(|place| at(place.center())) {
+        let interaction = scene.interaction(hit, surface);
+        let scale = scene.coverage(hit, &surface) * std::f32::consts::PI / 64.0;
+        for (sum, w) in sum.iter_mut().zip([surface.n, -surface.n]) {
+            let emitted = |lambda: &SampledWavelengths| scene.emitted(&interaction, w, lambda);
+            *sum += wavelengths.sample(emitted) * scale;
+        }
+    }
+    sum
+}

@@ -1,0 +1,158 @@
+//! The hemicube: all form factors of a patch at once, from its middle.
+//!
+//! Around the middle of a patch stands half a cube of 2 × 2 × 1 with its faces cut into pixels. Through each pixel a ray looks for the element
+//! that is seen there; the element's form factor is the sum over its pixels of
+//!
+//! ΔF = ΔA / (π (x² + y² + 1)²) on the face above, ΔF = z ΔA / (π (y² + z² + 1)²) on the faces at the sides,
+//!
+//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the errors of different shots differ. What the
+//! patch does not see is there all the same: what it sees once is seen whole, and the sum of all factors is one where nothing is open.
+//!
+//! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all, and near by, where the patch is no point, its
+//! middle is not the whole. Here the pixels are filled by rays instead of by a z-buffer; the factors are those of the original.
+//! Source: [Cohen 1985].
+
+use geometry::{Hit, RayStats, SurfacePoint};
+use math::{Frame, Vector3};
+use rayon::prelude::*;
+use sampling::hash_float;
+use scene::Scene;
+use std::f32::consts::{PI, TAU};
+
+use super::form_factor::Received;
+use super::mesh::Mesh;
+use super::show::{first_solid, seen_side};
+use super::subdivide::Cut;
+use crate::{Cancelled, Control};
+
+/// An element seen through this many pixels at least is cut by what they show.
+const ENOUGH: u32 = 16;
+
+/// A way of looking around.
+pub(crate) struct Hemicube {
+    /// Pixels along an edge, an even number.
+    resolution: u32,
+    /// The angle by which it is turned about the normal.
+    angle: f32,
+}
+
+/// What is seen through a pixel.
+struct Pixel {
+    hit: Hit,
+    surface: SurfacePoint,
+    /// The side that is seen.
+    side: usize,
+    factor: f32,
+}
+
+/// What a patch sees.
+pub(crate) struct Seen(Vec<Pixel>);
+
+impl Hemicube {
+    /// For the `shot`th shot.
+    pub fn new(resolution: u32, shot: u32) -> Self {
+        Self { resolution: resolution.max(2).next_multiple_of(2), angle: TAU * hash_float(&[shot]) }
+    }
+
+    /// The directions of a row of pixels in a frame with the normal along +z, and their shares. Rows of the face above come first, then those
+    /// of the four at the sides, which have half as many.
+    fn row(&self, row: u32) -> impl Iterator<Item = (Vector3, f32)> {
+        let n = self.resolution;
+        let step = 2.0 / n as f32;
+        let place = move |i: u32| (i as f32 + 0.5) * step - 1.0;
+        let (sin, cos) = self.angle.sin_cos();
+        (0..n).map(move |column| {
+            let (d, factor) = if row < n {
+                (Vector3::new(place(column), place(row), 1.0), 1.0)
+            } else {
+                let (face, below) = ((row - n) / (n / 2), (row - n) % (n / 2));
+                let z = (below as f32 + 0.5) * step;
+                let (x, y) = [
+                    (1.0, place(column)),
+                    (-1.0, place(column)),
+                    (place(column), 1.0),
+                    (place(column), -1.0),
+                ][face as usize % 4];
+                (Vector3::new(x, y, z), z)
+            };
+            let turned = Vector3::new(d.x * cos - d.y * sin, d.x * sin + d.y * cos, d.z);
+            (turned.normalize(), factor * step * step / (PI * d.length_squared().powi(2)))
+        })
+    }
+
+    fn rows(&self) -> u32 {
+        self.resolution + 4 * (self.resolution / 2)
+    }
+
+    /// Looks around from the middle of a cell, on one side of it.
+    pub fn look(
+        &self,
+        scene: &Scene,
+        mesh: &Mesh,
+        cell: u32,
+        side: usize,
+        control: &Control,
+        stats: &mut RayStats,
+    ) -> Result<Seen, Cancelled> {
+        let cell = mesh.cell(cell);
+        let Some(eye) = mesh.surface(scene.world(), cell.primitive, cell.domain().center()) else {
+            return Ok(Seen(Vec::new()));
+        };
+        let frame = Frame::from_z(if side == 0 { eye.n } else { -eye.n });
+        let look = |row: u32| {
+            control.check()?;
+            let mut stats = RayStats::default();
+            let pixels = self.row(row).filter_map(|(d, factor)| {
+                let ray = eye.spawn_ray(frame.from_local(d));
+                let (hit, surface) = first_solid(scene, ray, &mut stats)?;
+                Some(Pixel { hit, surface, side: seen_side(&surface), factor })
+            });
+            let pixels: Vec<Pixel> = pixels.collect();
+            Ok((pixels, stats))
+        };
+        let rows: Vec<_> = (0..self.rows()).into_par_iter().map(look).collect::<Result<_, Cancelled>>()?;
+        rows.iter().for_each(|(_, some)| *stats += *some);
+        Ok(Seen(rows.into_iter().flat_map(|(pixels, _)| pixels).collect()))
+    }
+}
+
+impl Seen {
+    /// What the elements with these indices receive of unit radiosity from a patch of this area.
+    pub fn received(&self, scene: &Scene, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
+        let mut all = vec![(Received::default(), 0); cut.elements.len()];
+        for Pixel { hit, surface, side, factor } in &self.0 {
+            let Some((leaf, uv)) = cut.mesh.leaf(scene.world(), hit, surface) else { continue };
+            let (received, pixels) = &mut all[leaf.element as usize];
+            let element = &cut.elements[leaf.element as usize];
+            let quarter = leaf.domain().quarter_of(uv);
+            let factor = factor * area / (element.area * element.points[quarter].weight);
+            received.quarters[quarter][*side] += factor;
+            *pixels += 1;
+        }
+        let answer = |&id: &u32| {
+            let (received, pixels) = all[id as usize];
+            let even = received.sides(&cut.elements[id as usize]);
+            if pixels < ENOUGH { Received { quarters: [even; 4] } } else { received }
+        };
+        ids.iter().map(answer).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_factors_of_all_pixels_sum_to_one() {
+        for resolution in [16, 64, 256] {
+            let cube = Hemicube::new(resolution, 3);
+            let pixels = (0..cube.rows()).flat_map(|row| cube.row(row));
+            let (sum, up) =
+                pixels.fold((0.0, 0.0), |(sum, up), (d, factor)| (sum + factor, up + factor * d.z));
+            let error = 4.0 / (resolution * resolution) as f32 + 1e-5;
+            assert!((sum - 1.0).abs() < error, "{resolution}: {sum}");
+            // ∫ cos²θ dω / π = 2/3.
+            assert!((up - 2.0 / 3.0).abs() < error, "{resolution}: {up}");
+        }
+    }
+}

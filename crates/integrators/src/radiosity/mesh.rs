@@ -1,0 +1,443 @@
+//! Surfaces cut into cells.
+//!
+//! A cell is a part of one primitive of the scene: a triangle or rectangle of the primitive's own parameters, with corners on the true
+//! surface. Its first cell is the whole primitive, and cutting halves a cell across its longer side, so that the cells
+//! of a primitive are a binary tree and the leaf under a ray's hit is found by walking down it.
+//!
+//! Vertices are shared: two corners that stand at one place with nearly one normal are one vertex, whichever primitives they belong to.
+//! Where a cell's neighbour is cut more finely, a vertex stands in the middle of the cell's side: a T-vertex. If the cell were drawn from its
+//! corners alone, light would jump across that side. So T-vertices are *anchored*: [`Mesh::outline`] gives the corners and all the vertices
+//! that neighbours have put on the sides between them, and whatever is interpolated over the fan of triangles between that outline and the
+//! cell's centre is continuous ([Cohen 1986]; [Baum 1991] for anchors).
+
+use std::collections::{HashMap, HashSet};
+
+use geometry::{Geometry, GeometryId, Hit, InstancePath, Shape, SurfacePoint, World};
+use math::{Normal3, Point3, Vec2};
+use scene::Scene;
+
+/// A corner of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Corner {
+    /// Index of its vertex.
+    pub vertex: u32,
+    /// Parameters on the cell's primitive.
+    pub uv: Vec2,
+}
+
+/// A triangle or rectangle of parameters, its corners in turn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Domain {
+    Triangle([Vec2; 3]),
+    Rectangle([Vec2; 4]),
+}
+
+impl Domain {
+    /// The middle.
+    pub fn center(&self) -> Vec2 {
+        match self {
+            Self::Triangle([a, b, c]) => (*a + *b + *c) / 3.0,
+            Self::Rectangle([a, b, c, d]) => (*a + *b + *c + *d) / 4.0,
+        }
+    }
+
+    /// Four parts alike.
+    pub fn quarters(&self) -> [Self; 4] {
+        let mid = |a: Vec2, b: Vec2| (a + b) * 0.5;
+        match *self {
+            Self::Triangle([a, b, c]) => {
+                let (ab, bc, ca) = (mid(a, b), mid(b, c), mid(c, a));
+                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].map(Self::Triangle)
+            }
+            Self::Rectangle([a, b, c, d]) => {
+                let (ab, bc, cd, da, m) = (mid(a, b), mid(b, c), mid(c, d), mid(d, a), self.center());
+                [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]].map(Self::Rectangle)
+            }
+        }
+    }
+
+    /// The weights of four values, one in the middle of each quarter, that make the value at a point of the linear function that they
+    /// determine best.
+    pub fn weights(&self, uv: Vec2) -> [f32; 4] {
+        match self {
+            Self::Triangle([a, b, c]) => {
+                let whole = (*b - *a).perp_dot(*c - *a);
+                let outer = |a: Vec2, b: Vec2| 2.0 * (a - uv).perp_dot(b - uv) / whole - 2.0 / 3.0 + 0.25;
+                [outer(*b, *c), outer(*c, *a), outer(*a, *b), 0.25]
+            }
+            Self::Rectangle([a, b, _, d]) => {
+                let along = |side: Vec2| (uv - *a).dot(side) / side.length_squared() - 0.5;
+                let (x, y) = (along(*b - *a), along(*d - *a));
+                [0.25 - x - y, 0.25 + x - y, 0.25 + x + y, 0.25 - x + y]
+            }
+        }
+    }
+
+    /// Which of the quarters a point lies in.
+    pub fn quarter_of(&self, uv: Vec2) -> usize {
+        match self {
+            Self::Triangle([a, b, c]) => {
+                let whole = (*b - *a).perp_dot(*c - *a);
+                let weights =
+                    [(*b - uv).perp_dot(*c - uv), (*c - uv).perp_dot(*a - uv), (*a - uv).perp_dot(*b - uv)];
+                weights.iter().position(|w| w / whole > 0.5).unwrap_or(3)
+            }
+            Self::Rectangle([a, b, _, d]) => {
+                let along = |side: Vec2| (uv - *a).dot(side) > 0.5 * side.length_squared();
+                match (along(*b - *a), along(*d - *a)) {
+                    (false, false) => 0,
+                    (true, false) => 1,
+                    (true, true) => 2,
+                    (false, true) => 3,
+                }
+            }
+        }
+    }
+}
+
+/// A part of a primitive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cell {
+    /// Index of its primitive.
+    pub primitive: u32,
+    corners: [Corner; 4],
+    sides: u8,
+    /// The first of its two halves.
+    children: Option<u32>,
+    /// What the owner of the mesh ties to a leaf.
+    pub element: u32,
+}
+
+impl Cell {
+    fn new(primitive: u32, corners: &[Corner]) -> Self {
+        let mut all = [Corner::default(); 4];
+        all[..corners.len()].copy_from_slice(corners);
+        Self { primitive, corners: all, sides: corners.len() as u8, children: None, element: u32::MAX }
+    }
+
+    /// Three or four, in turn.
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners[..self.sides as usize]
+    }
+
+    /// Its parameters.
+    pub fn domain(&self) -> Domain {
+        let [a, b, c, d] = self.corners.map(|corner| corner.uv);
+        if self.sides == 3 { Domain::Triangle([a, b, c]) } else { Domain::Rectangle([a, b, c, d]) }
+    }
+}
+
+/// A place that corners share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    pub p: Point3,
+    pub n: Normal3,
+}
+
+/// Below this cosine between their normals, corners at one place are two vertices.
+const SMOOTH: f32 = 0.9;
+
+/// The sag of a side beside its length above which a cell is too bent to stand for its surface.
+const BENT: f32 = 0.05;
+
+/// Vertices, found again by their place.
+#[derive(Clone, Debug)]
+struct Vertices {
+    all: Vec<Vertex>,
+    /// By squares of twice the tolerance.
+    grid: HashMap<[i64; 3], Vec<u32>>,
+    /// How far corners of one vertex may be from each other.
+    tolerance: f32,
+}
+
+impl Vertices {
+    fn square(&self, p: Point3, shift: f64) -> [i64; 3] {
+        p.to_array().map(|x| (f64::from(x) / f64::from(2.0 * self.tolerance) + shift).floor() as i64)
+    }
+
+    /// The vertex at a place, if there is one.
+    fn find(&self, vertex: &Vertex) -> Option<u32> {
+        let low = self.square(vertex.p, -0.5);
+        (0..8).find_map(|i| {
+            let near = self.grid.get(&[low[0] + (i & 1), low[1] + (i >> 1 & 1), low[2] + (i >> 2)])?;
+            near.iter().copied().find(|&i| {
+                let other = &self.all[i as usize];
+                other.p.distance(vertex.p) <= self.tolerance && other.n.dot(vertex.n) > SMOOTH
+            })
+        })
+    }
+
+    fn find_or_add(&mut self, vertex: Vertex) -> u32 {
+        self.find(&vertex).unwrap_or_else(|| {
+            let id = self.all.len() as u32;
+            self.all.push(vertex);
+            self.grid.entry(self.square(vertex.p, 0.0)).or_default().push(id);
+            id
+        })
+    }
+}
+
+/// All surfaces that can be cut.
+#[derive(Clone, Debug)]
+pub(crate) struct Mesh {
+    primitives: Vec<Hit>,
+    /// The first cells of the primitives of every geometry; none where a primitive has no parameters to cut.
+    roots: HashMap<(GeometryId, InstancePath), Vec<Option<u32>>>,
+    cells: Vec<Cell>,
+    vertices: Vertices,
+    /// Sides that were cut: both ends, the lower first, and the vertex between.
+    cut: HashSet<[u32; 3]>,
+    /// The moment at which everything stands still.
+    time: f32,
+}
+
+impl Mesh {
+    /// One cell for each primitive of the scene that can be cut and is `wanted`.
+    pub fn new(scene: &Scene, time: f32, wanted: impl Fn(&Hit, &SurfacePoint) -> bool) -> Self {
+        let sphere = scene.sphere();
+        let size = sphere.center.abs().max_element() + sphere.radius;
+        let tolerance = (1e-6 * size).max(f32::MIN_POSITIVE);
+        let vertices = Vertices { all: Vec::new(), grid: HashMap::new(), tolerance };
+        let mut mesh = Self {
+            primitives: Vec::new(),
+            roots: HashMap::new(),
+            cells: Vec::new(),
+            vertices,
+            cut: HashSet::new(),
+            time,
+        };
+        let world = scene.world();
+        for (geometry, instance) in world.placed_geometries() {
+            let primitives = 0..world.geometry(geometry).len() as u32;
+            let hit = |primitive| Hit { t: 0.0, uv: Vec2::ZERO, geometry, primitive, instance };
+            let roots = primitives.map(|primitive| mesh.root(world, hit(primitive), &wanted)).collect();
+            mesh.roots.insert((geometry, instance), roots);
+        }
+        mesh
+    }
+
+    fn root(
+        &mut self,
+        world: &World,
+        hit: Hit,
+        wanted: &impl Fn(&Hit, &SurfacePoint) -> bool,
+    ) -> Option<u32> {
+        let is_triangle = match world.geometry(hit.geometry) {
+            Geometry::Mesh(_) => true,
+            Geometry::Shapes(shapes) => {
+                matches!(shapes[hit.primitive as usize], Shape::Triangle(_) | Shape::MovingTriangle(_))
+            }
+            Geometry::Spheres(_) | Geometry::Curves(_) => false,
+        };
+        let uvs = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        let uvs: Vec<Vec2> = if is_triangle { vec![uvs[0], uvs[1], uvs[3]] } else { uvs.into() };
+        let center = uvs.iter().sum::<Vec2>() / uvs.len() as f32;
+        let primitive = self.primitives.len() as u32;
+        self.primitives.push(hit);
+        let is_sound = |s: &SurfacePoint| s.p.p.is_finite() && s.n.is_normalized();
+        let whole = self.surface(world, primitive, center).filter(|s| is_sound(s) && wanted(&hit, s));
+        let corners = uvs.iter().map(|&uv| self.surface(world, primitive, uv).filter(is_sound));
+        let Some(surfaces) = whole.and_then(|_| corners.collect::<Option<Vec<_>>>()) else {
+            self.primitives.pop();
+            return None;
+        };
+        let corner = |(surface, &uv): (SurfacePoint, &Vec2)| Corner {
+            vertex: self.vertices.find_or_add(vertex_at(&surface)),
+            uv,
+        };
+        let corners: Vec<Corner> = surfaces.into_iter().zip(&uvs).map(corner).collect();
+        self.cells.push(Cell::new(primitive, &corners));
+        Some(self.cells.len() as u32 - 1)
+    }
+
+    /// A cell by its index.
+    pub fn cell(&self, cell: u32) -> &Cell {
+        &self.cells[cell as usize]
+    }
+
+    /// Names what stands for a leaf.
+    pub fn set_element(&mut self, cell: u32, element: u32) {
+        self.cells[cell as usize].element = element;
+    }
+
+    /// How many cells there are; their indices begin with 0.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// The primitive of a cell, as a hit without a place.
+    pub fn primitive(&self, cell: &Cell) -> &Hit {
+        &self.primitives[cell.primitive as usize]
+    }
+
+    /// All vertices.
+    pub fn vertices(&self) -> &[Vertex] {
+        &self.vertices.all
+    }
+
+    /// The moment at which everything stands still.
+    pub fn time(&self) -> f32 {
+        self.time
+    }
+
+    /// The point of a primitive with these parameters.
+    pub fn surface(&self, world: &World, primitive: u32, uv: Vec2) -> Option<SurfacePoint> {
+        let hit = &self.primitives[primitive as usize];
+        world.surface_at(hit.geometry, hit.primitive, hit.instance, uv, self.time)
+    }
+
+    /// The position of the point with these parameters; the origin where there is none.
+    fn position(&self, world: &World, cell: &Cell, uv: Vec2) -> Point3 {
+        self.surface(world, cell.primitive, uv).map_or(Point3::ZERO, |surface| surface.p.p)
+    }
+
+    /// The area of a part of a primitive: of a rectangle to second order.
+    pub fn area(&self, world: &World, cell: &Cell, domain: &Domain) -> f32 {
+        let p = |uv| self.position(world, cell, uv).as_dvec3();
+        let area = match *domain {
+            Domain::Triangle([a, b, c]) => 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length(),
+            Domain::Rectangle([a, b, c, d]) => {
+                let mid = |a: Vec2, b: Vec2| p((a + b) * 0.5);
+                (mid(b, c) - mid(d, a)).cross(mid(c, d) - mid(a, b)).length()
+            }
+        };
+        area as f32
+    }
+
+    /// How long a cell is along its first side and, if it has four, along its second; through the middle where that is another way.
+    fn lengths(&self, world: &World, cell: &Cell) -> [f32; 2] {
+        let p = |uv| self.position(world, cell, uv);
+        match cell.domain() {
+            Domain::Triangle([a, b, c]) => {
+                let (a, b, c) = (p(a), p(b), p(c));
+                [a.distance(b), b.distance(c).max(c.distance(a))]
+            }
+            Domain::Rectangle([a, b, c, d]) => {
+                let m = p((a + b + c + d) * 0.25);
+                let way = |a: Vec2, b: Vec2, c: Vec2, d: Vec2| {
+                    p((a + b) * 0.5).distance(m) + m.distance(p((c + d) * 0.5))
+                };
+                [way(d, a, b, c), way(a, b, c, d)]
+            }
+        }
+    }
+
+    /// How long a cell is.
+    pub fn size(&self, world: &World, cell: u32) -> f32 {
+        let [a, b] = self.lengths(world, self.cell(cell));
+        a.max(b)
+    }
+
+    /// Whether the sides of a cell are too bent for it to stand for its surface.
+    pub fn is_bent(&self, world: &World, cell: u32) -> bool {
+        let cell = self.cell(cell);
+        let at = |corner: &Corner| self.vertices.all[corner.vertex as usize].p;
+        sides(cell.corners()).any(|[a, b]| {
+            let chord = (at(&a) + at(&b)) * 0.5;
+            let sag = self.position(world, cell, (a.uv + b.uv) * 0.5).distance(chord);
+            sag > BENT * (at(&a).distance(at(&b)) + sag)
+        })
+    }
+
+    /// Halves a leaf; the first of the two halves, which follow each other.
+    pub fn split(&mut self, world: &World, leaf: u32) -> u32 {
+        let cell = self.cells[leaf as usize];
+        let mut corners = cell.corners().to_vec();
+        // Turned until the side to be cut is the first.
+        let turns = if let Domain::Triangle(uvs) = cell.domain() {
+            let [a, b, c] = uvs.map(|uv| self.position(world, &cell, uv));
+            let lengths = [a.distance(b), b.distance(c), c.distance(a)];
+            (0..3).fold(0, |longest, i| if lengths[i] > lengths[longest] { i } else { longest })
+        } else {
+            let [along, across] = self.lengths(world, &cell);
+            usize::from(across > along)
+        };
+        corners.rotate_left(turns);
+        let first = self.cells.len() as u32;
+        let half = self.cut_side(world, &cell, [corners[0], corners[1]]);
+        let halves = if let [a, b, c, d] = corners[..] {
+            let other = self.cut_side(world, &cell, [c, d]);
+            [vec![a, half, other, d], vec![half, b, c, other]]
+        } else {
+            [vec![corners[0], half, corners[2]], vec![half, corners[1], corners[2]]]
+        };
+        self.cells.extend(halves.map(|corners| Cell::new(cell.primitive, &corners)));
+        self.cells[leaf as usize].children = Some(first);
+        first
+    }
+
+    fn cut_side(&mut self, world: &World, cell: &Cell, side: [Corner; 2]) -> Corner {
+        let middle = self.middle(world, cell, side);
+        let vertex = self.vertices.find_or_add(middle.1);
+        self.cut.insert(side_key(side, vertex));
+        Corner { vertex, uv: middle.0 }
+    }
+
+    fn middle(&self, world: &World, cell: &Cell, [a, b]: [Corner; 2]) -> (Vec2, Vertex) {
+        let uv = (a.uv + b.uv) * 0.5;
+        let surface = self.surface(world, cell.primitive, uv);
+        let end = self.vertices.all[a.vertex as usize];
+        (uv, surface.map_or(end, |surface| vertex_at(&surface)))
+    }
+
+    /// The leaf that a ray has hit, and where on its primitive; `None` on what has no cells.
+    pub fn leaf(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(&Cell, Vec2)> {
+        let root = self.roots.get(&(hit.geometry, hit.instance))?[hit.primitive as usize]?;
+        let uv =
+            if matches!(world.geometry(hit.geometry), Geometry::Spheres(_)) { surface.uv } else { hit.uv };
+        let mut cell = self.cell(root);
+        while let Some(first) = cell.children {
+            // The second and third corner of the first half are the ends of the cut.
+            let half = self.cell(first);
+            let [a, b] = [half.corners[1].uv, half.corners[2].uv];
+            let inner = half.corners[0].uv;
+            let is_first = (b - a).perp_dot(uv - a) * (b - a).perp_dot(inner - a) >= 0.0;
+            cell = if is_first { half } else { self.cell(first + 1) };
+        }
+        Some((cell, uv))
+    }
+
+    /// The corners of a leaf and all vertices that its neighbours have put between them, in turn.
+    pub fn outline(&self, world: &World, cell: &Cell) -> Vec<Corner> {
+        let mut outline = Vec::new();
+        for side in sides(cell.corners()) {
+            outline.push(side[0]);
+            self.anchors(world, cell, side, &mut outline);
+        }
+        outline
+    }
+
+    fn anchors(&self, world: &World, cell: &Cell, side: [Corner; 2], outline: &mut Vec<Corner>) {
+        if side[0].vertex == side[1].vertex {
+            return;
+        }
+        let (uv, middle) = self.middle(world, cell, side);
+        let Some(vertex) = self.vertices.find(&middle).filter(|&v| self.cut.contains(&side_key(side, v)))
+        else {
+            return;
+        };
+        let middle = Corner { vertex, uv };
+        self.anchors(world, cell, [side[0], middle], outline);
+        outline.push(middle);
+        self.anchors(world, cell, [middle, side[1]], outline);
+    }
+
+    /// Bytes of memory that it takes, about.
+    pub fn bytes(&self) -> usize {
+        let hashed = self.cut.capacity() * size_of::<[u32; 3]>() + self.vertices.all.len() * 56;
+        size_of_val(&*self.primitives) + size_of_val(&*self.cells) + size_of_val(&*self.vertices.all) + hashed
+    }
+}
+
+fn vertex_at(surface: &SurfacePoint) -> Vertex {
+    Vertex { p: surface.p.p, n: surface.shading.n }
+}
+
+/// Each corner with the next.
+fn sides(corners: &[Corner]) -> impl Iterator<Item = [Corner; 2]> + '_ {
+    (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]])
+}
+
+fn side_key([a, b]: [Corner; 2], middle: u32) -> [u32; 3] {
+    [a.vertex.min(b.vertex), a.vertex.max(b.vertex), middle]
+}

@@ -1,0 +1,235 @@
+//! Radiosity: the light between diffuse surfaces as a balance of energy, found once for all views.
+//!
+//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j F_ij B_j: its own light, and its share of what
+//! comes from all others, F_ij being the [form factor](form_factor) from i to j. [Progressive shooting](shooting) solves this without ever
+//! holding the matrix: the brightest patch sends its light to all others, again and again. Each of the first `steps` passes
+//! sends light until a smaller share of it is left, the last one until `tolerance` is reached, and draws the picture anew, with
+//! an ambient term for what is missing. The passes after these, as many as there are samples a pixel, draw the finished solution.
+//!
+//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by interpolation between vertices, or by a final gather.
+//! Light is carried at fixed [wavelengths](bands).
+//!
+//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white, grey or coloured plaster; glass becomes a sheet
+//! that passes light diffusely. Surfaces reflect on both sides. Shading normals count in the final gather alone. Things that move are where
+//! they are in the middle of the shutter's time.
+//!
+//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a patch that sends it and of an element that
+//! receives it, and visibility is known from a few rays. In the Cornell box the mean of a gathered picture is right to 0.5 %, single
+//! places in the shadow of the blocks to 4 %; interpolated, shadows are as blurred as their elements are large. `max_depth` counts as in all algorithms: light that was scattered more often is missing.
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `max_depth` | most scattering events | 5 |
+//! | `form_factors` | `analytic` or `hemicube` | analytic |
+//! | `hemicube_resolution` | pixels along an edge of the hemicube | 128 |
+//! | `patch_size` | longest side of a patch, in scene units | a sixth of the scene's radius |
+//! | `subdivision` | how often an element may be quartered | 3 |
+//! | `gradient` | change of light across an element, in parts of what is there, above which it is quartered | 0.1 |
+//! | `max_patches` | most elements, unless there are more primitives | 50 000 |
+//! | `tolerance` | share of light that need not be sent | 0.002 |
+//! | `steps` | passes in which light is sent | 8 |
+//! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
+//! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
+//!
+//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering event more. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
+
+mod bands;
+mod described;
+mod element;
+mod form_factor;
+mod hemicube;
+mod mesh;
+mod ply;
+mod shooting;
+mod show;
+mod subdivide;
+#[cfg(test)]
+mod tests;
+
+use std::path::PathBuf;
+
+use film::{Film, FilmTile};
+use geometry::RayStats;
+use rayon::prelude::*;
+use sampling::Sampler;
+use scene::Scene;
+use scene::light_sampler::{LightSampler, LightSamplerKind};
+use spectrum::RgbColorSpace;
+
+use crate::pixel_loop::PixelSamples;
+use crate::{ByProduct, Cancelled, Control, Integrator};
+use bands::Bands;
+pub(crate) use described::{settings, warnings};
+use shooting::Solution;
+use show::View;
+
+/// How form factors are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FormFactors {
+    /// By the closed form for polygons, with rays for what lies between.
+    Analytic,
+    /// By a hemicube.
+    Hemicube {
+        /// Pixels along an edge.
+        resolution: u32,
+    },
+}
+
+/// Settings of [`Radiosity`]; see there for units and defaults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadiositySettings {
+    /// Most scattering events.
+    pub max_depth: u32,
+    /// How form factors are found.
+    pub form_factors: FormFactors,
+    /// Longest side of a patch, in scene units; a sixth of the scene's radius if `None`.
+    pub patch_size: Option<f32>,
+    /// How often an element may be quartered.
+    pub subdivision: u32,
+    /// The change of light across an element, in parts of what is there, above which it is quartered.
+    pub gradient: f32,
+    /// Most elements, unless there are more primitives.
+    pub max_patches: u32,
+    /// Share of light that need not be sent.
+    pub tolerance: f32,
+    /// Passes in which light is sent.
+    pub steps: u32,
+    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
+    pub gather: u32,
+    /// File for the elements with their radiosity as vertex colours.
+    pub mesh_out: Option<PathBuf>,
+}
+
+impl Default for RadiositySettings {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            form_factors: FormFactors::Analytic,
+            patch_size: None,
+            subdivision: 3,
+            gradient: 0.1,
+            max_patches: 50_000,
+            tolerance: 0.002,
+            steps: 8,
+            gather: 0,
+            mesh_out: None,
+        }
+    }
+}
+
+/// Radiosity by progressive shooting.
+pub struct Radiosity {
+    settings: RadiositySettings,
+    sampler: Sampler,
+    color_space: &'static RgbColorSpace,
+    state: Option<State>,
+}
+
+/// What is known of a scene.
+struct State {
+    solution: Solution,
+    view: View,
+    lights: LightSampler,
+    /// The mesh to be saved.
+    mesh: Vec<u8>,
+}
+
+impl Radiosity {
+    /// With a mesh whose colours are those of `color_space`, if one is kept.
+    pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
+        Self { settings, sampler, color_space, state: None }
+    }
+
+    /// The passes that send light.
+    fn steps(&self) -> u32 {
+        self.settings.steps.max(1)
+    }
+}
+
+impl Integrator for Radiosity {
+    fn passes(&self) -> u32 {
+        self.steps() + self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene) {
+        // A final gather scatters once more.
+        let depth = self.settings.max_depth.saturating_sub(u32::from(self.settings.gather > 0));
+        let solution = Solution::new(scene, &self.settings, depth);
+        let lights = scene.light_sampler(LightSamplerKind::Bvh);
+        let view = View::new(scene, &solution, &lights, 0);
+        self.state = Some(State { solution, view, lights, mesh: Vec::new() });
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let steps = self.steps();
+        let samples = self.sampler.samples_per_pixel();
+        let Some(State { solution, view, lights, mesh }) = &mut self.state else {
+            return Ok(RayStats::default());
+        };
+        let mut stats = RayStats::default();
+        if pass < steps {
+            let share = self.settings.tolerance.powf((pass + 1) as f32 / steps as f32);
+            stats += solution.shoot(scene, share, control)?;
+            *view = View::new(scene, solution, lights, 0);
+        }
+        if pass == steps {
+            *view = View::new(scene, solution, lights, self.settings.gather);
+            if self.settings.mesh_out.is_some() {
+                *mesh = ply::encode(scene, solution, view, self.color_space);
+            }
+        }
+        let index = if pass < steps { pass % samples } else { pass - steps };
+        let filter = film.filter().clone();
+        let pixels = PixelSamples { index, scene, filter: &filter, sampler: &self.sampler };
+        let (solution, view) = (&*solution, &*view);
+        let draw = |mut tile: FilmTile| {
+            control.check()?;
+            let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
+            let bounds = tile.bounds();
+            for y in bounds.min[1]..bounds.max[1] {
+                for x in bounds.min[0]..bounds.max[0] {
+                    let sample = pixels.begin(None, [x, y], &mut sampler);
+                    let l = sample.camera_ray.map_or(Bands::ZERO, |camera| {
+                        view.radiance(scene, solution, camera.ray, &mut sampler, &mut stats) * camera.weight
+                    });
+                    for (l, lambda) in l.groups().iter().zip(solution.wavelengths.groups()) {
+                        tile.add_sample([x, y], l, lambda, sample.filter_weight);
+                    }
+                }
+            }
+            Ok(stats)
+        };
+        // A better solution makes a new picture, which takes the place of the old one when it is whole.
+        let mut better = (pass <= steps).then(|| film.blank());
+        let tiles = better.as_mut().unwrap_or(film).tiles_mut();
+        let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
+        drawn.into_iter().for_each(|some| stats += some);
+        if let Some(better) = better {
+            *film = better;
+        }
+        Ok(stats)
+    }
+
+    fn by_products(&self) -> Vec<ByProduct> {
+        let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
+        let file = self.settings.mesh_out.iter().zip(mesh);
+        file.map(|(path, mesh)| ByProduct::File(path.clone(), mesh.clone())).collect()
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        let Some(State { solution, view, .. }) = &self.state else { return Vec::new() };
+        vec![
+            ("patches", solution.cut.patches.len().to_string()),
+            ("elements", solution.cut.elements.len().to_string()),
+            ("shots", solution.shots.to_string()),
+            ("unshot light", format!("{:.3} %", 100.0 * solution.unshot_share())),
+            ("patch memory", format!("{:.1} MB", (solution.bytes() + view.bytes()) as f64 * 1e-6)),
+        ]
+    }
+}

@@ -1,0 +1,418 @@
+//! Progressive shooting: light leaves the brightest patch first.
+//!
+//! Of diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is what leaves an area, the exitance E what leaves it of its own accord.
+//! Instead of solving the system at once, the patch l that has most to send sends it: every other one receives
+//!
+//! ΔB_i = ρ_i B_l F_li A_l / A_i,
+//!
+//! keeps it, and has that much more to send itself. After each shot there is a picture, and each is better than the last: what is missing is the
+//! light that has not been sent yet. Until then an *ambient* term stands for it: the irradiance that unshot power would make if it were spread
+//! evenly and reflected with the mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It is shown, never sent, and goes to zero.
+//!
+//! Unshot light is kept apart by how often it was scattered, so that `max_depth` counts the edges of a path as everywhere: a patch sends what was
+//! scattered less than `max_depth` times. One form factor serves for all of it. Lights that are not surfaces (points, distant ones, the
+//! environment) shine on every element once, before the first shot, by samples of the light.
+//!
+//! Where what a shot brings changes by more than a share of the light that is there, elements are cut and the shot is
+//! received again: elements get fine at the edges of shadows, as those shots make them that cast the shadows.
+//!
+//! Sources: [Cohen 1988], [Cohen 1986] for elements.
+
+use geometry::RayStats;
+use math::{Normal3, Ray, Vec2};
+use rayon::prelude::*;
+use sampling::hash_float;
+use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
+use scene::{Interfaces, Scene};
+use spectrum::SampledSpectrum;
+
+use super::bands::{Bands, Wavelengths};
+use super::element::{Albedo, Element, Patch};
+use super::form_factor::{Emitter, Received};
+use super::hemicube::Hemicube;
+use super::subdivide::Cut;
+use super::{FormFactors, RadiositySettings};
+use crate::{Cancelled, Control};
+
+/// The part of all light, spread evenly, below which an irradiance is next to nothing.
+const FAINT: f32 = 1e-3;
+
+/// The state of a solution.
+pub(crate) struct Solution {
+    pub wavelengths: Wavelengths,
+    pub cut: Cut,
+    settings: RadiositySettings,
+    /// Whether the lights that are no surfaces have shone.
+    begun: bool,
+    /// Brightness of all light that there is to send.
+    total: f32,
+    /// How often patches have shot.
+    pub shots: u32,
+}
+
+impl Solution {
+    /// Nothing has been sent yet; of light that is scattered up to `depth` times in all.
+    pub fn new(scene: &Scene, settings: &RadiositySettings, depth: u32) -> Self {
+        let wavelengths = Wavelengths::new(!scene.options().disable_wavelength_jitter);
+        let cut = Cut::new(scene, settings, &wavelengths, depth as usize);
+        let settings = settings.clone();
+        let mut solution = Self { wavelengths, cut, settings, begun: depth == 0, total: 0.0, shots: 0 };
+        solution.total = solution.unshot_brightness();
+        solution
+    }
+
+    /// The brightness of what is still to be sent, as a power.
+    fn unshot_brightness(&self) -> f32 {
+        self.cut.patches.iter().map(|patch| patch.brightness(0) + patch.brightness(1)).sum()
+    }
+
+    /// The share of all light that is still to be sent.
+    pub fn unshot_share(&self) -> f32 {
+        if self.total > 0.0 { self.unshot_brightness() / self.total } else { 0.0 }
+    }
+
+    /// Shoots until no more than a share of all light is left to be sent.
+    pub fn shoot(&mut self, scene: &Scene, share: f32, control: &Control) -> Result<RayStats, Cancelled> {
+        let mut stats = RayStats::default();
+        if !self.begun {
+            self.receive_lights(scene, control, &mut stats)?;
+            self.begun = true;
+        }
+        while self.total > 0.0 && self.unshot_share() > share {
+            let Some((patch, side)) = self.brightest() else { break };
+            self.shoot_from(scene, patch, side, control, &mut stats)?;
+        }
+        Ok(stats)
+    }
+
+    /// The brightness of all light there is to send, spread over all surfaces.
+    fn even(&self) -> f32 {
+        self.total / self.cut.patches.iter().map(|patch| patch.area).sum::<f32>()
+    }
+
+    /// The side of a patch that has most to send.
+    fn brightest(&self) -> Option<(u32, usize)> {
+        let mut best = (0.0, None);
+        for (id, patch) in (0..).zip(&self.cut.patches) {
+            for side in 0..2 {
+                let brightness = patch.brightness(side);
+                if brightness > best.0 {
+                    best = (brightness, Some((id, side)));
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Sends all that one side of a patch has to send.
+    fn shoot_from(
+        &mut self,
+        scene: &Scene,
+        patch: u32,
+        side: usize,
+        control: &Control,
+        stats: &mut RayStats,
+    ) -> Result<(), Cancelled> {
+        let time = self.cut.mesh.time();
+        let Patch { cell, area, ref unshot, .. } = self.cut.patches[patch as usize];
+        let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
+        let all: Bands = layers.iter().copied().sum();
+        let sent_on: Bands = layers.iter().rev().skip(1).copied().sum();
+        let brightness = self.wavelengths.brightness(&all);
+        let received = match self.settings.form_factors {
+            FormFactors::Analytic => {
+                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[patch as usize], side)
+                    .hastily(FAINT * self.even() / brightness, self.shots);
+                self.receive(scene, brightness, |cut, ids| {
+                    each_element(cut, ids, control, stats, |element, stats| match element.patch == patch {
+                        // What is bent stands off its chord, and would see it: from behind, as if it filled the sky.
+                        true => Received::default(),
+                        false => emitter.shine(scene, element, time, stats),
+                    })
+                })?
+            }
+            FormFactors::Hemicube { resolution } => {
+                let hemicube = Hemicube::new(resolution, self.shots);
+                let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
+                self.receive(scene, brightness, |cut, ids| Ok(seen.received(scene, cut, area, ids)))?
+            }
+        };
+        let source = &mut self.cut.patches[patch as usize];
+        source.unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
+        source.spread.iter_mut().for_each(|sides| sides[side] = 0.0);
+        let mut sent = vec![[Bands::ZERO; 2]; self.cut.patches.len()];
+        for (element, received) in self.cut.elements.iter_mut().zip(&received) {
+            let sides = received.sides(element);
+            if sides == [0.0; 2] {
+                continue;
+            }
+            for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
+                for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0)
+                {
+                    *light += all * factor;
+                }
+            }
+            let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
+            let patch = &mut self.cut.patches[element.patch as usize];
+            for (i, power) in sides.map(|factor| factor * element.area).into_iter().enumerate() {
+                if power == 0.0 {
+                    continue;
+                }
+                patch.faced[i] = true;
+                let Albedo { reflectance, transmittance } = &element.albedo;
+                for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
+                    if albedo.is_black() {
+                        continue;
+                    }
+                    let scattered = *albedo * power;
+                    sent[element.patch as usize][side] += scattered;
+                    let brightness = self.wavelengths.brightness(&(scattered * sent_on));
+                    element
+                        .spread(brightness, arrived)
+                        .iter()
+                        .zip(&mut patch.spread)
+                        .for_each(|(b, to)| to[side] += b);
+                }
+            }
+        }
+        for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
+            if *sent != [Bands::ZERO; 2] {
+                for (unshot, layer) in patch.unshot.iter_mut().skip(1).zip(&layers) {
+                    (0..2).for_each(|i| unshot[i] += sent[i] * *layer);
+                }
+            }
+        }
+        self.shots += 1;
+        Ok(())
+    }
+
+    /// Light from lights that are no surfaces, on all elements.
+    fn receive_lights(
+        &mut self,
+        scene: &Scene,
+        control: &Control,
+        stats: &mut RayStats,
+    ) -> Result<(), Cancelled> {
+        let lights: Vec<LightId> = (0..scene.lights().len() as u32)
+            .map(LightId)
+            .filter(|&id| !matches!(scene.light(id), Light::Area(_)) || scene.light(id).is_delta())
+            .collect();
+        if lights.is_empty() {
+            return Ok(());
+        }
+        let wavelengths = self.wavelengths.clone();
+        let time = self.cut.mesh.time();
+        let shine = |element: &Element, stats: &mut RayStats| {
+            let mut lit = Lit::default();
+            for (point, sides) in element.points.iter().zip(&mut lit.quarters) {
+                let context = LightSampleContext { p: point.p, n: point.n, ns: Normal3::ZERO, time };
+                let arrived =
+                    lights.iter().map(|&light| from_light(scene, &wavelengths, light, &context, stats));
+                *sides = arrived.fold([Bands::ZERO; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            }
+            lit
+        };
+        // Once to know how much light there is, and again to see where it changes fast.
+        let ids: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
+        let lit = each_element(&self.cut, &ids, control, stats, shine)?;
+        let power = |(element, lit): (&Element, &Lit)| {
+            let Lit { quarters } = lit;
+            let quarter = |k: usize| {
+                wavelengths.brightness(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight
+            };
+            element.area * (0..4).map(quarter).sum::<f32>()
+        };
+        self.total += self.cut.elements.iter().zip(&lit).map(power).sum::<f32>();
+        let lit = self.receive(scene, 1.0, |cut, ids| each_element(cut, ids, control, stats, shine))?;
+        for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
+            element.quarters = lit.quarters;
+            let sides = element.irradiance();
+            let scattered = element.albedo.scatter(&sides);
+            let patch = &mut self.cut.patches[element.patch as usize];
+            (0..2).for_each(|i| patch.faced[i] |= !sides[i].is_black());
+            let Some(once) = patch.unshot.get_mut(1) else { continue };
+            for i in 0..2 {
+                once[i] += scattered[i] * element.area;
+                let brightness = self.wavelengths.brightness(&scattered[i]) * element.area;
+                let arrived = lit.brightnesses(&self.wavelengths);
+                element
+                    .spread(brightness, arrived)
+                    .iter()
+                    .zip(&mut patch.spread)
+                    .for_each(|(b, to)| to[i] += b);
+            }
+        }
+        Ok(())
+    }
+
+    /// Asks all elements what they receive of light of this brightness, and those again that are cut because of it.
+    fn receive<T: Arrival>(
+        &mut self,
+        scene: &Scene,
+        brightness: f32,
+        mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
+    ) -> Result<Vec<T>, Cancelled> {
+        let even = self.even();
+        let mut received = Vec::new();
+        let mut fresh: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
+        while !fresh.is_empty() {
+            received.resize_with(self.cut.elements.len(), T::default);
+            let answers = answer(&self.cut, &fresh)?;
+            fresh.iter().zip(answers).for_each(|(&id, answer)| received[id as usize] = answer);
+            let is_coarse = |&id: &u32| {
+                let element = &self.cut.elements[id as usize];
+                let quarters = received[id as usize].brightnesses(&self.wavelengths);
+                let least = quarters.into_iter().fold(f32::INFINITY, f32::min);
+                let most = quarters.into_iter().fold(0.0, f32::max);
+                let [outer, inner] = element.irradiance();
+                let here = self.wavelengths.brightness(&(outer + inner));
+                let contrast = (most - least) * brightness;
+                element.level < self.settings.subdivision
+                    && contrast > self.settings.gradient * here.max(even)
+            };
+            let coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
+            fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
+        }
+        Ok(received)
+    }
+
+    /// The irradiance that the light still to be sent will make, if it is spread evenly.
+    pub fn ambient(&self) -> Bands {
+        let faced = |patch: &Patch| patch.faced.iter().filter(|&&faced| faced).count() as f32;
+        let patches = &self.cut.patches;
+        let (mut area, mut reflecting) = (0.0, Bands::ZERO);
+        for element in &self.cut.elements {
+            let here = element.area * faced(&patches[element.patch as usize]);
+            area += here;
+            reflecting += (element.albedo.reflectance + element.albedo.transmittance) * here;
+        }
+        if area == 0.0 {
+            return Bands::ZERO;
+        }
+        let rho = reflecting * area.recip();
+        let depth = patches.first().map_or(0, |patch| patch.unshot.len());
+        let mut ambient = Bands::ZERO;
+        // Light that was scattered last counts once; what was scattered less often, as often as it may be scattered yet.
+        let mut series = Bands::splat(1.0);
+        for layer in (0..depth).rev() {
+            let unshot: Bands =
+                patches.iter().map(|patch| patch.unshot[layer][0] + patch.unshot[layer][1]).sum();
+            ambient += unshot * series * area.recip();
+            series = Bands::splat(1.0) + series * rho;
+        }
+        ambient
+    }
+
+    /// Bytes of memory that patches, elements and the mesh take.
+    pub fn bytes(&self) -> usize {
+        let layers = self.cut.patches.first().map_or(0, |patch| size_of_val(&*patch.unshot));
+        let patches = self.cut.patches.len() * (size_of::<Patch>() + layers);
+        self.cut.mesh.bytes() + patches + size_of_val(&*self.cut.elements)
+    }
+}
+
+/// What arrives at an element.
+trait Arrival: Clone + Default {
+    /// At each quarter, on both sides; of a shot, in parts of its brightness.
+    fn brightnesses(&self, wavelengths: &Wavelengths) -> [f32; 4];
+}
+
+impl Arrival for Received {
+    fn brightnesses(&self, _: &Wavelengths) -> [f32; 4] {
+        self.quarters.map(|[outer, inner]| outer + inner)
+    }
+}
+
+/// Irradiance from lights that are no surfaces, on both sides of each quarter.
+#[derive(Clone, Default)]
+struct Lit {
+    quarters: [[Bands; 2]; 4],
+}
+
+impl Arrival for Lit {
+    fn brightnesses(&self, wavelengths: &Wavelengths) -> [f32; 4] {
+        self.quarters.map(|[outer, inner]| wavelengths.brightness(&(outer + inner)))
+    }
+}
+
+/// Asks elements by their indices, on all threads.
+fn each_element<T: Send>(
+    cut: &Cut,
+    ids: &[u32],
+    control: &Control,
+    stats: &mut RayStats,
+    answer: impl Fn(&Element, &mut RayStats) -> T + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    let some = |ids: &[u32]| {
+        control.check()?;
+        let mut stats = RayStats::default();
+        let mut answer = |&id: &u32| answer(&cut.elements[id as usize], &mut stats);
+        let answers: Vec<T> = ids.iter().map(&mut answer).collect();
+        Ok((answers, stats))
+    };
+    let answers: Vec<_> = ids.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
+    answers.iter().for_each(|(_, some)| *stats += *some);
+    Ok(answers.into_iter().flat_map(|(answers, _)| answers).collect())
+}
+
+/// The irradiance of both sides of a point from a light, by samples of it.
+fn from_light(
+    scene: &Scene,
+    wavelengths: &Wavelengths,
+    light: LightId,
+    context: &LightSampleContext,
+    stats: &mut RayStats,
+) -> [Bands; 2] {
+    let strata = match scene.light(light) {
+        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => 1,
+        Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) => LIGHT_STRATA,
+    };
+    // Every point shifts the samples its own way, lest they all have the same shadows.
+    let place = context.p.p.to_array().map(f32::to_bits);
+    let shift = Vec2::new(hash_float(&place), hash_float(&[place[2], place[0], place[1]]));
+    let mut sides = [Bands::ZERO; 2];
+    for i in 0..strata * strata {
+        let u = (Vec2::new((i % strata) as f32, (i / strata) as f32) + shift) / strata as f32;
+        let Some((l, sample)) = sample_light(scene, wavelengths, light, context, u) else { continue };
+        if arrives(scene, context, &sample, stats) {
+            let cos_theta = sample.wi.dot(context.n);
+            sides[usize::from(cos_theta < 0.0)] +=
+                l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
+        }
+    }
+    sides
+}
+
+/// Samples of a light that has an extent, along each axis.
+const LIGHT_STRATA: u32 = 8;
+
+/// A direction to a light, and its radiance there at all wavelengths.
+pub(crate) fn sample_light(
+    scene: &Scene,
+    wavelengths: &Wavelengths,
+    light: LightId,
+    context: &LightSampleContext,
+    u: Vec2,
+) -> Option<(Bands, LightLiSample)> {
+    let mut found = None;
+    let l = wavelengths.sample(|lambda| {
+        let sample = scene.sample_light(light, context, u, lambda, false);
+        found = found.or(sample);
+        sample.map_or(SampledSpectrum::ZERO, |sample| sample.l)
+    });
+    found.map(|sample| (l, sample))
+}
+
+/// Whether a point sees the sample of a light.
+pub(crate) fn arrives(
+    scene: &Scene,
+    context: &LightSampleContext,
+    sample: &LightLiSample,
+    stats: &mut RayStats,
+) -> bool {
+    let (ray, end) = match sample.p {
+        Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
+        None => (context.spawn_ray(sample.wi), f32::INFINITY),
+    };
+    !scene.occluded(&ray, end, Interfaces::Pass, stats)
+}

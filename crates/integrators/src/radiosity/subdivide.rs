@@ -1,0 +1,127 @@
+//! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller and smaller elements.
+
+use rayon::prelude::*;
+use scene::Scene;
+
+use super::RadiositySettings;
+use super::bands::Wavelengths;
+use super::element::{Element, Patch, Place, albedo_at};
+use super::mesh::Mesh;
+
+/// How long patches are, unless the settings say so: the radius of the scene in patches.
+const PATCHES_PER_RADIUS: f32 = 6.0;
+
+/// The scene cut into patches, each a single element yet.
+pub(crate) struct Cut {
+    pub mesh: Mesh,
+    pub patches: Vec<Patch>,
+    pub elements: Vec<Element>,
+}
+
+impl Cut {
+    /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more than `max_patches`, they
+    /// are twice as long, and so on; but one for each primitive there will be.
+    pub fn new(scene: &Scene, settings: &RadiositySettings, wavelengths: &Wavelengths, depth: usize) -> Self {
+        let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
+        let [open, close] = scene.camera().shutter();
+        let whole = Mesh::new(scene, 0.5 * (open + close), |hit, surface| {
+            albedo_at(scene, hit, surface, wavelengths).is_some()
+        });
+        let max_patches = settings.max_patches as usize;
+        let (mut mesh, leaves) = loop {
+            match cut(scene, whole.clone(), size, max_patches) {
+                Some(cut) => break cut,
+                None => size *= 2.0,
+            }
+        };
+        let ids: Vec<(u32, u32)> = (0..).zip(leaves).collect();
+        let made: Vec<(Patch, Element)> = ids
+            .par_iter()
+            .map(|&(id, cell)| {
+                let patch = Patch::new(scene, &mesh, wavelengths, cell, depth);
+                let place = Place { patch: id, quarter: 0, level: 0 };
+                (patch, Element::new(scene, &mesh, wavelengths, cell, place))
+            })
+            .collect();
+        ids.iter().for_each(|&(id, cell)| mesh.set_element(cell, id));
+        let (patches, elements) = made.into_iter().unzip();
+        Self { mesh, patches, elements }
+    }
+}
+
+/// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some could be longer.
+fn cut(scene: &Scene, mut mesh: Mesh, size: f32, most: usize) -> Option<(Mesh, Vec<u32>)> {
+    let world = scene.world();
+    let mut rest: Vec<u32> = (0..mesh.len() as u32).rev().collect();
+    let mut leaves = Vec::new();
+    let mut splits = false;
+    while let Some(cell) = rest.pop() {
+        let length = mesh.size(world, cell);
+        // Bent cells are cut as long as that makes patches, not dust.
+        let is_bent = length > size * BENT_PART && mesh.is_bent(world, cell);
+        if length > size || is_bent {
+            let first = mesh.split(world, cell);
+            rest.extend([first + 1, first]);
+            splits = true;
+        } else {
+            leaves.push(cell);
+        }
+        if splits && leaves.len() + rest.len() > most {
+            return None;
+        }
+    }
+    Some((mesh, leaves))
+}
+
+/// The part of a patch's size below which bent cells are good enough.
+const BENT_PART: f32 = 0.05;
+
+impl Cut {
+    /// Halves elements twice, as long as there is room for more of them. The parts inherit the light of the whole. Returns those
+    /// that are new or have become smaller.
+    pub fn split(
+        &mut self,
+        scene: &Scene,
+        settings: &RadiositySettings,
+        wavelengths: &Wavelengths,
+        coarse: &[u32],
+    ) -> Vec<u32> {
+        let room = (settings.max_patches as usize).saturating_sub(self.elements.len());
+        let world = scene.world();
+        let mut parts = Vec::new();
+        for &id in coarse.iter().take(room / 3) {
+            let first = self.mesh.split(world, self.elements[id as usize].cell);
+            for half in [first, first + 1] {
+                let quarter = self.mesh.split(world, half);
+                parts.extend([(id, quarter), (id, quarter + 1)]);
+            }
+        }
+        let mesh = &self.mesh;
+        let make = |&(whole, cell): &(u32, u32)| {
+            let whole = &self.elements[whole as usize];
+            let center = mesh.cell(cell).domain().center();
+            let quarter_of = |cell: u32| mesh.cell(cell).domain().quarter_of(center);
+            let quarter = quarter_of(self.patches[whole.patch as usize].cell);
+            let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
+            let part = Element::new(scene, mesh, wavelengths, cell, place);
+            let domain = mesh.cell(whole.cell).domain();
+            let quarters = mesh.cell(cell).domain().quarters();
+            let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
+            Element { quarters: inherited, ..part }
+        };
+        let made: Vec<Element> = parts.par_iter().map(make).collect();
+        let mut changed = Vec::with_capacity(made.len());
+        for (i, ((whole, cell), element)) in parts.into_iter().zip(made).enumerate() {
+            // The first part takes the place of the whole.
+            let id = if i % 4 == 0 { whole } else { self.elements.len() as u32 };
+            if i % 4 == 0 {
+                self.elements[id as usize] = element;
+            } else {
+                self.elements.push(element);
+            }
+            self.mesh.set_element(cell, id);
+            changed.push(id);
+        }
+        changed
+    }
+}

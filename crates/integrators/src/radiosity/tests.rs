@@ -1,0 +1,273 @@
+//! A solution from within: the matrix that nobody sees, the energy on its way, and the seams of the picture.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use description::{
+    AreaLightDesc, InfiniteRadiance, LightKind, MaterialKind, MeshDesc, PatchMeshDesc, SceneDesc, ShapeDesc,
+    ShapeKind, SpectrumDesc,
+};
+use geometry::RayStats;
+use math::{Point3, Vec2};
+use sampling::Rng;
+use scene::Scene;
+
+use super::bands::Bands;
+use super::element::Patch;
+use super::form_factor::Emitter;
+use super::hemicube::Hemicube;
+use super::mesh::Corner;
+use super::shooting::Solution;
+use super::show::View;
+use super::{FormFactors, RadiositySettings, ply};
+use crate::Control;
+use scene::light_sampler::LightSamplerKind;
+
+/// The faces of a box with its normals inwards, as patches, of these reflectances.
+fn room(size: Point3, reflectances: [f32; 6]) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    let corner = |i: usize| Point3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * size;
+    let faces = [[0, 1, 2, 3], [4, 6, 5, 7], [0, 4, 1, 5], [2, 3, 6, 7], [0, 2, 4, 6], [1, 5, 3, 7]];
+    for (face, reflectance) in faces.into_iter().zip(reflectances) {
+        let material = desc.materials.push(MaterialKind::Diffuse { reflectance: reflectance.into() }.into());
+        let patch = PatchMeshDesc {
+            positions: face.map(corner).into(),
+            indices: Arc::new([[0, 1, 2, 3]]),
+            ..PatchMeshDesc::default()
+        };
+        desc.shapes.push(ShapeDesc { material: Some(material), ..ShapeKind::Patches(patch).into() });
+    }
+    desc
+}
+
+/// A lamp that looks down and a ball below it.
+fn furnished(mut desc: SceneDesc) -> Scene {
+    let light = AreaLightDesc::new(SpectrumDesc::Constant(1.0));
+    let area_light = Some(desc.area_lights.push(light));
+    let lamp = MeshDesc {
+        indices: Arc::new([[0, 2, 1], [0, 3, 2]]),
+        positions: [[0.3, 0.3], [0.7, 0.3], [0.7, 0.6], [0.3, 0.6]]
+            .map(|[x, y]| Point3::new(x, y, 0.95))
+            .into(),
+        ..MeshDesc::default()
+    };
+    desc.shapes.push(ShapeDesc { area_light, ..ShapeKind::Triangles(lamp).into() });
+    let ball = ShapeKind::Sphere { radius: 0.2, z_min: -0.2, z_max: 0.2, phi_max: 360.0 };
+    let world_from_object = description::TransformDesc::translation(0.6, 0.5, 0.3);
+    desc.shapes.push(ShapeDesc { world_from_object, ..ball.into() });
+    compile(&desc)
+}
+
+fn compile(desc: &SceneDesc) -> Scene {
+    scene::compile(desc).unwrap().scene
+}
+
+fn settings(patch_size: f32) -> RadiositySettings {
+    RadiositySettings { patch_size: Some(patch_size), ..RadiositySettings::default() }
+}
+
+fn solved(scene: &Scene, settings: &RadiositySettings) -> Solution {
+    let mut solution = Solution::new(scene, settings, settings.max_depth);
+    solution.shoot(scene, settings.tolerance, &Control::default()).unwrap();
+    solution
+}
+
+fn view(scene: &Scene, solution: &Solution) -> View {
+    View::new(scene, solution, &scene.light_sampler(LightSamplerKind::Bvh), 0)
+}
+
+/// F_ie for all elements e and one patch.
+fn column(scene: &Scene, solution: &Solution, patch: &Patch) -> Vec<f32> {
+    let (emitter, mut stats) = (Emitter::new(scene, &solution.cut.mesh, patch, 0), RayStats::default());
+    let elements = solution.cut.elements.iter();
+    elements.map(|element| emitter.shine(scene, element, 0.0, &mut stats).sides(element)[0]).collect()
+}
+
+#[test]
+fn the_rows_of_a_closed_room_sum_to_one() {
+    let scene = compile(&room(Point3::new(1.0, 1.5, 0.8), [0.5; 6]));
+    let settings = settings(0.2);
+    let solution = Solution::new(&scene, &settings, 1);
+    let mut rows = vec![0.0; solution.cut.elements.len()];
+    for patch in &solution.cut.patches {
+        let column = column(&scene, &solution, patch);
+        rows.iter_mut().zip(column).for_each(|(row, factor)| *row += factor);
+    }
+    assert!(rows.len() > 100);
+    for row in rows {
+        assert!((row - 1.0).abs() < 1e-3, "{row}");
+    }
+}
+
+#[test]
+fn a_hemicube_agrees_within_its_resolution() {
+    let scene = compile(&room(Point3::new(1.0, 1.5, 0.8), [0.5; 6]));
+    let solution = Solution::new(&scene, &settings(0.4), 1);
+    let ids: Vec<u32> = (0..solution.cut.elements.len() as u32).collect();
+    let patch = &solution.cut.patches[7];
+    let exact = column(&scene, &solution, patch);
+    for resolution in [32, 256] {
+        let mut stats = RayStats::default();
+        let cube = Hemicube::new(resolution, 0);
+        let seen =
+            cube.look(&scene, &solution.cut.mesh, patch.cell, 0, &Control::default(), &mut stats).unwrap();
+        let received = seen.received(&scene, &solution.cut, patch.area, &ids);
+        let mut sum = 0.0;
+        for ((received, element), exact) in received.iter().zip(&solution.cut.elements).zip(&exact) {
+            let found = received.sides(element)[0];
+            sum += found * element.area / patch.area;
+            // Elements are right to about the pixels along their rim; near by, a patch is no point.
+            let pixels = exact * element.area / patch.area * (resolution * resolution) as f32;
+            let far = (element.points[0].p.p - solution.cut.elements[7].points[0].p.p).length() > 0.9;
+            let bound = (1.5 / pixels.sqrt() + 0.03) * exact;
+            assert!(
+                !far || *exact == 0.0 || (found - exact).abs() < bound,
+                "{resolution}: {found}, not {exact}"
+            );
+        }
+        assert!((sum - 1.0).abs() < 2e-3, "{resolution}: {sum}");
+    }
+}
+
+/// What was sent in the first place is on its way, or was absorbed.
+#[test]
+fn energy_is_conserved_while_shooting() {
+    let reflectances = [0.7, 0.4, 0.6, 0.3, 0.5, 0.8];
+    let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), reflectances));
+    for form_factors in [FormFactors::Analytic, FormFactors::Hemicube { resolution: 64 }] {
+        let settings = RadiositySettings { max_depth: 12, form_factors, subdivision: 1, ..settings(0.5) };
+        let mut solution = Solution::new(&scene, &settings, settings.max_depth);
+        let power = |solution: &Solution| {
+            let unshot =
+                solution.cut.patches.iter().flat_map(|patch| &patch.unshot).map(|sides| sides[0] + sides[1]);
+            f64::from(unshot.sum::<Bands>().mean())
+        };
+        let all = power(&solution);
+        assert!(all > 0.0);
+        for share in [0.8, 0.3, 0.1, 0.01] {
+            solution.shoot(&scene, share, &Control::default()).unwrap();
+            let absorbed = solution.cut.elements.iter().map(|element| {
+                let [outer, inner] = element.irradiance();
+                let kept = element.albedo.reflectance * -1.0 + Bands::splat(1.0);
+                f64::from(((outer + inner) * kept).mean() * element.area)
+            });
+            let left = (absorbed.sum::<f64>() + power(&solution)) / all;
+            assert!((left - 1.0).abs() < 0.01, "{form_factors:?}, {share}: {left}");
+        }
+    }
+}
+
+#[test]
+fn a_furnace_is_even() {
+    let mut desc = room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]);
+    let light = desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::Constant(1.0)));
+    let kinds: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape.value.clone()).collect();
+    desc.shapes = Default::default();
+    for kind in kinds {
+        desc.shapes.push(ShapeDesc { area_light: Some(light), ..kind });
+    }
+    let scene = compile(&desc);
+    let settings = RadiositySettings { max_depth: 20, tolerance: 1e-4, subdivision: 0, ..settings(0.25) };
+    let solution = solved(&scene, &settings);
+    let emitted = solution.cut.patches[0].emitted[0].mean();
+    for element in &solution.cut.elements {
+        // E = L_e / (1 − ρ), less the light that was not sent.
+        let found = element.irradiance()[0].mean() / emitted;
+        assert!((found - 2.0).abs() < 2e-3, "{found}");
+        assert!(element.irradiance()[1].is_black(), "nothing gets out");
+    }
+}
+
+#[test]
+fn the_sky_is_an_emitter() {
+    let mut desc = SceneDesc::default();
+    let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(1.0));
+    desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
+    let ball = ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 360.0 };
+    desc.shapes.push(ball.into());
+    let scene = compile(&desc);
+    let solution = solved(&scene, &RadiositySettings { subdivision: 0, ..settings(0.2) });
+    let sky = solution
+        .wavelengths
+        .sample(|lambda| scene.lights()[0].le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda));
+    let area: f32 = solution.cut.elements.iter().map(|element| element.area).sum();
+    let mean: f32 = solution.cut.elements.iter().map(|e| e.irradiance()[0].mean() * e.area / area).sum();
+    let expected = sky.mean() * std::f32::consts::PI;
+    assert!((mean / expected - 1.0).abs() < 3e-3, "{mean}, not {expected}");
+    assert!((area / (4.0 * std::f32::consts::PI) - 1.0).abs() < 3e-3, "{area}");
+}
+
+/// Where two elements meet, at corners and at T-vertices, both show the same light.
+#[test]
+fn there_are_no_cracks() {
+    let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.7, 0.4, 0.6, 0.3, 0.5, 0.8]));
+    let settings = RadiositySettings { tolerance: 0.02, ..settings(0.5) };
+    let solution = solved(&scene, &settings);
+    let view = view(&scene, &solution);
+    let mut sides: HashMap<[u32; 2], Vec<Vec<f32>>> = HashMap::new();
+    let mut anchored = 0;
+    for (id, element) in (0..).zip(&solution.cut.elements) {
+        let leaf = solution.cut.mesh.cell(element.cell);
+        let outline = view.outline(id);
+        anchored += outline.len() - leaf.corners().len();
+        for (i, a) in outline.iter().enumerate() {
+            let b = outline[(i + 1) % outline.len()];
+            let [a, b]: [Corner; 2] = if a.vertex < b.vertex { [*a, b] } else { [b, *a] };
+            let light = |t: f32| view.irradiance(&solution, leaf, a.uv.lerp(b.uv, t))[0].mean();
+            if a.vertex != b.vertex {
+                sides.entry([a.vertex, b.vertex]).or_default().push([0.0, 0.3, 0.8, 1.0].map(light).into());
+            }
+        }
+    }
+    assert!(anchored > 20, "{anchored} T-vertices");
+    let most = sides.values().flatten().flatten().copied().fold(0.0, f32::max);
+    let shared: Vec<_> = sides.values().filter(|lights| lights.len() == 2).collect();
+    assert!(shared.len() > 500 && sides.values().all(|lights| lights.len() <= 2));
+    for lights in shared {
+        for (a, b) in lights[0].iter().zip(&lights[1]) {
+            assert!((a - b).abs() < 1e-5 * most, "{a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn every_point_has_its_leaf() {
+    let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
+    let solution = solved(&scene, &RadiositySettings { tolerance: 0.1, ..settings(0.5) });
+    let rng = &mut Rng::new(1, 0);
+    let area: f32 = solution.cut.patches.iter().map(|patch| patch.area).sum();
+    let expected = 6.0 + 0.12 + 4.0 * std::f32::consts::PI * 0.04;
+    assert!((area / expected - 1.0).abs() < 3e-3, "{area}, not {expected}");
+    for element in &solution.cut.elements {
+        let cell = solution.cut.mesh.cell(element.cell);
+        let mut domain = cell.domain();
+        for _ in 0..3 {
+            domain = domain.quarters()[(rng.uniform_f32() * 4.0) as usize];
+        }
+        let uv: Vec2 = domain.center();
+        let surface = solution.cut.mesh.surface(scene.world(), cell.primitive, uv).unwrap();
+        let hit = geometry::Hit { uv, ..*solution.cut.mesh.primitive(cell) };
+        let (leaf, _) = solution.cut.mesh.leaf(scene.world(), &hit, &surface).unwrap();
+        assert_eq!(leaf.element, cell.element);
+    }
+}
+
+#[test]
+fn the_mesh_is_written_whole() {
+    let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
+    let solution = solved(&scene, &settings(0.5));
+    let bytes = ply::encode(&scene, &solution, &view(&scene, &solution), spectrum::RgbColorSpace::srgb());
+    let header_end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
+    let header = String::from_utf8(bytes[..header_end].to_vec()).unwrap();
+    let count = |name: &str| -> usize {
+        header.lines().find_map(|line| line.strip_prefix(name)).unwrap().trim().parse().unwrap()
+    };
+    let (vertices, faces) = (count("element vertex"), count("element face"));
+    assert_eq!(bytes.len(), header_end + vertices * (24 + 3 + 12) + faces * 13);
+    assert!(vertices > 100 && faces > vertices / 2);
+    let vertex = |i: usize| &bytes[header_end + i * 39..][..39];
+    let brightest = (0..vertices).map(|i| vertex(i)[24..27].iter().copied().max().unwrap()).max();
+    assert_eq!(brightest, Some(255));
+}

@@ -1,0 +1,144 @@
+//! Stochastic progressive photon mapping: photons in pass after pass, within ever smaller distances.
+//!
+//! A pass shoots photons and keeps those that have been scattered at least once before they come to a diffuse surface
+//! ([`merging`](crate::merging)). Then each pixel follows a path from the camera, past mirrors, glass and what is glossy, to the
+//! first diffuse surface. There the path ends: light straight from the lights is found by choosing a point on one, all other light by
+//! merging with the photons within the radius. On the way it looks for lights as path tracing does, by choice and by chance, weighted
+//! by the balance heuristic; at the end by choice alone, so that nothing counts twice. Surfaces with a specular lobe besides a
+//! diffuse one are on the way, too.
+//!
+//! It shines where light is focused and then seen through glass or in a mirror, which no path from the eye finds; any number of
+//! pixels share a photon. It is slow where photons are rare: in large scenes of which the camera sees a corner. Caustics on glossy
+//! surfaces are left to chance.
+//!
+//! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every pixel has a radius of its own, which
+//! shrinks by what the pixel has found so far, as (N + γM)/(N + M) with γ = 2/3. Here all have the radius that [Knaus 2011]
+//! give a pass by its number, with α = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt to where
+//! photons are dense. What is won is that a pass depends on no pass before it: a picture can be interrupted, continued and merged from
+//! shards to the same bits, and neither threads nor order matter. Edges of paths are counted as everywhere: `max_depth` holds
+//! for the sum of both ends.
+//!
+//! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011]; [Pharr 2016 §16.2].
+
+use film::Film;
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::Scene;
+use spectrum::SampledSpectrum;
+
+use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
+use crate::merging::Merging;
+use crate::pixel_loop::PixelSamples;
+use crate::{Cancelled, Control, Integrator};
+
+/// How slowly the radius shrinks.
+const ALPHA: f32 = 2.0 / 3.0;
+
+/// Settings of [`Sppm`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SppmSettings {
+    /// Most scattering events; default 5.
+    pub max_depth: u32,
+    /// Light subpaths in a pass, above 0; by default as many as pixels.
+    pub photons_per_iteration: Option<u32>,
+    /// Distance in the scene within which photons count in the first pass, above 0; default 1.
+    pub radius: f32,
+}
+
+impl Default for SppmSettings {
+    fn default() -> Self {
+        Self { max_depth: 5, photons_per_iteration: None, radius: 1.0 }
+    }
+}
+
+/// Stochastic progressive photon mapping.
+#[derive(Debug)]
+pub struct Sppm {
+    settings: SppmSettings,
+    sampler: Sampler,
+    lights: Lights,
+    merging: Merging,
+}
+
+impl Sppm {
+    /// With a sampler for what begins at the camera, and a seed for photons.
+    pub fn new(settings: SppmSettings, sampler: Sampler, photon_seed: u32) -> Self {
+        let merging = Merging::new(settings.radius, ALPHA, photon_seed);
+        Self { settings, sampler, lights: Lights::none(), merging }
+    }
+}
+
+/// Whether paths from the camera end there, at the photons.
+fn is_end(vertex: &Vertex) -> bool {
+    let flags = vertex.bsdf.flags();
+    flags.is_diffuse() && !flags.is_specular()
+}
+
+impl Integrator for Sppm {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene) {
+        self.lights = Lights::of(scene);
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let pixel_count = film.pixel_bounds().area();
+        let photon_paths = self.settings.photons_per_iteration.map_or(pixel_count, |count| count as usize);
+        let paths = Bidirectional {
+            scene,
+            lights: &self.lights,
+            balance: Balance::at_the_end(photon_paths, self.merging.radius(pass)),
+            max_depth: self.settings.max_depth,
+            regularize: false,
+        };
+        let is_wanted = |vertex: &Vertex| vertex.can_merge() && is_end(vertex);
+        let (photons, mut stats) = self.merging.shoot(&paths, photon_paths, pass, is_wanted, control)?;
+        let moment = self.merging.moment(scene, pass);
+        let filter = film.filter().clone();
+        let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
+        stats += pixels.add_at(Some(&moment), film.tiles_mut(), control, |sample, sampler, stats| {
+            let mut l = SampledSpectrum::ZERO;
+            let Some(camera_ray) = &sample.camera_ray else { return l };
+            let lambda = &sample.lambda;
+            paths.camera_subpath_to(
+                is_end,
+                camera_ray,
+                lambda,
+                sampler,
+                stats,
+                |on_the_way, sampler, stats| match on_the_way {
+                    OnTheWay::Light(found) => l += found.weighted(),
+                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                        let direct = paths.direct(vertex, lambda, sampler, stats);
+                        if !is_end(vertex) {
+                            l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
+                            return;
+                        }
+                        l += direct.map_or(SampledSpectrum::ZERO, |found| found.l);
+                        let depths = paths.max_depth - vertex.depth;
+                        photons.within(vertex.p.p, |photon| {
+                            if u32::from(photon.depth) <= depths + 1 {
+                                l += paths.merged(vertex, photon);
+                            }
+                        });
+                    }
+                    OnTheWay::Vertex(_) => (),
+                },
+            );
+            l
+        })?;
+        Ok(stats)
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        self.merging.summary()
+    }
+}

@@ -1,0 +1,204 @@
+//! Methods that merge photons, against closed forms of what they should find, and of how wrong they should be.
+
+use std::f64::consts::PI;
+use std::sync::atomic::Ordering;
+
+use alhazen_integrators::{Cancelled, Control, build};
+use description::{
+    CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc,
+    ShapeDesc, SpectrumDesc, SppmDesc, TransformDesc, VcmDesc,
+};
+use math::{DMat4, DVec3};
+use testkit::{Moments, t_test, z_test};
+
+use crate::support::{at, compile, diffuse, emission, mirror, quad, sphere, v};
+
+/// A scene whose film is small, with one choice of wavelengths.
+fn on_film(resolution: [i32; 2]) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = resolution;
+    desc.film.save_fp16 = false;
+    desc.options.disable_wavelength_jitter = true;
+    desc
+}
+
+/// The mean of all values of the picture after each of these numbers of passes.
+fn means<const N: usize>(
+    desc: &SceneDesc,
+    integrator: IntegratorDesc,
+    seed: i32,
+    after: [u32; N],
+) -> [f64; N] {
+    let sampler = SamplerDesc { kind: SamplerKind::Independent, pixel_samples: 1, seed: Some(seed) };
+    let desc = SceneDesc { integrator: integrator.into(), sampler: sampler.into(), ..desc.clone() };
+    let (scene, mut film) = (compile(&desc), film::compile(&desc).unwrap().film);
+    let mut integrator = build(&desc).ok().unwrap().integrator;
+    integrator.prepare(&scene);
+    let mut pass = 0;
+    after.map(|passes| {
+        while pass < passes {
+            integrator.pass(pass, &scene, &mut film, &Control::default()).unwrap();
+            pass += 1;
+        }
+        let picture = film.develop();
+        picture.values().map(f64::from).sum::<f64>() / picture.values().count() as f64
+    })
+}
+
+/// What pictures show of radiance 1.
+fn one() -> f64 {
+    let [one] = means(&furnace(0.0), IntegratorDesc::RayCasting, 0, [1]);
+    one
+}
+
+fn sppm(max_depth: i32, radius: f32, photons: i32) -> IntegratorDesc {
+    let photons_per_iteration = Some(photons);
+    IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed: None })
+}
+
+fn vcm(max_depth: i32, radius: f32, alpha: f32) -> IntegratorDesc {
+    IntegratorDesc::Vcm(VcmDesc { max_depth, radius: Some(radius), alpha })
+}
+
+/// A camera in a sphere that emits 1 and reflects ρ.
+fn furnace(rho: f32) -> SceneDesc {
+    let mut desc = on_film([6, 6]);
+    let (material, area_light) = (diffuse(&mut desc, rho), emission(&mut desc, 1.0));
+    let shape = at(sphere(1.0), v(0.2, 0.1, 0.3));
+    desc.shapes.push(ShapeDesc { material, area_light, reverse_orientation: true, ..shape });
+    desc
+}
+
+/// L = Σ ρᵏ, and no blur changes that: of a sphere, what is nearer to one of its points than r has the area π r².
+#[test]
+fn a_furnace_shows_all_paths_up_to_its_depth_once() {
+    let (one, rho) = (one(), 0.6);
+    let desc = furnace(rho);
+    let tests = 2 * 4;
+    for depth in [0, 1, 2, 5] {
+        let expected = one * (0..=depth).map(|k| f64::from(rho).powi(k)).sum::<f64>();
+        for integrator in [sppm(depth, 0.4, 500), vcm(depth, 0.4, 0.75)] {
+            let runs = (0..16).map(|seed| means(&desc, integrator.clone(), seed, [8])[0]);
+            let found: Moments = runs.collect();
+            if (found.mean - expected).abs() > 3e-5 * expected {
+                t_test(&found, expected, tests).unwrap_or_else(|error| panic!("{integrator:?}: {error}"));
+            }
+        }
+    }
+}
+
+/// A lamp throws light at a mirror above it, which throws it on the floor as from a point at the height `HEIGHT`. The camera sees the
+/// foot of that point in a second mirror: light that neither chance nor choice nor connections find.
+fn between_mirrors() -> SceneDesc {
+    let mut desc = on_film([8, 8]);
+    let (from, to) = (v(0.0, 0.0, 0.2), v(0.0, 0.0, 1.0));
+    let intensity = SpectrumDesc::Constant(1.0);
+    let spot = LightKind::Spot { intensity, power: None, from, to, cone_angle: 60.0, cone_delta_angle: 0.0 };
+    desc.lights.push(spot.into());
+    let material = diffuse(&mut desc, 0.5);
+    let floor = quad(v(-3.0, -3.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
+    desc.shapes.push(ShapeDesc { material, ..floor.into() });
+    let material = mirror(&mut desc, 0.0);
+    let above = quad(v(-1.0, -1.0, 0.5), v(2.0, 0.0, 0.0), v(0.0, 2.0, 0.0));
+    desc.shapes.push(ShapeDesc { material, ..above.into() });
+    let beside = quad(v(-3.0, 2.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 0.0, 3.0));
+    desc.shapes.push(ShapeDesc { material, ..beside.into() });
+    // In the mirror the foot stands at y = 4.
+    desc.camera.kind =
+        CameraKind::Perspective { fov: 0.01, screen: ScreenDesc::default(), lens: LensDesc::default() };
+    let (eye, foot) = (DVec3::new(0.0, 1.5, 0.3), DVec3::new(0.0, 4.0, 0.0));
+    let (right, forward) = (DVec3::X, (foot - eye).normalize());
+    let [x, y, z] = [right, right.cross(forward), forward].map(|axis| axis.extend(0.0));
+    desc.camera.camera_from_world =
+        TransformDesc::fixed(DMat4::from_cols(x, y, z, eye.extend(1.0)).inverse());
+    desc
+}
+
+const HEIGHT: f64 = 0.8;
+
+/// What is seen there when blurred over the radius r: ρ/π times the mean of h/(h² + x²)^{3/2} over |x| < r.
+fn blurred(r: f64) -> f64 {
+    0.5 / PI * 2.0 / (r * r) * (1.0 - HEIGHT / (HEIGHT * HEIGHT + r * r).sqrt())
+}
+
+/// The same, when the radius shrinks with α, as the mean of all passes.
+fn progressively_blurred(radius: f64, alpha: f64, passes: u32) -> f64 {
+    let mut square = radius * radius;
+    let blurred_passes = (1..=passes).map(|i| {
+        let seen = blurred(square.sqrt());
+        square *= (f64::from(i) + alpha) / (f64::from(i) + 1.0);
+        seen
+    });
+    blurred_passes.sum::<f64>() / f64::from(passes)
+}
+
+#[test]
+fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
+    let (desc, one) = (between_mirrors(), one());
+    let sharp = 0.5 / PI / (HEIGHT * HEIGHT);
+    let after = [1, 16, 128];
+    for (integrator, alpha) in [(sppm(3, 0.6, 200), 2.0 / 3.0), (vcm(3, 0.6, 0.5), 0.5)] {
+        let mut found = [Moments::default(); 3];
+        for seed in 0..12 {
+            let means = means(&desc, integrator.clone(), seed, after);
+            found.iter_mut().zip(means).for_each(|(moments, mean)| moments.push(mean / one));
+        }
+        for (found, passes) in found.iter().zip(after) {
+            let expected = progressively_blurred(0.6f32.into(), alpha, passes);
+            t_test(found, expected, 6)
+                .unwrap_or_else(|error| panic!("{integrator:?}, {passes} passes: {error}"));
+        }
+        // The slope of the line through the last two on double logarithmic paper.
+        let [_, early, late] = found;
+        let way = (128f64 / 16.0).ln();
+        let slope = ((sharp - late.mean) / (sharp - early.mean)).ln() / way;
+        let relative = |m: &Moments| m.variance_of_mean() / (sharp - m.mean).powi(2);
+        let error = (relative(&early) + relative(&late)).sqrt() / way;
+        let bias = |passes| sharp - progressively_blurred(0.6f32.into(), alpha, passes);
+        z_test(slope, error, (bias(128) / bias(16)).ln() / way, 2).unwrap();
+        // And theory's own line has the slope α − 1 in the end.
+        let in_the_end = (bias(1 << 20) / bias(1 << 18)).ln() / 4f64.ln();
+        assert!((in_the_end - (alpha - 1.0)).abs() < 0.01, "{in_the_end}");
+    }
+}
+
+#[test]
+fn without_a_radius_nothing_is_merged_and_all_is_connected() {
+    let mut desc = on_film([6, 6]);
+    let (material, area_light) = (diffuse(&mut desc, 0.7), emission(&mut desc, 3.0));
+    for wall in crate::support::walls(1.0) {
+        desc.shapes.push(ShapeDesc { material, ..wall.into() });
+    }
+    let lamp = quad(v(-0.5, 0.9, -0.5), v(1.0, 0.0, 0.0), v(0.0, 0.0, 1.0));
+    desc.shapes.push(ShapeDesc { area_light, ..lamp.into() });
+    let bdpt = IntegratorDesc::Bdpt {
+        max_depth: 4,
+        regularize: false,
+        visualize_strategies: false,
+        visualize_weights: false,
+    };
+    let [connected] = means(&desc, bdpt, 3, [8]);
+    let [merged] = means(&desc, vcm(4, 1e-6, 0.75), 3, [8]);
+    assert!((merged - connected).abs() < 1e-5 * connected, "{merged} {connected}");
+    let [merged] = means(&desc, vcm(4, 0.2, 0.75), 3, [8]);
+    assert!((merged - connected).abs() > 1e-4 * connected, "{merged} {connected}");
+}
+
+#[test]
+fn a_pass_can_be_stopped_before_its_photons_are_shot() {
+    for integrator in [sppm(5, 0.4, 500), vcm(5, 0.4, 0.75)] {
+        let desc = SceneDesc { integrator: integrator.into(), ..furnace(0.5) };
+        let (scene, mut film) = (compile(&desc), film::compile(&desc).unwrap().film);
+        let mut integrator = build(&desc).ok().unwrap().integrator;
+        integrator.prepare(&scene);
+        let control = Control::default();
+        integrator.pass(0, &scene, &mut film, &control).unwrap();
+        let taken = film.sample_count();
+        control.cancel.store(true, Ordering::Relaxed);
+        assert_eq!(integrator.pass(1, &scene, &mut film, &control), Err(Cancelled));
+        assert_eq!(film.sample_count(), taken);
+        let summary = integrator.summary();
+        assert_eq!(summary.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["photons", "radius"]);
+        assert_eq!(summary[1].1, "0.4 in pass 1, 0.4 in pass 1");
+    }
+}

@@ -1,0 +1,249 @@
+//! Photon mapping against closed forms, against algorithms without bias, and as a picture of its photons.
+
+use alhazen_integrators::{Control, build};
+use description::{
+    CameraKind, IntegratorDesc, LensDesc, LightKind, LightSamplerDesc, PhotonKernel, PhotonMappingDesc,
+    PhotonMappingShow, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc, ShapeDesc, SpectrumDesc,
+    TransformDesc,
+};
+use math::{DMat4, DVec3};
+use testkit::{Moments, t_test, welch_test};
+
+use crate::agreement::room;
+use crate::render_loop::picture;
+use crate::support::{at, diffuse, emission, glass, quad, sphere, v, walls};
+
+/// The picture's luminances, row by row, of one thread's rendering with as many passes.
+fn luminances(desc: &SceneDesc, integrator: &IntegratorDesc, seed: i32, passes: i32) -> Vec<f64> {
+    let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
+    desc.film.save_fp16 = false;
+    desc.film.max_component_value = f32::INFINITY;
+    desc.sampler.value =
+        SamplerDesc { kind: SamplerKind::Independent, pixel_samples: passes, seed: Some(seed) };
+    let (film, result) = picture(&desc, 1, &Control::default());
+    result.unwrap();
+    let image = film.develop();
+    let luminance = |[r, g, b]: [f32; 3]| f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b);
+    let pixels = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
+    pixels.map(|(x, y)| luminance(image.rgb(x, y))).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn small(desc: &PhotonMappingDesc) -> PhotonMappingDesc {
+    PhotonMappingDesc { photons: 1500, caustic_photons: 500, ..desc.clone() }
+}
+
+/// The mean of a grey picture over that of what shines in it, for one seed after another.
+fn brightness(desc: &SceneDesc, integrator: &PhotonMappingDesc, seeds: i32) -> Moments {
+    let lamps = PhotonMappingDesc { max_depth: 0, photons: 0, caustic_photons: 0, ..integrator.clone() };
+    let ratio = |seed| {
+        // The same seed has the same wavelengths.
+        let all = luminances(desc, &IntegratorDesc::PhotonMapping(integrator.clone()), seed, 1);
+        mean(&all) / mean(&luminances(desc, &IntegratorDesc::PhotonMapping(lamps.clone()), seed, 1))
+    };
+    (0..seeds).map(ratio).collect()
+}
+
+/// Shapes that emit 1, reflect half and enclose the camera, seen in `resolution`² pixels.
+fn furnace(shapes: impl IntoIterator<Item = ShapeDesc>, resolution: i32) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = [resolution; 2];
+    let (material, area_light) = (diffuse(&mut desc, 0.5), emission(&mut desc, 1.0));
+    for shape in shapes {
+        desc.shapes.push(ShapeDesc { material, area_light, ..shape });
+    }
+    desc
+}
+
+#[test]
+fn in_a_sphere_that_shines_all_over_photons_make_no_difference() {
+    let ball = ShapeDesc { reverse_orientation: true, ..at(sphere(1.0), v(0.2, 0.1, 0.3)) };
+    let desc = furnace([ball], 6);
+    // Within a larger distance the ball bends so much that light is lost below the horizon.
+    let radius = Some(0.1);
+    let cases = [(1, 0, 5), (2, 0, 1000), (3, 0, 5), (24, 0, 5), (2, 3, 5), (24, 3, 5)];
+    for (max_depth, gather, nearest) in cases {
+        for kernel in [PhotonKernel::Cone, PhotonKernel::Epanechnikov] {
+            let default = PhotonMappingDesc { photons: 6000, ..small(&PhotonMappingDesc::default()) };
+            let integrator = PhotonMappingDesc { max_depth, gather, nearest, radius, kernel, ..default };
+            let found = brightness(&desc, &integrator, 12);
+            let expected = (0..=max_depth).map(|k| 0.5f64.powi(k)).sum();
+            t_test(&found, expected, 2 * cases.len())
+                .unwrap_or_else(|difference| panic!("{integrator:?}: {difference}"));
+        }
+    }
+}
+
+#[test]
+fn what_a_wall_lacks_is_the_part_of_the_disk_beyond_its_edges() {
+    let mut desc = furnace(walls(1.0).map(ShapeDesc::from), 24);
+    desc.camera.kind = CameraKind::Orthographic { screen: ScreenDesc::default(), lens: LensDesc::default() };
+    let radii = [0.48, 0.24, 0.12];
+    let bias = radii.map(|radius| {
+        let integrator = PhotonMappingDesc {
+            max_depth: 24,
+            nearest: i32::MAX - 1,
+            radius: Some(radius),
+            ..small(&PhotonMappingDesc::default())
+        };
+        let found = brightness(&desc, &integrator, 24);
+        // Of a disk that is moved by (x, y) against a square of side 2, (1 − |x|/2)(1 − |y|/2) remain in the mean; and the kernel has
+        // the means E|x| = 16r/15π and E|xy| = r²/3π.
+        let (r, pi) = (f64::from(radius), std::f64::consts::PI);
+        let inside = 1.0 - 16.0 * r / (15.0 * pi) + r * r / (12.0 * pi);
+        t_test(&found, 1.5 + 0.5 * inside, radii.len())
+            .unwrap_or_else(|difference| panic!("within {radius}: {difference}"));
+        2.0 - found.mean
+    });
+    // Of the order r: an edge is a line.
+    let slope = (bias[0] / bias[2]).log2() / 2.0;
+    assert!((slope - 1.0).abs() < 0.15, "the error goes with the power {slope} of the radius: {bias:?}");
+}
+
+/// Looks down on the square [-s, s]².
+fn from_above(desc: &mut SceneDesc, s: f32, resolution: i32) {
+    desc.film.resolution = [resolution; 2];
+    let screen = ScreenDesc { window: Some([-s, s, -s, s]), ..ScreenDesc::default() };
+    desc.camera.kind = CameraKind::Orthographic { screen, lens: LensDesc::default() };
+    desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0)));
+}
+
+fn path(max_depth: i32) -> IntegratorDesc {
+    IntegratorDesc::Path { max_depth, regularize: false, light_sampler: LightSamplerDesc::Bvh }
+}
+
+/// The part of a room's indirect light that photon mapping finds, seen from above.
+fn indirect(integrator: &PhotonMappingDesc) -> f64 {
+    let mut desc = room();
+    // Everything is grey: the same wavelengths for all spare noise.
+    desc.options.disable_wavelength_jitter = true;
+    from_above(&mut desc, 1.0, 16);
+    let [direct, all] = [1, 4].map(|max_depth| mean(&luminances(&desc, &path(max_depth), 1, 1024)));
+    let find = |photons| {
+        let default = PhotonMappingDesc { max_depth: 4, radius: Some(1.0), ..integrator.clone() };
+        let integrator = PhotonMappingDesc { photons, caustic_photons: 0, ..default };
+        mean(&luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 2, 16))
+    };
+    // Without photons it finds the same direct light.
+    (find(integrator.photons) - find(0)) / (all - direct)
+}
+
+#[test]
+fn with_more_photons_a_room_comes_closer_to_what_path_finds() {
+    let errors = [1000, 4000, 16_000].map(|photons| {
+        1.0 - indirect(&PhotonMappingDesc { photons, nearest: 40, ..PhotonMappingDesc::default() })
+    });
+    // Four times the photons halve the radius, and with it the dark edges.
+    let slope = (errors[0] / errors[1]).log2();
+    assert!((slope - 1.0).abs() < 0.3, "the error goes with the power {slope} of the radius: {errors:?}");
+    assert!(errors[2].abs() < 0.6 * errors[1], "{errors:?}");
+}
+
+#[test]
+fn a_final_gather_sees_less_of_edges() {
+    let integrator = PhotonMappingDesc { photons: 4000, nearest: 40, ..PhotonMappingDesc::default() };
+    let found = [0, 4].map(|gather| indirect(&PhotonMappingDesc { gather, ..integrator.clone() }));
+    assert!(1.0 - found[1] < 0.6 * (1.0 - found[0]), "{found:?}");
+}
+
+/// A ball of glass over a floor, in the beam of a lamp at a point.
+fn ball_in_a_beam() -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    from_above(&mut desc, 2.0, 32);
+    let material = diffuse(&mut desc, 0.8);
+    let floor = quad(v(-3.0, -3.0, -1.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
+    desc.shapes.push(ShapeDesc { material, ..floor.into() });
+    let material = glass(&mut desc);
+    desc.shapes.push(ShapeDesc { material, ..at(sphere(0.25), v(0.0, 0.0, -0.6)) });
+    let beam = LightKind::Spot {
+        intensity: SpectrumDesc::Constant(1.0),
+        power: None,
+        from: v(-3.0, 0.0, 1.0),
+        to: v(0.0, 0.0, -0.6),
+        cone_angle: 8.0,
+        cone_delta_angle: 1.0,
+    };
+    desc.lights.push(beam.into());
+    desc
+}
+
+/// The mean over the caustic, beside the ball, of each seed's picture.
+fn caustic(desc: &SceneDesc, integrator: &IntegratorDesc, passes: i32) -> Moments {
+    let of_region = |seed| {
+        let picture = luminances(desc, integrator, seed, passes);
+        let region = (0..32 * 32).filter(|i| i % 32 > 20 && (8..24).contains(&(i / 32)));
+        mean(&region.map(|i| picture[i]).collect::<Vec<_>>())
+    };
+    (0..16).map(of_region).collect()
+}
+
+#[test]
+fn a_caustic_holds_the_light_that_light_tracing_finds() {
+    let desc = ball_in_a_beam();
+    let photons = PhotonMappingDesc {
+        max_depth: 4,
+        photons: 0,
+        caustic_photons: 4000,
+        radius: Some(0.1),
+        ..PhotonMappingDesc::default()
+    };
+    let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons), 4);
+    let expected = caustic(&desc, &IntegratorDesc::LightTracing { max_depth: 4 }, 16);
+    welch_test(&found, &expected, 1).unwrap();
+    let without = caustic(&desc, &path(4), 4).mean;
+    assert!(found.mean > 1.25 * without, "{} with the caustic, {without} without", found.mean);
+}
+
+#[test]
+fn photons_that_are_shown_are_dots() {
+    let mut desc = room();
+    from_above(&mut desc, 1.0, 64);
+    let show = PhotonMappingShow::Photons;
+    let integrator = PhotonMappingDesc { photons: 60, show, ..PhotonMappingDesc::default() };
+    let dots = luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 1, 1);
+    let lit = dots.iter().filter(|&&value| value > 0.0).count();
+    assert!((10..1500).contains(&lit), "{lit} of {} pixels are lit", dots.len());
+    assert!(dots.iter().any(|&value| value > 0.05));
+}
+
+#[test]
+fn without_lights_it_is_dark_and_without_photons_there_is_direct_light_alone() {
+    let dark = SceneDesc { lights: Default::default(), ..ball_in_a_beam() };
+    let none = PhotonMappingDesc { photons: 0, caustic_photons: 0, ..PhotonMappingDesc::default() };
+    for gather in [0, 2] {
+        for show in [PhotonMappingShow::Radiance, PhotonMappingShow::Photons] {
+            let integrator = PhotonMappingDesc { gather, show, ..small(&PhotonMappingDesc::default()) };
+            let picture = luminances(&dark, &IntegratorDesc::PhotonMapping(integrator), 1, 1);
+            assert!(picture.iter().all(|&value| value == 0.0));
+        }
+        let integrator = PhotonMappingDesc { gather, ..none.clone() };
+        let mut desc = room();
+        from_above(&mut desc, 1.0, 16);
+        let found = mean(&luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 1, 64));
+        let expected = mean(&luminances(&desc, &path(1), 1, 64));
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} beside {expected}");
+    }
+}
+
+#[test]
+fn it_tells_of_its_photons_and_stops_when_told_to() {
+    let mut desc = room();
+    from_above(&mut desc, 1.0, 16);
+    desc.integrator = IntegratorDesc::PhotonMapping(small(&PhotonMappingDesc::default())).into();
+    let scene = crate::support::compile(&desc);
+    let mut film = film::compile(&desc).unwrap().film;
+    let mut integrator = build(&desc).unwrap().integrator;
+    integrator.prepare(&scene);
+    let control = Control::default();
+    integrator.pass(0, &scene, &mut film, &control).unwrap();
+    let summary = integrator.summary();
+    assert!(
+        summary[0].1.contains("in the global map") && summary[1].1.contains("in the mean"),
+        "{summary:?}"
+    );
+    control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(integrator.pass(1, &scene, &mut film, &control).is_err());
+}
