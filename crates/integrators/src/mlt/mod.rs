@@ -18,22 +18,24 @@
 //! `technique`, is
 //!
 //! - `path`: a camera path with all that it finds [Kelemen 2002];
-//! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which is chosen by u as well: multiplexed Metropolis
-//!   [Hachisuka 2014]. What the strategy finds is weighted by the balance heuristic and by the number of strategies, so a chain stays with those
-//!   that are good for the paths around it, and pays for one connection instead of all. The number of scattering events is a coordinate, too.
+//! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as well: multiplexed Metropolis
+//!   [Hachisuka 2014]. What the strategy finds is weighted by the balance heuristic and by the number of strategies, so a chain stays
+//!   with those that are good for the paths around it, and pays for one connection instead of all. The number of scattering events,
+//!   which is fixed for a chain in the paper, is one more coordinate.
 //!
-//! Chains are many and short. Those of a pass start at points chosen in proportion to c among uniform ones, candidates that no other
-//! pass knows; their mean is the pass's b. Then b·(the chains' mean) is right on average, at every step and for any number of candidates,
-//! with nothing to be thrown away at the beginning: what is favoured by the choice of starts is what b makes up for [Veach 1997
-//! §11.3.1]. So each pass is a picture of its own that owes nothing to others, as chains owe nothing to threads, and errors shrink with the number of
-//! passes for ever.
+//! Chains are many and short. Those of a pass start at points chosen in proportion to c among uniform ones, candidates that no
+//! other pass knows; their mean is the pass's b. Then b·(the chains' mean) is right on average, at every step and for any number of
+//! candidates, with nothing to be thrown away at the beginning: what is favoured by the choice of starts is what b makes up for
+//! [Veach 1997 §11.3.1]. So each pass is a picture of its own that owes nothing to others, as chains owe nothing to threads, and
+//! errors shrink with the number of passes for ever.
 //!
-//! Light that the camera sees directly is left to one camera ray for each pixel and pass: it is found without luck, and so bright that
-//! chains would spend most of their time on it.
+//! Light that the camera sees directly is left to one camera ray for each pixel and pass: it is found without luck, and so bright
+//! that chains would spend most of their time on it.
 //!
-//! Unbiased up to `max_depth`, except with `regularize`. What it is bad at: noise is not that of independent samples but comes in blotches, where a
-//! chain dwelt; open scenes, which every path sees, gain nothing; and what no large step ever finds stays black for ever. Sources:
-//! [Veach 1997 ch. 11]; [Kelemen 2002]; [Hachisuka 2014]; [Pharr 2016 §16.4].
+//! Unbiased up to `max_depth`, except with `regularize`. What it is bad at: noise is not that of independent samples but comes in
+//! blotches, where a chain dwelt; the brightness of the whole is only as sure as b; open scenes, which every path sees, gain nothing;
+//! and what no large step ever finds stays black for ever. Sources: [Veach 1997 ch. 11]; [Kelemen 2002]; [Hachisuka 2014];
+//! [Pharr 2016 §16.4].
 
 mod chain;
 mod chains;

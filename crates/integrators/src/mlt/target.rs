@@ -114,9 +114,9 @@ impl Target for CameraPaths<'_> {
 
 /// Bidirectional path tracing: one path, made by one strategy.
 ///
-/// The first coordinates choose the number of scattering events, from 1 to the greatest, and then the strategy, each as likely as the others of
-/// its kind; what is found counts that many times. Camera subpath, light subpath and what connects them have samplers of their own, lest a
-/// longer subpath of one kind move the coordinates of the other.
+/// The first coordinates choose the number of scattering events, from 1 to the greatest, and then the strategy, each as likely as
+/// the others of its kind; what is found counts that many times. Camera subpath, light subpath and what connects them have samplers
+/// of their own, lest a longer subpath of one kind move the coordinates of the other.
 pub(super) struct ConnectedPaths<'a> {
     pub view: View<'a>,
     pub paths: Bidirectional<'a>,

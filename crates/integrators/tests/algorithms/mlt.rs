@@ -215,9 +215,9 @@ fn settings_without_sense_are_errors_at_their_place() {
     assert_eq!(
         found,
         [
-            (1, "`bootstrapsamples` is a number above 0, not 0"),
-            (2, "`chains` is a number above 0, not -1"),
-            (3, "`mutationsperpixel` is a number above 0, not 0"),
+            (1, "`bootstrapsamples` is 1 or more, not 0"),
+            (2, "`chains` is 1 or more, not -1"),
+            (3, "`mutationsperpixel` is 1 or more, not 0"),
             (4, "`largestepprobability` is from 0 to 1, not 1.5"),
             (5, "`sigma` is a number above 0, not NaN"),
         ]

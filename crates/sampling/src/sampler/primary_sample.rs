@@ -7,10 +7,10 @@
 //! - a *small step* adds to each coordinate a normal deviate of the standard deviation σ and wraps around the ends of [0, 1);
 //! - a *large step* draws every coordinate anew.
 //!
-//! Both are as likely from x' to x as from x to x'. Nobody knows beforehand how many coordinates a path will ask for, so they are made as
-//! they are asked for. Those beyond all that the current path has used are drawn anew: nothing has depended on them. Those of the current path that
-//! the proposed path has no use for must make the step all the same, if it is accepted; after a large step they may be forgotten, for to
-//! draw them anew is what a large step does.
+//! Both are as likely from x' to x as from x to x'. Nobody knows beforehand how many coordinates a path will ask for, so they are
+//! made as they are asked for. Those beyond all that the current path has used are drawn anew: nothing has depended on them. Those
+//! of the current path that the proposed path has no use for must make the step all the same, if it is accepted; after a large step
+//! they may be forgotten, for to draw them anew is what a large step does.
 
 use super::independent::pixel_rng;
 use crate::Rng;
