@@ -72,10 +72,10 @@ impl Bidirectional<'_> {
             if let Some(found) = self.emitted(&walk, &surface, before.as_ref()) {
                 visit(OnTheWay::Light(found), sampler, stats);
             }
-            if walk.depth == self.max_depth {
+            let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
+            if vertex.depth > self.max_depth {
                 return;
             }
-            let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
             visit(OnTheWay::Vertex(&vertex), sampler, stats);
             if is_end(&vertex) || !walk.leave(&vertex, &surface, sampler) {
                 return;
