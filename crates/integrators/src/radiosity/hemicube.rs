@@ -5,8 +5,8 @@
 //!
 //! ΔF = ΔA / (π (x² + y² + 1)²) on the face above, ΔF = z ΔA / (π (y² + z² + 1)²) on the faces at the sides,
 //!
-//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the errors of different shots differ. What the
-//! patch does not see is there all the same: what it sees once is seen whole, and the sum of all factors is one where nothing is open.
+//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the errors of different shots differ. All that
+//! leaves the patch arrives somewhere: where nothing is open, the factors sum to one, and energy is conserved without more ado.
 //!
 //! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all, and near by, where the patch is no point, its
 //! middle is not the whole. Here the pixels are filled by rays instead of by a z-buffer; the factors are those of the original.
