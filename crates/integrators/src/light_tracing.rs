@@ -12,9 +12,8 @@
 //! point on the lens. With n subpaths, 1/n of the sum over all is the picture.
 //!
 //! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and costs nothing extra. It fails
-//! where the camera looks into a mirror or through glass, which no vertex can be connected through: they stay black but for what is
-//! behind them not (there is nothing: even a mirror's picture needs rays from the eye). And it wastes: most rays reach
-//! nothing that the camera sees, which is what made tracing from the eye win; the summary says how many. The lights themselves,
+//! where the camera looks into a mirror or through glass: no vertex can be connected through a specular surface, so mirrors and
+//! glass stay black, whatever they would show. And it wastes: most rays reach nothing that the camera sees, which is what made tracing from the eye win; the summary says how many. The lights themselves,
 //! at depth 0, are seen along one camera ray for each pixel, since those far away are nowhere on a subpath.
 //!
 //! Unbiased for what it can see. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
