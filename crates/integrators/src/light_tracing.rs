@@ -13,8 +13,9 @@
 //!
 //! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and costs nothing extra. It fails
 //! where the camera looks into a mirror or through glass: no vertex can be connected through a specular surface, so mirrors and
-//! glass stay black, whatever they would show. And it wastes: most rays reach nothing that the camera sees, which is what made tracing from the eye win; the summary says how many. The lights themselves,
-//! at depth 0, are seen along one camera ray for each pixel, since those far away are nowhere on a subpath.
+//! glass stay black, whatever they would show. And it wastes: most rays reach nothing that the camera sees, which is what made
+//! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen along one camera ray for each
+//! pixel, since those far away are nowhere on a subpath.
 //!
 //! Unbiased for what it can see. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 

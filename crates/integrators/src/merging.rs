@@ -124,7 +124,7 @@ impl Merging {
         let &LastPass { passes, radius, paths, photons, bytes } = &self.last;
         let mebibytes = bytes as f64 / f64::from(1 << 20);
         vec![
-            ("photons", format!("{photons} of {paths} paths in a pass, {mebibytes:.1} MiB")),
+            ("photons", format!("{photons} from {paths} paths in a pass, {mebibytes:.1} MiB")),
             ("radius", format!("{} in pass 1, {radius} in pass {passes}", self.radius)),
         ]
     }
