@@ -239,12 +239,12 @@ impl Primitives for MeshTriangles<'_> {
             packet.set_vertex(vertex, position);
             extent = extent.union(Extent::point(position.extend(0.0)));
         }
-        for lane in 0..Packet::WIDTH {
+        packet.numbers[..taken].copy_from_slice(&numbers[..taken]);
+        for (lane, corners) in packet.corners.iter_mut().enumerate() {
             // Lanes that are not in use repeat the first triangle, so that the test ends for them as soon as for that one.
             let triangle = if lane < taken { lane } else { 0 };
-            let vertices = [0, 1, 2].map(|corner| before(firsts[3 * triangle + corner]) << (8 * corner));
-            packet.corners[lane] = vertices[0] | vertices[1] | vertices[2];
-            packet.numbers[lane] = if lane < taken { numbers[lane] } else { Packet::NOTHING };
+            let [a, b, c] = [0, 1, 2].map(|corner| before(firsts[3 * triangle + corner]));
+            *corners = a | b << 8 | c << 16;
         }
         (packet, taken, extent)
     }
