@@ -59,6 +59,35 @@ struct LastPass {
     bytes: usize,
 }
 
+/// What is kept of the vertices of light subpaths, in the order of the paths.
+#[derive(Clone, Debug)]
+pub(crate) struct LightSubpaths<V> {
+    /// All that is kept.
+    pub kept: Vec<V>,
+    /// Where that of each path ends.
+    ends: Vec<usize>,
+}
+
+impl<V> Default for LightSubpaths<V> {
+    fn default() -> Self {
+        Self { kept: Vec::new(), ends: Vec::new() }
+    }
+}
+
+impl<V> LightSubpaths<V> {
+    /// What is kept of one path, if there are as many.
+    pub fn get(&self, path: usize) -> Option<&[V]> {
+        let &end = self.ends.get(path)?;
+        let start = if path == 0 { 0 } else { self.ends[path - 1] };
+        Some(&self.kept[start..end])
+    }
+
+    /// Memory taken, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.kept) + size_of_val(&*self.ends)
+    }
+}
+
 impl Merging {
     /// With the radius of the first pass.
     pub fn new(radius: f32, alpha: f32, seed: u32) -> Self {
@@ -77,46 +106,55 @@ impl Merging {
         Moment::of_pass(scene, self.seed, pass)
     }
 
-    /// Follows a pass's light subpaths and keeps those of their vertices that are wanted. Each path takes a sample of one
-    /// sequence, so that all the photons of a pass are well spread.
-    pub fn shoot(
-        &mut self,
+    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. Each path takes a sample of one sequence, so that
+    /// all the photons of a pass are well spread.
+    pub fn shoot<V: Send>(
+        &self,
         paths: &Bidirectional,
         count: usize,
         pass: u32,
-        is_wanted: impl Fn(&Vertex) -> bool + Sync,
+        keep: impl Fn(&Vertex) -> Option<V> + Sync,
         control: &Control,
-    ) -> Result<(PhotonGrid, RayStats), Cancelled> {
+    ) -> Result<(LightSubpaths<V>, RayStats), Cancelled> {
         let moment = self.moment(paths.scene, pass);
         let time = moment.time(paths.scene);
         let sampler = PaddedSobol::new(count as u32, Randomize::FastOwen, self.seed);
         let batch = |start: usize| {
             control.check()?;
             let mut sampler = Sampler::PaddedSobol(sampler.clone());
-            let (mut photons, mut stats) = (Vec::new(), RayStats::default());
+            let (mut subpaths, mut stats) = (LightSubpaths::default(), RayStats::default());
             for i in start..count.min(start + BATCH) {
                 sampler.start_pixel_sample([pass as i32, 0], i as u32, 0);
                 paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, _, _| {
-                    if is_wanted(vertex) {
-                        photons.push(Photon::from(vertex));
-                    }
+                    subpaths.kept.extend(keep(vertex));
                 });
+                subpaths.ends.push(subpaths.kept.len());
             }
-            Ok((photons, stats))
+            Ok((subpaths, stats))
         };
         let starts = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
-        let batches: Vec<(Vec<Photon>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
+        let batches: Vec<(LightSubpaths<V>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
         let mut stats = RayStats::default();
-        let mut photons = Vec::with_capacity(batches.iter().map(|(photons, _)| photons.len()).sum());
+        let mut all = LightSubpaths {
+            kept: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.kept.len()).sum()),
+            ends: Vec::with_capacity(count),
+        };
         for (batch, of_batch) in batches {
-            photons.extend(batch);
+            let before = all.kept.len();
+            all.ends.extend(batch.ends.iter().map(|end| before + end));
+            all.kept.extend(batch.kept);
             stats += of_batch;
         }
+        Ok((all, stats))
+    }
+
+    /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in which they will be looked for.
+    pub fn sort(&mut self, photons: Vec<Photon>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
         let radius = self.radius(pass);
         let grid = PhotonGrid::new(photons, radius);
-        self.last =
-            LastPass { passes: pass + 1, radius, paths: count, photons: grid.len(), bytes: grid.bytes() };
-        Ok((grid, stats))
+        let bytes = bytes + grid.bytes();
+        self.last = LastPass { passes: pass + 1, radius, paths, photons: grid.len(), bytes };
+        grid
     }
 
     /// What the integrators tell of it.

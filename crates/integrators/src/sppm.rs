@@ -28,6 +28,7 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
 use crate::merging::Merging;
+use crate::photon_grid::Photon;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -99,8 +100,10 @@ impl Integrator for Sppm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        let is_wanted = |vertex: &Vertex| vertex.can_merge() && is_end(vertex);
-        let (photons, mut stats) = self.merging.shoot(&paths, photon_paths, pass, is_wanted, control)?;
+        let photon =
+            |vertex: &Vertex| (vertex.can_merge() && is_end(vertex)).then(|| Photon::from(vertex));
+        let (photons, mut stats) = self.merging.shoot(&paths, photon_paths, pass, photon, control)?;
+        let photons = self.merging.sort(photons.kept, photon_paths, 0, pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };

@@ -34,11 +34,12 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
 use crate::merging::Merging;
+use crate::photon_grid::Photon;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
 /// The most light subpaths that leave photons in a pass.
-const MAX_PHOTON_PATHS: usize = 1 << 20;
+const MAX_PHOTON_PATHS: usize = 1 << 19;
 
 /// The first radius as a part of that of the scene, as in [Georgiev 2012]. Where photons come through a narrow gap, a larger one lets them
 /// seep far: three times this one is no better in a room of mirrors, and takes 18 times as long behind a door.
@@ -98,7 +99,8 @@ impl Integrator for Vcm {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
-        let pixel_count = film.pixel_bounds().area();
+        let bounds = film.pixel_bounds();
+        let pixel_count = bounds.area();
         let photon_paths = pixel_count.min(MAX_PHOTON_PATHS);
         let paths = Bidirectional {
             scene,
@@ -107,8 +109,10 @@ impl Integrator for Vcm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        let (photons, mut stats) =
-            self.merging.shoot(&paths, photon_paths, pass, Vertex::can_merge, control)?;
+        let keep = |vertex: &Vertex| Some(*vertex);
+        let (kept, mut stats) = self.merging.shoot(&paths, photon_paths, pass, keep, control)?;
+        let photons = kept.kept.iter().filter(|vertex| vertex.can_merge()).map(Photon::from).collect();
+        let photons = self.merging.sort(photons, photon_paths, kept.bytes(), pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();
         let (tiles, splatter) = film.tiles_and_splatter();
@@ -117,14 +121,20 @@ impl Integrator for Vcm {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();
             light_sampler.start_pixel_sample(sample.pixel, pass, 0);
-            let mut light_subpath = Vec::new();
-            paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, |vertex, sampler, stats| {
-                let u = sampler.get_2d();
+            let [x, y] = sample.pixel;
+            let index = (y - bounds.min[1]) * bounds.width() + (x - bounds.min[0]);
+            let mut made = Vec::new();
+            let light_subpath = kept.get(index as usize).unwrap_or_else(|| {
+                let keep = |vertex: &Vertex, _: &mut _, _: &mut _| made.push(*vertex);
+                paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, keep);
+                &made
+            });
+            for vertex in light_subpath {
+                let u = light_sampler.get_2d();
                 if let Some(seen) = paths.see(vertex, u, |film| splatter.reaches(film), stats) {
                     splatter.add(seen.film, &seen.found.weighted(), lambda);
                 }
-                light_subpath.push(*vertex);
-            });
+            }
             splatter.add_paths(1);
 
             let mut l = SampledSpectrum::ZERO;
