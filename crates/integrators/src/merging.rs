@@ -62,15 +62,15 @@ struct LastPass {
 /// What is kept of the vertices of light subpaths, in the order of the paths.
 #[derive(Clone, Debug)]
 pub(crate) struct LightSubpaths<V> {
-    /// All that is kept.
-    pub kept: Vec<V>,
+    /// That of all.
+    pub vertices: Vec<V>,
     /// Where that of each path ends.
     ends: Vec<usize>,
 }
 
 impl<V> Default for LightSubpaths<V> {
     fn default() -> Self {
-        Self { kept: Vec::new(), ends: Vec::new() }
+        Self { vertices: Vec::new(), ends: Vec::new() }
     }
 }
 
@@ -79,12 +79,12 @@ impl<V> LightSubpaths<V> {
     pub fn get(&self, path: usize) -> Option<&[V]> {
         let &end = self.ends.get(path)?;
         let start = if path == 0 { 0 } else { self.ends[path - 1] };
-        Some(&self.kept[start..end])
+        Some(&self.vertices[start..end])
     }
 
     /// Memory taken, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.kept) + size_of_val(&*self.ends)
+        size_of_val(&*self.vertices) + size_of_val(&*self.ends)
     }
 }
 
@@ -126,9 +126,9 @@ impl Merging {
             for i in start..count.min(start + BATCH) {
                 sampler.start_pixel_sample([pass as i32, 0], i as u32, 0);
                 paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, _, _| {
-                    subpaths.kept.extend(keep(vertex));
+                    subpaths.vertices.extend(keep(vertex));
                 });
-                subpaths.ends.push(subpaths.kept.len());
+                subpaths.ends.push(subpaths.vertices.len());
             }
             Ok((subpaths, stats))
         };
@@ -136,13 +136,13 @@ impl Merging {
         let batches: Vec<(LightSubpaths<V>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
         let mut stats = RayStats::default();
         let mut all = LightSubpaths {
-            kept: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.kept.len()).sum()),
+            vertices: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.vertices.len()).sum()),
             ends: Vec::with_capacity(count),
         };
         for (batch, of_batch) in batches {
-            let before = all.kept.len();
+            let before = all.vertices.len();
             all.ends.extend(batch.ends.iter().map(|end| before + end));
-            all.kept.extend(batch.kept);
+            all.vertices.extend(batch.vertices);
             stats += of_batch;
         }
         Ok((all, stats))

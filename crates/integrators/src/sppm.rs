@@ -69,12 +69,6 @@ impl Sppm {
     }
 }
 
-/// Whether paths from the camera end there, at the photons.
-fn is_end(vertex: &Vertex) -> bool {
-    let flags = vertex.bsdf.flags();
-    flags.is_diffuse() && !flags.is_specular()
-}
-
 impl Integrator for Sppm {
     fn passes(&self) -> u32 {
         self.sampler.samples_per_pixel()
@@ -101,9 +95,9 @@ impl Integrator for Sppm {
             regularize: false,
         };
         let photon =
-            |vertex: &Vertex| (vertex.can_merge() && is_end(vertex)).then(|| Photon::from(vertex));
-        let (photons, mut stats) = self.merging.shoot(&paths, photon_paths, pass, photon, control)?;
-        let photons = self.merging.sort(photons.kept, photon_paths, 0, pass);
+            |vertex: &Vertex| (vertex.can_merge() && vertex.is_diffuse()).then(|| Photon::from(vertex));
+        let (subpaths, mut stats) = self.merging.shoot(&paths, photon_paths, pass, photon, control)?;
+        let photons = self.merging.sort(subpaths.vertices, photon_paths, 0, pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
@@ -112,7 +106,7 @@ impl Integrator for Sppm {
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;
             paths.camera_subpath_to(
-                is_end,
+                Vertex::is_diffuse,
                 camera_ray,
                 lambda,
                 sampler,
@@ -121,7 +115,7 @@ impl Integrator for Sppm {
                     OnTheWay::Light(found) => l += found.weighted(),
                     OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
                         let direct = paths.direct(vertex, lambda, sampler, stats);
-                        if !is_end(vertex) {
+                        if !vertex.is_diffuse() {
                             l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
                             return;
                         }
