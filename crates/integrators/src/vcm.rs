@@ -28,7 +28,7 @@
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a third of the variance; behind a
 //! door, light seeps under it then.
 //!
-//! At most 2¹⁹ paths of a pass leave photons, which bounds memory: 168 bytes for each of at most `max_depth` vertices of a path, and
+//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 168 bytes for each of at most `max_depth` vertices of a path, and
 //! 60 to 64 for its photon, 56 more while they are sorted. In larger pictures the other pixels make their light subpaths when they
 //! need them.
 //!
@@ -48,9 +48,6 @@ use crate::photon_grid::Photon;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
-/// The most light subpaths that leave photons in a pass.
-const MAX_PHOTON_PATHS: usize = 1 << 19;
-
 /// The first radius as a part of that of the scene, as in [Georgiev 2012]. Where photons come through a narrow gap, a larger one lets them
 /// seep far: behind a door 2.4 times this one has 70 times the bias, squared, in 64 passes.
 const SHARE_OF_SCENE: f32 = 0.003;
@@ -64,11 +61,13 @@ pub struct VcmSettings {
     pub radius: Option<f32>,
     /// How slowly the radius shrinks, in (0, 1]: its square goes with i^(α − 1) over the passes i; default 0.75.
     pub alpha: f32,
+    /// Most light subpaths that leave photons in a pass, above 0; default 2¹⁹.
+    pub photon_paths: usize,
 }
 
 impl Default for VcmSettings {
     fn default() -> Self {
-        Self { max_depth: 5, radius: None, alpha: 0.75 }
+        Self { max_depth: 5, radius: None, alpha: 0.75, photon_paths: 1 << 19 }
     }
 }
 
@@ -111,7 +110,7 @@ impl Integrator for Vcm {
     ) -> Result<RayStats, Cancelled> {
         let bounds = film.pixel_bounds();
         let pixel_count = bounds.area();
-        let photon_paths = pixel_count.min(MAX_PHOTON_PATHS);
+        let photon_paths = pixel_count.min(self.settings.photon_paths);
         let paths = Bidirectional {
             scene,
             lights: &self.lights,
