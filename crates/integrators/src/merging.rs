@@ -26,8 +26,7 @@
 
 use geometry::RayStats;
 use rayon::prelude::*;
-use sampling::sampler::PaddedSobol;
-use sampling::{Randomize, Sampler};
+use sampling::Sampler;
 use scene::Scene;
 
 use crate::bidirectional::{Bidirectional, Vertex};
@@ -94,6 +93,11 @@ impl Merging {
         Self { radius, alpha, seed, last: LastPass::default() }
     }
 
+    /// What chooses the wavelengths and times of passes.
+    pub fn seed(&self) -> u32 {
+        self.seed
+    }
+
     /// The radius of a pass, which are counted from 0.
     pub fn radius(&self, pass: u32) -> f32 {
         let alpha = f64::from(self.alpha);
@@ -106,34 +110,34 @@ impl Merging {
         Moment::of_pass(scene, self.seed, pass)
     }
 
-    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. Each path takes a sample of one sequence, so that
-    /// all the photons of a pass are well spread.
+    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `start` sets the sampler to a path's sample.
     pub fn shoot<V: Send>(
         &self,
         paths: &Bidirectional,
         count: usize,
         pass: u32,
-        keep: impl Fn(&Vertex) -> Option<V> + Sync,
+        sampler: &Sampler,
+        start: impl Fn(&mut Sampler, usize) + Sync,
+        keep: impl Fn(&Vertex, &mut Sampler) -> Option<V> + Sync,
         control: &Control,
     ) -> Result<(LightSubpaths<V>, RayStats), Cancelled> {
         let moment = self.moment(paths.scene, pass);
         let time = moment.time(paths.scene);
-        let sampler = PaddedSobol::new(count as u32, Randomize::FastOwen, self.seed);
-        let batch = |start: usize| {
+        let batch = |first: usize| {
             control.check()?;
-            let mut sampler = Sampler::PaddedSobol(sampler.clone());
+            let mut sampler = sampler.clone();
             let (mut subpaths, mut stats) = (LightSubpaths::default(), RayStats::default());
-            for i in start..count.min(start + BATCH) {
-                sampler.start_pixel_sample([pass as i32, 0], i as u32, 0);
-                paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, _, _| {
-                    subpaths.vertices.extend(keep(vertex));
+            for path in first..count.min(first + BATCH) {
+                start(&mut sampler, path);
+                paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, sampler, _| {
+                    subpaths.vertices.extend(keep(vertex, sampler));
                 });
                 subpaths.ends.push(subpaths.vertices.len());
             }
             Ok((subpaths, stats))
         };
-        let starts = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
-        let batches: Vec<(LightSubpaths<V>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
+        let batches = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
+        let batches: Vec<(LightSubpaths<V>, RayStats)> = batches.map(batch).collect::<Result<_, _>>()?;
         let mut stats = RayStats::default();
         let mut all = LightSubpaths {
             vertices: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.vertices.len()).sum()),

@@ -22,7 +22,8 @@
 
 use film::Film;
 use geometry::RayStats;
-use sampling::Sampler;
+use sampling::sampler::PaddedSobol;
+use sampling::{Randomize, Sampler};
 use scene::Scene;
 use spectrum::SampledSpectrum;
 
@@ -94,9 +95,16 @@ impl Integrator for Sppm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        let photon =
-            |vertex: &Vertex| (vertex.can_merge() && vertex.is_diffuse()).then(|| Photon::from(vertex));
-        let (subpaths, mut stats) = self.merging.shoot(&paths, photon_paths, pass, photon, control)?;
+        let photon = |vertex: &Vertex, _: &mut Sampler| {
+            (vertex.can_merge() && vertex.is_diffuse()).then(|| Photon::from(vertex))
+        };
+        // Each path takes a sample of one sequence, so that all the photons of a pass are well spread.
+        let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());
+        let sampler = Sampler::PaddedSobol(sampler);
+        let start =
+            |sampler: &mut Sampler, path| sampler.start_pixel_sample([pass as i32, 0], path as u32, 0);
+        let (subpaths, mut stats) =
+            self.merging.shoot(&paths, photon_paths, pass, &sampler, start, photon, control)?;
         let photons = self.merging.sort(subpaths.vertices, photon_paths, 0, pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();

@@ -28,7 +28,7 @@
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a third of the variance; behind a
 //! door, light seeps under it then.
 //!
-//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 168 bytes for each of at most `max_depth` vertices of a path, and
+//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 176 bytes for each of at most `max_depth` vertices of a path, and
 //! 60 to 64 for its photon, 56 more while they are sorted. In larger pictures the other pixels make their light subpaths when they
 //! need them.
 //!
@@ -118,10 +118,17 @@ impl Integrator for Vcm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        let keep = |vertex: &Vertex| Some(*vertex);
-        let (subpaths, mut stats) = self.merging.shoot(&paths, photon_paths, pass, keep, control)?;
-        let photons =
-            subpaths.vertices.iter().filter(|vertex| vertex.can_merge()).map(Photon::from).collect();
+        // With each vertex a choice of the point on the lens that it will be connected to.
+        let keep = |vertex: &Vertex, sampler: &mut Sampler| Some((*vertex, sampler.get_2d()));
+        let start = |sampler: &mut Sampler, path: usize| {
+            let (width, path) = (bounds.width(), path as i32);
+            let pixel = [bounds.min[0] + path % width, bounds.min[1] + path / width];
+            sampler.start_pixel_sample(pixel, pass, 0);
+        };
+        let (subpaths, mut stats) =
+            self.merging.shoot(&paths, photon_paths, pass, &self.light_sampler, start, keep, control)?;
+        let photons = subpaths.vertices.iter().map(|(vertex, _)| vertex).filter(|vertex| vertex.can_merge());
+        let photons = photons.map(Photon::from).collect();
         let photons = self.merging.sort(photons, photon_paths, subpaths.bytes(), pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();
@@ -129,19 +136,20 @@ impl Integrator for Vcm {
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
         stats += pixels.add_at(Some(&moment), tiles, control, |sample, sampler, stats| {
             let lambda = &sample.lambda;
-            let mut light_sampler = self.light_sampler.clone();
-            light_sampler.start_pixel_sample(sample.pixel, pass, 0);
             let [x, y] = sample.pixel;
             let index = (y - bounds.min[1]) * bounds.width() + (x - bounds.min[0]);
             let mut made = Vec::new();
             let light_subpath = subpaths.get(index as usize).unwrap_or_else(|| {
-                let keep = |vertex: &Vertex, _: &mut _, _: &mut _| made.push(*vertex);
-                paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, keep);
+                let mut light_sampler = self.light_sampler.clone();
+                light_sampler.start_pixel_sample(sample.pixel, pass, 0);
+                let visit = |vertex: &Vertex, sampler: &mut Sampler, _: &mut _| {
+                    made.extend(keep(vertex, sampler));
+                };
+                paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, visit);
                 &made
             });
-            for vertex in light_subpath {
-                let u = light_sampler.get_2d();
-                if let Some(seen) = paths.see(vertex, u, |film| splatter.reaches(film), stats) {
+            for (vertex, u) in light_subpath {
+                if let Some(seen) = paths.see(vertex, *u, |film| splatter.reaches(film), stats) {
                     splatter.add(seen.film, &seen.found.weighted(), lambda);
                 }
             }
@@ -157,7 +165,8 @@ impl Integrator for Vcm {
                         if let Some(found) = paths.direct(vertex, lambda, sampler, stats) {
                             l += found.weighted();
                         }
-                        for light in light_subpath.iter().filter(|light| light.depth <= depths) {
+                        let lights = light_subpath.iter().map(|(light, _)| light);
+                        for light in lights.filter(|light| light.depth <= depths) {
                             if let Some(found) = paths.connect(vertex, light, stats) {
                                 l += found.weighted();
                             }
