@@ -110,14 +110,13 @@ impl Merging {
         Moment::of_pass(scene, self.seed, pass)
     }
 
-    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `start` sets the sampler to a path's sample.
+    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `sampler` begins a path's sample.
     pub fn shoot<V: Send>(
         &self,
         paths: &Bidirectional,
         count: usize,
         pass: u32,
-        sampler: &Sampler,
-        start: impl Fn(&mut Sampler, usize) + Sync,
+        sampler: impl Fn(usize) -> Sampler + Sync,
         keep: impl Fn(&Vertex, &mut Sampler) -> Option<V> + Sync,
         control: &Control,
     ) -> Result<(LightSubpaths<V>, RayStats), Cancelled> {
@@ -125,13 +124,17 @@ impl Merging {
         let time = moment.time(paths.scene);
         let batch = |first: usize| {
             control.check()?;
-            let mut sampler = sampler.clone();
             let (mut subpaths, mut stats) = (LightSubpaths::default(), RayStats::default());
             for path in first..count.min(first + BATCH) {
-                start(&mut sampler, path);
-                paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, sampler, _| {
-                    subpaths.vertices.extend(keep(vertex, sampler));
-                });
+                paths.light_subpath(
+                    time,
+                    &moment.lambda,
+                    &mut sampler(path),
+                    &mut stats,
+                    |vertex, sampler, _| {
+                        subpaths.vertices.extend(keep(vertex, sampler));
+                    },
+                );
                 subpaths.ends.push(subpaths.vertices.len());
             }
             Ok((subpaths, stats))

@@ -100,11 +100,13 @@ impl Integrator for Sppm {
         };
         // Each path takes a sample of one sequence, so that all the photons of a pass are well spread.
         let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());
-        let sampler = Sampler::PaddedSobol(sampler);
-        let start =
-            |sampler: &mut Sampler, path| sampler.start_pixel_sample([pass as i32, 0], path as u32, 0);
+        let sampler = |path| {
+            let mut sampler = Sampler::PaddedSobol(sampler.clone());
+            sampler.start_pixel_sample([pass as i32, 0], path as u32, 0);
+            sampler
+        };
         let (subpaths, mut stats) =
-            self.merging.shoot(&paths, photon_paths, pass, &sampler, start, photon, control)?;
+            self.merging.shoot(&paths, photon_paths, pass, sampler, photon, control)?;
         let photons = self.merging.sort(subpaths.vertices, photon_paths, 0, pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();

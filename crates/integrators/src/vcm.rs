@@ -120,13 +120,17 @@ impl Integrator for Vcm {
         };
         // With each vertex a choice of the point on the lens that it will be connected to.
         let keep = |vertex: &Vertex, sampler: &mut Sampler| Some((*vertex, sampler.get_2d()));
-        let start = |sampler: &mut Sampler, path: usize| {
-            let (width, path) = (bounds.width(), path as i32);
-            let pixel = [bounds.min[0] + path % width, bounds.min[1] + path / width];
+        let light_sampler = |pixel| {
+            let mut sampler = self.light_sampler.clone();
             sampler.start_pixel_sample(pixel, pass, 0);
+            sampler
+        };
+        let sampler_of = |path: usize| {
+            let (width, path) = (bounds.width(), path as i32);
+            light_sampler([bounds.min[0] + path % width, bounds.min[1] + path / width])
         };
         let (subpaths, mut stats) =
-            self.merging.shoot(&paths, photon_paths, pass, &self.light_sampler, start, keep, control)?;
+            self.merging.shoot(&paths, photon_paths, pass, sampler_of, keep, control)?;
         let photons = subpaths.vertices.iter().map(|(vertex, _)| vertex).filter(|vertex| vertex.can_merge());
         let photons = photons.map(Photon::from).collect();
         let photons = self.merging.sort(photons, photon_paths, subpaths.bytes(), pass);
@@ -140,12 +144,10 @@ impl Integrator for Vcm {
             let index = (y - bounds.min[1]) * bounds.width() + (x - bounds.min[0]);
             let mut made = Vec::new();
             let light_subpath = subpaths.get(index as usize).unwrap_or_else(|| {
-                let mut light_sampler = self.light_sampler.clone();
-                light_sampler.start_pixel_sample(sample.pixel, pass, 0);
                 let visit = |vertex: &Vertex, sampler: &mut Sampler, _: &mut _| {
                     made.extend(keep(vertex, sampler));
                 };
-                paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, visit);
+                paths.light_subpath(sample.time, lambda, &mut light_sampler(sample.pixel), stats, visit);
                 &made
             });
             for (vertex, u) in light_subpath {
