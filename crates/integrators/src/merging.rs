@@ -31,7 +31,7 @@ use sampling::{Randomize, Sampler};
 use scene::Scene;
 
 use crate::bidirectional::{Bidirectional, Vertex};
-use crate::photon_grid::{Photon, PhotonGrid};
+use crate::photon_grid::{LightVertex, PhotonGrid};
 use crate::pixel_loop::Moment;
 use crate::{Cancelled, Control};
 
@@ -98,14 +98,14 @@ impl Merging {
                 sampler.start_pixel_sample([pass as i32, 0], i as u32, 0);
                 paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, _, _| {
                     if is_wanted(vertex) {
-                        photons.push(Photon::from(vertex));
+                        photons.push(LightVertex::from(vertex));
                     }
                 });
             }
             Ok((photons, stats))
         };
         let starts = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
-        let batches: Vec<(Vec<Photon>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
+        let batches: Vec<(Vec<LightVertex>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
         let mut stats = RayStats::default();
         let mut photons = Vec::with_capacity(batches.iter().map(|(photons, _)| photons.len()).sum());
         for (batch, of_batch) in batches {

@@ -17,7 +17,7 @@ use scene::light::LightId;
 use spectrum::SampledWavelengths;
 
 use super::{Balance, Bidirectional, Lights, Vertex, Walk};
-use crate::photon_grid::Photon;
+use crate::photon_grid::LightVertex;
 
 const LIGHT_PATHS: usize = 37;
 
@@ -270,7 +270,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     let path = Path { light: start, surfaces, camera };
                     check(&path, connect(found.s), found.weight, 3);
                     if balance.merging > 0.0 && light.can_merge() {
-                        let photon = Photon::from(light);
+                        let photon = LightVertex::from(light);
                         let merged = paths.merge(&stepped(&paths.balance, &vertex, light), &photon);
                         check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
                     }
