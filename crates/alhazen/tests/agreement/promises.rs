@@ -51,6 +51,7 @@ const FURNACE: &str = r#"Option "disablewavelengthjitter" true
     Shape "bilinearmesh" "point3 P" [-1 -1 -1  1 -1 -1  -1 1 -1  1 1 -1  -1 -1 1  1 -1 1  -1 1 1  1 1 1]
     "integer indices" [0 1 2 3  4 5 6 7  0 1 4 5  2 3 6 7  0 2 4 6  1 3 5 7]"#;
 
+/// Samples of each pixel.
 const PASSES: i32 = 16;
 
 /// The radius within which photons count; a wall has the side 2.
@@ -90,6 +91,9 @@ impl Member {
     }
 
     /// All that follow light.
+    ///
+    /// A final gather looks for photons where its rays fall, on the other walls: nowhere more than 2.5 times as often as in the mean.
+    /// Connecting loses nothing, so vcm loses less than merging alone. Of form factors the rows sum to one but for a thousandth.
     fn all() -> Vec<Self> {
         let kernel = beyond_kernel();
         const MAP: [(&str, &str); 4] =
