@@ -30,7 +30,7 @@ use sampling::Sampler;
 use scene::Scene;
 
 use crate::bidirectional::{Bidirectional, Vertex};
-use crate::photon_grid::{Photon, PhotonGrid};
+use crate::photon_grid::{LightVertex, PhotonGrid};
 use crate::pixel_loop::Moment;
 use crate::{Cancelled, Control};
 
@@ -156,7 +156,7 @@ impl Merging {
     }
 
     /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in which they will be looked for.
-    pub fn sort(&mut self, photons: Vec<Photon>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
+    pub fn sort(&mut self, photons: Vec<LightVertex>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
         let radius = self.radius(pass);
         let grid = PhotonGrid::new(photons, radius);
         let bytes = bytes + grid.bytes();

@@ -29,7 +29,7 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
 use crate::merging::Merging;
-use crate::photon_grid::Photon;
+use crate::photon_grid::LightVertex;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -96,7 +96,7 @@ impl Integrator for Sppm {
             regularize: false,
         };
         let photon = |vertex: &Vertex, _: &mut Sampler| {
-            (vertex.can_merge() && vertex.is_diffuse()).then(|| Photon::from(vertex))
+            (vertex.can_merge() && vertex.is_diffuse()).then(|| LightVertex::from(vertex))
         };
         // Each path takes a sample of one sequence, so that all the photons of a pass are well spread.
         let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());

@@ -44,7 +44,7 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
 use crate::merging::Merging;
-use crate::photon_grid::Photon;
+use crate::photon_grid::LightVertex;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -132,7 +132,7 @@ impl Integrator for Vcm {
         let (subpaths, mut stats) =
             self.merging.shoot(&paths, photon_paths, pass, sampler_of, keep, control)?;
         let photons = subpaths.vertices.iter().map(|(vertex, _)| vertex).filter(|vertex| vertex.can_merge());
-        let photons = photons.map(Photon::from).collect();
+        let photons = photons.map(LightVertex::from).collect();
         let photons = self.merging.sort(photons, photon_paths, subpaths.bytes(), pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();

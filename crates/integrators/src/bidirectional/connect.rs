@@ -9,7 +9,7 @@ use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Merges, Vertex, Walk, hero_only};
-use crate::photon_grid::Photon;
+use crate::photon_grid::LightVertex;
 
 /// What a strategy has found.
 #[derive(Clone, Copy, Debug)]
@@ -179,7 +179,7 @@ impl Bidirectional<'_> {
     }
 
     /// s, t ≥ 2: a photon is taken as if it had arrived at the vertex, near which it lies.
-    pub fn merge(&self, camera: &Vertex, photon: &Photon) -> Found {
+    pub fn merge(&self, camera: &Vertex, photon: &LightVertex) -> Found {
         let wi = photon.wo;
         let l = self.merged(camera, photon);
         let of_light = Merges { here: false, before: !camera.is_diffuse() };
@@ -191,7 +191,7 @@ impl Bidirectional<'_> {
     }
 
     /// The light of [`Self::merge`] alone.
-    pub fn merged(&self, camera: &Vertex, photon: &Photon) -> SampledSpectrum {
+    pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
         // Power has been through the cosine of the surface, light is scattered by that of the shading.
         let cos_theta = camera.cos_theta(wi);

@@ -17,7 +17,7 @@ use scene::light::LightId;
 use spectrum::SampledWavelengths;
 
 use super::{Balance, Bidirectional, Lights, Vertex, Walk};
-use crate::photon_grid::Photon;
+use crate::photon_grid::LightVertex;
 
 const LIGHT_PATHS: usize = 37;
 
@@ -274,7 +274,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     if balance.merging > 0.0 && light.can_merge() {
                         let stepped = stepped(&paths.balance, &vertex, light);
                         if stepped.can_merge() {
-                            let merged = paths.merge(&stepped, &Photon::from(light));
+                            let merged = paths.merge(&stepped, &LightVertex::from(light));
                             check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
                         }
                     }

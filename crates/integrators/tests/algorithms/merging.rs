@@ -77,24 +77,6 @@ fn furnace(rho: f32) -> SceneDesc {
     desc
 }
 
-/// L = Σ ρᵏ, and no blur changes that: of a sphere, what is nearer to one of its points than r has the area π r².
-#[test]
-fn a_furnace_shows_all_paths_up_to_its_depth_once() {
-    let (one, rho) = (one(), 0.6);
-    let desc = furnace(rho);
-    let tests = 2 * 4;
-    for depth in [0, 1, 2, 5] {
-        let expected = one * (0..=depth).map(|k| f64::from(rho).powi(k)).sum::<f64>();
-        for integrator in [sppm(depth, 0.4, 500), vcm(depth, 0.4, 0.75)] {
-            let runs = (0..16).map(|seed| means(&desc, integrator.clone(), seed, [8])[0]);
-            let found: Moments = runs.collect();
-            if (found.mean - expected).abs() > 3e-5 * expected {
-                t_test(&found, expected, tests).unwrap_or_else(|error| panic!("{integrator:?}: {error}"));
-            }
-        }
-    }
-}
-
 /// A lamp throws light at a mirror above it, which throws it on the floor as from a point at the height `HEIGHT`. The camera sees the
 /// foot of that point in a second mirror: light that neither chance nor choice nor connections find.
 fn between_mirrors() -> SceneDesc {
