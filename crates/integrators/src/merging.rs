@@ -4,8 +4,11 @@
 //! within the radius r, as if they had arrived at x itself:
 //!
 //! ```text
-//! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p
+//! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p/α_p
 //! ```
+//!
+//! where α_p, mostly 1, is the probability with which a ray meets the surface at the photon's place. Of a leaf that a texture cuts out in
+//! part it is the part that remains: as few photons stay there, while x is given and has all the light that comes by.
 //!
 //! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and walls without thickness, through
 //! which light leaks), while noise goes with 1/r²; both vanish if pass i has

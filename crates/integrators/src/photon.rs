@@ -17,7 +17,7 @@ pub(crate) struct Photon {
     pub n: Normal3,
     /// Unit direction to where it came from.
     pub wi: Vector3,
-    /// Power, over the density of the subpath; to be divided by the number of subpaths.
+    /// Power, over the density of the subpath, if the surface is there for every ray; to be divided by the number of subpaths.
     pub beta: SampledSpectrum,
     /// Scattering events on the subpath, the one here included.
     pub depth: u32,
@@ -28,8 +28,8 @@ pub(crate) struct Photon {
 impl Photon {
     /// The one that a vertex of a light subpath leaves.
     pub fn at(vertex: &Vertex) -> Self {
-        let &Vertex { ref p, n, wo: wi, beta, depth, hero_only, .. } = vertex;
-        Self { p: p.p, n, wi, beta, depth, hero_only }
+        let &Vertex { p, n, wo: wi, depth, hero_only, .. } = vertex;
+        Self { p: p.p, n, wi, beta: vertex.photon_beta(), depth, hero_only }
     }
 
     /// Whether it is somewhere, with a finite power.

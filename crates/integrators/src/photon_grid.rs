@@ -21,7 +21,7 @@ pub(crate) struct LightVertex {
     pub p: Point3,
     /// Unit direction to the vertex before.
     pub wo: Vector3,
-    /// Power that arrives along `wo`, over the subpath's density.
+    /// Power that arrives along `wo`, over the subpath's density, if the surface is there for every ray.
     pub beta: SampledSpectrum,
     /// For the weights.
     pub partial: Partial,
@@ -33,8 +33,9 @@ pub(crate) struct LightVertex {
 
 impl From<&Vertex> for LightVertex {
     fn from(vertex: &Vertex) -> Self {
-        let &Vertex { p, wo, beta, partial, depth, hero_only, .. } = vertex;
-        Self { p: p.p, wo, beta, partial, depth: depth.min(u16::MAX.into()) as u16, hero_only }
+        let &Vertex { p, wo, partial, depth, hero_only, .. } = vertex;
+        let (beta, depth) = (vertex.photon_beta(), depth.min(u16::MAX.into()) as u16);
+        Self { p: p.p, wo, beta, partial, depth, hero_only }
     }
 }
 

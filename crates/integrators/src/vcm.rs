@@ -5,7 +5,8 @@
 //! [`Bdpt`](crate::Bdpt) does; and vertices of the camera subpath are
 //! merged with the photons within the radius. Merging is one more family of strategies: a path whose vertex x is made from both ends
 //! is found if the two ends come within r of each other, so the density of such a path is that of its two subpaths,
-//! times π r² (the chance to meet, if all is smooth), times the number n of photon paths. With that, the balance heuristic weighs
+//! times π r² (the chance to meet, if all is smooth), times the number n of photon paths. (Where a texture cuts x out in part, both ends
+//! must meet it, and the part that remains is one more factor of η.) With that, the balance heuristic weighs
 //! merging against connecting as it weighs connections against each other:
 //!
 //! ```text

@@ -80,7 +80,7 @@ impl Bidirectional<'_> {
             let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
             let end = self.light_end(light, &context, wi, place, direct);
             let by_light =
-                self.balance.connecting_from_light(partial, before.cos_theta(wi), before.can_merge());
+                self.balance.connecting_from_light(partial, before.cos_theta(wi), before.merges());
             weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
         let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
@@ -125,7 +125,7 @@ impl Bidirectional<'_> {
         let back = self.balance.connecting_back(
             &vertex.partial,
             vertex.pdf_back(wi),
-            Merges { here: false, ..vertex.merges() },
+            Merges { here: 0.0, ..vertex.merges() },
         );
         Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
     }
@@ -182,10 +182,11 @@ impl Bidirectional<'_> {
     pub fn merge(&self, camera: &Vertex, photon: &LightVertex) -> Found {
         let wi = photon.wo;
         let l = self.merged(camera, photon);
-        let of_light = Merges { here: false, before: !camera.is_diffuse() };
+        let of_camera = camera.merges();
+        let of_light = Merges { before: !camera.is_diffuse(), ..of_camera };
         let weight = weight(
             self.balance.merging_back(&photon.partial, camera.pdf(wi), of_light),
-            self.balance.merging_back(&camera.partial, camera.pdf_back(wi), camera.merges()),
+            self.balance.merging_back(&camera.partial, camera.pdf_back(wi), of_camera),
         );
         Found { l, weight, s: photon.depth.into(), t: camera.depth + 1 }
     }

@@ -15,8 +15,10 @@
 //! d_vm  = g←/p→ · (m'·η + k'·p←'·d_vm')
 //! ```
 //!
-//! where ' marks the vertex before and p←' is per solid angle. d_vc sums what connects, d_vm what merges: m is 1 where
-//! a vertex can be merged, else 0, and k is 1 where merges further back count. What comes straight from a light is not merged, because
+//! where ' marks the vertex before and p←' is per solid angle. d_vc sums what connects, d_vm what merges: m is the α of
+//! a vertex that can be merged, else 0, and k is 1 where merges further back count. α is the probability with which a ray meets the
+//! surface, 1 where no texture cuts it out. All strategies have it once for each vertex, so that it cancels; but merging has it twice for
+//! the merged one, which both subpaths have met. What comes straight from a light is not merged, because
 //! choosing a point on the light finds the same with less noise (m = 0 next to a light). Nor is anything merged that lies beyond a diffuse
 //! surface, seen from the camera ([`vcm`](crate::vcm) says why): behind one a camera subpath has m = 0, and at one a light
 //! subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its d_vcm is 0 and the sums lose those terms. A
@@ -37,8 +39,8 @@ pub(crate) struct Partial {
 /// Where merging is one of a path's strategies, on one side of a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Merges {
-    /// At the vertex there.
-    pub here: bool,
+    /// At the vertex there: the probability with which light meets its surface, or 0 without merging.
+    pub here: f32,
     /// At those before it on its subpath that can be merged themselves.
     pub before: bool,
 }
@@ -46,7 +48,7 @@ pub(crate) struct Merges {
 impl Merges {
     /// These if something is so, else none.
     pub fn only_if(self, it_is: bool) -> Self {
-        Self { here: self.here && it_is, before: self.before && it_is }
+        if it_is { self } else { Self { here: 0.0, before: false } }
     }
 }
 
@@ -92,10 +94,9 @@ impl Balance {
 
     /// The sum over the strategies with s ≥ 2 for a camera subpath that has met a light, along a direction at `cos_theta` to the normal
     /// of the vertex before; to be multiplied by the density with which the light sends light there. That vertex cannot be merged,
-    /// which was not known when it was left: `merged` says whether it was counted then.
-    pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32, merged: bool) -> f32 {
-        let here = if merged { self.merging * cos_theta * partial.vcm } else { 0.0 };
-        let before = partial.vm - here;
+    /// which was not known when it was left: `merges` is what was counted then.
+    pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32, merges: Merges) -> f32 {
+        let before = partial.vm - self.merging * merges.here * cos_theta * partial.vcm;
         // Not `max`, which would hide what is no number.
         self.connecting * (partial.vc + if before < 0.0 { 0.0 } else { before })
     }
@@ -107,14 +108,15 @@ impl Balance {
         self.connecting * (partial.vcm + pdf_back * partial.vc + merging)
     }
 
-    /// The same for merging, to be used as it is.
+    /// The same for merging at the end, which is possible there, to be used as it is.
     pub fn merging_back(&self, partial: &Partial, pdf_back: f32, merges: Merges) -> f32 {
-        self.connecting_back(partial, pdf_back, Merges { here: false, ..merges }) / self.merging
+        let others = self.connecting_back(partial, pdf_back, Merges { here: 0.0, ..merges });
+        others / (self.merging * merges.here)
     }
 
     /// The part of merging in these sums.
     fn merging_there(&self, partial: &Partial, pdf_back: f32, merges: Merges) -> f32 {
-        let here = if merges.here { self.merging } else { 0.0 };
+        let here = self.merging * merges.here;
         if merges.before { here + pdf_back * partial.vm } else { here }
     }
 

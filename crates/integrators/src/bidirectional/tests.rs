@@ -21,7 +21,7 @@ use crate::photon_grid::LightVertex;
 
 const LIGHT_PATHS: usize = 37;
 
-/// The inside of a cube whose walls are diffuse or rough metal, with two lamps.
+/// The inside of a cube whose walls are diffuse or rough metal, some of them there in part, with two lamps.
 fn room() -> Scene {
     let mut desc = SceneDesc::default();
     let rough = RoughnessDesc::isotropic(0.6);
@@ -30,7 +30,7 @@ fn room() -> Scene {
         MaterialKind::Dielectric { eta: SpectrumDesc::Constant(1.5), roughness: rough },
     ]
     .map(|kind| desc.materials.push(kind.into()));
-    let mut quad = |corner: Vec3, x: Vec3, y: Vec3, material: usize, light: Option<f32>| {
+    let mut quad = |corner: Vec3, x: Vec3, y: Vec3, material: usize, alpha: f32, light: Option<f32>| {
         let mesh = MeshDesc {
             indices: Arc::new([[0, 1, 2], [0, 2, 3]]),
             positions: Arc::new([corner, corner + x, corner + x + y, corner + y]),
@@ -40,8 +40,8 @@ fn room() -> Scene {
             let light = AreaLightDesc { scale, ..AreaLightDesc::new(SpectrumDesc::Constant(1.0)) };
             desc.area_lights.push(light)
         });
-        let material = Some(materials[material]);
-        desc.shapes.push(ShapeDesc { material, area_light, ..ShapeKind::Triangles(mesh).into() });
+        let (material, alpha) = (Some(materials[material]), Some(alpha.into()));
+        desc.shapes.push(ShapeDesc { material, alpha, area_light, ..ShapeKind::Triangles(mesh).into() });
     };
     let (x, y, z) = (Vec3::X * 2.0, Vec3::Y * 2.0, Vec3::Z * 2.0);
     let (low, high) = (Vec3::splat(-1.0), Vec3::splat(1.0));
@@ -50,10 +50,11 @@ fn room() -> Scene {
             .into_iter()
             .enumerate()
     {
-        quad(corner, side_x, side_y, i % 2, None);
+        let alpha = [1.0, 1.0, 0.3, 0.6, 1.0, 1.0][i];
+        quad(corner, side_x, side_y, i % 2, alpha, None);
     }
-    quad(Vec3::new(-0.5, -0.5, 0.9), Vec3::Y, Vec3::X, 0, Some(5.0));
-    quad(Vec3::new(-0.8, -0.2, -0.6), Vec3::Y * 0.2, Vec3::Z * 0.7, 1, Some(2.0));
+    quad(Vec3::new(-0.5, -0.5, 0.9), Vec3::Y, Vec3::X, 0, 1.0, Some(5.0));
+    quad(Vec3::new(-0.8, -0.2, -0.6), Vec3::Y * 0.2, Vec3::Z * 0.7, 1, 1.0, Some(2.0));
     desc.film.resolution = [100, 100];
     desc.camera.kind =
         CameraKind::Perspective { fov: 80.0, screen: ScreenDesc::default(), lens: LensDesc::default() };
@@ -147,7 +148,8 @@ impl Path<'_> {
             // Beyond a diffuse surface, seen from the camera, nothing is merged.
             Strategy::Merge(s) if self.surfaces[s - 1..].iter().any(|surface| surface.is_diffuse()) => 0.0,
             Strategy::Merge(s) => {
-                let eta = f64::from(paths.balance.merging);
+                // Both subpaths have met the surface, where others have met it once.
+                let eta = f64::from(paths.balance.merging * self.surfaces[s - 2].alpha);
                 eta * self.light_density(paths, s) * self.camera_density(paths, vertices + 1 - s)
             }
         }
@@ -208,7 +210,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
         seen[kind] += 1;
     };
     let connect = |s: u32| Strategy::Connect(s as usize);
-    for index in 0..2000 {
+    for index in 0..4000 {
         sampler.start_pixel_sample([index, 0], 0, 0);
         // The sampler's next numbers choose the light and its ray.
         let mut replay = sampler.clone();

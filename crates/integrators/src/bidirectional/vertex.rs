@@ -21,6 +21,8 @@ pub(crate) struct Vertex {
     pub time: f32,
     /// How it scatters.
     pub bsdf: Bsdf,
+    /// The probability with which a ray meets the surface there.
+    pub alpha: f32,
     /// What arrives along `wo`, of importance (from the camera) or power (from a light), over the subpath's density.
     pub beta: SampledSpectrum,
     /// Whether only the first wavelength is left.
@@ -70,7 +72,14 @@ impl Vertex {
     #[inline]
     pub fn merges(&self) -> Merges {
         let before = self.mode == TransportMode::Radiance || !self.is_diffuse();
-        Merges { here: self.can_merge(), before }
+        Merges { here: if self.can_merge() { self.alpha } else { 0.0 }, before }
+    }
+
+    /// What a light subpath leaves as a photon. Of all photons that come to a place only the share `alpha` stays, so each stands for
+    /// those that have passed as well: whoever looks for photons at a vertex of a camera subpath has met the surface already.
+    #[inline]
+    pub fn photon_beta(&self) -> SampledSpectrum {
+        self.beta / self.alpha
     }
 
     /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to it.

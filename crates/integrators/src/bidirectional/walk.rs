@@ -37,6 +37,8 @@ pub(crate) struct Walk<'a> {
     share: SampledSpectrum,
     /// Way since the vertex before.
     distance: f32,
+    /// The probability with which rays meet the surface that was met.
+    alpha: f32,
     rough_before: bool,
     after_diffuse: bool,
     origin: Origin,
@@ -102,6 +104,7 @@ impl<'a> Walk<'a> {
             depth: 0,
             share: SampledSpectrum::ONE,
             distance: 0.0,
+            alpha: 1.0,
             rough_before: false,
             after_diffuse: false,
             origin,
@@ -111,9 +114,12 @@ impl<'a> Walk<'a> {
 
     /// The surface that the ray meets; `None` if it leaves the scene.
     pub fn meet(&mut self, stats: &mut RayStats) -> Option<SurfaceInteraction> {
-        let (surface, t) = self.paths.scene.intersect(&self.ray.ray, f32::INFINITY, stats)?;
-        self.distance += t;
-        Some(surface)
+        let scene = self.paths.scene;
+        let hit = scene.hit(&self.ray.ray, f32::INFINITY, stats)?;
+        let surface = scene.world().surface(&self.ray.ray, &hit);
+        self.distance += hit.t;
+        self.alpha = scene.coverage(&hit, &surface);
+        Some(scene.interaction(&hit, surface))
     }
 
     /// The vertex at a surface that was met; `None` if the ray passes it, to be followed on.
@@ -134,6 +140,7 @@ impl<'a> Walk<'a> {
             wo: s.wo,
             time: s.time,
             bsdf,
+            alpha: self.alpha,
             beta: self.beta,
             hero_only: self.lambda.secondary_terminated(),
             partial: Partial::default(),

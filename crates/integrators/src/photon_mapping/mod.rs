@@ -200,9 +200,8 @@ impl PhotonMapping {
         let dot = |vertex: &Vertex, sampler: &mut Sampler, stats: &mut RayStats| {
             let lens = sampler.get_2d();
             if let Some(seen) = emission.paths.see(vertex, lens, |film| splatter.reaches(film), stats) {
-                let photon = Photon::at(vertex);
-                let l = photon.beta * white;
-                let l = if photon.hero_only { hero_only(l) } else { l };
+                let l = vertex.beta * white;
+                let l = if vertex.hero_only { hero_only(l) } else { l };
                 splatter.add(seen.film, &l, &emission.moment.lambda);
             }
         };

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use alhazen_integrators::{Cancelled, Control, Integrator, Vcm, VcmSettings, build, render};
 use description::{
     CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc,
-    ShapeDesc, SpectrumDesc, SppmDesc, TransformDesc, VcmDesc,
+    ShapeDesc, SpectrumDesc, SppmDesc, TextureDesc, TextureKind, TransformDesc, VcmDesc,
 };
 use film::Film;
 use math::{DMat4, DVec3};
@@ -78,8 +78,9 @@ fn furnace(rho: f32) -> SceneDesc {
 }
 
 /// A lamp throws light at a mirror above it, which throws it on the floor as from a point at the height `HEIGHT`. The camera sees the
-/// foot of that point in a second mirror: light that neither chance nor choice nor connections find.
-fn between_mirrors() -> SceneDesc {
+/// foot of that point in a second mirror: light that neither chance nor choice nor connections find. The floor is a chequerboard of these
+/// alphas, the first of them at the foot.
+fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
     let mut desc = on_film([8, 8]);
     let (from, to) = (v(0.0, 0.0, 0.2), v(0.0, 0.0, 1.0));
     let intensity = SpectrumDesc::Constant(1.0);
@@ -87,7 +88,15 @@ fn between_mirrors() -> SceneDesc {
     desc.lights.push(spot.into());
     let material = diffuse(&mut desc, 0.5);
     let floor = quad(v(-3.0, -3.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
-    desc.shapes.push(ShapeDesc { material, ..floor.into() });
+    let kind = TextureKind::Checkerboard { textures: alphas.map(f32::into), mapping: None };
+    // Cubes of side 0.1, one of them around the foot.
+    let world_from_texture = DMat4::from_scale_rotation_translation(
+        DVec3::splat(0.1),
+        Default::default(),
+        DVec3::splat(-0.05),
+    );
+    let texture = desc.float_textures.push(TextureDesc { world_from_texture, ..TextureDesc::new(kind) });
+    desc.shapes.push(ShapeDesc { material, alpha: Some(texture.into()), ..floor.into() });
     let material = mirror(&mut desc, 0.0);
     let above = quad(v(-1.0, -1.0, 0.5), v(2.0, 0.0, 0.0), v(0.0, 2.0, 0.0));
     desc.shapes.push(ShapeDesc { material, ..above.into() });
@@ -124,7 +133,7 @@ fn progressively_blurred(radius: f64, alpha: f64, passes: u32) -> f64 {
 
 #[test]
 fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
-    let (desc, one) = (between_mirrors(), one());
+    let (desc, one) = (between_mirrors([1.0; 2]), one());
     let sharp = 0.5 / PI / (HEIGHT * HEIGHT);
     let after = [1, 16, 128];
     for (integrator, alpha) in [(sppm(3, 0.6, 200), 2.0 / 3.0), (vcm(3, 0.6, 0.5), 0.5)] {
@@ -149,6 +158,21 @@ fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
         // And theory's own line has the slope α − 1 in the end.
         let in_the_end = (bias(1 << 20) / bias(1 << 18)).ln() / 4f64.ln();
         assert!((in_the_end - (alpha - 1.0)).abs() < 0.01, "{in_the_end}");
+    }
+}
+
+#[test]
+fn a_surface_that_is_there_in_part_reflects_that_part_of_the_light() {
+    let one = one();
+    for alphas in [[0.5, 0.5], [0.25, 0.25], [0.25, 0.75], [0.75, 0.25]] {
+        let desc = between_mirrors(alphas);
+        for (integrator, alpha) in [(sppm(3, 0.6, 2000), 2.0 / 3.0), (vcm(3, 0.6, 0.5), 0.5)] {
+            let found = |seed| means(&desc, integrator.clone(), seed, [16])[0] / one;
+            let found: Moments = (0..12).map(found).collect();
+            let expected = f64::from(alphas[0]) * progressively_blurred(0.6f32.into(), alpha, 16);
+            println!("{alphas:?} {:.4} +- {:.4}", found.mean / expected, found.variance_of_mean().sqrt() / expected);
+            t_test(&found, expected, 8).unwrap_or_else(|error| panic!("{alphas:?}, {integrator:?}: {error}"));
+        }
     }
 }
 

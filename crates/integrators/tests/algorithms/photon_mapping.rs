@@ -149,13 +149,13 @@ fn a_final_gather_sees_less_of_edges() {
     assert!(1.0 - found[1] < 0.6 * (1.0 - found[0]), "{found:?}");
 }
 
-/// A ball of glass over a floor, in the beam of a lamp at a point.
-fn ball_in_a_beam() -> SceneDesc {
+/// A ball of glass over a floor that is there with the probability alpha, in the beam of a lamp at a point.
+fn ball_in_a_beam(alpha: f32) -> SceneDesc {
     let mut desc = SceneDesc::default();
     from_above(&mut desc, 2.0, 32);
-    let material = diffuse(&mut desc, 0.8);
+    let (material, alpha) = (diffuse(&mut desc, 0.8), Some(alpha.into()));
     let floor = quad(v(-3.0, -3.0, -1.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
-    desc.shapes.push(ShapeDesc { material, ..floor.into() });
+    desc.shapes.push(ShapeDesc { material, alpha, ..floor.into() });
     let material = glass(&mut desc);
     desc.shapes.push(ShapeDesc { material, ..at(sphere(0.25), v(0.0, 0.0, -0.6)) });
     let beam = LightKind::Spot {
@@ -182,7 +182,6 @@ fn caustic(desc: &SceneDesc, integrator: &IntegratorDesc, passes: i32) -> Moment
 
 #[test]
 fn a_caustic_holds_the_light_that_light_tracing_finds() {
-    let desc = ball_in_a_beam();
     let photons = PhotonMappingDesc {
         max_depth: 4,
         photons: 0,
@@ -190,11 +189,60 @@ fn a_caustic_holds_the_light_that_light_tracing_finds() {
         radius: Some(0.1),
         ..PhotonMappingDesc::default()
     };
-    let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons), 4);
-    let expected = caustic(&desc, &IntegratorDesc::LightTracing { max_depth: 4 }, 16);
-    welch_test(&found, &expected, 1).unwrap();
-    let without = caustic(&desc, &path(4), 4).mean;
-    assert!(found.mean > 1.25 * without, "{} with the caustic, {without} without", found.mean);
+    for alpha in [1.0, 0.25] {
+        let desc = ball_in_a_beam(alpha);
+        let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons.clone()), 4);
+        let expected = caustic(&desc, &IntegratorDesc::LightTracing { max_depth: 4 }, 16);
+        println!("{alpha} {:.4} +- {:.4} {:.4}", found.mean / expected.mean, found.variance_of_mean().sqrt() / expected.mean, expected.variance_of_mean().sqrt() / expected.mean);
+        welch_test(&found, &expected, 2).unwrap_or_else(|error| panic!("alpha {alpha}: {error}"));
+        let without = caustic(&desc, &path(4), 4).mean;
+        assert!(found.mean > 1.2 * without, "{} with the caustic, {without} without", found.mean);
+    }
+}
+
+/// Looks up at a ceiling that has its light from a floor, there with the probability alpha, in the beam of a lamp.
+fn ceiling_over_a_beam(alpha: f32) -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = [8, 8];
+    let screen = ScreenDesc { window: Some([-0.3, 0.3, -0.3, 0.3]), ..ScreenDesc::default() };
+    desc.camera.kind = CameraKind::Orthographic { screen, lens: LensDesc::default() };
+    let material = diffuse(&mut desc, 0.8);
+    let ceiling = quad(v(-1.0, -1.0, 0.5), v(0.0, 2.0, 0.0), v(2.0, 0.0, 0.0));
+    desc.shapes.push(ShapeDesc { material, ..ceiling.into() });
+    let floor = quad(v(-2.0, -2.0, -0.5), v(4.0, 0.0, 0.0), v(0.0, 4.0, 0.0));
+    desc.shapes.push(ShapeDesc { material, alpha: Some(alpha.into()), ..floor.into() });
+    let beam = LightKind::Spot {
+        intensity: SpectrumDesc::Constant(1.0),
+        power: None,
+        from: v(0.0, 0.0, 0.4),
+        to: v(0.0, 0.0, -0.5),
+        cone_angle: 30.0,
+        cone_delta_angle: 10.0,
+    };
+    desc.lights.push(beam.into());
+    desc
+}
+
+#[test]
+fn a_final_gather_finds_surfaces_that_are_there_in_part() {
+    let integrator = PhotonMappingDesc {
+        max_depth: 2,
+        photons: 1000,
+        caustic_photons: 0,
+        radius: Some(0.06),
+        gather: 4,
+        ..PhotonMappingDesc::default()
+    };
+    let integrator = IntegratorDesc::PhotonMapping(integrator);
+    for alpha in [1.0, 0.5, 0.25] {
+        let desc = ceiling_over_a_beam(alpha);
+        let means = |integrator, passes| -> Moments {
+            (0..16).map(|seed| mean(&luminances(&desc, integrator, seed, passes))).collect()
+        };
+        let (found, expected) = (means(&integrator, 16), means(&path(2), 64));
+        println!("{alpha} {:.4} +- {:.4} {:.4}", found.mean / expected.mean, found.variance_of_mean().sqrt() / expected.mean, expected.variance_of_mean().sqrt() / expected.mean);
+        welch_test(&found, &expected, 3).unwrap_or_else(|error| panic!("alpha {alpha}: {error}"));
+    }
 }
 
 #[test]
@@ -211,7 +259,7 @@ fn photons_that_are_shown_are_dots() {
 
 #[test]
 fn without_lights_it_is_dark_and_without_photons_there_is_direct_light_alone() {
-    let dark = SceneDesc { lights: Default::default(), ..ball_in_a_beam() };
+    let dark = SceneDesc { lights: Default::default(), ..ball_in_a_beam(1.0) };
     let none = PhotonMappingDesc { photons: 0, caustic_photons: 0, ..PhotonMappingDesc::default() };
     for gather in [0, 2] {
         for show in [PhotonMappingShow::Radiance, PhotonMappingShow::Photons] {
