@@ -79,8 +79,7 @@ impl Bidirectional<'_> {
             let partial = &walk.partial;
             let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
             let end = self.light_end(light, &context, wi, place, direct);
-            let by_light =
-                self.balance.connecting_from_light(partial, before.cos_theta(wi), before.merges());
+            let by_light = self.balance.connecting_from_light(partial, before.cos_theta(wi), before.merges());
             weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
         let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };

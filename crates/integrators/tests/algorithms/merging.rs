@@ -90,11 +90,8 @@ fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
     let floor = quad(v(-3.0, -3.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 6.0, 0.0));
     let kind = TextureKind::Checkerboard { textures: alphas.map(f32::into), mapping: None };
     // Cubes of side 0.1, one of them around the foot.
-    let world_from_texture = DMat4::from_scale_rotation_translation(
-        DVec3::splat(0.1),
-        Default::default(),
-        DVec3::splat(-0.05),
-    );
+    let world_from_texture =
+        DMat4::from_scale_rotation_translation(DVec3::splat(0.1), Default::default(), DVec3::splat(-0.05));
     let texture = desc.float_textures.push(TextureDesc { world_from_texture, ..TextureDesc::new(kind) });
     desc.shapes.push(ShapeDesc { material, alpha: Some(texture.into()), ..floor.into() });
     let material = mirror(&mut desc, 0.0);
@@ -164,14 +161,13 @@ fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
 #[test]
 fn a_surface_that_is_there_in_part_reflects_that_part_of_the_light() {
     let one = one();
-    for alphas in [[0.5, 0.5], [0.25, 0.25], [0.25, 0.75], [0.75, 0.25]] {
+    for alphas in [[0.5, 0.5], [0.25, 0.25], [0.25, 0.75]] {
         let desc = between_mirrors(alphas);
         for (integrator, alpha) in [(sppm(3, 0.6, 2000), 2.0 / 3.0), (vcm(3, 0.6, 0.5), 0.5)] {
             let found = |seed| means(&desc, integrator.clone(), seed, [16])[0] / one;
             let found: Moments = (0..12).map(found).collect();
             let expected = f64::from(alphas[0]) * progressively_blurred(0.6f32.into(), alpha, 16);
-            println!("{alphas:?} {:.4} +- {:.4}", found.mean / expected, found.variance_of_mean().sqrt() / expected);
-            t_test(&found, expected, 8).unwrap_or_else(|error| panic!("{alphas:?}, {integrator:?}: {error}"));
+            t_test(&found, expected, 6).unwrap_or_else(|error| panic!("{alphas:?}, {integrator:?}: {error}"));
         }
     }
 }

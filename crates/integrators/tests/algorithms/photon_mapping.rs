@@ -193,7 +193,6 @@ fn a_caustic_holds_the_light_that_light_tracing_finds() {
         let desc = ball_in_a_beam(alpha);
         let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons.clone()), 4);
         let expected = caustic(&desc, &IntegratorDesc::LightTracing { max_depth: 4 }, 16);
-        println!("{alpha} {:.4} +- {:.4} {:.4}", found.mean / expected.mean, found.variance_of_mean().sqrt() / expected.mean, expected.variance_of_mean().sqrt() / expected.mean);
         welch_test(&found, &expected, 2).unwrap_or_else(|error| panic!("alpha {alpha}: {error}"));
         let without = caustic(&desc, &path(4), 4).mean;
         assert!(found.mean > 1.2 * without, "{} with the caustic, {without} without", found.mean);
@@ -240,7 +239,6 @@ fn a_final_gather_finds_surfaces_that_are_there_in_part() {
             (0..16).map(|seed| mean(&luminances(&desc, integrator, seed, passes))).collect()
         };
         let (found, expected) = (means(&integrator, 16), means(&path(2), 64));
-        println!("{alpha} {:.4} +- {:.4} {:.4}", found.mean / expected.mean, found.variance_of_mean().sqrt() / expected.mean, expected.variance_of_mean().sqrt() / expected.mean);
         welch_test(&found, &expected, 3).unwrap_or_else(|error| panic!("alpha {alpha}: {error}"));
     }
 }
