@@ -29,7 +29,7 @@
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a third of the variance; behind a
 //! door, light seeps under it then.
 //!
-//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 176 bytes for each of at most `max_depth` vertices of a path, and
+//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 180 bytes for each of at most `max_depth` vertices of a path, and
 //! 60 to 64 for its photon, 56 more while they are sorted. In larger pictures the other pixels make their light subpaths when they
 //! need them.
 //!
