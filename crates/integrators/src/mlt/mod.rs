@@ -21,7 +21,7 @@
 //! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as well: multiplexed Metropolis
 //!   [Hachisuka 2014]. What the strategy finds is weighted by the balance heuristic and by the number of strategies, so a chain stays
 //!   with those that are good for the paths around it, and pays for one connection instead of all. The number of scattering events,
-//!   which is fixed for a chain in the paper, is one more coordinate.
+//!   which is fixed for a chain in the paper, is one more coordinate, and the greater the less likely.
 //!
 //! Chains are many and short. Those of a pass start at points chosen in proportion to c among uniform ones, candidates that no
 //! other pass knows; their mean is the pass's b. Then b·(the chains' mean) is right on average, at every step and for any number of

@@ -114,9 +114,9 @@ impl Target for CameraPaths<'_> {
 
 /// Bidirectional path tracing: one path, made by one strategy.
 ///
-/// The first coordinates choose the number of scattering events, from 1 to the greatest, and then the strategy, each as likely as
-/// the others of its kind; what is found counts that many times. Camera subpath, light subpath and what connects them have samplers
-/// of their own, lest a longer subpath of one kind move the coordinates of the other.
+/// The first coordinates choose the number of scattering events ([`Depths`]), and then one of the strategies, all as likely; what is
+/// found counts over the probability of both. Camera subpath, light subpath and what connects them have samplers of their own, lest
+/// a longer subpath of one kind move the coordinates of the other.
 pub(super) struct ConnectedPaths<'a> {
     pub view: View<'a>,
     pub paths: Bidirectional<'a>,
@@ -125,13 +125,13 @@ pub(super) struct ConnectedPaths<'a> {
 impl Target for ConnectedPaths<'_> {
     fn contribution(&self, streams: &mut Streams, stats: &mut RayStats) -> Contribution {
         let [camera, ..] = &mut *streams;
-        let (depth, depths) = (1 + choose(camera.get_1d(), self.paths.max_depth), self.paths.max_depth);
+        let (depth, probability) = Depths { greatest: self.paths.max_depth }.choose(camera.get_1d());
         let strategies = depth + 2;
         let s = choose(camera.get_1d(), strategies);
         let seen = self.view.sample(camera);
         let lambda = seen.lambda;
         let (film, l) = self.find(s, strategies - s, &seen, streams, stats).unwrap_or_default();
-        Contribution { film, l: l * (depths * strategies) as f32, lambda }
+        Contribution { film, l: l * (strategies as f32 / probability), lambda }
     }
 }
 
@@ -177,4 +177,74 @@ impl ConnectedPaths<'_> {
 /// One of `count` numbers from 0 on, all as likely.
 fn choose(u: f32, count: u32) -> u32 {
     ((u * count as f32) as u32).min(count - 1)
+}
+
+/// How many scattering events a path has, from 1 to the greatest number d_max.
+///
+/// Light that is scattered often is faint, so paths are the less likely the longer they are. That there are d or more events has, if
+/// there may be any number of them, the probability
+///
+/// ```text
+/// T(d) = (8/(7 + d))²        and so, up to d_max,   p(d) = (T(d) − T(d + 1)) / (1 − T(d_max + 1))
+/// ```
+///
+/// The first few numbers are nearly as likely as each other. Because p falls as d⁻³, slower than light does in any room, what is
+/// found over p does not grow without bound; and yet a path has a length on average, of 8.5 events, whatever d_max is.
+#[derive(Clone, Copy, Debug)]
+struct Depths {
+    /// d_max, above 0.
+    greatest: u32,
+}
+
+impl Depths {
+    const SCALE: f64 = 8.0;
+
+    /// The probability of `depth` or more events, if there may be any number.
+    fn at_least(depth: f64) -> f64 {
+        (Self::SCALE / (Self::SCALE - 1.0 + depth)).powi(2)
+    }
+
+    /// The number that `u` in [0, 1) chooses, and its probability.
+    fn choose(self, u: f32) -> (u32, f32) {
+        let greatest = f64::from(self.greatest);
+        let all = 1.0 - Self::at_least(greatest + 1.0);
+        let rest = 1.0 - f64::from(u) * all;
+        let depth = (Self::SCALE / rest.sqrt() - (Self::SCALE - 1.0)).floor().clamp(1.0, greatest);
+        let probability = (Self::at_least(depth) - Self::at_least(depth + 1.0)) / all;
+        (depth as u32, probability as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depths_have_the_probability_that_is_claimed_for_them() {
+        for greatest in [1, 2, 5, 100, 70_000, 2_000_000_000] {
+            const CELLS: usize = 40;
+            let (count, depths) = (100_000, Depths { greatest });
+            let (mut observed, mut expected) = ([0; CELLS], [0.0; CELLS]);
+            for i in 0..count {
+                let (depth, probability) = depths.choose((i as f32 + 0.5) / count as f32);
+                assert!((1..=greatest).contains(&depth) && probability > 0.0);
+                let cell = (depth as usize - 1).min(CELLS - 1);
+                observed[cell] += 1;
+                expected[cell] = f64::from(probability) * f64::from(count);
+            }
+            let rest: f64 = expected[..CELLS - 1].iter().sum();
+            expected[CELLS - 1] = f64::from(count) - rest;
+            for (observed, expected) in observed.iter().zip(expected) {
+                assert!((f64::from(*observed) - expected).abs() < 2.0, "{greatest}: {observed} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_path_is_endless() {
+        for greatest in [1_000_000, u32::MAX - 2] {
+            let (depth, probability) = Depths { greatest }.choose(math::ONE_MINUS_EPSILON);
+            assert!(depth < 1 << 15 && probability > 0.0, "{depth} {probability}");
+        }
+    }
 }
