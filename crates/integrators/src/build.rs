@@ -13,7 +13,7 @@ use scene::texture::color_space;
 use crate::{
     AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Mlt, MltSettings, Path,
     PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
-    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, radiosity,
+    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, endless, radiosity,
 };
 
 /// What [`build`] gives.
@@ -140,6 +140,7 @@ impl Builder<'_> {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
             }
             &IntegratorDesc::LightTracing { max_depth } => {
+                self.diagnostics.extend(endless::warnings(self.desc, "light-tracing"));
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(LightTracing::new(self.depth(max_depth), sampler, light_sampler))
             }
@@ -155,6 +156,7 @@ impl Builder<'_> {
             }
             IntegratorDesc::Mlt(desc) => self.mlt(desc, sampler),
             IntegratorDesc::PhotonMapping(desc) => {
+                self.diagnostics.extend(endless::warnings(self.desc, "photon-mapping"));
                 let settings = self.photon_mapping(desc);
                 Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
             }
@@ -168,6 +170,7 @@ impl Builder<'_> {
                 Box::new(Vcm::new(settings, sampler, light_sampler, self.photon_seed(None)))
             }
             &IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed }) => {
+                self.diagnostics.extend(endless::warnings(self.desc, "sppm"));
                 let settings = SppmSettings {
                     max_depth: self.depth(max_depth),
                     photons_per_iteration: photons_per_iteration.map(|count| self.photons(count)),

@@ -30,6 +30,7 @@ mod bidirectional;
 mod build;
 mod control;
 mod direct;
+mod endless;
 mod integrator;
 mod light_tracing;
 mod merging;

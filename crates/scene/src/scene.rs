@@ -228,7 +228,8 @@ impl Scene {
         self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
     }
 
-    /// [`Light::sample_le`] of one of this scene's lights.
+    /// [`Light::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere around all that has an end; what has
+    /// none may keep it from there: `None` if it does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -236,8 +237,17 @@ impl Scene {
         u_direction: Point2,
         time: f32,
         lambda: &SampledWavelengths,
+        stats: &mut RayStats,
     ) -> Option<LightLeSample> {
-        self.light(light).sample_le(u_position, u_direction, time, lambda, &self.textures)
+        let light = self.light(light);
+        let sample = light.sample_le(u_position, u_direction, time, lambda, &self.textures)?;
+        if sample.p.is_none() && self.world.is_endless() {
+            let way_back = Ray { d: -sample.ray.d, ..sample.ray };
+            if self.occluded(&way_back, f32::INFINITY, Interfaces::Pass, stats) {
+                return None;
+            }
+        }
+        Some(sample)
     }
 
     /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the shading normal on the way.

@@ -211,8 +211,9 @@ fn assert_weights(balance: Balance, expected: Balance) {
         // The sampler's next numbers choose the light and its ray.
         let mut replay = sampler.clone();
         let (light, _) = lights.emitting.sample(replay.get_1d()).expect("a light");
-        let sample =
-            scene.sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda).expect("a ray");
+        let sample = scene
+            .sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda, stats)
+            .expect("a ray");
         let start = (light, sample.p.expect("a place").p, sample.n);
         let mut light_subpath = Vec::new();
         paths.light_subpath(0.0, &lambda, &mut sampler, stats, |vertex, _, _| light_subpath.push(*vertex));

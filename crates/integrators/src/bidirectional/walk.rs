@@ -76,10 +76,11 @@ impl<'a> Walk<'a> {
         time: f32,
         lambda: SampledWavelengths,
         sampler: &mut Sampler,
+        stats: &mut RayStats,
     ) -> Option<Self> {
         let (u, u_position, u_direction) = (sampler.get_1d(), sampler.get_2d(), sampler.get_2d());
         let (light, pmf) = paths.lights.emitting.sample(u)?;
-        let sample = paths.scene.sample_emission(light, u_position, u_direction, time, &lambda)?;
+        let sample = paths.scene.sample_emission(light, u_position, u_direction, time, &lambda, stats)?;
         let start = (sample.beta() / pmf, Partial::default());
         let origin = (Origin::Light(light, sample.p.map(|p| (p.p, sample.n))), TransportMode::Importance);
         Some(Self::new(paths, sample.ray.into(), start, lambda, origin))
