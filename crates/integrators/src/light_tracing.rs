@@ -84,8 +84,8 @@ impl Integrator for LightTracing {
             let mut reached = 0;
             paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, |vertex, sampler, stats| {
                 let u = sampler.get_2d();
-                if let Some(seen) = paths.see(vertex, u, |film| splatter.reaches(film), stats) {
-                    splatter.add(seen.film, &seen.found.l, lambda);
+                if let Some(seen) = paths.see(vertex, u, splatter.reach(), stats) {
+                    seen.splat(&splatter, &seen.found.l, lambda);
                     reached += 1;
                 }
             });

@@ -104,9 +104,9 @@ impl Integrator for Bdpt {
             let mut light_subpath = Vec::new();
             paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, |vertex, sampler, stats| {
                 let u = sampler.get_2d();
-                if let Some(seen) = paths.see(vertex, u, |film| splatter.reaches(film), stats) {
-                    splatter.add(seen.film, &seen.found.weighted(), lambda);
-                    techniques.add(&seen.found, |splatter, l| splatter.add(seen.film, l, lambda));
+                if let Some(seen) = paths.see(vertex, u, splatter.reach(), stats) {
+                    seen.splat(&splatter, &seen.found.weighted(), lambda);
+                    techniques.add(&seen.found, |splatter, l| seen.splat(splatter, l, lambda));
                 }
                 light_subpath.push(*vertex);
             });

@@ -7,7 +7,7 @@ use description::{
     ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
 };
 use geometry::RayStats;
-use math::{Normal3, Point2, Point3, Vec2, Vec3};
+use math::{Bounds2, Normal3, Point2, Point3, Vec2, Vec3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scattering::{Directions, TransportMode};
@@ -198,6 +198,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
     let stats = &mut RayStats::default();
     let mut seen = [0; 5];
     let slow = Bidirectional { balance: expected, ..paths };
+    let everywhere = Bounds2 { min: Vec2::NEG_INFINITY, max: Vec2::INFINITY };
     let mut check = |path: &Path, strategy: Strategy, weight: f32, kind: usize| {
         let expected = path.weight(&slow, strategy);
         let difference = (f64::from(weight) - expected).abs();
@@ -226,7 +227,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
-            if let Some(found) = paths.see(vertex, Vec2::ZERO, |_| true, stats) {
+            if let Some(found) = paths.see(vertex, Vec2::ZERO, everywhere, stats) {
                 check(
                     &Path { light: start, surfaces, camera },
                     connect(found.found.s),

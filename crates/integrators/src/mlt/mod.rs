@@ -137,9 +137,9 @@ impl Integrator for Mlt {
     ) -> Result<RayStats, Cancelled> {
         let MltSettings { max_depth, regularize, mutations_per_pixel, .. } = self.settings;
         let filter = film.filter().clone();
-        let view = View::new(scene, film, mutations_per_pixel);
         let mutations = film.pixel_bounds().area();
         let (tiles, splatter) = film.tiles_and_splatter();
+        let view = View::new(scene, &splatter, mutations_per_pixel);
 
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
         let mut stats = pixels.add(tiles, control, |sample, sampler, stats| {

@@ -1,11 +1,11 @@
 //! What chains look for: paths, as functions of a point of primary sample space.
 
-use film::{Film, Splatter};
+use film::Splatter;
 use geometry::RayStats;
-use math::{Bounds2, Point2, Vec2};
+use math::{Bounds2, Point2};
 use sampling::Sampler;
 use scene::Scene;
-use scene::camera::{CameraRayDifferential, CameraSample};
+use scene::camera::{CameraRayDifferential, CameraSample, FilmPlaces};
 use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
 
 use super::chain::Streams;
@@ -16,8 +16,8 @@ use crate::pixel_loop::camera_ray;
 /// Light that arrives at a place on the film.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contribution {
-    /// Position in pixels.
-    film: Point2,
+    /// Positions in pixels.
+    places: FilmPlaces,
     /// The light.
     l: SampledSpectrum,
     /// At these wavelengths.
@@ -35,7 +35,8 @@ impl Contribution {
     /// Adds the light, times a factor.
     pub fn splat(&self, factor: f32, splatter: &Splatter) {
         if factor > 0.0 && !self.l.is_black() {
-            splatter.add(self.film, &(self.l * factor), &self.lambda);
+            let l = self.l * factor;
+            self.places.within(splatter.reach()).for_each(|film| splatter.add(film, &l, &self.lambda));
         }
     }
 }
@@ -58,13 +59,8 @@ struct Seen {
 }
 
 impl<'a> View<'a> {
-    pub fn new(scene: &'a Scene, film: &Film, samples_per_pixel: u32) -> Self {
-        let bounds = film.pixel_bounds();
-        let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
-        // Pixels reach as far as the filter from their centres.
-        let margin = film.filter().radius() - 0.5;
-        let film = Bounds2::new(corner(bounds.min) - margin, corner(bounds.max) + margin);
-        Self { scene, film, samples_per_pixel }
+    pub fn new(scene: &'a Scene, splatter: &Splatter, samples_per_pixel: u32) -> Self {
+        Self { scene, film: splatter.reach(), samples_per_pixel }
     }
 
     /// The area of all positions, in pixels: what light of a path from the camera is worth, since positions have one over it for
@@ -108,7 +104,7 @@ impl Target for CameraPaths<'_> {
             let l = self.path.li_from(1, self.view.scene, camera_ray.ray, &mut lambda, sampler, stats);
             l * (camera_ray.weight * self.view.area())
         });
-        Contribution { film, l, lambda }
+        Contribution { places: film.into(), l, lambda }
     }
 }
 
@@ -130,8 +126,10 @@ impl Target for ConnectedPaths<'_> {
         let s = choose(camera.get_1d(), strategies);
         let seen = self.view.sample(camera);
         let lambda = seen.lambda;
-        let (film, l) = self.find(s, strategies - s, &seen, streams, stats).unwrap_or_default();
-        Contribution { film, l: l * (strategies as f32 / probability), lambda }
+        let (places, l) = self
+            .find(s, strategies - s, &seen, streams, stats)
+            .unwrap_or((seen.film.into(), SampledSpectrum::ZERO));
+        Contribution { places, l: l * (strategies as f32 / probability), lambda }
     }
 }
 
@@ -144,7 +142,7 @@ impl ConnectedPaths<'_> {
         seen: &Seen,
         [camera, light, connection]: &mut Streams,
         stats: &mut RayStats,
-    ) -> Option<(Point2, SampledSpectrum)> {
+    ) -> Option<(FilmPlaces, SampledSpectrum)> {
         let (paths, lambda) = (&self.paths, &seen.lambda);
         let mut light_vertex = |stats: &mut RayStats| {
             let vertex = paths.light_vertex(s - 1, seen.time, lambda, light, stats)?;
@@ -152,9 +150,8 @@ impl ConnectedPaths<'_> {
         };
         if t == 1 {
             let vertex = light_vertex(stats)?;
-            let reaches = |film| self.view.film.contains(film);
-            let on_film = paths.see(&vertex, connection.get_2d(), reaches, stats)?;
-            return Some((on_film.film, on_film.found.weighted()));
+            let on_film = paths.see(&vertex, connection.get_2d(), self.view.film, stats)?;
+            return Some((on_film.places, on_film.found.weighted()));
         }
         let camera_ray = seen.camera_ray.as_ref()?;
         let l = if s == 0 {
@@ -170,7 +167,7 @@ impl ConnectedPaths<'_> {
             };
             found.weighted()
         };
-        Some((seen.film, l * self.view.area()))
+        Some((seen.film.into(), l * self.view.area()))
     }
 }
 

@@ -199,11 +199,11 @@ impl PhotonMapping {
         let (_, splatter) = film.tiles_and_splatter();
         let dot = |vertex: &Vertex, sampler: &mut Sampler, stats: &mut RayStats| {
             let lens = sampler.get_2d();
-            if let Some(seen) = emission.paths.see(vertex, lens, |film| splatter.reaches(film), stats) {
+            if let Some(seen) = emission.paths.see(vertex, lens, splatter.reach(), stats) {
                 let photon = Photon::at(vertex);
                 let l = photon.beta * white;
                 let l = if photon.hero_only { hero_only(l) } else { l };
-                splatter.add(seen.film, &l, &emission.moment.lambda);
+                seen.splat(&splatter, &l, &emission.moment.lambda);
             }
         };
         splatter.add_paths(1);
