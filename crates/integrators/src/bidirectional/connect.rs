@@ -111,14 +111,11 @@ impl Bidirectional<'_> {
         if l.is_black() {
             return None;
         }
-        let visible = match sample.p {
-            Some(p) => self.visible(vertex, p, sample.n, stats),
-            None => {
-                let ray = Ray::spawn(vertex.p, vertex.n, wi, vertex.time);
-                !self.scene.occluded(&ray, f32::INFINITY, Interfaces::Pass, stats)
-            }
+        let (ray, end) = match sample.p {
+            Some(p) => (vertex.ray_to(p, sample.n), Ray::SHADOW_END),
+            None => (Ray::spawn(vertex.p, vertex.n, wi, vertex.time), f32::INFINITY),
         };
-        if !visible {
+        if self.scene.occluded(&ray, end, Interfaces::before(self.scene.light(light)), stats) {
             return None;
         }
         let place = sample.p.map(|p| (p.p, sample.n));

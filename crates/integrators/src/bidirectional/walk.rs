@@ -10,9 +10,9 @@ use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Directions, TransportMode};
-use scene::SurfaceInteraction;
 use scene::camera::CameraRayDifferential;
 use scene::light::LightId;
+use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::light_end::Place;
@@ -38,6 +38,8 @@ pub(crate) struct Walk<'a> {
     /// Way since the vertex before.
     distance: f32,
     rough_before: bool,
+    /// Whether an interface has stopped it.
+    is_stopped: bool,
     origin: Origin,
     mode: TransportMode,
 }
@@ -103,13 +105,17 @@ impl<'a> Walk<'a> {
             share: SampledSpectrum::ONE,
             distance: 0.0,
             rough_before: false,
+            is_stopped: false,
             origin,
             mode,
         }
     }
 
-    /// The surface that the ray meets; `None` if it leaves the scene.
+    /// The surface that the ray meets; `None` if it leaves the scene, or was stopped.
     pub fn meet(&mut self, stats: &mut RayStats) -> Option<SurfaceInteraction> {
+        if self.is_stopped {
+            return None;
+        }
         let (surface, t) = self.paths.scene.intersect(&self.ray.ray, f32::INFINITY, stats)?;
         self.distance += t;
         Some(surface)
@@ -120,6 +126,11 @@ impl<'a> Walk<'a> {
         let Some(mut bsdf) = self.paths.scene.bsdf(surface, &self.ray, &mut self.lambda, sampler) else {
             let t = self.ray.ray.o.distance(surface.p());
             self.ray = pass_through(&self.ray, surface, t);
+            if let Origin::Light(light, _) = self.origin
+                && Interfaces::before(self.paths.scene.light(light)) == Interfaces::Stop
+            {
+                self.is_stopped = true;
+            }
             return None;
         };
         if self.paths.regularize && self.rough_before {

@@ -105,7 +105,7 @@ impl Mlt {
                 max_depth,
                 regularize: settings.regularize,
                 light_sampler: LightSamplerKind::Bvh,
-                interfaces: Interfaces::Pass,
+                interfaces: Interfaces::Stop,
             })
         };
         let technique = match settings.technique {

@@ -161,7 +161,7 @@ impl PhotonMapping {
             max_depth: settings.max_depth,
             regularize: false,
             light_sampler: LightSamplerKind::Bvh,
-            interfaces: Interfaces::Pass,
+            interfaces: Interfaces::Stop,
         });
         let (lights, tally, reach) = (Lights::none(), Tally::default(), Reach::new(1.0));
         Self { settings, sampler, photon_seed, lights, path, radius: 1.0, tally, reach }
