@@ -38,6 +38,7 @@ pub(crate) struct Walk<'a> {
     /// Way since the vertex before.
     distance: f32,
     rough_before: bool,
+    after_diffuse: bool,
     /// Whether an interface has stopped it.
     is_stopped: bool,
     origin: Origin,
@@ -105,6 +106,7 @@ impl<'a> Walk<'a> {
             share: SampledSpectrum::ONE,
             distance: 0.0,
             rough_before: false,
+            after_diffuse: false,
             is_stopped: false,
             origin,
             mode,
@@ -148,6 +150,7 @@ impl<'a> Walk<'a> {
             hero_only: self.lambda.secondary_terminated(),
             partial: Partial::default(),
             depth: self.depth,
+            after_diffuse: self.after_diffuse,
             mode: self.mode,
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
@@ -201,9 +204,10 @@ impl<'a> Walk<'a> {
             vertex.partial.leave_specular(cos_theta)
         } else {
             let pdf = if sample.pdf_is_proportional { vertex.pdf(sample.wi) } else { sample.pdf };
-            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta, vertex.can_merge())
+            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta, vertex.merges())
         };
         self.rough_before |= !sample.flags.is_specular();
+        self.after_diffuse |= vertex.is_diffuse();
         self.beta *= scale;
         self.share *= scale;
         if vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {
