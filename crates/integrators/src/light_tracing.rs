@@ -17,7 +17,7 @@
 //! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen along one camera ray for each
 //! pixel, since those far away are nowhere on a subpath.
 //!
-//! Unbiased for what it can see. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+//! Unbiased for what it can see. A plane without end lies in the dark where light from infinity does not come (`endless.rs`). Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
