@@ -102,6 +102,7 @@ impl Merging {
                     }
                 });
             }
+            control.count(&stats);
             Ok((photons, stats))
         };
         let starts = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
@@ -122,6 +123,9 @@ impl Merging {
     /// What the integrators tell of it.
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         let &LastPass { passes, radius, paths, photons, bytes } = &self.last;
+        if passes == 0 {
+            return Vec::new();
+        }
         let mebibytes = bytes as f64 / f64::from(1 << 20);
         vec![
             ("photons", format!("{photons} from {paths} paths in a pass, {mebibytes:.1} MiB")),
