@@ -207,7 +207,7 @@ fn a_cancelled_comparison_is_of_what_was_done() {
         let plan = Plan { reference: rendered(2), ..plan(&["path", "whitted"], Budget::Samples(2)) };
         laboratory(plan).unwrap().compare(|name| Control {
             cancel: if name == stage { Arc::clone(&cancelled) } else { Arc::default() },
-            progress: None,
+            ..Control::default()
         })
     };
     for nothing in ["reference by path", "path"] {

@@ -30,7 +30,27 @@ pub struct Parts {
     pub bias_squared_deviation: f64,
 }
 
+/// What can be said of an algorithm's bias, as a share of the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bias {
+    /// There is so much: more than chance explains.
+    Seen(f64),
+    /// None was seen, and there is not more than this.
+    Below(f64),
+    /// Noise would hide as much as there is light.
+    Hidden,
+}
+
 impl Parts {
+    /// What the parts of a relative error say of bias.
+    pub fn bias(&self) -> Bias {
+        if self.is_biased() {
+            return Bias::Seen(self.bias_squared.sqrt());
+        }
+        let most = (self.bias_squared.max(0.0) + 3.0 * self.bias_squared_deviation).sqrt();
+        if most < 1.0 { Bias::Below(most) } else { Bias::Hidden }
+    }
+
     /// Whether there is more bias than chance explains: three standard deviations.
     pub fn is_biased(&self) -> bool {
         self.bias_squared > 3.0 * self.bias_squared_deviation
@@ -192,6 +212,11 @@ mod tests {
             assert!((measured.mean_error - bias).abs() < 4.0 * measured.mean_error_deviation, "{measured:?}");
             assert!(measured.mean_error_deviation < 0.01, "{measured:?}");
             assert_eq!(measured.absolute.is_biased(), bias != 0.0, "{measured:?}");
+            match measured.absolute.bias() {
+                Bias::Seen(seen) => assert!((seen - bias.abs()).abs() < 0.02, "{seen}"),
+                Bias::Below(most) => assert!(bias == 0.0 && most < 0.1, "{most}"),
+                Bias::Hidden => panic!("{measured:?}"),
+            }
         }
     }
 
@@ -202,6 +227,14 @@ mod tests {
         assert!(
             (measured.mean_error - 0.1).abs() < 1e-6 && (measured.mean_error_deviation - 0.2).abs() < 1e-6
         );
+    }
+
+    #[test]
+    fn much_noise_hides_bias() {
+        let parts = Parts { bias_squared: 2.0, bias_squared_deviation: 1.0, ..Parts::default() };
+        assert_eq!(parts.bias(), Bias::Hidden);
+        let parts = Parts { bias_squared: -1.0, bias_squared_deviation: 0.03, ..Parts::default() };
+        assert_eq!(parts.bias(), Bias::Below(0.3));
     }
 
     #[test]
