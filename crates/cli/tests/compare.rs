@@ -136,7 +136,7 @@ fn an_interruption_leaves_a_report() {
     assert_eq!(status.code(), Some(130), "{said}");
     assert!(said.contains("interrupted; the report is of what had been done"), "{said}");
     let (page, json) = report(&folder, "a");
-    assert!(page.contains("Interrupted"));
+    assert!(page.contains("Interrupted") && page.contains("<p class=\"warning\">Warning: "));
     assert_eq!((&json["status"], &json["missing"]), (&"interrupted".into(), &serde_json::json!(["whitted"])));
     assert!(json["integrators"][0]["passes"].as_u64() > Some(0));
 }
