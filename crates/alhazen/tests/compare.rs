@@ -150,10 +150,8 @@ fn algorithms_that_agree_have_no_bias_and_those_that_leave_light_out_have() {
 
 #[test]
 fn a_reference_that_misses_light_is_doubted() {
-    let short = ReferenceSource::Render {
-        by: Some("path:maxdepth=1".parse().unwrap()),
-        samples_per_pixel: Some(64),
-    };
+    let short =
+        ReferenceSource::Render { by: Some("path:maxdepth=1".parse().unwrap()), samples_per_pixel: Some(64) };
     let contenders = ["path:maxdepth=1", "path", "simple-path"];
     let comparison = compared(Plan { reference: short, ..plan(&contenders, Budget::Samples(8)) });
     let doubt = comparison.doubt().unwrap();

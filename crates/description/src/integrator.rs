@@ -232,7 +232,7 @@ pub struct SppmDesc {
     pub max_depth: i32,
     /// Photons per pass; as many as pixels if absent.
     pub photons_per_iteration: Option<i32>,
-    /// First search radius in world units; if absent, a share of the scene's size.
+    /// First search radius in world units; if absent, a share of the scene's size (1 in pbrt-v4).
     pub radius: Option<f32>,
     /// Seed of the photons; the scene's if absent.
     pub seed: Option<i32>,

@@ -65,6 +65,11 @@ impl Merging {
         Self { radius, alpha, seed, last: LastPass::default() }
     }
 
+    /// Changes the radius of the first pass.
+    pub fn begin_with(&mut self, radius: f32) {
+        self.radius = radius;
+    }
+
     /// The radius of a pass, which are counted from 0.
     pub fn radius(&self, pass: u32) -> f32 {
         let alpha = f64::from(self.alpha);

@@ -34,9 +34,12 @@ use crate::{Cancelled, Control, Integrator};
 /// How slowly the radius shrinks.
 const ALPHA: f32 = 2.0 / 3.0;
 
-/// The first radius as a part of that of the scene. In a room it gives a pixel about ten photons of a pass where there are a hundred thousand
-/// pixels, so that none is black; the blur is gone after a few passes.
-const SHARE_OF_SCENE: f32 = 0.01;
+/// The first radius, if it is not told, over that of the scene times √n for n light subpaths in a pass: the more photons, the nearer they are.
+/// About thirty count for a point of a room, so that few are black.
+const SPACING: f32 = 5.0;
+
+/// It is no larger part of the scene's than this.
+const LARGEST_SHARE: f32 = 0.05;
 
 /// Settings of [`Sppm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +48,8 @@ pub struct SppmSettings {
     pub max_depth: u32,
     /// Light subpaths in a pass, above 0; by default as many as pixels.
     pub photons_per_iteration: Option<u32>,
-    /// Distance in the scene within which photons count in the first pass, above 0; by default 0.01 of the scene's radius.
+    /// Distance in the scene within which photons count in the first pass, above 0; by default 5/√n of the
+    /// scene's radius for n light subpaths, and no more than 0.05 of it.
     pub radius: Option<f32>,
 }
 
@@ -60,7 +64,6 @@ impl Default for SppmSettings {
 pub struct Sppm {
     settings: SppmSettings,
     sampler: Sampler,
-    photon_seed: u32,
     lights: Lights,
     merging: Merging,
 }
@@ -69,7 +72,7 @@ impl Sppm {
     /// With a sampler for what begins at the camera, and a seed for photons.
     pub fn new(settings: SppmSettings, sampler: Sampler, photon_seed: u32) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), ALPHA, photon_seed);
-        Self { settings, sampler, photon_seed, lights: Lights::none(), merging }
+        Self { settings, sampler, lights: Lights::none(), merging }
     }
 }
 
@@ -86,8 +89,6 @@ impl Integrator for Sppm {
 
     fn prepare(&mut self, scene: &Scene) {
         self.lights = Lights::of(scene);
-        let radius = self.settings.radius.unwrap_or(SHARE_OF_SCENE * scene.sphere().radius);
-        self.merging = Merging::new(radius, ALPHA, self.photon_seed);
     }
 
     fn pass(
@@ -99,6 +100,10 @@ impl Integrator for Sppm {
     ) -> Result<RayStats, Cancelled> {
         let pixel_count = film.pixel_bounds().area();
         let photon_paths = self.settings.photons_per_iteration.map_or(pixel_count, |count| count as usize);
+        if self.settings.radius.is_none() {
+            let share = (SPACING / (photon_paths as f32).sqrt()).min(LARGEST_SHARE);
+            self.merging.begin_with(share * scene.sphere().radius);
+        }
         let paths = Bidirectional {
             scene,
             lights: &self.lights,

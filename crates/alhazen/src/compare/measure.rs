@@ -28,6 +28,8 @@ pub struct Parts {
     pub bias_squared: f64,
     /// The standard deviation of the estimate of the squared bias; infinite for a single pixel, which cannot tell.
     pub bias_squared_deviation: f64,
+    /// Variance of the reference, where it is known: the rest of the error.
+    pub reference_variance: f64,
 }
 
 /// What can be said of an algorithm's bias, as a share of the reference.
@@ -51,9 +53,12 @@ impl Parts {
         if most < 1.0 { Bias::Below(most) } else { Bias::Hidden }
     }
 
-    /// Whether there is more bias than chance explains: three standard deviations.
+    /// Whether there is more bias than chance explains: three standard deviations, or more than all noise. The latter is for bias in a few
+    /// pixels, such as those of a caustic, which make the spread over pixels large.
     pub fn is_biased(&self) -> bool {
-        self.bias_squared > 3.0 * self.bias_squared_deviation
+        let noise = self.variance + self.reference_variance;
+        let is_more_than_noise = self.bias_squared_deviation.is_finite() && self.bias_squared > noise;
+        self.bias_squared > 3.0 * self.bias_squared_deviation || is_more_than_noise
     }
 }
 
@@ -112,6 +117,7 @@ impl Sums {
             variance: self.differences / (2.0 * values),
             bias_squared: self.products / values - reference_noise,
             bias_squared_deviation: deviation,
+            reference_variance: reference_noise,
         }
     }
 }
@@ -230,8 +236,28 @@ mod tests {
     }
 
     #[test]
+    fn bias_in_a_few_pixels_is_seen() {
+        let mut random = Random::new(3);
+        let reference = Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |_, _| [1.0; 3]);
+        for (spot, seen) in [(0.0, false), (5.0, true)] {
+            let pair = [0; 2].map(|_| {
+                let noise = picture(&mut random, 0.0, 0.001);
+                Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |x, y| {
+                    noise.rgb(x, y).map(|value| if x == 0 && y < 8 { value + spot } else { value })
+                })
+            });
+            let parts = measure(&pair, &reference, None).absolute;
+            assert!(
+                parts.bias_squared < 3.0 * parts.bias_squared_deviation && parts.is_biased() == seen,
+                "{parts:?}"
+            );
+        }
+    }
+
+    #[test]
     fn much_noise_hides_bias() {
-        let parts = Parts { bias_squared: 2.0, bias_squared_deviation: 1.0, ..Parts::default() };
+        let parts =
+            Parts { variance: 3.0, bias_squared: 2.0, bias_squared_deviation: 1.0, ..Parts::default() };
         assert_eq!(parts.bias(), Bias::Hidden);
         let parts = Parts { bias_squared: -1.0, bias_squared_deviation: 0.03, ..Parts::default() };
         assert_eq!(parts.bias(), Bias::Below(0.3));
