@@ -151,6 +151,10 @@ impl Integrator for Radiosity {
         self.steps() + self.sampler.samples_per_pixel()
     }
 
+    fn samples_per_pixel(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
     fn prepare(&mut self, scene: &Scene) {
         // A final gather scatters once more.
         let depth = self.settings.max_depth.saturating_sub(u32::from(self.settings.gather > 0));

@@ -41,7 +41,7 @@ const FAINT: f32 = 1e-3;
 pub(crate) struct Solution {
     pub wavelengths: Wavelengths,
     pub cut: Cut,
-    settings: RadiositySettings,
+    pub settings: RadiositySettings,
     /// Whether the lights that are no surfaces have shone.
     begun: bool,
     /// Brightness of all light that there is to send.

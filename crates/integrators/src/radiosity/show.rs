@@ -123,6 +123,9 @@ impl View {
                 ray = pass_through(&ray, &interaction, hit.t);
                 continue;
             };
+            if solution.settings.max_depth == 0 {
+                return l;
+            }
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
             if let (Some((leaf, uv)), 0) = (leaf, self.gather) {
                 let sides = albedo.scatter(&self.irradiance(solution, leaf, uv));
