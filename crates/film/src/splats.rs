@@ -18,6 +18,9 @@ use crate::{ExactSum, Filter, TILE_SIZE};
 /// What has been splatted on one pixel.
 type Splat = [ExactSum; 3];
 
+/// What the splats of a film take for each of its pixels, in bytes.
+pub const SPLAT_BYTES: usize = size_of::<Splat>();
+
 /// All that has been splatted on a film; takes no memory for pixels before the first splat is possible.
 #[derive(Debug, Default)]
 pub(crate) struct SplatSums {

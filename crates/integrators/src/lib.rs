@@ -53,7 +53,7 @@ mod whitted;
 pub use ambient_occlusion::AmbientOcclusion;
 pub use bdpt::{Bdpt, BdptSettings};
 pub use build::{Built, build};
-pub use control::{Cancelled, Control, Progress, ProgressSink};
+pub use control::{Cancelled, Control, FilmSink, Progress, ProgressSink};
 pub use integrator::{ByProduct, Integrator};
 pub use light_tracing::LightTracing;
 pub use mlt::{Mlt, MltSettings};

@@ -79,6 +79,7 @@ impl Emission<'_> {
                         kept.push(keep(vertex, sampler, stats));
                     });
                 }
+                control.count(&stats);
                 Ok((kept, stats))
             })
             .collect::<Result<_, _>>()?;

@@ -219,9 +219,9 @@ fn merging_needs_a_radius_a_rate_and_photons() {
         );
         assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
     }
-    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: f32::NAN, ..SppmDesc::default() };
+    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: Some(f32::NAN), ..SppmDesc::default() };
     assert_eq!(
         errors(IntegratorDesc::Sppm(sppm)),
-        "`photonsperiteration` is a number above 0, not 0; `radius` is a distance above 0, not NaN"
+        "the photons of a pass are a number above 0, not 0; `radius` is a distance above 0, not NaN"
     );
 }
