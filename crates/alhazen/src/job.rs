@@ -16,8 +16,22 @@ pub struct Job {
     scene: Scene,
     film: Film,
     integrator: Box<dyn Integrator>,
-    /// What the picture's header says.
-    header: Vec<(&'static str, Attribute)>,
+    header: Header,
+}
+
+/// What the header of a picture says: the scene's camera, and settings.
+#[derive(Clone, Debug)]
+pub struct Header(Vec<(&'static str, Attribute)>);
+
+impl Header {
+    /// The picture on a film, with this in its header.
+    pub fn picture(&self, film: &Film) -> Image {
+        let mut picture = film.develop();
+        for (name, value) in &self.0 {
+            picture.metadata.set(name, value.clone());
+        }
+        picture
+    }
 }
 
 /// What [`Job::compile`] gives.
@@ -56,11 +70,12 @@ impl Job {
 
     /// The picture as it stands, with the scene's camera and settings in its header.
     pub fn picture(&self) -> Image {
-        let mut picture = self.film.develop();
-        for (name, value) in &self.header {
-            picture.metadata.set(name, value.clone());
-        }
-        picture
+        self.header.picture(&self.film)
+    }
+
+    /// The header of its pictures.
+    pub fn header(&self) -> &Header {
+        &self.header
     }
 
     /// What has been made beside the picture.
@@ -112,9 +127,12 @@ pub fn render_file(
         return Err(RenderError::Scene(Box::new(imported)));
     }
     overrides.apply(&mut imported.desc).map_err(RenderError::Override)?;
-    let compiled = Job::compile(&imported.desc).map_err(|errors| {
-        imported.diagnostics.extend(errors);
-        RenderError::Scene(Box::new(imported))
+    let compiled = Job::compile(&imported.desc).map_err(|errors| match overrides.blamed(&errors) {
+        Some(error) => RenderError::Override(error),
+        None => {
+            imported.diagnostics.extend(errors);
+            RenderError::Scene(Box::new(imported))
+        }
     })?;
     let mut job = compiled.job;
     job.render(control).map_err(|Cancelled| RenderError::Cancelled)?;
@@ -122,7 +140,7 @@ pub fn render_file(
 }
 
 /// Camera and settings as attributes of a picture.
-fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Vec<(&'static str, Attribute)> {
+fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Header {
     let camera = match &desc.camera.kind {
         CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
         CameraKind::Orthographic { .. } => "orthographic".into(),
@@ -130,7 +148,7 @@ fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Vec<(&'static str, Attrib
         CameraKind::Realistic(_) => "realistic".into(),
     };
     let transform = desc.camera.camera_from_world.start.as_mat4();
-    vec![
+    Header(vec![
         (ImageMetadata::SOFTWARE, Attribute::Text(concat!("alhazen ", env!("CARGO_PKG_VERSION")).into())),
         (ImageMetadata::WORLD_TO_CAMERA, Attribute::Matrix(transform)),
         ("camera", Attribute::Text(camera)),
@@ -138,5 +156,5 @@ fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Vec<(&'static str, Attrib
         ("sampler", Attribute::Text(sampler_name(&desc.sampler.kind).into())),
         ("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32)),
         ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
-    ]
+    ])
 }

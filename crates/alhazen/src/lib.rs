@@ -22,8 +22,9 @@ mod names;
 mod overrides;
 mod picture;
 mod settings;
+mod values;
 
-pub use job::{CompiledJob, Job, RenderError, render_file};
+pub use job::{CompiledJob, Header, Job, RenderError, render_file};
 pub use names::{INTEGRATORS, integrator_name, sampler_name};
 pub use overrides::{OverrideError, Overrides};
 pub use picture::write_picture;

@@ -1,55 +1,71 @@
 //! Names of algorithms, samplers and filters, as the command line and pictures' headers have them.
 
 use description::{
-    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, FormFactorsDesc, IntegratorDesc,
-    LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel, PhotonMappingDesc, PhotonMappingShow,
-    RadiosityDesc, Randomization, SamplerKind, SppmDesc, VcmDesc,
+    AcceleratorDesc, BuildQualityDesc, BvhSplit, FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc,
+    PhotonMappingDesc, RadiosityDesc, Randomization, SamplerKind, SppmDesc, VcmDesc,
 };
 
-use crate::settings::{light_sampler, max_depth, regularize};
+use crate::settings::{keep, settings_of};
 
-/// The names of the algorithms that can be chosen.
-pub const INTEGRATORS: [&str; 14] = [
-    "ray-casting",
-    "whitted",
-    "ambient-occlusion",
-    "random-walk",
-    "simple-path",
-    "path",
-    "vol-path",
-    "light-tracing",
-    "bdpt",
-    "mlt",
-    "photon-mapping",
-    "sppm",
-    "vcm",
-    "radiosity",
-];
+/// Of one list: the names of the algorithms that can be chosen with what they are when nothing is set, and after them the names of those
+/// that can only be described. An algorithm that is missing from it does not compile.
+macro_rules! integrators {
+    ($($name:literal: $variant:ident = $default:expr,)* ; $($undrawn:literal: $described:ident,)*) => {
+        /// The names of the algorithms that can be chosen.
+        pub const INTEGRATORS: [&str; [$($name),*].len()] = [$($name),*];
+
+        /// The algorithm of that name in [`INTEGRATORS`], with default settings.
+        fn default_integrator(name: &str) -> Option<IntegratorDesc> {
+            match name {
+                $($name => Some($default),)*
+                _ => None,
+            }
+        }
+
+        /// The name of an algorithm.
+        pub fn integrator_name(desc: &IntegratorDesc) -> &'static str {
+            match desc {
+                $(IntegratorDesc::$variant { .. } => $name,)*
+                $(IntegratorDesc::$described { .. } => $undrawn,)*
+            }
+        }
+    };
+}
+
+integrators! {
+    "ray-casting": RayCasting = IntegratorDesc::RayCasting,
+    "whitted": Whitted = IntegratorDesc::Whitted { max_depth: 5 },
+    "ambient-occlusion": AmbientOcclusion =
+        IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY },
+    "random-walk": RandomWalk = IntegratorDesc::RandomWalk { max_depth: 5 },
+    "simple-path": SimplePath =
+        IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+    "path": Path =
+        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh },
+    "vol-path": VolPath =
+        IntegratorDesc::VolPath { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh },
+    "light-tracing": LightTracing = IntegratorDesc::LightTracing { max_depth: 5 },
+    "bdpt": Bdpt = IntegratorDesc::Bdpt {
+        max_depth: 5,
+        regularize: false,
+        visualize_strategies: false,
+        visualize_weights: false,
+    },
+    "mlt": Mlt = IntegratorDesc::Mlt(MltDesc::default()),
+    "photon-mapping": PhotonMapping = IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
+    "sppm": Sppm = IntegratorDesc::Sppm(SppmDesc::default()),
+    "vcm": Vcm = IntegratorDesc::Vcm(VcmDesc::default()),
+    "radiosity": Radiosity = IntegratorDesc::Radiosity(RadiosityDesc::default()),
+    ;
+    "simple-vol-path": SimpleVolPath,
+    "function": Function,
+}
 
 /// Acceleration structures that can be chosen.
 pub(crate) const ACCELERATORS: [(&str, AcceleratorDesc); 2] = [
     ("bvh", AcceleratorDesc::Bvh { max_node_prims: 4, split: BvhSplit::Sah, quality: None }),
     ("none", AcceleratorDesc::None),
 ];
-
-pub(crate) const LIGHT_SAMPLERS: [(&str, LightSamplerDesc); 4] = [
-    ("uniform", LightSamplerDesc::Uniform),
-    ("power", LightSamplerDesc::Power),
-    ("bvh", LightSamplerDesc::Bvh),
-    ("exhaustive", LightSamplerDesc::Exhaustive),
-];
-
-pub(crate) const FORM_FACTORS: [(&str, FormFactorsDesc); 2] =
-    [("analytic", FormFactorsDesc::Analytic), ("hemicube", FormFactorsDesc::Hemicube)];
-
-pub(crate) const MLT_TECHNIQUES: [(&str, MltTechnique); 2] =
-    [("path", MltTechnique::Path), ("bdpt", MltTechnique::Bdpt)];
-
-pub(crate) const PHOTON_KERNELS: [(&str, PhotonKernel); 2] =
-    [("cone", PhotonKernel::Cone), ("epanechnikov", PhotonKernel::Epanechnikov)];
-
-pub(crate) const PHOTON_MAPPING_SHOWS: [(&str, PhotonMappingShow); 2] =
-    [("radiance", PhotonMappingShow::Radiance), ("photons", PhotonMappingShow::Photons)];
 
 pub(crate) const SAMPLERS: [(&str, SamplerKind); 6] = [
     ("independent", SamplerKind::Independent),
@@ -74,61 +90,21 @@ pub(crate) const QUALITIES: [(&str, BuildQualityDesc); 3] = [
     ("high", BuildQualityDesc::High),
 ];
 
-/// The algorithm called `name`, with those settings of `current` that it has too. The format's spelling without hyphens is
-/// understood as well.
-pub(crate) fn integrator_called(name: &str, current: &mut IntegratorDesc) -> Option<IntegratorDesc> {
+/// The algorithm called `name`: `current` if it is that, else one that has the settings of `current` that both have, as far as they are not
+/// left at their defaults. The format's spelling without hyphens is understood as well.
+pub(crate) fn integrator_called(name: &str, current: &IntegratorDesc) -> Option<IntegratorDesc> {
     let name = INTEGRATORS.into_iter().find(|known| name == *known || name == known.replace('-', ""))?;
-    let max_depth_before = max_depth(current).map_or(5, |depth| *depth);
-    let regularize_before = regularize(current).is_some_and(|regularize| *regularize);
-    let light_sampler_before = light_sampler(current).map_or(LightSamplerDesc::Bvh, |sampler| *sampler);
-    let (max_depth, regularize, light_sampler) = (max_depth_before, regularize_before, light_sampler_before);
-    Some(match name {
-        "ray-casting" => IntegratorDesc::RayCasting,
-        "whitted" => IntegratorDesc::Whitted { max_depth },
-        "ambient-occlusion" => {
-            IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY }
-        }
-        "random-walk" => IntegratorDesc::RandomWalk { max_depth },
-        "simple-path" => IntegratorDesc::SimplePath { max_depth, sample_lights: true, sample_bsdf: true },
-        "path" => IntegratorDesc::Path { max_depth, regularize, light_sampler },
-        "light-tracing" => IntegratorDesc::LightTracing { max_depth },
-        "bdpt" => IntegratorDesc::Bdpt {
-            max_depth,
-            regularize,
-            visualize_strategies: false,
-            visualize_weights: false,
-        },
-        "mlt" => IntegratorDesc::Mlt(MltDesc { max_depth, regularize, ..MltDesc::default() }),
-        "photon-mapping" => {
-            IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, ..PhotonMappingDesc::default() })
-        }
-        "sppm" => IntegratorDesc::Sppm(SppmDesc { max_depth, ..SppmDesc::default() }),
-        "radiosity" => IntegratorDesc::Radiosity(RadiosityDesc { max_depth, ..RadiosityDesc::default() }),
-        "vcm" => IntegratorDesc::Vcm(VcmDesc { max_depth, ..VcmDesc::default() }),
-        _ => IntegratorDesc::VolPath { max_depth, regularize, light_sampler },
-    })
-}
-
-/// The name of an algorithm.
-pub fn integrator_name(desc: &IntegratorDesc) -> &'static str {
-    match desc {
-        IntegratorDesc::RayCasting => "ray-casting",
-        IntegratorDesc::Whitted { .. } => "whitted",
-        IntegratorDesc::AmbientOcclusion { .. } => "ambient-occlusion",
-        IntegratorDesc::RandomWalk { .. } => "random-walk",
-        IntegratorDesc::SimplePath { .. } => "simple-path",
-        IntegratorDesc::Path { .. } => "path",
-        IntegratorDesc::SimpleVolPath { .. } => "simple-vol-path",
-        IntegratorDesc::VolPath { .. } => "vol-path",
-        IntegratorDesc::LightTracing { .. } => "light-tracing",
-        IntegratorDesc::Bdpt { .. } => "bdpt",
-        IntegratorDesc::Mlt(_) => "mlt",
-        IntegratorDesc::PhotonMapping(_) => "photon-mapping",
-        IntegratorDesc::Sppm(_) => "sppm",
-        IntegratorDesc::Vcm(_) => "vcm",
-        IntegratorDesc::Radiosity(_) => "radiosity",
-        IntegratorDesc::Function { .. } => "function",
+    if name == integrator_name(current) {
+        return Some(current.clone());
     }
+    let mut called = default_integrator(name)?;
+    let unchanged = default_integrator(integrator_name(current)).map(|desc| settings_of(&desc));
+    for setting in settings_of(current) {
+        if unchanged.as_ref().is_none_or(|unchanged| !unchanged.contains(&setting)) {
+            keep(&mut called, &setting);
+        }
+    }
+    Some(called)
 }
 
 /// The name of a sampler.
@@ -141,5 +117,63 @@ pub fn sampler_name(kind: &SamplerKind) -> &'static str {
         SamplerKind::Sobol { .. } => "sobol",
         SamplerKind::ZSobol { .. } => "zsobol",
         SamplerKind::Pmj02Bn => "pmj02bn",
+    }
+}
+
+/// The name of a pixel filter.
+pub(crate) fn filter_name(desc: &FilterDesc) -> &'static str {
+    match desc {
+        FilterDesc::Box { .. } => "box",
+        FilterDesc::Triangle { .. } => "triangle",
+        FilterDesc::Gaussian { .. } => "gaussian",
+        FilterDesc::Mitchell { .. } => "mitchell",
+        FilterDesc::LanczosSinc { .. } => "sinc",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lead_to_algorithms_and_back() {
+        for name in INTEGRATORS {
+            assert_eq!(integrator_name(&default_integrator(name).unwrap()), name);
+        }
+        for (name, kind) in &SAMPLERS {
+            assert_eq!(sampler_name(kind), *name);
+        }
+        for (name, filter) in &FILTERS {
+            assert_eq!(filter_name(filter), *name);
+        }
+        let volpath = integrator_called("volpath", &IntegratorDesc::RayCasting).unwrap();
+        assert_eq!(volpath, IntegratorDesc::default());
+    }
+
+    #[test]
+    fn the_same_algorithm_keeps_all_that_was_set() {
+        let sppm =
+            SppmDesc { photons_per_iteration: Some(7), radius: Some(3.0), seed: Some(5), max_depth: 9 };
+        let sppm = IntegratorDesc::Sppm(sppm);
+        assert_eq!(integrator_called("sppm", &sppm), Some(sppm));
+    }
+
+    #[test]
+    fn another_algorithm_keeps_what_both_have() {
+        let mut photons =
+            PhotonMappingDesc { max_depth: 9, radius: Some(3.0), ..PhotonMappingDesc::default() };
+        let called = |photons: &PhotonMappingDesc, name| {
+            integrator_called(name, &IntegratorDesc::PhotonMapping(photons.clone())).unwrap()
+        };
+        let vcm = VcmDesc { max_depth: 9, radius: Some(3.0), ..VcmDesc::default() };
+        assert_eq!(called(&photons, "vcm"), IntegratorDesc::Vcm(vcm));
+        let mut sppm = SppmDesc { max_depth: 9, radius: Some(3.0), ..SppmDesc::default() };
+        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm.clone()), "no default goes over");
+        photons.photons = 1000;
+        photons.gather = 4;
+        sppm.photons_per_iteration = Some(1000);
+        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm));
+        let radiosity = RadiosityDesc { max_depth: 9, gather: 4, ..RadiosityDesc::default() };
+        assert_eq!(called(&photons, "radiosity"), IntegratorDesc::Radiosity(radiosity));
     }
 }

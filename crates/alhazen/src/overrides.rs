@@ -2,15 +2,16 @@
 
 use std::fmt;
 
-use description::{IntegratorDesc, SceneDesc};
+use description::{Diagnostic, FileId, IntegratorDesc, SceneDesc, Span};
 
 use crate::names::{ACCELERATORS, INTEGRATORS, integrator_called};
-use crate::settings::{SETTINGS, mlt, set_samples_per_pixel};
+use crate::settings::{SETTINGS, Setting, set_samples_per_pixel};
 
 /// Changes to a scene. `None` leaves what the scene says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// The name of the algorithm, as in [`INTEGRATORS`]. Settings that both algorithms have are kept.
+    /// The name of the algorithm, as in [`INTEGRATORS`]. Settings that both algorithms have are kept, all if
+    /// it is the scene's own.
     pub integrator: Option<String>,
     /// Settings by their names in [`SETTINGS`], with their values as text.
     pub settings: Vec<(String, String)>,
@@ -50,7 +51,7 @@ impl Overrides {
     /// Changes the scene; the first change that makes no sense is the error.
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
         if let Some(name) = &self.integrator {
-            let changed = integrator_called(name, &mut desc.integrator)
+            let changed = integrator_called(name, &desc.integrator)
                 .ok_or_else(|| unknown("integrator", name, &INTEGRATORS))?;
             desc.integrator.value = changed;
         }
@@ -60,20 +61,18 @@ impl Overrides {
                 called.ok_or_else(|| unknown("accelerator", name, &ACCELERATORS.map(|(name, _)| name)))?;
             desc.accelerator.value = changed;
         }
-        for (name, value) in &self.settings {
-            let setting = SETTINGS
-                .iter()
-                .find(|setting| setting.name == name)
+        for (index, (name, value)) in self.settings.iter().enumerate() {
+            let setting = Setting::named(name)
                 .ok_or_else(|| unknown("setting", name, &SETTINGS.each_ref().map(|setting| setting.name)))?;
-            (setting.apply)(desc, value)
-                .map_err(|reason| OverrideError(format!("cannot set {name} to `{value}`: {reason}")))?;
+            setting.apply(desc, value).map_err(|reason| cannot_set(name, value, &reason))?;
+            setting.blame(desc, Span::new(FileId::CALLER, index as u32, index as u32));
         }
         if let Some(samples) = self.samples_per_pixel {
             let samples = i32::try_from(samples).ok().filter(|&samples| samples > 0);
             let samples = samples
                 .ok_or_else(|| OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)))?;
             set_samples_per_pixel(desc, samples);
-            if let Ok(mlt) = mlt(desc) {
+            if let IntegratorDesc::Mlt(mlt) = &mut desc.integrator.value {
                 mlt.mutations_per_pixel = samples;
             }
         }
@@ -103,6 +102,20 @@ impl Overrides {
         }
         Ok(())
     }
+
+    /// The error, among those that came of the scene after these changes, which is the fault of one of them.
+    pub fn blamed(&self, diagnostics: &[Diagnostic]) -> Option<OverrideError> {
+        let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
+        let mut of_caller = errors.filter(|error| error.span().file == FileId::CALLER);
+        of_caller.find_map(|error| {
+            let (name, value) = self.settings.get(error.span().start as usize)?;
+            Some(cannot_set(name, value, &error.message))
+        })
+    }
+}
+
+fn cannot_set(name: &str, value: &str, reason: &str) -> OverrideError {
+    OverrideError(format!("cannot set {name} to `{value}`: {reason}"))
 }
 
 /// There is no such name; with the nearest one, or all.
@@ -163,10 +176,10 @@ mod tests {
         for setting in &SETTINGS {
             let mut scenes = INTEGRATORS.map(|name| {
                 let mut desc = SceneDesc::default();
-                desc.integrator.value = integrator_called(name, &mut IntegratorDesc::default()).unwrap();
+                desc.integrator.value = integrator_called(name, &IntegratorDesc::default()).unwrap();
                 desc
             });
-            let mut takes = |value| scenes.iter_mut().any(|desc| (setting.apply)(desc, value).is_ok());
+            let mut takes = |value| scenes.iter_mut().any(|desc| setting.apply(desc, value).is_ok());
             assert!(
                 [
                     "7", "true", "power", "sobol", "box", "fast", "path", "cone", "photons", "hemicube",

@@ -1,16 +1,12 @@
 //! Settings of a scene that can be changed by name: one table.
 
-use std::str::FromStr;
-
 use description::{
     FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, SamplerKind,
-    SceneDesc, SppmDesc, VcmDesc,
+    SceneDesc, Span, SppmDesc, VcmDesc,
 };
 
-use crate::names::{
-    FILTERS, FORM_FACTORS, LIGHT_SAMPLERS, MLT_TECHNIQUES, PHOTON_KERNELS, PHOTON_MAPPING_SHOWS, QUALITIES,
-    SAMPLERS,
-};
+use crate::names::{FILTERS, QUALITIES, SAMPLERS};
+use crate::values::{At, Flags, PlyFile, Value, choose};
 
 /// A setting that can be changed by name.
 pub struct Setting {
@@ -18,7 +14,79 @@ pub struct Setting {
     pub name: &'static str,
     /// What it means, with its unit and values.
     pub help: &'static str,
-    pub(crate) apply: fn(&mut SceneDesc, &str) -> Result<(), String>,
+    place: Place,
+}
+
+/// Where the value of a setting stands.
+enum Place {
+    /// In those algorithms that have it.
+    Integrator(for<'a> fn(&'a mut IntegratorDesc) -> Option<Box<dyn Value + 'a>>),
+    /// Elsewhere in any scene.
+    Scene(fn(&mut SceneDesc, &str) -> Result<(), String>),
+}
+
+impl Setting {
+    /// The one of that name.
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
+        SETTINGS.iter().find(|setting| setting.name == name)
+    }
+
+    /// Changes the scene.
+    pub(crate) fn apply(&self, desc: &mut SceneDesc, text: &str) -> Result<(), String> {
+        match self.place {
+            Place::Integrator(place) => {
+                place(&mut desc.integrator).ok_or("the scene's algorithm has no such setting")?.set(text)
+            }
+            Place::Scene(set) => set(desc, text),
+        }
+    }
+
+    /// Whether it changes a scene with such an algorithm.
+    pub(crate) fn is_of(&self, integrator: &IntegratorDesc) -> bool {
+        match self.place {
+            Place::Integrator(place) => place(&mut integrator.clone()).is_some(),
+            Place::Scene(_) => true,
+        }
+    }
+
+    /// From now on what is wrong with the setting is the fault of what stands at `span`.
+    pub(crate) fn blame(&self, desc: &mut SceneDesc, span: Span) {
+        // Names that the format has for what has another one here.
+        let parameters: &[_] = match self.name {
+            "photons" => &["photons", "photonsperiteration"],
+            "techniques" => &["visualizestrategies", "visualizeweights"],
+            "filterradius" => &["xradius", "yradius"],
+            _ => &[self.name],
+        };
+        for &parameter in parameters {
+            match self.place {
+                Place::Integrator(_) => desc.integrator.origin.set_parameter(parameter, span),
+                Place::Scene(_) => {
+                    desc.film.origin.set_parameter(parameter, span);
+                    desc.filter.origin.set_parameter(parameter, span);
+                }
+            }
+        }
+    }
+}
+
+/// The settings of an algorithm with their values; `None` for what is left to it.
+pub(crate) fn settings_of(integrator: &IntegratorDesc) -> Vec<(&'static str, Option<String>)> {
+    let mut integrator = integrator.clone();
+    let value = |setting: &Setting| match setting.place {
+        Place::Integrator(place) => Some((setting.name, place(&mut integrator)?.get())),
+        Place::Scene(_) => None,
+    };
+    SETTINGS.iter().filter_map(value).collect()
+}
+
+/// Gives an algorithm a setting of another one, if it has it, too.
+pub(crate) fn keep(integrator: &mut IntegratorDesc, (name, value): &(&'static str, Option<String>)) {
+    let Some(Setting { place: Place::Integrator(place), .. }) = Setting::named(name) else { return };
+    if let (Some(mut place), Some(value)) = (place(integrator), value) {
+        // A value that means nothing here is not shared.
+        let _ = place.set(value);
+    }
 }
 
 /// Everything that [`Overrides`](crate::Overrides) can change by name.
@@ -26,313 +94,273 @@ pub static SETTINGS: [Setting; 40] = [
     Setting {
         name: "maxdepth",
         help: "most bounces of a path after the camera's ray",
-        apply: |desc, text| set(max_depth(&mut desc.integrator), text),
+        place: Place::Integrator(|desc| at(max_depth(desc))),
     },
     Setting {
         name: "regularize",
         help: "roughen surfaces after the first rough bounce: true or false",
-        apply: |desc, text| set(regularize(&mut desc.integrator), text),
+        place: Place::Integrator(|desc| at(regularize(desc))),
     },
     Setting {
         name: "lightsampler",
         help: "how a light is chosen: uniform, power, bvh or exhaustive",
-        apply: |desc, text| {
-            let chosen = choose(text, &LIGHT_SAMPLERS)?;
-            *light_sampler(&mut desc.integrator).ok_or(NOT_HERE)? = chosen;
-            Ok(())
-        },
+        place: Place::Integrator(|desc| at(light_sampler(desc))),
     },
     Setting {
         name: "samplelights",
         help: "simple-path: sample lights at each surface: true or false",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::SimplePath { sample_lights, .. } => set(Some(sample_lights), text),
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::SimplePath { sample_lights, .. } => at(Some(sample_lights)),
+            _ => None,
+        }),
     },
     Setting {
         name: "samplebsdf",
         help: "simple-path: sample directions by the BSDF: true or false",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::SimplePath { sample_bsdf, .. } => set(Some(sample_bsdf), text),
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::SimplePath { sample_bsdf, .. } => at(Some(sample_bsdf)),
+            _ => None,
+        }),
     },
     Setting {
         name: "cossample",
         help: "ambient-occlusion: sample directions by the cosine: true or false",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::AmbientOcclusion { cos_sample, .. } => set(Some(cos_sample), text),
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::AmbientOcclusion { cos_sample, .. } => at(Some(cos_sample)),
+            _ => None,
+        }),
     },
     Setting {
         name: "maxdistance",
         help: "ambient-occlusion: how far away a surface hides the sky, in scene units",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::AmbientOcclusion { max_distance, .. } => set(Some(max_distance), text),
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::AmbientOcclusion { max_distance, .. } => at(Some(max_distance)),
+            _ => None,
+        }),
     },
     Setting {
         name: "techniques",
-        help: "bdpt: one picture per strategy, weighted and unweighted: true or false",
-        apply: |desc, text| match &mut desc.integrator.value {
+        help: "bdpt: one picture per strategy of up to 8 bounces, weighted and unweighted, 2.4 KiB a pixel at 5 bounces: true or false",
+        place: Place::Integrator(|desc| match desc {
             IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
-                set(Some(visualize_strategies), text)?;
-                *visualize_weights = *visualize_strategies;
-                Ok(())
+                Some(Box::new(Flags([visualize_strategies, visualize_weights])))
             }
-            _ => Err(NOT_HERE.into()),
-        },
+            _ => None,
+        }),
     },
     Setting {
         name: "technique",
         help: "mlt: what chains move through: path or bdpt",
-        apply: |desc, text| {
-            mlt(desc)?.technique = choose(text, &MLT_TECHNIQUES)?;
-            Ok(())
-        },
+        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.technique))),
     },
     Setting {
         name: "bootstrapsamples",
         help: "mlt: most paths among which the chains of a pass choose where to start",
-        apply: |desc, text| set(Some(&mut mlt(desc)?.bootstrap_samples), text),
+        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.bootstrap_samples))),
     },
     Setting {
         name: "chains",
         help: "mlt: most chains of a pass, which has a mutation per pixel",
-        apply: |desc, text| set(Some(&mut mlt(desc)?.chains), text),
+        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.chains))),
     },
     Setting {
         name: "mutationsperpixel",
         help: "mlt: mutations per pixel, on average; --spp sets it, too",
-        apply: |desc, text| set(Some(&mut mlt(desc)?.mutations_per_pixel), text),
+        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.mutations_per_pixel))),
     },
     Setting {
         name: "largestepprobability",
         help: "mlt: probability of a mutation to an independent path",
-        apply: |desc, text| set(Some(&mut mlt(desc)?.large_step_probability), text),
+        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.large_step_probability))),
     },
     Setting {
         name: "sigma",
         help: "mlt: standard deviation of small mutations in the unit cube of random numbers",
-        apply: |desc, text| set(Some(&mut mlt(desc)?.sigma), text),
+        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.sigma))),
     },
     Setting {
         name: "photons",
         help: "photon-mapping: paths of the global map; sppm: paths; in each pass",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::PhotonMapping(photon_mapping) => set(Some(&mut photon_mapping.photons), text),
-            IntegratorDesc::Sppm(sppm) => {
-                sppm.photons_per_iteration = Some(parse(text)?);
-                Ok(())
-            }
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::PhotonMapping(photon_mapping) => at(Some(&mut photon_mapping.photons)),
+            IntegratorDesc::Sppm(sppm) => at(Some(&mut sppm.photons_per_iteration)),
+            _ => None,
+        }),
     },
     Setting {
         name: "causticphotons",
         help: "photon-mapping: paths of the caustic map in each pass",
-        apply: |desc, text| set(Some(&mut photon_mapping(desc)?.caustic_photons), text),
+        place: Place::Integrator(|desc| {
+            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.caustic_photons))
+        }),
     },
     Setting {
         name: "nearest",
         help: "photon-mapping: how many of the nearest photons make an estimate",
-        apply: |desc, text| set(Some(&mut photon_mapping(desc)?.nearest), text),
+        place: Place::Integrator(|desc| {
+            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.nearest))
+        }),
     },
     Setting {
         name: "radius",
-        help: "photon-mapping, sppm, vcm: how far away photons count (at first), in scene units",
-        apply: |desc, text| {
-            let radius = parse(text)?;
-            match &mut desc.integrator.value {
-                IntegratorDesc::PhotonMapping(photon_mapping) => photon_mapping.radius = Some(radius),
-                IntegratorDesc::Sppm(sppm) => sppm.radius = radius,
-                IntegratorDesc::Vcm(vcm) => vcm.radius = Some(radius),
-                _ => return Err(NOT_HERE.into()),
-            }
-            Ok(())
-        },
+        help: "photon-mapping, sppm, vcm: how far away photons count (at first), in scene units; else a part of the scene's size",
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::PhotonMapping(PhotonMappingDesc { radius, .. })
+            | IntegratorDesc::Sppm(SppmDesc { radius, .. })
+            | IntegratorDesc::Vcm(VcmDesc { radius, .. }) => at(Some(radius)),
+            _ => None,
+        }),
     },
     Setting {
         name: "kernel",
         help: "photon-mapping: how photons are weighed: cone or epanechnikov",
-        apply: |desc, text| {
-            photon_mapping(desc)?.kernel = choose(text, &PHOTON_KERNELS)?;
-            Ok(())
-        },
+        place: Place::Integrator(|desc| {
+            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.kernel))
+        }),
     },
     Setting {
         name: "gather",
         help: "photon-mapping, radiosity: rays of a final gather; 0 for none",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::PhotonMapping(photon_mapping) => set(Some(&mut photon_mapping.gather), text),
-            IntegratorDesc::Radiosity(radiosity) => set(Some(&mut radiosity.gather), text),
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather, .. })
+            | IntegratorDesc::Radiosity(RadiosityDesc { gather, .. }) => at(Some(gather)),
+            _ => None,
+        }),
     },
     Setting {
         name: "show",
         help: "photon-mapping: radiance or photons",
-        apply: |desc, text| {
-            photon_mapping(desc)?.show = choose(text, &PHOTON_MAPPING_SHOWS)?;
-            Ok(())
-        },
+        place: Place::Integrator(|desc| {
+            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.show))
+        }),
     },
     Setting {
         name: "alpha",
         help: "vcm: how slowly the radius shrinks, from 0 to 1",
-        apply: |desc, text| match &mut desc.integrator.value {
-            IntegratorDesc::Vcm(vcm) => set(Some(&mut vcm.alpha), text),
-            _ => Err(NOT_HERE.into()),
-        },
+        place: Place::Integrator(|desc| match desc {
+            IntegratorDesc::Vcm(vcm) => at(Some(&mut vcm.alpha)),
+            _ => None,
+        }),
     },
     Setting {
         name: "formfactors",
         help: "radiosity: how form factors are found: analytic or hemicube",
-        apply: |desc, text| {
-            radiosity(desc)?.form_factors = choose(text, &FORM_FACTORS)?;
-            Ok(())
-        },
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.form_factors))),
     },
     Setting {
         name: "hemicuberesolution",
         help: "radiosity: pixels along an edge of a hemicube",
-        apply: |desc, text| set(Some(&mut radiosity(desc)?.hemicube_resolution), text),
+        place: Place::Integrator(|desc| {
+            at(radiosity(desc).map(|radiosity| &mut radiosity.hemicube_resolution))
+        }),
     },
     Setting {
         name: "patchsize",
         help: "radiosity: longest side of a patch, in scene units",
-        apply: |desc, text| {
-            radiosity(desc)?.patch_size = Some(parse(text)?);
-            Ok(())
-        },
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.patch_size))),
     },
     Setting {
         name: "subdivision",
         help: "radiosity: how often an element may be quartered",
-        apply: |desc, text| set(Some(&mut radiosity(desc)?.subdivision), text),
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.subdivision))),
     },
     Setting {
         name: "gradient",
         help: "radiosity: change of light across an element, in parts of what is there, above which it is quartered",
-        apply: |desc, text| set(Some(&mut radiosity(desc)?.gradient), text),
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.gradient))),
     },
     Setting {
         name: "maxpatches",
         help: "radiosity: most elements, unless there are more primitives",
-        apply: |desc, text| set(Some(&mut radiosity(desc)?.max_patches), text),
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.max_patches))),
     },
     Setting {
         name: "tolerance",
         help: "radiosity: share of light that need not be sent",
-        apply: |desc, text| set(Some(&mut radiosity(desc)?.tolerance), text),
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.tolerance))),
     },
     Setting {
         name: "steps",
         help: "radiosity: passes in which light is sent",
-        apply: |desc, text| set(Some(&mut radiosity(desc)?.steps), text),
+        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.steps))),
     },
     Setting {
         name: "mesh-out",
         help: "radiosity: a file (.ply) for patches with their radiosity as vertex colours",
-        apply: |desc, text| {
-            let radiosity = radiosity(desc)?;
-            if !text.ends_with(".ply") {
-                return Err("its name ends in .ply".into());
-            }
-            radiosity.mesh_out = Some(text.into());
-            Ok(())
-        },
+        place: Place::Integrator(|desc| {
+            radiosity(desc).map(|radiosity| -> Box<dyn Value> { Box::new(PlyFile(&mut radiosity.mesh_out)) })
+        }),
     },
     Setting {
         name: "sampler",
         help: "independent, stratified, halton, paddedsobol, sobol or zsobol",
-        apply: |desc, text| {
+        place: Place::Scene(|desc, text| {
             desc.sampler.kind = choose(text, &SAMPLERS)?;
             let samples = desc.sampler.pixel_samples;
             set_samples_per_pixel(desc, samples);
             Ok(())
-        },
+        }),
     },
     Setting {
         name: "filter",
         help: "pixel filter with its usual radius: box, triangle, gaussian, mitchell or sinc",
-        apply: |desc, text| {
+        place: Place::Scene(|desc, text| {
             desc.filter.value = choose(text, &FILTERS)?;
             Ok(())
-        },
+        }),
     },
     Setting {
         name: "filterradius",
         help: "radius of the pixel filter in both directions, in pixels",
-        apply: |desc, text| {
+        place: Place::Scene(|desc, text| {
             let (FilterDesc::Box { radius }
             | FilterDesc::Triangle { radius }
             | FilterDesc::Gaussian { radius, .. }
             | FilterDesc::Mitchell { radius, .. }
             | FilterDesc::LanczosSinc { radius, .. }) = &mut desc.filter.value;
-            *radius = [parse(text)?; 2];
+            radius[0].set(text)?;
+            radius[1] = radius[0];
             Ok(())
-        },
+        }),
     },
     Setting {
         name: "quality",
         help: "how much time the tree over the scene is worth: fast, balanced or high",
-        apply: |desc, text| {
+        place: Place::Scene(|desc, text| {
             desc.accelerator.value.set_quality(choose(text, &QUALITIES)?);
             Ok(())
-        },
+        }),
     },
     Setting {
         name: "maxcomponentvalue",
         help: "samples are scaled down so that no sensor response exceeds this",
-        apply: |desc, text| set(Some(&mut desc.film.max_component_value), text),
+        place: Place::Scene(|desc, text| desc.film.max_component_value.set(text)),
     },
     Setting {
         name: "iso",
         help: "sensitivity of the film, ISO",
-        apply: |desc, text| set(Some(&mut desc.film.sensor.iso), text),
+        place: Place::Scene(|desc, text| desc.film.sensor.iso.set(text)),
     },
     Setting {
         name: "whitebalance",
         help: "temperature in kelvin of the light that shall look white; 0 changes nothing",
-        apply: |desc, text| set(Some(&mut desc.film.sensor.white_balance), text),
+        place: Place::Scene(|desc, text| desc.film.sensor.white_balance.set(text)),
     },
     Setting {
         name: "savefp16",
         help: "store half floats (true) or single floats (false)",
-        apply: |desc, text| set(Some(&mut desc.film.save_fp16), text),
+        place: Place::Scene(|desc, text| desc.film.save_fp16.set(text)),
     },
     Setting {
         name: "disablepixeljitter",
         help: "sample every pixel at its centre only: true or false",
-        apply: |desc, text| set(Some(&mut desc.options.disable_pixel_jitter), text),
+        place: Place::Scene(|desc, text| desc.options.disable_pixel_jitter.set(text)),
     },
 ];
 
-const NOT_HERE: &str = "the scene's algorithm has no such setting";
-
-fn parse<T: FromStr>(text: &str) -> Result<T, String> {
-    text.trim().parse().map_err(|_| match std::any::type_name::<T>() {
-        "bool" => "it is true or false".into(),
-        "i32" => "it is a whole number".into(),
-        _ => "it is a number".into(),
-    })
-}
-
-fn set<T: FromStr>(place: Option<&mut T>, text: &str) -> Result<(), String> {
-    *place.ok_or(NOT_HERE)? = parse(text)?;
-    Ok(())
-}
-
-fn choose<T: Clone>(text: &str, choices: &[(&str, T)]) -> Result<T, String> {
-    let chosen = choices.iter().find(|(name, _)| *name == text);
-    chosen.map(|(_, value)| value.clone()).ok_or_else(|| {
-        let names: Vec<_> = choices.iter().map(|&(name, _)| name).collect();
-        format!("there are {}", names.join(", "))
-    })
+/// A place where there is one.
+fn at<'a>(place: Option<&'a mut (impl Value + 'a)>) -> Option<Box<dyn Value + 'a>> {
+    place.map(|place| -> Box<dyn Value> { Box::new(At(place)) })
 }
 
 /// Sets the number of samples; the strata of a stratified sampler become as nearly square as the number allows.
@@ -345,24 +373,24 @@ pub(crate) fn set_samples_per_pixel(desc: &mut SceneDesc, samples: i32) {
     }
 }
 
-pub(crate) fn mlt(desc: &mut SceneDesc) -> Result<&mut MltDesc, String> {
-    match &mut desc.integrator.value {
-        IntegratorDesc::Mlt(mlt) => Ok(mlt),
-        _ => Err(NOT_HERE.into()),
+fn mlt(desc: &mut IntegratorDesc) -> Option<&mut MltDesc> {
+    match desc {
+        IntegratorDesc::Mlt(mlt) => Some(mlt),
+        _ => None,
     }
 }
 
-fn radiosity(desc: &mut SceneDesc) -> Result<&mut RadiosityDesc, String> {
-    match &mut desc.integrator.value {
-        IntegratorDesc::Radiosity(radiosity) => Ok(radiosity),
-        _ => Err(NOT_HERE.into()),
+fn radiosity(desc: &mut IntegratorDesc) -> Option<&mut RadiosityDesc> {
+    match desc {
+        IntegratorDesc::Radiosity(radiosity) => Some(radiosity),
+        _ => None,
     }
 }
 
-fn photon_mapping(desc: &mut SceneDesc) -> Result<&mut PhotonMappingDesc, String> {
-    match &mut desc.integrator.value {
-        IntegratorDesc::PhotonMapping(photon_mapping) => Ok(photon_mapping),
-        _ => Err(NOT_HERE.into()),
+fn photon_mapping(desc: &mut IntegratorDesc) -> Option<&mut PhotonMappingDesc> {
+    match desc {
+        IntegratorDesc::PhotonMapping(photon_mapping) => Some(photon_mapping),
+        _ => None,
     }
 }
 
@@ -397,7 +425,7 @@ pub(crate) fn regularize(desc: &mut IntegratorDesc) -> Option<&mut bool> {
     }
 }
 
-pub(crate) fn light_sampler(desc: &mut IntegratorDesc) -> Option<&mut LightSamplerDesc> {
+fn light_sampler(desc: &mut IntegratorDesc) -> Option<&mut LightSamplerDesc> {
     match desc {
         IntegratorDesc::Path { light_sampler, .. } | IntegratorDesc::VolPath { light_sampler, .. } => {
             Some(light_sampler)

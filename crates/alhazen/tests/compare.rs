@@ -127,6 +127,7 @@ fn algorithms_that_agree_have_no_bias_and_those_that_leave_light_out_have() {
     let contenders = ["path", "simple-path", "path:maxdepth=1"];
     let comparison = compared(Plan { reference: rendered(512), ..plan(&contenders, Budget::Samples(64)) });
     let [path, simple, short] = comparison.runs.as_slice() else { panic!("three runs") };
+    assert_eq!(comparison.doubt(), None);
     let z = |run: &Run| run.last().measure.mean_error / run.last().measure.mean_error_deviation;
     for run in [path, simple] {
         let parts = run.last().measure.relative;
@@ -145,6 +146,18 @@ fn algorithms_that_agree_have_no_bias_and_those_that_leave_light_out_have() {
     let variance = |run: &Run, point: usize| run.checkpoints[point].measure.relative.variance;
     let fall = variance(path, 0) / variance(path, path.checkpoints.len() - 1);
     assert!((fall / 64.0).ln().abs() < 0.5, "64 times the samples have 1 / {fall} of the variance");
+}
+
+#[test]
+fn a_reference_that_misses_light_is_doubted() {
+    let short =
+        ReferenceSource::Render { by: Some("path:maxdepth=1".parse().unwrap()), samples_per_pixel: Some(64) };
+    let contenders = ["path:maxdepth=1", "path", "simple-path"];
+    let comparison = compared(Plan { reference: short, ..plan(&contenders, Budget::Samples(8)) });
+    let doubt = comparison.doubt().unwrap();
+    assert!(doubt.contains("path:maxdepth=1 rendered it") && doubt.contains("simple-path "), "{doubt}");
+    assert!(comparison.to_html().contains("The reference may miss light"));
+    assert_eq!(comparison.to_json()["reference"]["doubt"], doubt);
 }
 
 #[test]
@@ -207,7 +220,7 @@ fn a_cancelled_comparison_is_of_what_was_done() {
         let plan = Plan { reference: rendered(2), ..plan(&["path", "whitted"], Budget::Samples(2)) };
         laboratory(plan).unwrap().compare(|name| Control {
             cancel: if name == stage { Arc::clone(&cancelled) } else { Arc::default() },
-            progress: None,
+            ..Control::default()
         })
     };
     for nothing in ["reference by path", "path"] {

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use alhazen::compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
+use alhazen::compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{Image, replace_file};
 use alhazen::import::{Files, import};
 use alhazen::integrators::{Control, Progress};
+use serde_json::Value;
 
 use crate::args::Compare;
 use crate::bar::Bar;
@@ -76,12 +77,12 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         let new = Arc::new(Bar::named(talkative, name));
         bar = Some(Arc::clone(&new));
         let progress = Box::new(move |progress: &Progress| new.show(progress));
-        Control { cancel: interrupt.cancel(), progress: Some(progress) }
+        Control { cancel: interrupt.cancel(), progress: Some(progress), ..Control::default() }
     });
     if let Some(bar) = bar {
         bar.finish();
     }
-    let Ok(comparison) = outcome else {
+    let Ok(mut comparison) = outcome else {
         let message = "interrupted before anything could be compared; there is no report";
         if arguments.json {
             say(serde_json::json!({ "status": "interrupted" }))
@@ -90,12 +91,12 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         }
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
-    report.write(&comparison)?;
+    comparison.warnings = imported.diagnostics.iter().map(|warning| warning.message.clone()).collect();
+    let mut json = comparison.to_json();
+    json["warnings"] = diagnostics::to_json(&imported.diagnostics, &imported.sources).1;
+    report.write(&comparison, &json)?;
     let interrupted = comparison.interrupted();
     if arguments.json {
-        let mut json = comparison.to_json();
-        let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
-        json["warnings"] = warnings;
         json["outputs"] =
             [&report.page, &report.numbers].map(|path| path.display().to_string()).as_slice().into();
         say(json);
@@ -131,11 +132,11 @@ impl Report {
         Ok(Self { page, numbers })
     }
 
-    fn write(&self, comparison: &Comparison) -> Result<(), Failure> {
+    fn write(&self, comparison: &Comparison, json: &Value) -> Result<(), Failure> {
         let write = |path: &Path, text: String| {
             replace_file(path, text.as_bytes()).map_err(|error| about_file(path, error))
         };
-        let numbers = format!("{:#}\n", comparison.to_json());
+        let numbers = format!("{json:#}\n");
         write(&self.numbers, numbers).and(write(&self.page, comparison.to_html()))
     }
 }
@@ -164,6 +165,7 @@ fn summary(comparison: &Comparison, report: &Report) -> String {
     let mut rows = vec![heads.map(str::to_owned)];
     rows.extend(comparison.runs.iter().map(|run| row(comparison, run)));
     lines.extend(aligned(&rows));
+    lines.extend(comparison.doubt());
     for path in [&report.page, &report.numbers] {
         lines.push(format!("  report   {}", path.display()));
     }
@@ -180,7 +182,11 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
         format!("{:.2}", last.seconds),
         format!("{:.2e}", parts.error),
         percent(parts.variance.sqrt()),
-        if parts.is_biased() { percent(parts.bias_squared.sqrt()) } else { "none seen".into() },
+        match parts.bias() {
+            Bias::Seen(bias) => percent(bias),
+            Bias::Below(_) => "none seen".into(),
+            Bias::Hidden => "hidden by noise".into(),
+        },
         comparison.relative_mean_error(run).map_or("–".into(), |[error, deviation]| {
             format!("{} ± {}", percent(error), percent(deviation))
         }),

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::time::Instant;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use alhazen::description::SceneDesc;
 use alhazen::image::replace_file;
 use alhazen::import::{Files, Imported, import};
-use alhazen::integrators::{ByProduct, Control, Progress};
-use alhazen::{Job, integrator_name, write_picture};
+use alhazen::integrators::{ByProduct, Control, FilmSink, Progress};
+use alhazen::{Header, Job, integrator_name, write_picture};
 
 use crate::args::Render;
 use crate::bar::Bar;
@@ -34,7 +34,8 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     if imported.has_errors() {
         return Err(scene_failure(imported));
     }
-    arguments.overrides().apply(&mut imported.desc).map_err(|error| Failure::Usage(error.to_string()))?;
+    let overrides = arguments.overrides();
+    overrides.apply(&mut imported.desc).map_err(|error| Failure::Usage(error.to_string()))?;
     let outputs = if arguments.output.is_empty() {
         vec![default_output(&arguments.scene, &imported.desc)?]
     } else {
@@ -47,6 +48,9 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
             compiled.job
         }
         Err(errors) => {
+            if let Some(error) = overrides.blamed(&errors) {
+                return Err(Failure::Usage(error.to_string()));
+            }
             imported.diagnostics.extend(errors);
             return Err(scene_failure(imported));
         }
@@ -60,7 +64,12 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     let bar = Arc::new(Bar::new(talkative, job.passes()));
     let sink = Arc::clone(&bar);
     let progress = Box::new(move |progress: &Progress| sink.show(progress));
-    let outcome = job.render(&Control { cancel: interrupt.cancel(), progress: Some(progress) });
+    let outcome = job.render(&Control {
+        cancel: interrupt.cancel(),
+        progress: Some(progress),
+        preview: Some(preview(job.header().clone(), outputs.clone())),
+        ..Control::default()
+    });
     let last = bar.finish();
     let rendered_at = Instant::now();
 
@@ -107,6 +116,24 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         warn(interruption);
     }
     Ok(if summary.interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+}
+
+/// Writes the picture as it stands, so that it can be looked at: after the first pass that ends later than half a second after the begin, and
+/// then whenever it has been rendered for twice as long as the last time. Whether it can be written is told at the end.
+fn preview(header: Header, outputs: Vec<PathBuf>) -> FilmSink {
+    let begin = Instant::now();
+    let next = Mutex::new(Duration::from_millis(500));
+    Box::new(move |film| {
+        let mut next = next.lock().unwrap_or_else(PoisonError::into_inner);
+        if begin.elapsed() < *next {
+            return;
+        }
+        let picture = header.picture(film);
+        for path in &outputs {
+            let _ = write_picture(&picture, path);
+        }
+        *next = 2 * begin.elapsed();
+    })
 }
 
 /// Makes the threads that everything runs on.

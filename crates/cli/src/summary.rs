@@ -147,7 +147,10 @@ impl fmt::Display for Summary<'_> {
         }
         let stats = self.progress.stats;
         let rays = stats.rays as f64;
-        writeln!(f, "  samples  {}", count(self.film.sample_count() as f64))?;
+        let samples = self.film.sample_count();
+        if samples > 0 {
+            writeln!(f, "  samples  {}", count(samples as f64))?;
+        }
         write!(
             f,
             "  rays     {}, {} a second; {:.1} extent tests and {:.1} primitive tests a ray",

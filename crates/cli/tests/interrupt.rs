@@ -5,7 +5,7 @@ mod common;
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use common::{Folder, SCENE};
 
@@ -26,7 +26,12 @@ fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
     let errors = BufReader::new(child.stderr.take().expect("standard error"));
     let begun = errors.lines().map_while(Result::ok).any(|line| line.contains("1 warning"));
     assert!(begun, "the program ended before it rendered");
-    std::thread::sleep(Duration::from_secs(1));
+    // The picture is to be seen long before it is done.
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !folder.path().join("a.png").exists() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    assert_eq!(folder.image("a.exr").width(), 24);
     let pid = child.id().to_string();
     assert!(Command::new("kill").args([signal, &pid]).status().expect("kill runs").success());
     let status = child.wait().expect("the program ends");

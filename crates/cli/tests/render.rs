@@ -24,6 +24,41 @@ fn pictures_are_written_in_every_format_asked_for() {
 }
 
 #[test]
+fn the_same_render_writes_the_same_bytes() {
+    let folder = Folder::with_scene("bytes");
+    let bytes = |name: &str| {
+        folder.alhazen(&["render", "scene.pbrt", "--quiet", "-o", name]).expect(0);
+        std::fs::read(folder.path().join(name)).expect("a picture")
+    };
+    let first = bytes("a.exr");
+    assert!(["b.exr", "c.exr", "d.exr"].into_iter().all(|name| bytes(name) == first));
+}
+
+#[test]
+fn pictures_of_strategies_end_at_eight_bounces() {
+    let folder = Folder::with_scene("strategies");
+    let arguments = ["render", "scene.pbrt", "--integrator", "bdpt", "--set", "techniques=true"];
+    let deep = ["--set", "maxdepth=9", "--resolution", "4x4", "-o", "a.pfm"];
+    let finished = folder.alhazen(&[&arguments[..], &deep].concat()).expect(0);
+    assert!(finished.err.contains("of paths with more than 8 scattering events no pictures"), "{finished:?}");
+    assert_eq!(folder.files().len(), 2 + 2 * 53, "the scene, the picture and those of the strategies");
+}
+
+#[test]
+fn an_algorithm_keeps_the_settings_of_the_scene() {
+    let folder = Folder::new("kept");
+    let sppm = "Integrator \"sppm\" \"integer photonsperiteration\" 50 \"float radius\" 0.7";
+    folder.write("scene.pbrt", &SCENE.replace("Integrator \"path\"", sppm));
+    let said = |integrator: &str| {
+        folder.alhazen(&["render", "scene.pbrt", "--integrator", integrator]).expect(0).out
+    };
+    let sppm = said("sppm");
+    assert!(sppm.contains("from 50 paths in a pass") && sppm.contains("0.7 in pass 1"), "{sppm}");
+    assert!(said("vcm").contains("0.7 in pass 1"));
+    assert!(said("photon-mapping").contains("0.700 at most"));
+}
+
+#[test]
 fn the_summary_says_what_was_done() {
     let folder = Folder::with_scene("summary");
     let said = folder.alhazen(&["render", "scene.pbrt", "--crop", "0,0.5,0,1"]).expect(0).out;

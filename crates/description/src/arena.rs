@@ -22,6 +22,12 @@ impl Origin {
         Self { span, parameters: Vec::new() }
     }
 
+    /// Says where a parameter was given, whatever was said of it before.
+    pub fn set_parameter(&mut self, name: &'static str, span: Span) {
+        self.parameters.retain(|(given, _)| *given != name);
+        self.parameters.push((name, span));
+    }
+
     /// The place to blame for a parameter: where it was given, or the whole statement if it was left out.
     pub fn parameter(&self, name: &str) -> Span {
         self.parameters.iter().find(|(given, _)| *given == name).map_or(self.span, |&(_, span)| span)

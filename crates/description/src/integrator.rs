@@ -232,15 +232,15 @@ pub struct SppmDesc {
     pub max_depth: i32,
     /// Photons per pass; as many as pixels if absent.
     pub photons_per_iteration: Option<i32>,
-    /// First search radius in world units.
-    pub radius: f32,
+    /// First search radius in world units; if absent, a share of the scene's size (1 in pbrt-v4).
+    pub radius: Option<f32>,
     /// Seed of the photons; the scene's if absent.
     pub seed: Option<i32>,
 }
 
 impl Default for SppmDesc {
     fn default() -> Self {
-        Self { max_depth: 5, photons_per_iteration: None, radius: 1.0, seed: None }
+        Self { max_depth: 5, photons_per_iteration: None, radius: None, seed: None }
     }
 }
 

@@ -7,6 +7,11 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FileId(pub u32);
 
+impl FileId {
+    /// Of what was said by who uses a scene, as on a command line, rather than in a file. Its spans count what was said.
+    pub const CALLER: Self = Self(u32::MAX - 1);
+}
+
 /// A range of bytes of one file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
@@ -27,9 +32,9 @@ impl Span {
         Self { file, start, end }
     }
 
-    /// Whether this is [`Span::NONE`].
+    /// Whether it lies in no file: it is [`Span::NONE`], or the [caller's](FileId::CALLER).
     pub fn is_none(self) -> bool {
-        self == Self::NONE
+        self == Self::NONE || self.file == FileId::CALLER
     }
 
     /// The smallest span that holds both; `self` if they lie in different files.

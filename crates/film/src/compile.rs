@@ -69,7 +69,7 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
 }
 
 /// The pixels to render: those asked for, within the whole image. A crop window counts before pixel bounds.
-fn pixel_bounds(film: &FilmDesc) -> Bounds2i {
+pub fn pixel_bounds(film: &FilmDesc) -> Bounds2i {
     let full = Bounds2i::new([0, 0], film.resolution);
     let bounds = match (film.pixel_bounds, film.crop_window) {
         (Some([x0, x1, y0, y1]), None) => Bounds2i::new([x0, y0], [x1, y1]),

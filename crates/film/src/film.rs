@@ -211,6 +211,11 @@ impl Film {
         Self { filter: self.filter.clone(), gate, pixels, splats: SplatSums::default(), ..*self }
     }
 
+    /// A [`blank`](Self::blank) film for splats alone, which takes [`SPLAT_BYTES`](crate::SPLAT_BYTES) for each pixel; it has no tiles.
+    pub fn for_splats(&self) -> Self {
+        Self { pixels: Vec::new(), ..self.blank() }
+    }
+
     /// Width and height of the whole image in pixels.
     pub fn full_resolution(&self) -> [i32; 2] {
         self.full_resolution
@@ -311,7 +316,8 @@ impl Film {
         let (width, height) = (self.bounds.width() as u32, self.bounds.height() as u32);
         let image = Image::from_fn(width, height, ["R", "G", "B"], |x, y| {
             let at = [x0 + x as i32, y0 + y as i32];
-            let (mean, splat) = (self.pixels[self.index(at)].mean(), self.splats.value(&self.bounds, at));
+            let mean = self.pixels.get(self.index(at)).map_or([0.0; 3], Pixel::mean);
+            let splat = self.splats.value(&self.bounds, at);
             let response = [0, 1, 2].map(|c| mean[c] + splat[c]);
             let rgb = Rgb::from(output_from_sensor.apply(response).map(|c| c as f32));
             if self.half_floats { rgb.clamp(-MAX_HALF, MAX_HALF) } else { rgb }.to_array()
@@ -344,8 +350,11 @@ impl Film {
 }
 
 fn tiles<'film>(bounds: &Bounds2i, pixels: &'film mut [Pixel], gate: &'film Gate) -> Vec<FilmTile<'film>> {
-    let mut rest = pixels;
     let mut tiles = Vec::new();
+    if pixels.is_empty() {
+        return tiles;
+    }
+    let mut rest = pixels;
     for y in (bounds.min[1]..bounds.max[1]).step_by(TILE_SIZE as usize) {
         for x in (bounds.min[0]..bounds.max[0]).step_by(TILE_SIZE as usize) {
             let bounds = tile_at(bounds, [x, y]);

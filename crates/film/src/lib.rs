@@ -14,9 +14,9 @@ mod sensor;
 mod splats;
 mod sum;
 
-pub use compile::{Compiled, compile};
+pub use compile::{Compiled, compile, pixel_bounds};
 pub use film::{Film, FilmSettings, FilmTile, MAX_REJECTED_PIXELS, Rejected, TILE_SIZE};
 pub use filter::{Filter, FilterSample};
 pub use sensor::PixelSensor;
-pub use splats::Splatter;
+pub use splats::{SPLAT_BYTES, Splatter};
 pub use sum::ExactSum;

@@ -9,7 +9,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use math::{Bounds2i, Point2, Vec2};
+use math::{Bounds2, Bounds2i, Point2, Vec2};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::film::{Gate, tile_at};
@@ -17,6 +17,9 @@ use crate::{ExactSum, Filter, TILE_SIZE};
 
 /// What has been splatted on one pixel.
 type Splat = [ExactSum; 3];
+
+/// What the splats of a film take for each of its pixels, in bytes.
+pub const SPLAT_BYTES: usize = size_of::<Splat>();
 
 /// All that has been splatted on a film; takes no memory for pixels before the first splat is possible.
 #[derive(Debug, Default)]
@@ -76,10 +79,13 @@ impl Splatter<'_> {
         self.sums.paths.fetch_add(count, Ordering::Relaxed);
     }
 
-    /// Whether a splat at a film position (in pixels, (0, 0) being the top left corner of the whole picture) reaches a pixel
-    /// that is rendered.
-    pub fn reaches(&self, film: Point2) -> bool {
-        self.reached(film).area() > 0
+    /// All film positions (in pixels, (0, 0) being the top left corner of the whole picture) that reach a pixel which is rendered: the
+    /// pixels, and around them as far as the filter goes.
+    pub fn reach(&self) -> Bounds2 {
+        let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
+        // Pixels reach as far as the filter from their centres.
+        let margin = self.filter.radius() - 0.5;
+        Bounds2 { min: corner(self.bounds.min) - margin, max: corner(self.bounds.max) + margin }
     }
 
     /// Adds the light `l` of one path that arrives at a film position.

@@ -123,7 +123,7 @@ fn what_is_no_light_or_not_on_the_film_is_left_out() {
     assert_eq!(film.rejected().count, 2);
     for at in [Vec2::NAN, Vec2::splat(f32::INFINITY), Vec2::splat(-1e30), Vec2::new(36.0, 5.0)] {
         splat(&mut film, at, 1.0);
-        assert!(!film.tiles_and_splatter().1.reaches(at));
+        assert!(!film.tiles_and_splatter().1.reach().contains(at));
     }
     assert_eq!(film.rejected().count, 2);
     assert!(film.develop().values().all(|value| value == 0.0));

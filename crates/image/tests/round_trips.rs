@@ -22,6 +22,23 @@ fn again(image: &Image, format: Format, depth: SampleDepth) -> Image {
     read(&bytes, &format!("x.{}", format.extensions()[0]), &ReadOptions::default()).unwrap()
 }
 
+#[test]
+fn the_same_picture_is_the_same_bytes() {
+    let mut image = gradient(3);
+    for name in ["camera", "integrator", "sampler", "samplesPerPixel", "seed", "a", "b", "software"] {
+        image.metadata.set(name, Attribute::Text(format!("the {name}")));
+    }
+    for format in Format::ALL {
+        let bytes = || encode(&image, format, &WriteOptions::default()).unwrap();
+        let first = bytes();
+        assert!((0..4).all(|_| bytes() == first), "{format:?}");
+    }
+    assert_eq!(
+        again(&image, Format::Exr, SampleDepth::Natural).metadata.attributes,
+        image.metadata.attributes
+    );
+}
+
 #[track_caller]
 fn assert_near(a: &Image, b: &Image, tolerance: f32) {
     assert_eq!((a.width(), a.height()), (b.width(), b.height()));

@@ -10,10 +10,11 @@ use scene::Interfaces;
 use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
+use crate::bdpt::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
     AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Mlt, MltSettings, Path,
     PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
-    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, radiosity,
+    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, endless, radiosity,
 };
 
 /// What [`build`] gives.
@@ -140,6 +141,7 @@ impl Builder<'_> {
                 self.instead_of("simplevolpath", max_depth, false, sampler)
             }
             &IntegratorDesc::LightTracing { max_depth } => {
+                self.diagnostics.extend(endless::warnings(self.desc, "light-tracing"));
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(LightTracing::new(self.depth(max_depth), sampler, light_sampler))
             }
@@ -151,10 +153,13 @@ impl Builder<'_> {
                     weighted: visualize_weights,
                 };
                 let light_sampler = self.light_sampler(&sampler);
-                Box::new(Bdpt::new(settings, sampler, light_sampler))
+                let bdpt = Bdpt::new(settings, sampler, light_sampler);
+                self.techniques(&settings, &bdpt);
+                Box::new(bdpt)
             }
             IntegratorDesc::Mlt(desc) => self.mlt(desc, sampler),
             IntegratorDesc::PhotonMapping(desc) => {
+                self.diagnostics.extend(endless::warnings(self.desc, "photon-mapping"));
                 let settings = self.photon_mapping(desc);
                 Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
             }
@@ -169,15 +174,39 @@ impl Builder<'_> {
                 Box::new(Vcm::new(settings, sampler, light_sampler, self.photon_seed(None)))
             }
             &IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed }) => {
+                self.diagnostics.extend(endless::warnings(self.desc, "sppm"));
                 let settings = SppmSettings {
                     max_depth: self.depth(max_depth),
                     photons_per_iteration: photons_per_iteration.map(|count| self.photons(count)),
-                    radius: self.radius(radius),
+                    radius: radius.map(|radius| self.radius(radius)),
                 };
                 Box::new(Sppm::new(settings, sampler, self.photon_seed(seed)))
             }
             IntegratorDesc::Radiosity(desc) => self.radiosity(desc, sampler),
             IntegratorDesc::Function { .. } => self.instead_of("function", 5, false, sampler),
+        }
+    }
+
+    /// Tells which strategies' pictures are left out, and refuses those that take too much memory.
+    fn techniques(&mut self, settings: &BdptSettings, bdpt: &Bdpt) {
+        if !(settings.unweighted || settings.weighted) {
+            return;
+        }
+        let parameter = if settings.unweighted { "visualizestrategies" } else { "visualizeweights" };
+        if settings.max_depth > MAX_DEPTH {
+            let message = format!(
+                "of paths with more than {MAX_DEPTH} scattering events no pictures of strategies are made"
+            );
+            let span = self.desc.integrator.origin.parameter(parameter);
+            self.diagnostics.push(Diagnostic::warning("techniques", message, span));
+        }
+        let bytes = bdpt.technique_bytes(film::pixel_bounds(&self.desc.film).area());
+        if bytes > MAX_BYTES {
+            let [bytes, most] = [bytes, MAX_BYTES].map(|bytes| bytes as f64 / f64::from(1 << 30));
+            let message = format!(
+                "pictures of all strategies take {bytes:.1} GiB, more than {most:.0} GiB; a smaller picture, a part of it or a smaller `maxdepth` takes less"
+            );
+            self.error(message, parameter);
         }
     }
 
@@ -285,7 +314,7 @@ impl Builder<'_> {
     /// A positive number of photons; 1, and an error, where it is none.
     fn photons(&mut self, count: i32) -> u32 {
         if count <= 0 {
-            let message = format!("`photonsperiteration` is a number above 0, not {count}");
+            let message = format!("the photons of a pass are a number above 0, not {count}");
             self.error(message, "photonsperiteration");
         }
         count.max(1) as u32

@@ -1,10 +1,11 @@
 //! What a caller says to a render while it runs, and what it hears from it.
 
 use std::fmt;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use film::Film;
 use geometry::RayStats;
 
 /// How far a render is.
@@ -25,6 +26,9 @@ pub struct Progress {
 /// Hears how far a render is, on the thread that runs it.
 pub type ProgressSink = Box<dyn Fn(&Progress) + Send + Sync>;
 
+/// Sees the film as it stands between two passes, on the thread that runs the render.
+pub type FilmSink = Box<dyn Fn(&Film) + Send + Sync>;
+
 /// What a caller holds of a render. The default never stops it and hears nothing.
 #[derive(Default)]
 pub struct Control {
@@ -32,12 +36,32 @@ pub struct Control {
     pub cancel: Arc<AtomicBool>,
     /// Hears of each pass when it is done.
     pub progress: Option<ProgressSink>,
+    /// Sees the film after each pass but the last.
+    pub preview: Option<FilmSink>,
+    /// Rays of the pass in the making, which would be lost with its result where it is cancelled; integrators count them.
+    pub under_way: Mutex<RayStats>,
 }
 
 impl Control {
     /// Whether to go on.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.cancel.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// Counts rays of the pass in the making.
+    pub(crate) fn count(&self, stats: &RayStats) {
+        *self.under_way.lock().unwrap_or_else(PoisonError::into_inner) += *stats;
+    }
+
+    /// What has been counted since the last pass.
+    pub(crate) fn take_counted(&self) -> RayStats {
+        std::mem::take(&mut *self.under_way.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    pub(crate) fn show(&self, film: &Film) {
+        if let Some(sink) = &self.preview {
+            sink(film);
+        }
     }
 
     pub(crate) fn report(&self, progress: &Progress) {

@@ -61,10 +61,10 @@ pub(crate) fn all_lights(
         let bsdf = Bsdf { bxdf, frame: bsdf.frame };
         let mut sum = SampledSpectrum::ZERO;
         for light in (0..scene.lights().len() as u32).map(LightId) {
-            let u = sampler.get_2d();
+            let (u, interfaces) = (sampler.get_2d(), Interfaces::before(scene.light(light)));
             let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
             let l = scattered(surface, &bsdf, &sample);
-            if !l.is_black() && (shadows == Shadows::Ignored || scene.unoccluded(surface, &sample, Interfaces::Pass, stats)) {
+            if !l.is_black() && (shadows == Shadows::Ignored || scene.unoccluded(surface, &sample, interfaces, stats)) {
                 sum += l / sample.pdf;
             }
         }

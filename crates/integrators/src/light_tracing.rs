@@ -17,7 +17,7 @@
 //! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen along one camera ray for each
 //! pixel, since those far away are nowhere on a subpath.
 //!
-//! Unbiased for what it can see. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+//! Unbiased for what it can see. A plane without end lies in the dark where light from infinity does not come (`endless.rs`). Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -38,15 +38,17 @@ pub struct LightTracing {
     sampler: Sampler,
     light_sampler: Sampler,
     lights: Lights,
-    rays: u64,
+    /// Rays of light subpaths, those to the camera among them.
+    rays: AtomicU64,
+    /// Of these, how many ended on the film.
     reached: AtomicU64,
 }
 
 impl LightTracing {
     /// With paths of at most `max_depth` scattering events, and a sampler for each end.
     pub fn new(max_depth: u32, sampler: Sampler, light_sampler: Sampler) -> Self {
-        let (lights, reached) = (Lights::none(), AtomicU64::new(0));
-        Self { max_depth, sampler, light_sampler, lights, rays: 0, reached }
+        let [rays, reached] = [0; 2].map(AtomicU64::new);
+        Self { max_depth, sampler, light_sampler, lights: Lights::none(), rays, reached }
     }
 }
 
@@ -77,19 +79,20 @@ impl Integrator for LightTracing {
         let filter = film.filter().clone();
         let (tiles, splatter) = film.tiles_and_splatter();
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
-        let stats = pixels.add(tiles, control, |sample, sampler, stats| {
+        pixels.add(tiles, control, |sample, sampler, stats| {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();
             light_sampler.start_pixel_sample(sample.pixel, pass, 0);
-            let mut reached = 0;
+            let (mut reached, rays_before) = (0, stats.rays);
             paths.light_subpath(sample.time, lambda, &mut light_sampler, stats, |vertex, sampler, stats| {
                 let u = sampler.get_2d();
-                if let Some(seen) = paths.see(vertex, u, |film| splatter.reaches(film), stats) {
-                    splatter.add(seen.film, &seen.found.l, lambda);
+                if let Some(seen) = paths.see(vertex, u, splatter.reach(), stats) {
+                    seen.splat(&splatter, &seen.found.l, lambda);
                     reached += 1;
                 }
             });
             splatter.add_paths(1);
+            self.rays.fetch_add(stats.rays - rays_before, Ordering::Relaxed);
             self.reached.fetch_add(reached, Ordering::Relaxed);
             let mut l = SampledSpectrum::ZERO;
             if let Some(camera_ray) = &sample.camera_ray {
@@ -100,14 +103,15 @@ impl Integrator for LightTracing {
                 });
             }
             l
-        })?;
-        self.rays += stats.rays;
-        Ok(stats)
+        })
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {
-        let reached = self.reached.load(Ordering::Relaxed);
-        let share = 100.0 * reached as f64 / self.rays.max(1) as f64;
-        vec![("reached", format!("{share:.2} % of the rays ended on the film, {reached} of {}", self.rays))]
+        let [reached, rays] = [&self.reached, &self.rays].map(|count| count.load(Ordering::Relaxed));
+        let share = 100.0 * reached as f64 / rays.max(1) as f64;
+        vec![(
+            "reached",
+            format!("{share:.2} % of the rays from lights ended on the film, {reached} of {rays}"),
+        )]
     }
 }

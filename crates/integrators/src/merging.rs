@@ -96,6 +96,11 @@ impl Merging {
         Self { radius, alpha, seed, last: LastPass::default() }
     }
 
+    /// Changes the radius of the first pass.
+    pub fn begin_with(&mut self, radius: f32) {
+        self.radius = radius;
+    }
+
     /// What chooses the wavelengths and times of passes.
     pub fn seed(&self) -> u32 {
         self.seed
@@ -140,6 +145,7 @@ impl Merging {
                 );
                 subpaths.ends.push(subpaths.vertices.len());
             }
+            control.count(&stats);
             Ok((subpaths, stats))
         };
         let batches = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
@@ -170,6 +176,9 @@ impl Merging {
     /// What the integrators tell of it.
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         let &LastPass { passes, radius, paths, photons, bytes } = &self.last;
+        if passes == 0 {
+            return Vec::new();
+        }
         let mebibytes = bytes as f64 / f64::from(1 << 20);
         vec![
             ("photons", format!("{photons} from {paths} paths in a pass, {mebibytes:.1} MiB")),

@@ -32,7 +32,7 @@ pub struct PathSettings {
     pub regularize: bool,
     /// How a light is chosen; by default through the tree of lights.
     pub light_sampler: LightSamplerKind,
-    /// Whether light samples are found through interfaces; by default not, so that delta lights throw their shadow.
+    /// What interfaces do to the light of delta lights; by default they stop it.
     pub interfaces: Interfaces,
 }
 
@@ -120,7 +120,11 @@ impl Path {
             return SampledSpectrum::ZERO;
         };
         let l = scattered(surface, bsdf, &sample);
-        if l.is_black() || !scene.unoccluded(surface, &sample, self.settings.interfaces, stats) {
+        let interfaces = match self.settings.interfaces {
+            Interfaces::Stop => Interfaces::before(scene.light(light)),
+            Interfaces::Pass => Interfaces::Pass,
+        };
+        if l.is_black() || !scene.unoccluded(surface, &sample, interfaces, stats) {
             return SampledSpectrum::ZERO;
         }
         let p_l = pmf * sample.pdf;
@@ -158,10 +162,6 @@ impl Path {
             }
             let Some(mut bsdf) = scene.bsdf(&mut surface, &ray, lambda, sampler) else {
                 ray = pass_through(&ray, &surface, t);
-                if self.settings.interfaces == Interfaces::Stop {
-                    // No light sample gets through here: what the ray meets beyond it alone finds.
-                    origin = None;
-                }
                 continue;
             };
             if depth == self.settings.max_depth {

@@ -165,6 +165,7 @@ impl PixelSamples<'_> {
                     tile.add_sample([x, y], &l, &sample.lambda, sample.filter_weight);
                 }
             }
+            control.count(&stats);
             Ok(stats)
         };
         tiles.into_par_iter().map(tile).try_reduce(RayStats::default, |mut sum, stats| {

@@ -23,7 +23,8 @@ pub struct RenderReport {
 
 /// Renders the scene into the film, on the threads of rayon's current pool.
 ///
-/// After `Err` the film is valid all the same: it holds the light of the passes, and tiles, that were done.
+/// After `Err` the film is valid all the same: it holds the light of the passes, and tiles, that were done, and the last progress told has
+/// their rays.
 pub fn render(
     integrator: &mut dyn Integrator,
     scene: &Scene,
@@ -37,12 +38,22 @@ pub fn render(
     control.check()?;
     integrator.prepare(scene);
     for pass in 0..passes {
-        report.stats += integrator.pass(pass, scene, film, control)?;
-        report.passes += 1;
-        report.samples += samples_per_pass;
+        let outcome = integrator.pass(pass, scene, film, control);
+        let under_way = control.take_counted();
+        if let Ok(stats) = outcome {
+            report.stats += stats;
+            report.passes += 1;
+            report.samples += samples_per_pass;
+        } else {
+            report.stats += under_way;
+        }
         report.elapsed = start.elapsed();
         let RenderReport { passes: pass, samples, stats, elapsed } = report;
         control.report(&Progress { pass, passes, samples, stats, elapsed });
+        outcome?;
+        if pass < passes {
+            control.show(film);
+        }
     }
     Ok(report)
 }

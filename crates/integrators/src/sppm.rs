@@ -36,6 +36,13 @@ use crate::{Cancelled, Control, Integrator};
 /// How slowly the radius shrinks.
 const ALPHA: f32 = 2.0 / 3.0;
 
+/// The first radius, if it is not told, over that of the scene times √n for n light subpaths in a pass: the more photons, the nearer they are.
+/// About thirty count for a point of a room, so that few are black.
+const SPACING: f32 = 5.0;
+
+/// It is no larger part of the scene's than this.
+const LARGEST_SHARE: f32 = 0.05;
+
 /// Settings of [`Sppm`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SppmSettings {
@@ -43,13 +50,14 @@ pub struct SppmSettings {
     pub max_depth: u32,
     /// Light subpaths in a pass, above 0; by default as many as pixels.
     pub photons_per_iteration: Option<u32>,
-    /// Distance in the scene within which photons count in the first pass, above 0; default 1.
-    pub radius: f32,
+    /// Distance in the scene within which photons count in the first pass, above 0; by default 5/√n of the
+    /// scene's radius for n light subpaths, and no more than 0.05 of it.
+    pub radius: Option<f32>,
 }
 
 impl Default for SppmSettings {
     fn default() -> Self {
-        Self { max_depth: 5, photons_per_iteration: None, radius: 1.0 }
+        Self { max_depth: 5, photons_per_iteration: None, radius: None }
     }
 }
 
@@ -65,7 +73,7 @@ pub struct Sppm {
 impl Sppm {
     /// With a sampler for what begins at the camera, and a seed for photons.
     pub fn new(settings: SppmSettings, sampler: Sampler, photon_seed: u32) -> Self {
-        let merging = Merging::new(settings.radius, ALPHA, photon_seed);
+        let merging = Merging::new(settings.radius.unwrap_or(1.0), ALPHA, photon_seed);
         Self { settings, sampler, lights: Lights::none(), merging }
     }
 }
@@ -88,6 +96,10 @@ impl Integrator for Sppm {
     ) -> Result<RayStats, Cancelled> {
         let pixel_count = film.pixel_bounds().area();
         let photon_paths = self.settings.photons_per_iteration.map_or(pixel_count, |count| count as usize);
+        if self.settings.radius.is_none() {
+            let share = (SPACING / (photon_paths as f32).sqrt()).min(LARGEST_SHARE);
+            self.merging.begin_with(share * scene.sphere().radius);
+        }
         let paths = Bidirectional {
             scene,
             lights: &self.lights,

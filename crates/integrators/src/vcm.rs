@@ -152,8 +152,8 @@ impl Integrator for Vcm {
                 &made
             });
             for (vertex, u) in light_subpath {
-                if let Some(seen) = paths.see(vertex, *u, |film| splatter.reaches(film), stats) {
-                    splatter.add(seen.film, &seen.found.weighted(), lambda);
+                if let Some(seen) = paths.see(vertex, *u, splatter.reach(), stats) {
+                    seen.splat(&splatter, &seen.found.weighted(), lambda);
                 }
             }
             splatter.add_paths(1);

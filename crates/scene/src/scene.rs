@@ -39,11 +39,19 @@ pub struct SceneOptions {
 /// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
-    /// They stop them, as in the algorithms of the pbrt-v4 format that know no media.
+    /// They stop them.
     #[default]
     Stop,
-    /// They let them pass, as they let light.
+    /// They let them pass.
     Pass,
+}
+
+impl Interfaces {
+    /// What they do to the light of `light` where media are not known. The path tracer of the pbrt-v4 format, which draws them as
+    /// surfaces that a path goes through, finds lights behind them by chance alone: so delta lights throw their shadow, and others do not.
+    pub fn before(light: &Light) -> Self {
+        if light.is_delta() { Self::Stop } else { Self::Pass }
+    }
 }
 
 /// Everything that is rendered. Never changes once compiled.
@@ -141,16 +149,23 @@ impl Scene {
         }
     }
 
-    /// Whether a hit is on nothing but a change of medium.
-    pub fn is_interface(&self, hit: &Hit) -> bool {
+    /// Whether `ray` has hit nothing but a change of medium.
+    pub fn is_interface(&self, hit: &Hit, ray: &Ray) -> bool {
         let entry = &self.entries[hit.geometry.0 as usize];
-        matches!(self.materials.get(entry.material).material, Material::Interface)
+        match self.materials.get(entry.material).material {
+            Material::Interface => true,
+            Material::Mix(_) => {
+                let interaction = self.interaction(hit, self.world.surface(ray, hit));
+                matches!(self.materials.resolve(&interaction, &self.textures).material, Material::Interface)
+            }
+            _ => false,
+        }
     }
 
     /// Whether a surface that stops light lies at 0 < t < `t_max`.
     pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
         let stops = |hit: &Hit, ray: &Ray| {
-            let passes = interfaces == Interfaces::Pass && self.is_interface(hit);
+            let passes = interfaces == Interfaces::Pass && self.is_interface(hit, ray);
             !passes && self.is_there(hit, ray)
         };
         self.world.occluded(ray, t_max, &stops, stats)
@@ -228,7 +243,8 @@ impl Scene {
         self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
     }
 
-    /// [`Light::sample_le`] of one of this scene's lights.
+    /// [`Light::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere around all that has an end; what has
+    /// none may keep it from there: `None` if it does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -236,8 +252,17 @@ impl Scene {
         u_direction: Point2,
         time: f32,
         lambda: &SampledWavelengths,
+        stats: &mut RayStats,
     ) -> Option<LightLeSample> {
-        self.light(light).sample_le(u_position, u_direction, time, lambda, &self.textures)
+        let light = self.light(light);
+        let sample = light.sample_le(u_position, u_direction, time, lambda, &self.textures)?;
+        if sample.p.is_none() && self.world.is_endless() {
+            let way_back = Ray { d: -sample.ray.d, ..sample.ray };
+            if self.occluded(&way_back, f32::INFINITY, Interfaces::before(light), stats) {
+                return None;
+            }
+        }
+        Some(sample)
     }
 
     /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the shading normal on the way.

@@ -151,6 +151,29 @@ fn a_mix_has_its_proportions() {
 }
 
 #[test]
+fn a_mix_with_an_interface_is_one_for_its_part_of_all_rays() {
+    let scene = scene(&floor(|desc| {
+        let materials = [MaterialKind::Diffuse { reflectance: 0.5.into() }, MaterialKind::Interface];
+        let materials = materials.map(|kind| desc.materials.push(kind.into()));
+        MaterialKind::Mix { materials, amount: 0.25.into() }.into()
+    }));
+    let mut random = Random::new(3);
+    let stopped: Moments = (0..20_000)
+        .map(|_| {
+            let ray = down(random.get_1d(), random.get_1d());
+            let stops = scene.occluded(&ray, f32::INFINITY, Interfaces::Pass, &mut Default::default());
+            assert_eq!(
+                stops,
+                bsdf_at(&scene, ray, &mut lambda()).1.is_some(),
+                "the same ray always fares alike"
+            );
+            f64::from(u8::from(stops))
+        })
+        .collect();
+    t_test(&stopped, 0.75, 1).unwrap();
+}
+
+#[test]
 fn a_surface_is_there_by_its_alpha() {
     let mut random = Random::new(2);
     for alpha in [0.0, 0.3, 0.9, 1.0, 2.0] {

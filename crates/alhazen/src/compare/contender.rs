@@ -3,9 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-use description::SceneDesc;
+use description::{IntegratorDesc, SceneDesc};
 
-use crate::{OverrideError, Overrides, integrator_name};
+use crate::names::{integrator_called, integrator_name};
+use crate::{OverrideError, Overrides, Setting};
 
 /// An integrator with settings of its own, written `NAME` or `NAME:KEY=VALUE:KEY=VALUE`, as in `path:maxdepth=8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,29 +16,42 @@ pub struct Contender {
 }
 
 impl Contender {
-    /// The scene as this contender renders it: changed by `overrides`, then by its own settings. These may concern the
+    /// What this contender changes of the scene: what `shared` says, without settings that its algorithm does not have, and then what its
+    /// own settings say.
+    pub(super) fn overrides(&self, scene: &SceneDesc, shared: &Overrides) -> Overrides {
+        let mut overrides = Overrides { integrator: Some(self.integrator.clone()), ..shared.clone() };
+        if let Some(integrator) = integrator_called(&self.integrator, &scene.integrator) {
+            let has = |name: &str| Setting::named(name).is_none_or(|setting| setting.is_of(&integrator));
+            overrides.settings.retain(|(name, _)| has(name));
+        }
+        overrides.settings.extend_from_slice(&self.settings);
+        overrides
+    }
+
+    /// The scene as this contender renders it, changed by its [`overrides`](Self::overrides). Its own settings may concern the
     /// algorithm and its sampler only, as all contenders render one scene onto one kind of film.
     pub(super) fn scene(&self, scene: &SceneDesc, overrides: &Overrides) -> Result<SceneDesc, OverrideError> {
+        let wrong = |problem: &dyn fmt::Display| OverrideError::new(format!("{self}: {problem}"));
         let changed = |settings: &[(String, String)]| {
             let mut desc = scene.clone();
-            let mut overrides = Overrides { integrator: Some(self.integrator.clone()), ..overrides.clone() };
-            overrides.settings.extend_from_slice(settings);
-            overrides
-                .apply(&mut desc)
-                .map(|()| desc)
-                .map_err(|error| OverrideError::new(format!("{self}: {error}")))
+            write_nothing_beside(&mut desc.integrator);
+            let overrides = Overrides { settings: settings.to_vec(), ..overrides.clone() };
+            overrides.apply(&mut desc).map(|()| desc).map_err(|error| wrong(&error))
         };
-        let desc = changed(&self.settings)?;
+        let mut desc = changed(&overrides.settings)?;
+        if write_nothing_beside(&mut desc.integrator) {
+            return Err(wrong(&"a comparison writes nothing beside its report"));
+        }
         if !self.settings.is_empty() {
-            let shared = changed(&[])?;
+            let shared = changed(&overrides.settings[..overrides.settings.len() - self.settings.len()])?;
             let own = desc.options.value != shared.options.value
                 || desc.film.value != shared.film.value
                 || desc.filter.value != shared.filter.value
                 || desc.accelerator.value != shared.accelerator.value;
             if own {
-                return Err(OverrideError::new(format!(
-                    "{self}: scene and film are the same for all; of its own an integrator has its settings and a sampler"
-                )));
+                return Err(wrong(
+                    &"scene and film are the same for all; of its own an integrator has its settings and a sampler",
+                ));
             }
         }
         Ok(desc)
@@ -47,6 +61,17 @@ impl Contender {
     pub(super) fn title(&self, desc: &SceneDesc) -> String {
         let settings = self.settings.iter().map(|(key, value)| format!(":{key}={value}"));
         settings.fold(integrator_name(&desc.integrator).to_owned(), |title, setting| title + &setting)
+    }
+}
+
+/// Turns off what would be written beside pictures; tells whether there was something.
+fn write_nothing_beside(integrator: &mut IntegratorDesc) -> bool {
+    match integrator {
+        IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
+            std::mem::take(visualize_strategies) | std::mem::take(visualize_weights)
+        }
+        IntegratorDesc::Radiosity(radiosity) => radiosity.mesh_out.take().is_some(),
+        _ => false,
     }
 }
 
@@ -77,10 +102,39 @@ impl fmt::Display for Contender {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use description::VcmDesc;
 
     fn scene(text: &str) -> Result<SceneDesc, String> {
         let contender: Contender = text.parse()?;
-        contender.scene(&SceneDesc::default(), &Overrides::default()).map_err(|error| error.to_string())
+        with(&contender, &[])
+    }
+
+    fn with(contender: &Contender, shared: &[(&str, &str)]) -> Result<SceneDesc, String> {
+        let desc = SceneDesc::default();
+        let settings = shared.iter().map(|&(name, value)| (name.into(), value.into())).collect();
+        let overrides = contender.overrides(&desc, &Overrides { settings, ..Overrides::default() });
+        contender.scene(&desc, &overrides).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn of_what_is_set_for_all_each_takes_what_it_has() {
+        let shared = [("radius", "3"), ("maxdepth", "2"), ("alpha", "0.5")];
+        let [path, vcm] =
+            ["path", "vcm:alpha=0.75"].map(|name| with(&name.parse().unwrap(), &shared).unwrap());
+        assert!(matches!(path.integrator.value, IntegratorDesc::Path { max_depth: 2, .. }));
+        let expected = VcmDesc { max_depth: 2, radius: Some(3.0), alpha: 0.75 };
+        assert_eq!(vcm.integrator.value, IntegratorDesc::Vcm(expected));
+    }
+
+    #[test]
+    fn nothing_is_written_beside_the_report() {
+        for wrong in ["radiosity:mesh-out=a.ply", "bdpt:techniques=true"] {
+            assert_eq!(
+                scene(wrong).unwrap_err(),
+                format!("{wrong}: a comparison writes nothing beside its report")
+            );
+        }
+        assert!(scene("bdpt:techniques=false").is_ok());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Budget, Checkpoint, Comparison, Measure, Run};
+use super::{Budget, Checkpoint, Comparison, Measure, Run, said};
 
 impl Comparison {
     /// Everything in numbers: the setup, the reference, and for each run its figures at the end and at every checkpoint.
@@ -20,7 +20,7 @@ impl Comparison {
             },
             "seed": setup.seed,
             "threads": setup.threads,
-            "filter": setup.filter,
+            "filter": said::json(&setup.filter),
             "settings": setup.changes,
             "reference": {
                 "source": self.reference.source,
@@ -28,10 +28,12 @@ impl Comparison {
                 "variance": self.reference.noise.map(|noise| noise.absolute),
                 "relative_variance": self.reference.noise.map(|noise| noise.relative),
                 "mean_deviation": self.reference.noise.map(|noise| noise.of_mean.sqrt()),
+                "doubt": self.doubt(),
             },
             "common_relmse": self.common_error(),
             "integrators": self.runs.iter().map(|run| self.run_to_json(run)).collect::<Vec<_>>(),
             "missing": self.missing,
+            "warnings": self.warnings,
         })
     }
 
@@ -39,8 +41,8 @@ impl Comparison {
         let mut value = checkpoint(run.last());
         let more = json!({
             "name": run.name,
-            "settings": run.settings,
-            "sampler": run.sampler,
+            "settings": said::json(&run.settings),
+            "sampler": said::json(&run.sampler),
             "notes": run.notes.iter().map(|(name, note)| ((*name).to_owned(), json!(note))).collect::<Map<_, _>>(),
             "status": if run.interrupted { "interrupted" } else { "done" },
             "flip": run.flip,

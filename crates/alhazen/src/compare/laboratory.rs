@@ -9,8 +9,9 @@ use scene::Scene;
 use super::measure::{measure, reference_noise};
 use super::twins::Twins;
 use super::{
-    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
+    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup, said,
 };
+use crate::settings::settings_of;
 use crate::{OverrideError, Overrides};
 
 /// The samples per pixel that samplers are made for where time is the limit.
@@ -26,12 +27,26 @@ pub struct Laboratory {
     scene: Scene,
     contenders: Vec<Entry>,
     reference: ReferencePlan,
+    /// What will be drawn otherwise than described.
+    warnings: Vec<String>,
 }
 
 /// A contender with the scene as it renders it.
 struct Entry {
     name: String,
     desc: SceneDesc,
+    /// How its scene came about.
+    overrides: Overrides,
+}
+
+impl Entry {
+    /// What is wrong with its scene: the scene itself, or what was changed of it.
+    fn wrong(&self, errors: Vec<Diagnostic>) -> PlanError {
+        match self.overrides.blamed(&errors) {
+            Some(error) => PlanError::Plan(format!("{}: {error}", self.name)),
+            None => PlanError::Scene(errors),
+        }
+    }
 }
 
 enum ReferencePlan {
@@ -53,10 +68,16 @@ impl Laboratory {
         let first =
             contenders.first().ok_or_else(|| PlanError::Plan("there is no integrator to compare".into()))?;
 
+        for (index, entry) in contenders.iter().enumerate() {
+            if contenders[..index].iter().any(|before| before.name == entry.name) {
+                return Err(PlanError::Plan(format!("{} is listed twice", entry.name)));
+            }
+        }
+
         let mut warnings = Vec::new();
-        let compiled = scene::compile(&first.desc).map_err(PlanError::Scene)?;
+        let compiled = scene::compile(&first.desc).map_err(|errors| first.wrong(errors))?;
         warnings.extend(compiled.warnings);
-        let film = film::compile(&first.desc).map_err(PlanError::Scene)?.film;
+        let film = film::compile(&first.desc).map_err(|errors| first.wrong(errors))?.film;
         let (bounds, desc) = (film.pixel_bounds(), &first.desc);
         let setup = Setup {
             title: plan.title,
@@ -65,13 +86,13 @@ impl Laboratory {
             budget: plan.budget,
             seed: desc.sampler.seed.unwrap_or(desc.options.seed),
             threads: plan.threads,
-            filter: format!("{:?}", desc.filter.value),
+            filter: said::filter(&desc.filter),
             changes: changes(&plan.overrides),
         };
         let reference = match plan.reference {
             ReferenceSource::Picture { name, picture } => {
                 let picture = fitting(&name, &picture, &setup).map_err(PlanError::Reference)?;
-                ReferencePlan::Picture(Box::new(Reference { source: name, picture, noise: None }))
+                ReferencePlan::Picture(Box::new(Reference { source: name, by: None, picture, noise: None }))
             }
             ReferenceSource::Render { by, samples_per_pixel } => {
                 let half = match samples_per_pixel {
@@ -84,11 +105,21 @@ impl Laboratory {
                 )
             }
         };
-        let laboratory = Self { setup, scene: compiled.scene, contenders, reference };
+        let warned = Vec::new();
+        let mut laboratory = Self { setup, scene: compiled.scene, contenders, reference, warnings: warned };
+        for (name, value) in &plan.overrides.settings {
+            let takes = |entry: &Entry| entry.overrides.settings.iter().any(|(taken, _)| taken == name);
+            if !laboratory.entries().any(takes) {
+                let message = format!("cannot set {name} to `{value}`: no algorithm here has such a setting");
+                return Err(PlanError::Plan(message));
+            }
+        }
         for entry in laboratory.entries() {
-            let (_, said) = Twins::new(&entry.desc, laboratory.setup.seed).map_err(PlanError::Scene)?;
+            let twins = Twins::new(&entry.desc, laboratory.setup.seed);
+            let (_, said) = twins.map_err(|errors| entry.wrong(errors))?;
             warnings.extend(said.into_iter().filter(|said| !warnings.contains(said)).collect::<Vec<_>>());
         }
+        laboratory.warnings = warnings.iter().map(|warning| warning.message.clone()).collect();
         Ok((laboratory, warnings))
     }
 
@@ -106,7 +137,7 @@ impl Laboratory {
     /// After a cancellation the comparison is of what has been done. `Err` means that there is nothing to compare: no contender
     /// has done a pass.
     pub fn compare(self, mut begin: impl FnMut(&str) -> Control) -> Result<Comparison, Cancelled> {
-        let Self { setup, scene, contenders, reference } = self;
+        let Self { setup, scene, contenders, reference, warnings } = self;
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
@@ -126,7 +157,10 @@ impl Laboratory {
                 None => missing.push(entry.name.clone()),
             }
         }
-        if runs.is_empty() { Err(Cancelled) } else { Ok(Comparison { setup, reference, runs, missing }) }
+        if runs.is_empty() {
+            return Err(Cancelled);
+        }
+        Ok(Comparison { setup, reference, runs, missing, warnings })
     }
 }
 
@@ -141,11 +175,12 @@ fn entry(
         Budget::Time(_) => TIMED_SAMPLES,
         Budget::Samples(samples) => samples,
     };
-    let overrides = Overrides { samples_per_pixel: Some(samples), ..overrides.clone() };
+    let shared = Overrides { samples_per_pixel: Some(samples), ..overrides.clone() };
+    let overrides = contender.overrides(scene, &shared);
     let wrong = |error: OverrideError| PlanError::Plan(error.to_string());
     let mut desc = contender.scene(scene, &overrides).map_err(wrong)?;
     desc.film.save_fp16 = false;
-    Ok(Entry { name: contender.title(&desc), desc })
+    Ok(Entry { name: contender.title(&desc), desc, overrides })
 }
 
 /// What is changed for all, as `key=value`.
@@ -195,6 +230,7 @@ fn render_reference(
             twins.effort().passes,
             2.0 * twins.effort().seconds
         ),
+        by: Some(entry.name.clone()),
         noise: Some(reference_noise(&halves, &picture)),
         picture,
     };
@@ -222,8 +258,8 @@ fn run(entry: &Entry, setup: &Setup, scene: &Scene, reference: &Reference, contr
     let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
     Some(Run {
         name: entry.name.clone(),
-        settings: format!("{:?}", entry.desc.integrator.value),
-        sampler: format!("{:?}", entry.desc.sampler.kind),
+        settings: settings_of(&entry.desc.integrator),
+        sampler: said::sampler(&entry.desc.sampler.kind),
         notes: twins.notes(),
         checkpoints,
         pictures,

@@ -28,12 +28,37 @@ pub struct Parts {
     pub bias_squared: f64,
     /// The standard deviation of the estimate of the squared bias; infinite for a single pixel, which cannot tell.
     pub bias_squared_deviation: f64,
+    /// Variance of the reference, where it is known: the rest of the error.
+    pub reference_variance: f64,
+}
+
+/// What can be said of an algorithm's bias, as a share of the reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bias {
+    /// There is so much: more than chance explains.
+    Seen(f64),
+    /// None was seen, and there is not more than this.
+    Below(f64),
+    /// Noise would hide as much as there is light.
+    Hidden,
 }
 
 impl Parts {
-    /// Whether there is more bias than chance explains: three standard deviations.
+    /// What the parts of a relative error say of bias.
+    pub fn bias(&self) -> Bias {
+        if self.is_biased() {
+            return Bias::Seen(self.bias_squared.sqrt());
+        }
+        let most = (self.bias_squared.max(0.0) + 3.0 * self.bias_squared_deviation).sqrt();
+        if most < 1.0 { Bias::Below(most) } else { Bias::Hidden }
+    }
+
+    /// Whether there is more bias than chance explains: three standard deviations, or more than all noise. The latter is for bias in a few
+    /// pixels, such as those of a caustic, which make the spread over pixels large.
     pub fn is_biased(&self) -> bool {
-        self.bias_squared > 3.0 * self.bias_squared_deviation
+        let noise = self.variance + self.reference_variance;
+        let is_more_than_noise = self.bias_squared_deviation.is_finite() && self.bias_squared > noise;
+        self.bias_squared > 3.0 * self.bias_squared_deviation || is_more_than_noise
     }
 }
 
@@ -92,6 +117,7 @@ impl Sums {
             variance: self.differences / (2.0 * values),
             bias_squared: self.products / values - reference_noise,
             bias_squared_deviation: deviation,
+            reference_variance: reference_noise,
         }
     }
 }
@@ -192,6 +218,11 @@ mod tests {
             assert!((measured.mean_error - bias).abs() < 4.0 * measured.mean_error_deviation, "{measured:?}");
             assert!(measured.mean_error_deviation < 0.01, "{measured:?}");
             assert_eq!(measured.absolute.is_biased(), bias != 0.0, "{measured:?}");
+            match measured.absolute.bias() {
+                Bias::Seen(seen) => assert!((seen - bias.abs()).abs() < 0.02, "{seen}"),
+                Bias::Below(most) => assert!(bias == 0.0 && most < 0.1, "{most}"),
+                Bias::Hidden => panic!("{measured:?}"),
+            }
         }
     }
 
@@ -202,6 +233,34 @@ mod tests {
         assert!(
             (measured.mean_error - 0.1).abs() < 1e-6 && (measured.mean_error_deviation - 0.2).abs() < 1e-6
         );
+    }
+
+    #[test]
+    fn bias_in_a_few_pixels_is_seen() {
+        let mut random = Random::new(3);
+        let reference = Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |_, _| [1.0; 3]);
+        for (spot, seen) in [(0.0, false), (5.0, true)] {
+            let pair = [0; 2].map(|_| {
+                let noise = picture(&mut random, 0.0, 0.001);
+                Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |x, y| {
+                    noise.rgb(x, y).map(|value| if x == 0 && y < 8 { value + spot } else { value })
+                })
+            });
+            let parts = measure(&pair, &reference, None).absolute;
+            assert!(
+                parts.bias_squared < 3.0 * parts.bias_squared_deviation && parts.is_biased() == seen,
+                "{parts:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn much_noise_hides_bias() {
+        let parts =
+            Parts { variance: 3.0, bias_squared: 2.0, bias_squared_deviation: 1.0, ..Parts::default() };
+        assert_eq!(parts.bias(), Bias::Hidden);
+        let parts = Parts { bias_squared: -1.0, bias_squared_deviation: 0.03, ..Parts::default() };
+        assert_eq!(parts.bias(), Bias::Below(0.3));
     }
 
     #[test]

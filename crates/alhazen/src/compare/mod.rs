@@ -19,6 +19,7 @@ mod json;
 mod laboratory;
 mod measure;
 mod page;
+mod said;
 mod twins;
 
 use std::fmt;
@@ -29,7 +30,8 @@ use image::Image;
 
 pub use contender::Contender;
 pub use laboratory::Laboratory;
-pub use measure::{Measure, Parts, ReferenceNoise};
+pub use measure::{Bias, Measure, Parts, ReferenceNoise};
+pub use said::Settings;
 
 use crate::Overrides;
 
@@ -134,7 +136,7 @@ pub struct Setup {
     /// How many threads there were.
     pub threads: usize,
     /// The pixel filter with its settings.
-    pub filter: String,
+    pub filter: Settings,
     /// What was changed of the scene for all, as `key=value`.
     pub changes: Vec<String>,
 }
@@ -144,6 +146,8 @@ pub struct Setup {
 pub struct Reference {
     /// Where it is from: a file, or an algorithm and how long it took.
     pub source: String,
+    /// Which contender rendered it, or would have, had it been listed; `None` for a file.
+    pub by: Option<String>,
     /// The picture.
     pub picture: Image,
     /// Its noise, where it was rendered.
@@ -181,9 +185,9 @@ pub struct Run {
     /// Its name, with settings of its own.
     pub name: String,
     /// All settings of the algorithm.
-    pub settings: String,
+    pub settings: Settings,
     /// The sampler with its settings.
-    pub sampler: String,
+    pub sampler: Settings,
     /// What the algorithm tells of itself: names, and what there is to say.
     pub notes: Vec<(&'static str, String)>,
     /// From the first pass to the end; never empty.
@@ -230,6 +234,8 @@ pub struct Comparison {
     pub runs: Vec<Run>,
     /// Names of contenders to whom it did not come.
     pub missing: Vec<String>,
+    /// What is drawn otherwise than described, and whatever else the reader has to know.
+    pub warnings: Vec<String>,
 }
 
 impl Comparison {
@@ -261,6 +267,27 @@ impl Comparison {
     /// The seconds after which a run had come down to [`Self::common_error`].
     pub fn seconds_to_common_error(&self, run: &Run) -> Option<f64> {
         convergence::seconds_to(self.common_error(), &run.curve())
+    }
+
+    /// Why the reference is perhaps not what all should tend to: two others or more, or all, find more light than who rendered it.
+    pub fn doubt(&self) -> Option<String> {
+        let by = self.reference.by.as_deref()?;
+        let others: Vec<&Run> = self.runs.iter().filter(|run| run.name != by).collect();
+        let more = |run: &&Run| -> Option<(String, f64)> {
+            let [error, deviation] = self.relative_mean_error(run)?;
+            (error > f64::max(0.01, 3.0 * deviation)).then(|| (run.name.clone(), error))
+        };
+        let brighter: Vec<(String, f64)> = others.iter().filter_map(more).collect();
+        if brighter.is_empty() || brighter.len() < others.len().min(2) {
+            return None;
+        }
+        let found: Vec<_> =
+            brighter.iter().map(|(name, error)| format!("{name} {:.1} %", 100.0 * error)).collect();
+        Some(format!(
+            "The reference may miss light: {by} rendered it, and others find more than it has ({}). Errors are then those of the reference; \
+             one by another algorithm would tell.",
+            found.join(", ")
+        ))
     }
 
     /// Whether the reference's own noise is more than a tenth of a run's error, which then says little.

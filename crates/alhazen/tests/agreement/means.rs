@@ -48,7 +48,7 @@ const EVEN: (&str, &str) = ("sampler", "zsobol");
 const MEMBERS: [Member; 7] = [
     Member {
         name: "path",
-        integrator: "vol-path",
+        integrator: "path",
         settings: &[EVEN],
         size: (32, 64),
         known: 5e-4,
@@ -68,7 +68,7 @@ const MEMBERS: [Member; 7] = [
         settings: &[EVEN],
         size: (32, 64),
         known: 8e-4,
-        can: |scene| !scene.has_mirrors,
+        can: |scene| !scene.is_hidden_from_light,
     },
     Member {
         name: "mlt over path",
@@ -100,7 +100,7 @@ const MEMBERS: [Member; 7] = [
         settings: &[EVEN, ("radius", "0.02"), ("photons", "4096")],
         size: (64, 16),
         known: 8e-4,
-        can: |_| true,
+        can: |scene| scene.name != "a plane without end",
     },
 ];
 

@@ -7,8 +7,8 @@ pub struct Scene {
     pub max_depth: u32,
     /// Samples that path tracing needs to be a reference.
     pub path_samples: u32,
-    /// Whether the camera looks into mirrors or through glass, where light paths cannot find it.
-    pub has_mirrors: bool,
+    /// Whether the camera looks into mirrors, through glass, or beyond the scene's bounds, where light paths cannot find it.
+    pub is_hidden_from_light: bool,
     camera: &'static str,
     world: &'static str,
 }
@@ -62,12 +62,12 @@ macro_rules! floor {
     };
 }
 
-pub const SCENES: [Scene; 15] = [
+pub const SCENES: [Scene; 17] = [
     Scene {
         name: "a diffuse box",
         max_depth: 4,
         path_samples: 16,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: IN_A_BOX,
         world: concat!(
             walls!(),
@@ -80,7 +80,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a glossy box",
         max_depth: 3,
         path_samples: 32,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: IN_A_BOX,
         world: concat!(
             walls!(),
@@ -95,7 +95,7 @@ pub const SCENES: [Scene; 15] = [
         name: "the caustic of a glass ball",
         max_depth: 4,
         path_samples: 256,
-        has_mirrors: true,
+        is_hidden_from_light: true,
         camera: ABOVE,
         world: concat!(
             floor!(),
@@ -108,7 +108,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a room of mirrors",
         max_depth: 5,
         path_samples: 64,
-        has_mirrors: true,
+        is_hidden_from_light: true,
         camera: IN_A_BOX,
         world: concat!(
             walls!(),
@@ -123,7 +123,7 @@ pub const SCENES: [Scene; 15] = [
         name: "many small lights",
         max_depth: 3,
         path_samples: 64,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: ABOVE,
         world: concat!(
             floor!(),
@@ -141,7 +141,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a sky and a sun",
         max_depth: 3,
         path_samples: 32,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: ABOVE,
         world: concat!(
             floor!(),
@@ -155,7 +155,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a door that is almost closed",
         max_depth: 4,
         path_samples: 512,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: IN_A_BOX,
         world: concat!(
             walls!(),
@@ -170,7 +170,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a thin lens",
         max_depth: 2,
         path_samples: 64,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: "LookAt 0 -4 3  0 0 0.3  0 0 1\n\
             Camera \"perspective\" \"float fov\" 40 \"float lensradius\" 0.3 \"float focaldistance\" 4",
         world: concat!(
@@ -184,7 +184,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a prism",
         max_depth: 4,
         path_samples: 256,
-        has_mirrors: true,
+        is_hidden_from_light: true,
         camera: ABOVE,
         world: concat!(
             floor!(),
@@ -198,7 +198,7 @@ pub const SCENES: [Scene; 15] = [
         name: "parallel rays",
         max_depth: 3,
         path_samples: 16,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: "LookAt 0 -4 3  0 0 0.3  0 0 1 Camera \"orthographic\" \"float screenwindow\" [-1.5 1.5 -1.5 1.5]",
         world: concat!(
             floor!(),
@@ -210,7 +210,7 @@ pub const SCENES: [Scene; 15] = [
         name: "all around",
         max_depth: 2,
         path_samples: 32,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: "LookAt 0 0 0  0 1 0  0 0 1 Camera \"spherical\" \"string mapping\" \"equirectangular\"",
         world: concat!(walls!(), ceiling_lamp!()),
     },
@@ -218,7 +218,7 @@ pub const SCENES: [Scene; 15] = [
         name: "motion",
         max_depth: 3,
         path_samples: 32,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: "TransformTimes 0 1 LookAt 0 -4 3  0 0 0.3  0 0 1\n\
             Camera \"perspective\" \"float fov\" 40 \"float shutteropen\" 0 \"float shutterclose\" 1",
         world: concat!(
@@ -233,7 +233,7 @@ pub const SCENES: [Scene; 15] = [
         name: "bent normals",
         max_depth: 3,
         path_samples: 64,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: ABOVE,
         world: concat!(
             floor!(),
@@ -248,7 +248,7 @@ pub const SCENES: [Scene; 15] = [
         name: "a pool",
         max_depth: 5,
         path_samples: 256,
-        has_mirrors: true,
+        is_hidden_from_light: true,
         camera: ABOVE,
         world: concat!(
             floor!(),
@@ -262,15 +262,40 @@ pub const SCENES: [Scene; 15] = [
         name: "interfaces and cut out surfaces",
         max_depth: 3,
         path_samples: 64,
-        has_mirrors: false,
+        is_hidden_from_light: false,
         camera: ABOVE,
         world: concat!(
             floor!(),
             r#"AttributeBegin Material "interface" Translate 0 0 1 Shape "sphere" "float radius" 0.9 AttributeEnd
             AttributeBegin Translate 0 0 1 Shape "disk" "float alpha" 0.5 "float radius" 0.8 AttributeEnd
+            LightSource "point" "point3 from" [-0.9 -0.9 2] "rgb I" [2 2 4]
             AreaLightSource "diffuse" "rgb L" [10 10 10] Translate 0.3 0.2 1.5 ReverseOrientation
             Shape "disk" "float radius" 0.3"#
         ),
+    },
+    Scene {
+        name: "a wall on a plane without end",
+        max_depth: 1,
+        path_samples: 16,
+        is_hidden_from_light: false,
+        camera: "LookAt 0 -9 4  0 0 0.7  0 0 1 Camera \"perspective\" \"float fov\" 60",
+        world: r#"LightSource "infinite" "rgb L" [0.35 0.42 0.55]
+            Material "diffuse" "rgb reflectance" [0.5 0.5 0.5] Shape "plane"
+            Shape "bilinearmesh" "point3 P" [-8 2 0  8 2 0  -8 2 9  8 2 9]
+            Shape "sphere" "float radius" 1"#,
+    },
+    Scene {
+        name: "a plane without end",
+        max_depth: 2,
+        path_samples: 32,
+        is_hidden_from_light: true,
+        camera: ABOVE,
+        world: r#"LightSource "infinite" "rgb L" [0.3 0.4 0.6]
+            LightSource "distant" "point3 from" [1 -1 2] "point3 to" [0 0 0] "rgb L" [1 0.9 0.7]
+            Material "diffuse" "rgb reflectance" [0.6 0.6 0.5] Shape "plane"
+            Shape "bilinearmesh" "point3 P" [-1 0.8 0  1 0.8 0  -1 0.8 1  1 0.8 1]
+            Material "diffuse" "rgb reflectance" [0.8 0.3 0.3]
+            Translate 0.3 0 0.2 Shape "sphere" "float radius" 0.5"#,
     },
 ];
 
@@ -279,7 +304,7 @@ pub const POINT_LIGHT_IN_GLASS: Scene = Scene {
     name: "a point light in glass",
     max_depth: 5,
     path_samples: 0,
-    has_mirrors: false,
+    is_hidden_from_light: false,
     camera: ABOVE,
     world: concat!(
         floor!(),

@@ -81,7 +81,7 @@ impl Group {
             if !group.bounds().is_empty() {
                 add_item(Item::Instance(id), placed_bounds(placed, &group.bounds()));
             }
-            if !group.unbounded.is_empty() {
+            if group.is_endless() {
                 unbounded.push(Item::Instance(id));
             }
         }
@@ -117,6 +117,11 @@ impl Group {
             };
             bounds.filter(is_finite).unwrap_or(Bounds3::EMPTY)
         });
+    }
+
+    /// Whether anything in it has no end.
+    pub fn is_endless(&self) -> bool {
+        !self.unbounded.is_empty()
     }
 
     /// Whether other groups are placed in it.

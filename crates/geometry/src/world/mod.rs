@@ -200,6 +200,11 @@ impl World {
         self.groups[0].bounds()
     }
 
+    /// Whether anything in it has no end, as planes have none.
+    pub fn is_endless(&self) -> bool {
+        self.groups[0].is_endless()
+    }
+
     /// Bytes of memory that the trees and the meshes take; arrays that meshes share count for each.
     pub fn bytes(&self) -> usize {
         let trees: usize = self.groups.iter().map(Group::bytes).sum();

@@ -264,7 +264,34 @@ pub fn encode(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, ImageErr
         chunks.into_iter().try_for_each(|(index, chunk)| writer.write_chunk(index, chunk))
     })
     .map_err(from_library)?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes);
+    Ok(bytes)
+}
+
+/// Puts the attributes of a file's header in the order of their names: the library leaves it to chance, and the same picture is to be the
+/// same bytes. Nothing that follows the header moves.
+fn sort_attributes(file: &mut [u8]) {
+    /// The magic number and the version.
+    const BEFORE: usize = 8;
+    let (mut attributes, mut end) = (Vec::new(), BEFORE);
+    while let Some(length) = attribute_length(&file[end..]) {
+        attributes.push(file[end..end + length].to_vec());
+        end += length;
+    }
+    // No name is the beginning of another one with its zero.
+    attributes.sort_unstable();
+    file[BEFORE..end].copy_from_slice(&attributes.concat());
+}
+
+/// How long the attribute is with which a header begins: name and type, each with a zero after it, the value's length, the value. `None` at
+/// the header's end.
+fn attribute_length(header: &[u8]) -> Option<usize> {
+    let name = header.iter().position(|&byte| byte == 0).filter(|&length| length > 0)?;
+    let kind = header[name + 1..].iter().position(|&byte| byte == 0)?;
+    let value = name + kind + 2;
+    let length = header.get(value..value + 4)?.try_into().ok()?;
+    Some(value + 4 + u32::from_le_bytes(length) as usize).filter(|&length| length <= header.len())
 }
 
 fn pack(image: &Image, order: &[usize], half: bool, header: &Header, block: BlockIndex) -> UncompressedBlock {

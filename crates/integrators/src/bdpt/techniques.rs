@@ -1,16 +1,20 @@
 //! The strategies of bidirectional path tracing seen apart: a film for each, unweighted, weighted, or both.
 //!
 //! All of them are films of splats, on which the light of one path of n counts 1/n; a sample of a pixel, one of as many as there are
-//! pixels, is added to its pixel alone.
+//! pixels, is added to its pixel alone. Each takes 48 bytes for each pixel; 52 of them, weighted and unweighted for paths of up to
+//! 5 scattering events, are 2.4 KiB for each pixel. More than 2 GiB are refused.
 
-use film::{Film, Splatter};
+use film::{Film, SPLAT_BYTES, Splatter};
 use spectrum::SampledSpectrum;
 
 use crate::ByProduct;
 use crate::bidirectional::Found;
 
 /// Paths of more scattering events are not seen apart: the number of strategies grows with the square.
-const MAX_DEPTH: u32 = 8;
+pub(crate) const MAX_DEPTH: u32 = 8;
+
+/// What the films may take together.
+pub(crate) const MAX_BYTES: usize = 2 << 30;
 
 /// The films.
 #[derive(Debug)]
@@ -25,6 +29,12 @@ impl Techniques {
     pub fn new(max_depth: u32, unweighted: bool, weighted: bool) -> Self {
         let max_depth = max_depth.min(MAX_DEPTH);
         Self { max_depth, unweighted: unweighted.then(Vec::new), weighted: weighted.then(Vec::new) }
+    }
+
+    /// What the films of so many pixels take, in bytes.
+    pub fn bytes(&self, pixels: usize) -> usize {
+        let kinds = self.unweighted.iter().chain(&self.weighted).count();
+        (kinds * strategies(self.max_depth).count()).saturating_mul(pixels.saturating_mul(SPLAT_BYTES))
     }
 
     /// To be added to; each film is made like `film` when there is none yet.
@@ -52,7 +62,7 @@ impl Techniques {
 fn splatters<'film>(films: &'film mut Option<Vec<Film>>, count: usize, like: &Film) -> Vec<Splatter<'film>> {
     let films = films.iter_mut().flat_map(|films| {
         if films.is_empty() {
-            films.resize_with(count, || like.blank());
+            films.resize_with(count, || like.for_splats());
         }
         films.iter_mut()
     });
@@ -110,5 +120,14 @@ mod tests {
         for (place, &(s, t)) in all.iter().enumerate() {
             assert_eq!(index(s, t), place, "{s} {t}");
         }
+    }
+
+    #[test]
+    fn each_film_takes_48_bytes_for_a_pixel() {
+        for (max_depth, films) in [(0, 1), (1, 4), (5, 26), (8, 53), (100, 53)] {
+            assert_eq!(Techniques::new(max_depth, true, false).bytes(10), films * 480);
+            assert_eq!(Techniques::new(max_depth, true, true).bytes(10), 2 * films * 480);
+        }
+        assert_eq!(Techniques::new(5, false, false).bytes(10), 0);
     }
 }

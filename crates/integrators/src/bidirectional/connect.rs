@@ -1,9 +1,10 @@
 //! Ends of subpaths become whole paths: one function for each kind of strategy.
 
+use film::Splatter;
 use geometry::RayStats;
-use math::{Normal3, Point2, Point3Error, Ray};
+use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
 use sampling::Sampler;
-use scene::camera::CameraWiSample;
+use scene::camera::{CameraWiSample, FilmPlaces};
 use scene::light::LightId;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -34,10 +35,17 @@ impl Found {
 /// What a light subpath has found, and where on the film.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnFilm {
-    /// Position in pixels.
-    pub film: Point2,
+    /// Positions in pixels.
+    pub places: FilmPlaces,
     /// What was found.
     pub found: Found,
+}
+
+impl OnFilm {
+    /// Adds light wherever this arrives.
+    pub fn splat(&self, splatter: &Splatter, l: &SampledSpectrum, lambda: &SampledWavelengths) {
+        self.places.within(splatter.reach()).for_each(|film| splatter.add(film, l, lambda));
+    }
 }
 
 impl Bidirectional<'_> {
@@ -103,14 +111,11 @@ impl Bidirectional<'_> {
         if l.is_black() {
             return None;
         }
-        let visible = match sample.p {
-            Some(p) => self.visible(vertex, p, sample.n, stats),
-            None => {
-                let ray = Ray::spawn(vertex.p, vertex.n, wi, vertex.time);
-                !self.scene.occluded(&ray, f32::INFINITY, Interfaces::Pass, stats)
-            }
+        let (ray, end) = match sample.p {
+            Some(p) => (vertex.ray_to(p, sample.n), Ray::SHADOW_END),
+            None => (Ray::spawn(vertex.p, vertex.n, wi, vertex.time), f32::INFINITY),
         };
-        if !visible {
+        if self.scene.occluded(&ray, end, Interfaces::before(self.scene.light(light)), stats) {
             return None;
         }
         let place = sample.p.map(|p| (p.p, sample.n));
@@ -149,21 +154,14 @@ impl Bidirectional<'_> {
         Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
     }
 
-    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses, if what arrives there is of
-    /// any use on the film.
-    pub fn see(
-        &self,
-        vertex: &Vertex,
-        u: Point2,
-        is_of_use: impl FnOnce(Point2) -> bool,
-        stats: &mut RayStats,
-    ) -> Option<OnFilm> {
+    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses, if what arrives there comes within
+    /// the `reach` of the film's pixels.
+    pub fn see(&self, vertex: &Vertex, u: Point2, reach: Bounds2, stats: &mut RayStats) -> Option<OnFilm> {
         let camera = self.scene.camera();
         let sample = camera.sample_wi(vertex.p.p, vertex.time, u)?;
         let CameraWiSample { we, wi, pdf, film, p, n } = sample;
-        if !is_of_use(film) {
-            return None;
-        }
+        let places = camera.film_places(film);
+        places.within(reach).next()?;
         let l = vertex.scattered(wi) * (we / pdf);
         if l.is_black() || !self.visible(vertex, Point3Error::exact(p), n, stats) {
             return None;
@@ -174,7 +172,7 @@ impl Bidirectional<'_> {
                 * vertex.cos_theta(wi);
         let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.merges());
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
-        Some(OnFilm { film, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
+        Some(OnFilm { places, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
     }
 
     /// s, t ≥ 2: a photon is taken as if it had arrived at the vertex, near which it lies.

@@ -25,7 +25,7 @@ impl Bidirectional<'_> {
         stats: &mut RayStats,
         mut visit: impl FnMut(&Vertex, &mut Sampler, &mut RayStats),
     ) {
-        let Some(mut walk) = Walk::from_light(self, time, *lambda, sampler) else { return };
+        let Some(mut walk) = Walk::from_light(self, time, *lambda, sampler, stats) else { return };
         while walk.depth < self.max_depth {
             let Some(mut surface) = walk.meet(stats) else { return };
             let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
@@ -93,7 +93,7 @@ impl Bidirectional<'_> {
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> Option<Vertex> {
-        let mut walk = Walk::from_light(self, time, *lambda, sampler)?;
+        let mut walk = Walk::from_light(self, time, *lambda, sampler, stats)?;
         Some(walk.follow_to(depth, sampler, stats)?.0)
     }
 

@@ -7,7 +7,7 @@ use description::{
     ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
 };
 use geometry::RayStats;
-use math::{Normal3, Point2, Point3, Vec2, Vec3};
+use math::{Bounds2, Normal3, Point2, Point3, Vec2, Vec3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scattering::{Directions, TransportMode};
@@ -202,6 +202,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
     let stats = &mut RayStats::default();
     let mut seen = [0; 5];
     let slow = Bidirectional { balance: expected, ..paths };
+    let everywhere = Bounds2 { min: Vec2::NEG_INFINITY, max: Vec2::INFINITY };
     let mut check = |path: &Path, strategy: Strategy, weight: f32, kind: usize| {
         let expected = path.weight(&slow, strategy);
         let difference = (f64::from(weight) - expected).abs();
@@ -215,8 +216,9 @@ fn assert_weights(balance: Balance, expected: Balance) {
         // The sampler's next numbers choose the light and its ray.
         let mut replay = sampler.clone();
         let (light, _) = lights.emitting.sample(replay.get_1d()).expect("a light");
-        let sample =
-            scene.sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda).expect("a ray");
+        let sample = scene
+            .sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda, stats)
+            .expect("a ray");
         let start = (light, sample.p.expect("a place").p, sample.n);
         let mut light_subpath = Vec::new();
         paths.light_subpath(0.0, &lambda, &mut sampler, stats, |vertex, _, _| light_subpath.push(*vertex));
@@ -229,7 +231,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
-            if let Some(found) = paths.see(vertex, Vec2::ZERO, |_| true, stats) {
+            if let Some(found) = paths.see(vertex, Vec2::ZERO, everywhere, stats) {
                 check(
                     &Path { light: start, surfaces, camera },
                     connect(found.found.s),

@@ -10,9 +10,9 @@ use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Directions, TransportMode};
-use scene::SurfaceInteraction;
 use scene::camera::CameraRayDifferential;
 use scene::light::LightId;
+use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::light_end::Place;
@@ -41,6 +41,8 @@ pub(crate) struct Walk<'a> {
     alpha: f32,
     rough_before: bool,
     after_diffuse: bool,
+    /// Whether an interface has stopped it.
+    is_stopped: bool,
     origin: Origin,
     mode: TransportMode,
 }
@@ -79,10 +81,11 @@ impl<'a> Walk<'a> {
         time: f32,
         lambda: SampledWavelengths,
         sampler: &mut Sampler,
+        stats: &mut RayStats,
     ) -> Option<Self> {
         let (u, u_position, u_direction) = (sampler.get_1d(), sampler.get_2d(), sampler.get_2d());
         let (light, pmf) = paths.lights.emitting.sample(u)?;
-        let sample = paths.scene.sample_emission(light, u_position, u_direction, time, &lambda)?;
+        let sample = paths.scene.sample_emission(light, u_position, u_direction, time, &lambda, stats)?;
         let start = (sample.beta() / pmf, Partial::default());
         let origin = (Origin::Light(light, sample.p.map(|p| (p.p, sample.n))), TransportMode::Importance);
         Some(Self::new(paths, sample.ray.into(), start, lambda, origin))
@@ -107,13 +110,17 @@ impl<'a> Walk<'a> {
             alpha: 1.0,
             rough_before: false,
             after_diffuse: false,
+            is_stopped: false,
             origin,
             mode,
         }
     }
 
-    /// The surface that the ray meets; `None` if it leaves the scene.
+    /// The surface that the ray meets; `None` if it leaves the scene, or was stopped.
     pub fn meet(&mut self, stats: &mut RayStats) -> Option<SurfaceInteraction> {
+        if self.is_stopped {
+            return None;
+        }
         let scene = self.paths.scene;
         let hit = scene.hit(&self.ray.ray, f32::INFINITY, stats)?;
         let surface = scene.world().surface(&self.ray.ray, &hit);
@@ -127,6 +134,11 @@ impl<'a> Walk<'a> {
         let Some(mut bsdf) = self.paths.scene.bsdf(surface, &self.ray, &mut self.lambda, sampler) else {
             let t = self.ray.ray.o.distance(surface.p());
             self.ray = pass_through(&self.ray, surface, t);
+            if let Origin::Light(light, _) = self.origin
+                && Interfaces::before(self.paths.scene.light(light)) == Interfaces::Stop
+            {
+                self.is_stopped = true;
+            }
             return None;
         };
         if self.paths.regularize && self.rough_before {

@@ -102,6 +102,7 @@ impl Chains {
             }
             let ((contribution, worth), acceptance) = chain.end();
             contribution.splat(worth, splatter);
+            control.count(&stats);
             Ok((stats, acceptance))
         };
         let nothing = || (RayStats::default(), Acceptance::default());
@@ -135,6 +136,7 @@ impl Chains {
                 start_at(&mut streams, pass, (row * ROW + i) as u32);
                 *c = target.contribution(&mut streams, &mut stats).c();
             }
+            control.count(&stats);
             Ok(stats)
         };
         let rows = candidates.par_chunks_mut(ROW).enumerate();
@@ -155,12 +157,18 @@ impl Chains {
 
     /// How the chains fared.
     pub fn summary(&self) -> Vec<(&'static str, String)> {
+        if self.passes == 0 {
+            return Vec::new();
+        }
         let Acceptance { proposed, accepted } = self.acceptance;
         let share = |kind: usize| 100.0 * accepted[kind] as f64 / proposed[kind].max(1) as f64;
         let (candidates, chains) = self.starts(self.mutations);
         let kib = (size_of::<f32>() * candidates + size_of::<u32>() * chains).div_ceil(1024);
         vec![
-            ("b", format!("{:.6e}", self.b_sum / f64::from(self.passes.max(1)))),
+            (
+                "b",
+                format!("{:.6e}, the mean light of independent paths", self.b_sum / f64::from(self.passes)),
+            ),
             ("accepted", format!("{:.1} % of small steps, {:.1} % of large ones", share(0), share(1))),
             ("starts", format!("{chains} of {candidates} paths in each pass, in {kib} KiB")),
         ]

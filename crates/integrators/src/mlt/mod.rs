@@ -21,7 +21,7 @@
 //! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as well: multiplexed Metropolis
 //!   [Hachisuka 2014]. What the strategy finds is weighted by the balance heuristic and by the number of strategies, so a chain stays
 //!   with those that are good for the paths around it, and pays for one connection instead of all. The number of scattering events,
-//!   which is fixed for a chain in the paper, is one more coordinate.
+//!   which is fixed for a chain in the paper, is one more coordinate, and the greater the less likely.
 //!
 //! Chains are many and short. Those of a pass start at points chosen in proportion to c among uniform ones, candidates that no
 //! other pass knows; their mean is the pass's b. Then b·(the chains' mean) is right on average, at every step and for any number of
@@ -105,7 +105,7 @@ impl Mlt {
                 max_depth,
                 regularize: settings.regularize,
                 light_sampler: LightSamplerKind::Bvh,
-                interfaces: Interfaces::Pass,
+                interfaces: Interfaces::Stop,
             })
         };
         let technique = match settings.technique {
@@ -137,9 +137,9 @@ impl Integrator for Mlt {
     ) -> Result<RayStats, Cancelled> {
         let MltSettings { max_depth, regularize, mutations_per_pixel, .. } = self.settings;
         let filter = film.filter().clone();
-        let view = View::new(scene, film, mutations_per_pixel);
         let mutations = film.pixel_bounds().area();
         let (tiles, splatter) = film.tiles_and_splatter();
+        let view = View::new(scene, &splatter, mutations_per_pixel);
 
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
         let mut stats = pixels.add(tiles, control, |sample, sampler, stats| {

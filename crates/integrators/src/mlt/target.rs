@@ -1,11 +1,11 @@
 //! What chains look for: paths, as functions of a point of primary sample space.
 
-use film::{Film, Splatter};
+use film::Splatter;
 use geometry::RayStats;
-use math::{Bounds2, Point2, Vec2};
+use math::{Bounds2, Point2};
 use sampling::Sampler;
 use scene::Scene;
-use scene::camera::{CameraRayDifferential, CameraSample};
+use scene::camera::{CameraRayDifferential, CameraSample, FilmPlaces};
 use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
 
 use super::chain::Streams;
@@ -16,8 +16,8 @@ use crate::pixel_loop::camera_ray;
 /// Light that arrives at a place on the film.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contribution {
-    /// Position in pixels.
-    film: Point2,
+    /// Positions in pixels.
+    places: FilmPlaces,
     /// The light.
     l: SampledSpectrum,
     /// At these wavelengths.
@@ -35,7 +35,8 @@ impl Contribution {
     /// Adds the light, times a factor.
     pub fn splat(&self, factor: f32, splatter: &Splatter) {
         if factor > 0.0 && !self.l.is_black() {
-            splatter.add(self.film, &(self.l * factor), &self.lambda);
+            let l = self.l * factor;
+            self.places.within(splatter.reach()).for_each(|film| splatter.add(film, &l, &self.lambda));
         }
     }
 }
@@ -58,13 +59,8 @@ struct Seen {
 }
 
 impl<'a> View<'a> {
-    pub fn new(scene: &'a Scene, film: &Film, samples_per_pixel: u32) -> Self {
-        let bounds = film.pixel_bounds();
-        let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
-        // Pixels reach as far as the filter from their centres.
-        let margin = film.filter().radius() - 0.5;
-        let film = Bounds2::new(corner(bounds.min) - margin, corner(bounds.max) + margin);
-        Self { scene, film, samples_per_pixel }
+    pub fn new(scene: &'a Scene, splatter: &Splatter, samples_per_pixel: u32) -> Self {
+        Self { scene, film: splatter.reach(), samples_per_pixel }
     }
 
     /// The area of all positions, in pixels: what light of a path from the camera is worth, since positions have one over it for
@@ -108,15 +104,15 @@ impl Target for CameraPaths<'_> {
             let l = self.path.li_from(1, self.view.scene, camera_ray.ray, &mut lambda, sampler, stats);
             l * (camera_ray.weight * self.view.area())
         });
-        Contribution { film, l, lambda }
+        Contribution { places: film.into(), l, lambda }
     }
 }
 
 /// Bidirectional path tracing: one path, made by one strategy.
 ///
-/// The first coordinates choose the number of scattering events, from 1 to the greatest, and then the strategy, each as likely as
-/// the others of its kind; what is found counts that many times. Camera subpath, light subpath and what connects them have samplers
-/// of their own, lest a longer subpath of one kind move the coordinates of the other.
+/// The first coordinates choose the number of scattering events ([`Depths`]), and then one of the strategies, all as likely; what is
+/// found counts over the probability of both. Camera subpath, light subpath and what connects them have samplers of their own, lest
+/// a longer subpath of one kind move the coordinates of the other.
 pub(super) struct ConnectedPaths<'a> {
     pub view: View<'a>,
     pub paths: Bidirectional<'a>,
@@ -125,13 +121,15 @@ pub(super) struct ConnectedPaths<'a> {
 impl Target for ConnectedPaths<'_> {
     fn contribution(&self, streams: &mut Streams, stats: &mut RayStats) -> Contribution {
         let [camera, ..] = &mut *streams;
-        let (depth, depths) = (1 + choose(camera.get_1d(), self.paths.max_depth), self.paths.max_depth);
+        let (depth, probability) = Depths { greatest: self.paths.max_depth }.choose(camera.get_1d());
         let strategies = depth + 2;
         let s = choose(camera.get_1d(), strategies);
         let seen = self.view.sample(camera);
         let lambda = seen.lambda;
-        let (film, l) = self.find(s, strategies - s, &seen, streams, stats).unwrap_or_default();
-        Contribution { film, l: l * (depths * strategies) as f32, lambda }
+        let (places, l) = self
+            .find(s, strategies - s, &seen, streams, stats)
+            .unwrap_or((seen.film.into(), SampledSpectrum::ZERO));
+        Contribution { places, l: l * (strategies as f32 / probability), lambda }
     }
 }
 
@@ -144,7 +142,7 @@ impl ConnectedPaths<'_> {
         seen: &Seen,
         [camera, light, connection]: &mut Streams,
         stats: &mut RayStats,
-    ) -> Option<(Point2, SampledSpectrum)> {
+    ) -> Option<(FilmPlaces, SampledSpectrum)> {
         let (paths, lambda) = (&self.paths, &seen.lambda);
         let mut light_vertex = |stats: &mut RayStats| {
             let vertex = paths.light_vertex(s - 1, seen.time, lambda, light, stats)?;
@@ -152,9 +150,8 @@ impl ConnectedPaths<'_> {
         };
         if t == 1 {
             let vertex = light_vertex(stats)?;
-            let reaches = |film| self.view.film.contains(film);
-            let on_film = paths.see(&vertex, connection.get_2d(), reaches, stats)?;
-            return Some((on_film.film, on_film.found.weighted()));
+            let on_film = paths.see(&vertex, connection.get_2d(), self.view.film, stats)?;
+            return Some((on_film.places, on_film.found.weighted()));
         }
         let camera_ray = seen.camera_ray.as_ref()?;
         let l = if s == 0 {
@@ -170,11 +167,81 @@ impl ConnectedPaths<'_> {
             };
             found.weighted()
         };
-        Some((seen.film, l * self.view.area()))
+        Some((seen.film.into(), l * self.view.area()))
     }
 }
 
 /// One of `count` numbers from 0 on, all as likely.
 fn choose(u: f32, count: u32) -> u32 {
     ((u * count as f32) as u32).min(count - 1)
+}
+
+/// How many scattering events a path has, from 1 to the greatest number d_max.
+///
+/// Light that is scattered often is faint, so paths are the less likely the longer they are. That there are d or more events has, if
+/// there may be any number of them, the probability
+///
+/// ```text
+/// T(d) = (8/(7 + d))²        and so, up to d_max,   p(d) = (T(d) − T(d + 1)) / (1 − T(d_max + 1))
+/// ```
+///
+/// The first few numbers are nearly as likely as each other. Because p falls as d⁻³, slower than light does in any room, what is
+/// found over p does not grow without bound; and yet a path has a length on average, of 8.5 events, whatever d_max is.
+#[derive(Clone, Copy, Debug)]
+struct Depths {
+    /// d_max, above 0.
+    greatest: u32,
+}
+
+impl Depths {
+    const SCALE: f64 = 8.0;
+
+    /// The probability of `depth` or more events, if there may be any number.
+    fn at_least(depth: f64) -> f64 {
+        (Self::SCALE / (Self::SCALE - 1.0 + depth)).powi(2)
+    }
+
+    /// The number that `u` in [0, 1) chooses, and its probability.
+    fn choose(self, u: f32) -> (u32, f32) {
+        let greatest = f64::from(self.greatest);
+        let all = 1.0 - Self::at_least(greatest + 1.0);
+        let rest = 1.0 - f64::from(u) * all;
+        let depth = (Self::SCALE / rest.sqrt() - (Self::SCALE - 1.0)).floor().clamp(1.0, greatest);
+        let probability = (Self::at_least(depth) - Self::at_least(depth + 1.0)) / all;
+        (depth as u32, probability as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depths_have_the_probability_that_is_claimed_for_them() {
+        for greatest in [1, 2, 5, 100, 70_000, 2_000_000_000] {
+            const CELLS: usize = 40;
+            let (count, depths) = (100_000, Depths { greatest });
+            let (mut observed, mut expected) = ([0; CELLS], [0.0; CELLS]);
+            for i in 0..count {
+                let (depth, probability) = depths.choose((i as f32 + 0.5) / count as f32);
+                assert!((1..=greatest).contains(&depth) && probability > 0.0);
+                let cell = (depth as usize - 1).min(CELLS - 1);
+                observed[cell] += 1;
+                expected[cell] = f64::from(probability) * f64::from(count);
+            }
+            let rest: f64 = expected[..CELLS - 1].iter().sum();
+            expected[CELLS - 1] = f64::from(count) - rest;
+            for (observed, expected) in observed.iter().zip(expected) {
+                assert!((f64::from(*observed) - expected).abs() < 2.0, "{greatest}: {observed} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_path_is_endless() {
+        for greatest in [1_000_000, u32::MAX - 2] {
+            let (depth, probability) = Depths { greatest }.choose(math::ONE_MINUS_EPSILON);
+            assert!(depth < 1 << 15 && probability > 0.0, "{depth} {probability}");
+        }
+    }
 }

@@ -79,6 +79,7 @@ impl Emission<'_> {
                         kept.push(keep(vertex, sampler, stats));
                     });
                 }
+                control.count(&stats);
                 Ok((kept, stats))
             })
             .collect::<Result<_, _>>()?;
@@ -100,7 +101,9 @@ impl Emission<'_> {
         mut visit: impl FnMut(&Vertex, &mut Sampler, &mut RayStats),
     ) {
         let time = self.moment.time(self.paths.scene);
-        let Some(mut walk) = Walk::from_light(self.paths, time, self.moment.lambda, sampler) else { return };
+        let Some(mut walk) = Walk::from_light(self.paths, time, self.moment.lambda, sampler, stats) else {
+            return;
+        };
         let mut first = true;
         while walk.depth < self.paths.max_depth {
             let Some(mut surface) = walk.meet(stats) else { return };

@@ -161,7 +161,7 @@ impl PhotonMapping {
             max_depth: settings.max_depth,
             regularize: false,
             light_sampler: LightSamplerKind::Bvh,
-            interfaces: Interfaces::Pass,
+            interfaces: Interfaces::Stop,
         });
         let (lights, tally, reach) = (Lights::none(), Tally::default(), Reach::new(1.0));
         Self { settings, sampler, photon_seed, lights, path, radius: 1.0, tally, reach }
@@ -199,10 +199,10 @@ impl PhotonMapping {
         let (_, splatter) = film.tiles_and_splatter();
         let dot = |vertex: &Vertex, sampler: &mut Sampler, stats: &mut RayStats| {
             let lens = sampler.get_2d();
-            if let Some(seen) = emission.paths.see(vertex, lens, |film| splatter.reaches(film), stats) {
+            if let Some(seen) = emission.paths.see(vertex, lens, splatter.reach(), stats) {
                 let l = vertex.beta * white;
                 let l = if vertex.hero_only { hero_only(l) } else { l };
-                splatter.add(seen.film, &l, &emission.moment.lambda);
+                seen.splat(&splatter, &l, &emission.moment.lambda);
             }
         };
         splatter.add_paths(1);

@@ -374,7 +374,7 @@ fn from_light(
     for i in 0..strata * strata {
         let u = (Vec2::new((i % strata) as f32, (i / strata) as f32) + shift) / strata as f32;
         let Some((l, sample)) = sample_light(scene, wavelengths, light, context, u) else { continue };
-        if arrives(scene, context, &sample, stats) {
+        if arrives(scene, light, context, &sample, stats) {
             let cos_theta = sample.wi.dot(context.n);
             sides[usize::from(cos_theta < 0.0)] +=
                 l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
@@ -406,6 +406,7 @@ pub(crate) fn sample_light(
 /// Whether a point sees the sample of a light.
 pub(crate) fn arrives(
     scene: &Scene,
+    light: LightId,
     context: &LightSampleContext,
     sample: &LightLiSample,
     stats: &mut RayStats,
@@ -414,5 +415,5 @@ pub(crate) fn arrives(
         Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
         None => (context.spawn_ray(sample.wi), f32::INFINITY),
     };
-    !scene.occluded(&ray, end, Interfaces::Pass, stats)
+    !scene.occluded(&ray, end, Interfaces::before(scene.light(light)), stats)
 }

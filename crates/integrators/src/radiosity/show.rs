@@ -190,7 +190,7 @@ impl View {
         let cos_theta = sample.wi.dot(s.shading.n);
         let same_side = (cos_theta > 0.0) == (s.wo.dot(s.shading.n) > 0.0);
         let share = if same_side { albedo.reflectance } else { albedo.transmittance };
-        if share.is_black() || l.is_black() || !arrives(scene, &context, &sample, stats) {
+        if share.is_black() || l.is_black() || !arrives(scene, light, &context, &sample, stats) {
             return Bands::ZERO;
         }
         share * l * (cos_theta.abs() * FRAC_1_PI / (pmf * sample.pdf))
@@ -215,7 +215,7 @@ pub(crate) fn first_solid(scene: &Scene, mut ray: Ray, stats: &mut RayStats) -> 
     loop {
         let hit = scene.hit(&ray, f32::INFINITY, stats)?;
         let surface = scene.world().surface(&ray, &hit);
-        if !scene.is_interface(&hit) {
+        if !scene.is_interface(&hit, &ray) {
             return Some((hit, surface));
         }
         ray = surface.spawn_ray(ray.d);

@@ -2,11 +2,12 @@
 
 use alhazen_integrators::build;
 use description::{
-    Diagnostic, IntegratorDesc, LightSamplerDesc, MltDesc, Origin, PhotonMappingDesc, RadiosityDesc,
-    SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind, Span, SppmDesc, Stated, VcmDesc,
+    Diagnostic, Handle, InstanceDesc, IntegratorDesc, LightSamplerDesc, MltDesc, ObjectDesc, Origin,
+    PhotonMappingDesc, RadiosityDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind,
+    SolidOperation, Span, Spanned, SppmDesc, Stated, TransformDesc, VcmDesc,
 };
 
-use crate::support::{diffuse, glass, mirror, sphere};
+use crate::support::{diffuse, glass, mirror, sphere, white_sky};
 
 fn messages(diagnostics: &[Diagnostic]) -> Vec<&str> {
     diagnostics.iter().map(|diagnostic| diagnostic.message.as_str()).collect()
@@ -64,6 +65,52 @@ fn radiosity_tells_what_it_draws_otherwise() {
             "a plane without end cannot be cut into patches; radiosity lights it, but it passes no light on",
         ]
     );
+}
+
+#[test]
+fn light_from_infinity_tells_where_it_does_not_reach() {
+    let mut desc = SceneDesc::default();
+    let object = |shape: ShapeDesc| {
+        let mut object = ObjectDesc::default();
+        object.shapes.push(shape);
+        object
+    };
+    let solid = |operation, operands: &[Handle<ObjectDesc>]| {
+        let operands = operands.iter().map(|&operand| Spanned { value: operand, span: Span::NONE }).collect();
+        ShapeDesc::from(ShapeKind::Solid { operation, operands })
+    };
+    let below = desc.objects.push(object(ShapeKind::Plane.into()));
+    let ball = desc.objects.push(object(sphere(1.0).into()));
+    let dome = solid(SolidOperation::Intersection, &[ball, below]);
+    let pit = desc.objects.push(object(solid(SolidOperation::Difference, &[below, ball])));
+    let bump = solid(SolidOperation::Union, &[pit, ball]);
+    let drawn = desc.objects.push(object(ShapeKind::Plane.into()));
+    desc.instances.push(InstanceDesc { object: drawn, world_from_object: TransformDesc::default() });
+    for (shape, start) in [(dome, 1), (bump, 2), (ShapeKind::Plane.into(), 3), (sphere(1.0).into(), 4)] {
+        desc.shapes.push_stated(Stated::new(shape, Origin::new(Span { start, ..Span::NONE })));
+    }
+    let algorithms = [
+        ("light-tracing", IntegratorDesc::LightTracing { max_depth: 5 }),
+        ("photon-mapping", IntegratorDesc::PhotonMapping(PhotonMappingDesc::default())),
+        ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
+    ];
+    let told = |desc: &SceneDesc, integrator: &IntegratorDesc| {
+        build(&SceneDesc { integrator: integrator.clone().into(), ..desc.clone() }).ok().unwrap().warnings
+    };
+    assert!(algorithms.iter().all(|(_, integrator)| told(&desc, integrator).is_empty()));
+    white_sky(&mut desc);
+    for (name, integrator) in &algorithms {
+        let found = told(&desc, integrator);
+        let message = |what: &str| {
+            format!(
+                "light from infinity does not reach {what} without end beyond the scene's bounds; {name} draws it too dark there"
+            )
+        };
+        assert_eq!(messages(&found), [message("a solid"), message("a plane"), message("a plane")]);
+        assert_eq!(found.iter().map(|warning| warning.span().start).collect::<Vec<_>>(), [2, 3, 0]);
+    }
+    let from_both_ends = IntegratorDesc::Vcm(VcmDesc::default());
+    assert!(told(&desc, &from_both_ends).is_empty());
 }
 
 #[test]
@@ -172,9 +219,9 @@ fn merging_needs_a_radius_a_rate_and_photons() {
         );
         assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
     }
-    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: f32::NAN, ..SppmDesc::default() };
+    let sppm = SppmDesc { photons_per_iteration: Some(0), radius: Some(f32::NAN), ..SppmDesc::default() };
     assert_eq!(
         errors(IntegratorDesc::Sppm(sppm)),
-        "`photonsperiteration` is a number above 0, not 0; `radius` is a distance above 0, not NaN"
+        "the photons of a pass are a number above 0, not 0; `radius` is a distance above 0, not NaN"
     );
 }

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use alhazen_integrators::{RayCasting, RayIntegrator, Whitted};
-use description::{LightKind, MaterialKind, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc};
+use description::{
+    LightKind, MaterialDesc, MaterialKind, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+};
 use scene::Scene;
 
 use crate::support::{Unbiased, assert_mean, at, compile, diffuse, emission, quad, radiance, sphere, v};
@@ -110,14 +112,18 @@ fn lights_at_a_point_and_far_away() {
 
 #[test]
 fn only_ray_casting_ignores_shadows() {
-    let scene = under_delta_lights(|desc| {
-        let screen = quad(v(-0.5, -0.5, 1.5), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0));
-        desc.shapes.push(screen.into());
-    });
     let (lit, shadowed) = (f64::from(RHO) / PI * 0.75, f64::from(RHO) / PI * 0.5);
-    assert_mean(&look(&mut RayCasting, &scene, 10), lit, 1, "ray casting");
-    assert_mean(&look(&mut Whitted::default(), &scene, 10), shadowed, 1, "Whitted");
-    for (name, mut rays) in Unbiased::all(1).into_iter().take(5) {
-        assert_mean(&look(&mut rays, &scene, 20_000), shadowed, 5, &name);
+    // Delta lights throw the shadow of interfaces, too.
+    for screen in [MaterialDesc::default(), MaterialKind::Interface.into()] {
+        let scene = under_delta_lights(|desc| {
+            let material = Some(desc.materials.push(screen));
+            let screen = quad(v(-0.5, -0.5, 1.5), v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0));
+            desc.shapes.push(ShapeDesc { material, ..screen.into() });
+        });
+        assert_mean(&look(&mut RayCasting, &scene, 10), lit, 1, "ray casting");
+        assert_mean(&look(&mut Whitted::default(), &scene, 10), shadowed, 1, "Whitted");
+        for (name, mut rays) in Unbiased::all(1).into_iter().take(5) {
+            assert_mean(&look(&mut rays, &scene, 20_000), shadowed, 10, &name);
+        }
     }
 }

@@ -4,6 +4,7 @@
 
 mod agreement;
 mod ambient_occlusion;
+mod border;
 mod build;
 mod direct_light;
 mod furnace;

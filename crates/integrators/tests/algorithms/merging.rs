@@ -60,7 +60,7 @@ fn one() -> f64 {
 }
 
 fn sppm(max_depth: i32, radius: f32, photons: i32) -> IntegratorDesc {
-    let photons_per_iteration = Some(photons);
+    let (photons_per_iteration, radius) = (Some(photons), Some(radius));
     IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed: None })
 }
 

@@ -124,6 +124,21 @@ fn the_mean_is_that_of_path_tracing() {
 }
 
 #[test]
+fn long_paths_may_be_allowed() {
+    let scene = diffuse_box();
+    let found = |max_depth| -> Moments {
+        let desc = MltDesc { mutations_per_pixel: 40, ..mlt(MltTechnique::Bdpt, max_depth) };
+        (0..8).map(|seed| mean(&with(&scene, IntegratorDesc::Mlt(desc.clone()), seed))).collect()
+    };
+    let expected = found(30);
+    let error = expected.variance_of_mean().sqrt() / expected.mean;
+    assert!(error < 0.015, "{error} says nothing");
+    for max_depth in [1000, 70_000, 2_000_000_000] {
+        welch_test(&found(max_depth), &expected, 3).unwrap_or_else(|e| panic!("depth {max_depth}: {e}"));
+    }
+}
+
+#[test]
 fn threads_never_change_a_bit() {
     for technique in TECHNIQUES {
         let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(technique, 5)), 1);

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex};
 
 use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
 use description::{
-    IntegratorDesc, LightSamplerDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc, SamplerKind,
-    SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
+    IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc,
+    SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
 };
 use film::Film;
 use geometry::RayStats;
@@ -66,7 +66,7 @@ fn threads_never_change_a_bit() {
         IntegratorDesc::PhotonMapping(photons.clone()),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 2, ..photons.clone() }),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { show: PhotonMappingShow::Photons, ..photons }),
-        IntegratorDesc::Sppm(SppmDesc { radius: 0.3, ..SppmDesc::default() }),
+        IntegratorDesc::Sppm(SppmDesc { radius: Some(0.3), ..SppmDesc::default() }),
         IntegratorDesc::Vcm(VcmDesc { radius: Some(0.3), ..VcmDesc::default() }),
     ];
     for integrator in integrators {
@@ -138,12 +138,16 @@ fn a_render_stopped_within_a_pass_is_valid() {
     let mut desc = balls();
     desc.options.disable_wavelength_jitter = true;
     let (scene, mut film) = (compile(&desc), empty_film(&desc));
-    let control = Control::default();
+    let mut control = Control::default();
+    let told = Arc::new(Mutex::new(Progress::default()));
+    let sink = Arc::clone(&told);
+    control.progress = Some(Box::new(move |progress| *sink.lock().unwrap() = *progress));
     let brake = Brake { rays: AtomicU32::new(0), control: Arc::clone(&control.cancel) };
     let mut integrator = PixelLoop::new(brake, Sampler::Independent(Independent::new(100, 0)));
     assert_eq!(render(&mut integrator, &scene, &mut film, &control), Err(Cancelled));
     let taken = film.sample_count();
     assert!((700..2 * 40 * 24).contains(&taken), "{taken}");
+    assert_eq!(told.lock().unwrap().stats.rays, taken, "rays of a pass that was stopped are told");
     let image = film.develop();
     let white = image.values().fold(0.0, f32::max);
     assert!(white > 0.0);
@@ -154,6 +158,32 @@ fn a_render_stopped_within_a_pass_is_valid() {
             assert!(image.values().all(f32::is_finite));
         }
     }
+}
+
+#[test]
+fn what_has_not_begun_has_nothing_to_tell() {
+    let mut desc = balls();
+    for integrator in [
+        IntegratorDesc::Sppm(SppmDesc::default()),
+        IntegratorDesc::Vcm(VcmDesc::default()),
+        IntegratorDesc::Mlt(MltDesc::default()),
+        IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
+    ] {
+        desc.integrator = integrator.into();
+        assert_eq!(build(&desc).unwrap().integrator.summary(), []);
+    }
+}
+
+#[test]
+fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
+    let mut desc = balls();
+    desc.integrator = IntegratorDesc::LightTracing { max_depth: 3 }.into();
+    let (scene, mut film) = (compile(&desc), empty_film(&desc));
+    let mut integrator = build(&desc).unwrap().integrator;
+    let report = render(&mut *integrator, &scene, &mut film, &Control::default()).unwrap();
+    let (_, told) = integrator.summary().remove(0);
+    let rays: u64 = told.rsplit(' ').next().unwrap().parse().unwrap();
+    assert_eq!(rays, report.stats.rays - film.sample_count(), "all but the camera's rays: {told}");
 }
 
 /// Remembers the directions and wavelengths that it is asked about.

@@ -23,9 +23,9 @@
 //! 1/A_pixel, p_direction = 1.
 //!
 //! Areas, angles and normals are those of render space, also where the camera's transform scales or shears. Film positions
-//! are found wherever a point is in front of the camera, on the film and beside it, as filters reach over its border; those of
-//! spherical cameras lie within it, so that of light near its border none is found beyond it. Sources: [Pharr 2016 §16.1.1];
-//! [Veach 1997 ch. 8].
+//! are found wherever a point is in front of the camera, on the film and beside it, as filters reach over its border. What a spherical
+//! camera sees beyond its border is the same again: of all the places of the film that see a ray the one on it is found, and
+//! [`Camera::film_places`] tells the others. Sources: [Pharr 2016 §16.1.1]; [Veach 1997 ch. 8].
 
 use super::{Camera, Projection};
 use math::{Mat3, Normal3, Point2, Point3, Ray, Transform, Vec2, Vec3, Vector3};

@@ -3,7 +3,7 @@
 use super::tests::{RESOLUTION, build, kinds, sample, somewhere};
 use super::{Camera, CameraSample};
 use description::{RenderSpace, TransformDesc};
-use math::{DMat4, DVec3, Point3, Ray, Vec2, Vec3};
+use math::{Bounds2, DMat4, DVec3, Point3, Ray, Vec2, Vec3};
 use testkit::{Moments, Random, t_test, welch_test};
 
 /// Cameras at rest, scaled and sheared, and on their way.
@@ -52,6 +52,32 @@ fn a_ray_leads_back_to_its_place_on_the_film() {
                 if camera.is_parallel() { 1.0 } else { position * p.distance_squared(ray.o) / cos_theta };
             assert!((way.pdf / pdf - 1.0).abs() < 1e-3, "{name}: {} {pdf}", way.pdf);
         }
+    }
+}
+
+#[test]
+fn a_ray_leads_back_to_all_its_places_around_the_film() {
+    let mut random = Random::new(4);
+    let size = Vec2::from(RESOLUTION.map(|n| n as f32));
+    let around = Bounds2 { min: size * -0.4, max: size * 1.4 };
+    for (name, camera) in cameras() {
+        let mut beyond = 0;
+        for _ in 0..500 {
+            let film = around.lerp(random.get_2d().into());
+            let from = sample(film.x, film.y, random.get_2d().into(), random.get_1d());
+            let ray = camera.generate_ray(&from).unwrap().ray;
+            let (_, found) = camera.we(&ray).unwrap();
+            let places: Vec<_> = camera.film_places(found).within(around).collect();
+            assert!(places.iter().any(|place| (place - film).length() < 2e-3), "{name}: {film} {places:?}");
+            for (i, &place) in places.iter().enumerate() {
+                let again = camera.generate_ray(&CameraSample { film: place, ..from }).unwrap().ray;
+                assert!((again.d - ray.d).length() < 1e-3, "{name}: {film} {place}");
+                let is_new = places[..i].iter().all(|other| (other - place).length() > 1e-3);
+                assert!(is_new, "{name}: {place} counts twice");
+            }
+            beyond += usize::from(places.len() > 1);
+        }
+        assert_eq!(beyond > 100, name.starts_with("eq"), "{name}: {beyond}");
     }
 }
 

@@ -19,6 +19,7 @@ mod importance_tests;
 mod minimum_differentials;
 mod orthographic;
 mod perspective;
+mod places;
 mod screen;
 mod spherical;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub use importance::CameraWiSample;
 pub use minimum_differentials::differential_scale;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
+pub use places::FilmPlaces;
 pub use screen::{Screen, ThinLens};
 pub use spherical::Spherical;
 pub use transform::CameraTransform;

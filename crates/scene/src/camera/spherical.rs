@@ -25,6 +25,15 @@ impl Spherical {
         Self { mapping, resolution: Vec2::new(resolution[0] as f32, resolution[1] as f32) }
     }
 
+    pub(super) fn mapping(&self) -> SphericalMapping {
+        self.mapping
+    }
+
+    /// Width and height of the film, in pixels.
+    pub(super) fn resolution(&self) -> Vec2 {
+        self.resolution
+    }
+
     /// Origin and unit direction, in camera space.
     #[inline]
     pub(super) fn ray(&self, film: Point2) -> (Point3, Vector3) {

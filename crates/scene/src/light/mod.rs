@@ -221,7 +221,7 @@ impl Light {
 
     /// Densities of position and direction with which [`Light::sample_le`] of a light infinitely far away chooses the ray that
     /// arrives along `ray`, a ray of unit direction that leaves the scene towards the light. Both are 0 for other lights, and
-    /// where no chosen ray passes: beside the scene's sphere.
+    /// where no chosen ray passes: beside the scene's sphere, and above the disk where they start.
     #[doc(alias = "PDF_Le")]
     pub fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
         match self {
@@ -268,7 +268,8 @@ impl Light {
     }
 }
 
-/// The sphere around everything that can be hit: how big the scene looks to lights that are infinitely far away.
+/// The sphere around everything that has an end: how big the scene looks to lights that are infinitely far away. What has no end goes
+/// on beyond it, and may keep their light from it: see [`Scene::sample_emission`](crate::Scene::sample_emission).
 #[derive(Clone, Copy, Debug)]
 pub struct SceneSphere {
     /// Centre in render space.

@@ -111,10 +111,11 @@ fn told_options(text: &str) -> BTreeSet<String> {
     options
 }
 
-/// The names in the list `INTEGRATORS` of a source.
+/// The names in the list `integrators!` of a source, as far as they can be chosen.
 fn integrators(source: &str) -> Vec<&str> {
-    let list = source.split_once("pub const INTEGRATORS").and_then(|(_, rest)| rest.split_once("];"));
-    list.map(|(list, _)| list.split('"').skip(1).step_by(2).collect()).unwrap_or_default()
+    let list = source.split_once("\nintegrators! {").and_then(|(_, rest)| rest.split_once("\n    ;"));
+    let lines = list.map_or("", |(list, _)| list).lines();
+    lines.filter_map(|line| Some(line.trim_start().strip_prefix('"')?.split_once("\":")?.0)).collect()
 }
 
 #[cfg(test)]
@@ -141,6 +142,7 @@ mod tests {
 
     #[test]
     fn integrators_are_listed() {
-        assert_eq!(integrators("pub const INTEGRATORS: [&str; 2] = [\n \"a\",\n \"b\",\n];\n"), ["a", "b"]);
+        let source = "m\nintegrators! {\n    \"a\": A =\n        A {},\n    \"b-c\": B = B(1),\n    ;\n    \"d\": D,\n}\n";
+        assert_eq!(integrators(source), ["a", "b-c"]);
     }
 }

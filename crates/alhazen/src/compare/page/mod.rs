@@ -10,7 +10,7 @@ use std::fmt::Write;
 use self::chart::{Chart, Series, Shape};
 use self::figure::{count, escape, figure, percent};
 use self::map::Maps;
-use super::{Comparison, Parts, Run};
+use super::{Bias, Comparison, Parts, Run, said};
 
 /// How many colours the style has for runs; further runs start again.
 const COLORS: usize = 8;
@@ -60,6 +60,12 @@ impl Comparison {
                 text += &format!("; {} had not begun", escape(&self.missing.join(", ")));
             }
             text += ".</p>\n";
+        }
+        for warning in &self.warnings {
+            text += &format!("<p class=\"warning\">Warning: {}.</p>\n", escape(warning));
+        }
+        if let Some(doubt) = self.doubt() {
+            text += &format!("<p class=\"warning\">{}</p>\n", escape(&doubt));
         }
         let below: Vec<_> = self.runs.iter().filter(|run| self.is_below_reference_noise(run)).collect();
         if !below.is_empty() {
@@ -247,13 +253,16 @@ impl Comparison {
             ("each picture".into(), setup.budget.to_string()),
             ("seeds".into(), format!("{} and {}", setup.seed, setup.seed.wrapping_add(1))),
             ("threads".into(), setup.threads.to_string()),
-            ("filter".into(), setup.filter.clone()),
+            ("filter".into(), said::text(&setup.filter)),
             ("changed for all".into(), changes),
             ("reference".into(), self.reference.source.clone()),
             ("its noise".into(), noise),
         ];
         for run in &self.runs {
-            rows.push((run.name.clone(), format!("{}, sampler {}", run.settings, run.sampler)));
+            rows.push((
+                run.name.clone(),
+                format!("{}; sampler {}", said::text(&run.settings), said::text(&run.sampler)),
+            ));
             rows.extend(run.notes.iter().map(|(name, note)| (format!("{}: {name}", run.name), note.clone())));
         }
         rows.push(("program".into(), concat!("alhazen ", env!("CARGO_PKG_VERSION")).into()));
@@ -277,11 +286,11 @@ fn swatch(index: usize) -> String {
 
 /// Bias as a share of the reference, or how large it may be without being seen.
 fn bias(parts: &Parts) -> String {
-    if parts.is_biased() {
-        return percent(parts.bias_squared.sqrt());
+    match parts.bias() {
+        Bias::Seen(bias) => percent(bias),
+        Bias::Below(most) => format!("&lt; {}", percent(most)),
+        Bias::Hidden => "hidden by noise".into(),
     }
-    let most = parts.bias_squared.max(0.0) + 3.0 * parts.bias_squared_deviation;
-    format!("&lt; {}", percent(most.sqrt()))
 }
 
 /// The colours of an error map between their ends.
@@ -307,9 +316,9 @@ const MEANING: &str = "<details>\n<summary>What the figures mean</summary>\n<dl>
     <dt>relMSE</dt><dd>mean of (x − r)² / (r² + 0.01) over pixels and channels, x being the picture and r the reference.</dd>\n\
     <dt>FLIP</dt><dd>visible difference between 0 and 1, of the first picture.</dd>\n\
     <dt>noise</dt><dd>standard deviation of a picture, as a share of the reference: from the difference of the two pictures.</dd>\n\
-    <dt>bias</dt><dd>root mean square of what both pictures are wrong by together, as a share of the reference and without the reference's noise; or how large it may be without having been seen.</dd>\n\
+    <dt>bias</dt><dd>root mean square of what both pictures are wrong by together, as a share of the reference and without the reference's noise; or how large it may be without having been seen; hidden by noise where that is as much as there is light.</dd>\n\
     <dt>mean error</dt><dd>how much too bright the whole picture is, with one standard deviation.</dd>\n\
-    <dt>efficiency</dt><dd>1 / (relMSE · seconds).</dd>\n\
+    <dt>efficiency</dt><dd>1 / (relMSE · seconds): the ratio of two is that of the times to equal relMSE, where there is no bias.</dd>\n\
     <dt>s to relMSE</dt><dd>seconds until the error had come down to that of the worst.</dd>\n\
     <dt>slope</dt><dd>k in relMSE ∝ time^k, fitted over the last five doublings of time, the reference's noise taken off; −1 for independent samples.</dd>\n\
     </dl>\n</details>\n";

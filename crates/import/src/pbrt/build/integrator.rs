@@ -74,7 +74,7 @@ fn integrator(reader: &mut Reader) -> Option<IntegratorDesc> {
             photons_per_iteration: reader
                 .optional_integer("photonsperiteration")
                 .filter(|&photons| photons > 0),
-            radius: reader.positive("radius", SppmDesc::default().radius),
+            radius: radius(reader),
             seed: reader.optional_integer("seed"),
         }),
         "photon-mapping" => IntegratorDesc::PhotonMapping(photon_mapping(reader)),

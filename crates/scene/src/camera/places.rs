@@ -1,0 +1,86 @@
+//! All places of the film that see the same.
+//!
+//! A film that shows all directions has no border: beyond it, where reconstruction filters reach, the picture goes on with what lies
+//! at another place of it. A ray that enters the camera is thus seen at many film positions, one on the film and others around it,
+//! and light that comes along it reaches the pixels near each of them. These are the ways in which the plane of film positions covers
+//! the sphere again and again, for a film of W × H pixels:
+//!
+//! | mapping | (x, y) is seen at | repeated every |
+//! |---|---|---|
+//! | equirectangular | (x, y) and, beyond a pole, (x + W/2, −y) | W, 2H |
+//! | equal areas | (x, y), (x + W, y + H), and turned round the middle of an edge (W − x, −y), (−x, H − y) | 2W, 2H |
+
+use super::{Camera, Projection};
+use description::SphericalMapping;
+use math::{Bounds2, Point2, Vec2};
+
+/// The film positions that see along one ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmPlaces {
+    first: Point2,
+    around: Option<Around>,
+}
+
+/// How a film goes on beyond its border.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Around {
+    mapping: SphericalMapping,
+    resolution: Vec2,
+}
+
+impl From<Point2> for FilmPlaces {
+    /// One position alone.
+    fn from(film: Point2) -> Self {
+        Self { first: film, around: None }
+    }
+}
+
+impl Camera {
+    /// All film positions that see what `film` does.
+    pub fn film_places(&self, film: Point2) -> FilmPlaces {
+        let around = match &self.projection {
+            Projection::Perspective(_) | Projection::Orthographic(_) => None,
+            Projection::Spherical(s) => Some(Around { mapping: s.mapping(), resolution: s.resolution() }),
+        };
+        FilmPlaces { first: film, around }
+    }
+}
+
+impl FilmPlaces {
+    /// Those of them within a part of the plane.
+    pub fn within(&self, bounds: Bounds2) -> impl Iterator<Item = Point2> {
+        let (x, y) = (self.first.x, self.first.y);
+        let (places, count, period) = match self.around {
+            None => ([self.first; 4], 1, None),
+            Some(Around { mapping, resolution }) => {
+                let Vec2 { x: w, y: h } = resolution;
+                match mapping {
+                    SphericalMapping::EquiRectangular => {
+                        let beyond_pole = Vec2::new(x + 0.5 * w, -y);
+                        ([self.first, beyond_pole, self.first, beyond_pole], 2, Some(Vec2::new(w, 2.0 * h)))
+                    }
+                    SphericalMapping::EqualArea => {
+                        let turned = [Vec2::new(w - x, -y), Vec2::new(-x, h - y)];
+                        let places = [self.first, self.first + resolution, turned[0], turned[1]];
+                        (places, 4, Some(2.0 * resolution))
+                    }
+                }
+            }
+        };
+        let places = places.into_iter().take(count);
+        places.flat_map(move |place| repeated(place, period, bounds)).filter(move |&p| bounds.contains(p))
+    }
+}
+
+/// A place and, where there is a period, its repetitions, as far as they may lie within the bounds.
+fn repeated(place: Point2, period: Option<Vec2>, bounds: Bounds2) -> impl Iterator<Item = Point2> {
+    let (low, high, period) = match period {
+        None => (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO),
+        Some(period) => {
+            (((bounds.min - place) / period).ceil(), ((bounds.max - place) / period).floor(), period)
+        }
+    };
+    let columns = move || (low.x as i32)..=(high.x as i32);
+    let rows = (low.y as i32)..=(high.y as i32);
+    rows.flat_map(move |j| columns().map(move |i| place + period * Vec2::new(i as f32, j as f32)))
+}
