@@ -11,8 +11,9 @@ use crate::{Cancelled, Control};
 
 /// An algorithm of light transport, run by [`render`](crate::render()).
 ///
-/// What a pass adds to the film depends on the scene, the settings, the seed and the pass's number alone: not on threads, nor on
-/// the passes before it.
+/// What a pass finds depends on the scene, the settings, the seed and the pass's number alone: not on threads, nor on which passes came before
+/// it, if only their numbers were lower. It is added to the film; but a pass of an algorithm that gets ever nearer to one solution may
+/// put a new picture in the place of the old one ([`Radiosity`](crate::Radiosity)).
 pub trait Integrator: Send {
     /// How many passes make the picture.
     fn passes(&self) -> u32;

@@ -57,6 +57,11 @@ impl Bands {
         self.zip(other, SampledSpectrum::max)
     }
 
+    /// What part of the whole it is at each wavelength, from 0 to 1; none where the whole is nothing.
+    pub fn part_of(self, whole: Self) -> Self {
+        self.zip(whole, SampledSpectrum::safe_div).max(Self::ZERO).min(Self::splat(1.0))
+    }
+
     fn zip(self, other: Self, f: impl Fn(SampledSpectrum, SampledSpectrum) -> SampledSpectrum) -> Self {
         Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }

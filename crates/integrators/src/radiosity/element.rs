@@ -13,7 +13,8 @@ use scene::{Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::bands::{Bands, Wavelengths};
-use super::mesh::{Cell, Domain, Mesh};
+use super::domain::Domain;
+use super::mesh::{Cell, Mesh};
 
 /// The shares of light that a surface sends back, and through, evenly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,6 +110,8 @@ pub(crate) struct Element {
     pub albedo: Albedo,
     /// What fell on its outer and inner side, in each quarter.
     pub quarters: [[Bands; 2]; 4],
+    /// How much of that may be scattered here for the last time.
+    pub last: [Bands; 2],
 }
 
 impl Element {
@@ -134,7 +137,8 @@ impl Element {
             SamplePoint { p: surface.p, n: surface.n, weight }
         };
         let points = [point(0), point(1), point(2), point(3)];
-        Self { cell, patch, quarter, level, area, points, albedo, quarters: [[Bands::ZERO; 2]; 4] }
+        let dark = [Bands::ZERO; 2];
+        Self { cell, patch, quarter, level, area, points, albedo, quarters: [dark; 4], last: dark }
     }
 
     /// What fell on its outer and inner side.
@@ -164,9 +168,17 @@ impl Element {
         parts.map(|part| if sum > 0.0 { brightness * part / sum } else { 0.0 })
     }
 
-    /// What leaves its two sides in one quarter, emission apart.
+    /// The part of what fell on its sides that may be scattered here for the last time.
+    pub fn last_part(&self) -> [Bands; 2] {
+        let all = self.irradiance();
+        [0, 1].map(|i| self.last[i].part_of(all[i]))
+    }
+
+    /// What leaves its two sides in one quarter and may be scattered once more, emission apart.
     pub fn radiosity(&self, quarter: usize) -> [Bands; 2] {
-        self.albedo.scatter(&self.quarters[quarter])
+        let last = self.last_part();
+        let going_on = |i: usize| self.quarters[quarter][i] * (Bands::splat(1.0) + last[i] * -1.0);
+        self.albedo.scatter(&[0, 1].map(going_on))
     }
 }
 
@@ -194,7 +206,8 @@ pub(crate) struct Patch {
     pub area: f32,
     /// What leaves its two sides of its own accord, per area.
     pub emitted: [Bands; 2],
-    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how often it was scattered.
+    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how often it was scattered, as
+    /// far as there is any.
     pub unshot: Vec<[Bands; 2]>,
     /// How the brightness of that light is spread over the quarters.
     pub spread: [[f32; 2]; 4],
@@ -204,19 +217,24 @@ pub(crate) struct Patch {
 
 impl Patch {
     /// A patch that has not sent out its own light yet; it sends light that was scattered less than `depth` times.
-    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: usize) -> Self {
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: u32) -> Self {
         let area = {
             let leaf = mesh.cell(cell);
             leaf.domain().quarters().iter().map(|quarter| mesh.area(scene.world(), leaf, quarter)).sum()
         };
         let emitted = emission(scene, mesh, mesh.cell(cell), wavelengths);
-        let mut unshot = vec![[Bands::ZERO; 2]; depth];
-        if let Some(first) = unshot.first_mut() {
-            *first = emitted.map(|side| side * area);
-        }
-        let even =
-            emitted.map(|side| if depth > 0 { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
+        let sends = depth > 0 && emitted.iter().any(|side| !side.is_black());
+        let unshot = if sends { vec![emitted.map(|side| side * area)] } else { Vec::new() };
+        let even = emitted.map(|side| if sends { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
         Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
+    }
+
+    /// Adds light that was scattered so many times, as power from either side.
+    pub fn add_unshot(&mut self, scattered: usize, power: [Bands; 2]) {
+        if self.unshot.len() <= scattered {
+            self.unshot.resize(scattered + 1, [Bands::ZERO; 2]);
+        }
+        (0..2).for_each(|i| self.unshot[scattered][i] += power[i]);
     }
 
     /// How much of what one side has to send comes from each quarter, in parts of the mean.

@@ -24,8 +24,9 @@ use math::{Normal3, Point3, Point3Error, Ray, Vector3};
 use scene::{Interfaces, Scene};
 use std::f32::consts::TAU;
 
+use super::domain::Domain;
 use super::element::{Element, Patch, SamplePoint};
-use super::mesh::{Domain, Mesh};
+use super::mesh::Mesh;
 
 /// The form factor from a point with unit normal `n` at the origin to a polygon that turns counter-clockwise about its emitting
 /// side, nothing between. The polygon lies anywhere; what is below the horizon does not count.

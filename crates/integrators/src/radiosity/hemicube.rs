@@ -12,8 +12,8 @@
 //! middle is not the whole. Here the pixels are filled by rays instead of by a z-buffer; the factors are those of the original.
 //! Source: [Cohen 1985].
 
-use geometry::{Hit, RayStats, SurfacePoint};
-use math::{Frame, Vector3};
+use geometry::RayStats;
+use math::{Frame, Vec2, Vector3};
 use rayon::prelude::*;
 use sampling::hash_float;
 use scene::Scene;
@@ -38,10 +38,11 @@ pub(crate) struct Hemicube {
 
 /// What is seen through a pixel.
 struct Pixel {
-    hit: Hit,
-    surface: SurfacePoint,
+    /// The first cell of the primitive there, and where on it.
+    root: u32,
+    uv: Vec2,
     /// The side that is seen.
-    side: usize,
+    side: u8,
     factor: f32,
 }
 
@@ -105,7 +106,8 @@ impl Hemicube {
             let pixels = self.row(row).filter_map(|(d, factor)| {
                 let ray = eye.spawn_ray(frame.from_local(d));
                 let (hit, surface) = first_solid(scene, ray, &mut stats)?;
-                Some(Pixel { hit, surface, side: seen_side(&surface), factor })
+                let (root, uv) = mesh.place(scene.world(), &hit, &surface)?;
+                Some(Pixel { root, uv, side: seen_side(&surface) as u8, factor })
             });
             let pixels: Vec<Pixel> = pixels.collect();
             Ok((pixels, stats))
@@ -118,15 +120,15 @@ impl Hemicube {
 
 impl Seen {
     /// What the elements with these indices receive of unit radiosity from a patch of this area.
-    pub fn received(&self, scene: &Scene, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
+    pub fn received(&self, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
         let mut all = vec![(Received::default(), 0); cut.elements.len()];
-        for Pixel { hit, surface, side, factor } in &self.0 {
-            let Some((leaf, uv)) = cut.mesh.leaf(scene.world(), hit, surface) else { continue };
+        for &Pixel { root, uv, side, factor } in &self.0 {
+            let leaf = cut.mesh.leaf_in(root, uv);
             let (received, pixels) = &mut all[leaf.element as usize];
             let element = &cut.elements[leaf.element as usize];
             let quarter = leaf.domain().quarter_of(uv);
             let factor = factor * area / (element.area * element.points[quarter].weight);
-            received.quarters[quarter][*side] += factor;
+            received.quarters[quarter][usize::from(side)] += factor;
             *pixels += 1;
         }
         let answer = |&id: &u32| {

@@ -41,7 +41,7 @@ const FAINT: f32 = 1e-3;
 pub(crate) struct Solution {
     pub wavelengths: Wavelengths,
     pub cut: Cut,
-    settings: RadiositySettings,
+    pub settings: RadiositySettings,
     /// Whether the lights that are no surfaces have shone.
     begun: bool,
     /// Brightness of all light that there is to send.
@@ -51,14 +51,15 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
-    /// Nothing has been sent yet; of light that is scattered up to `depth` times in all.
-    pub fn new(scene: &Scene, settings: &RadiositySettings, depth: u32) -> Self {
+    /// Nothing has been sent yet.
+    pub fn new(scene: &Scene, settings: &RadiositySettings, control: &Control) -> Result<Self, Cancelled> {
         let wavelengths = Wavelengths::new(!scene.options().disable_wavelength_jitter);
-        let cut = Cut::new(scene, settings, &wavelengths, depth as usize);
+        let cut = Cut::new(scene, settings, &wavelengths, control)?;
         let settings = settings.clone();
-        let mut solution = Self { wavelengths, cut, settings, begun: depth == 0, total: 0.0, shots: 0 };
+        let begun = settings.max_depth == 0;
+        let mut solution = Self { wavelengths, cut, settings, begun, total: 0.0, shots: 0 };
         solution.total = solution.unshot_brightness();
-        solution
+        Ok(solution)
     }
 
     /// The brightness of what is still to be sent, as a power.
@@ -66,9 +67,12 @@ impl Solution {
         self.cut.patches.iter().map(|patch| patch.brightness(0) + patch.brightness(1)).sum()
     }
 
-    /// The share of all light that is still to be sent.
+    /// The share of all light that is still to be sent: all of it, as long as it is not known how much there is.
     pub fn unshot_share(&self) -> f32 {
-        if self.total > 0.0 { self.unshot_brightness() / self.total } else { 0.0 }
+        match self.total > 0.0 {
+            true => self.unshot_brightness() / self.total,
+            false => f32::from(u8::from(!self.begun)),
+        }
     }
 
     /// Shoots until no more than a share of all light is left to be sent.
@@ -117,7 +121,10 @@ impl Solution {
         let Patch { cell, area, ref unshot, .. } = self.cut.patches[patch as usize];
         let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
         let all: Bands = layers.iter().copied().sum();
-        let sent_on: Bands = layers.iter().rev().skip(1).copied().sum();
+        // What was scattered last before it is scattered for the last time is not sent on.
+        let last_layer = self.settings.max_depth as usize - 1;
+        let last = layers.get(last_layer).copied().unwrap_or_default();
+        let sent_on: Bands = layers.iter().take(last_layer).copied().sum();
         let brightness = self.wavelengths.brightness(&all);
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
@@ -134,7 +141,7 @@ impl Solution {
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
                 let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
-                self.receive(scene, brightness, |cut, ids| Ok(seen.received(scene, cut, area, ids)))?
+                self.receive(scene, brightness, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };
         let source = &mut self.cut.patches[patch as usize];
@@ -159,6 +166,7 @@ impl Solution {
                     continue;
                 }
                 patch.faced[i] = true;
+                element.last[i] += last * sides[i];
                 let Albedo { reflectance, transmittance } = &element.albedo;
                 for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
                     if albedo.is_black() {
@@ -176,9 +184,9 @@ impl Solution {
             }
         }
         for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
-            if *sent != [Bands::ZERO; 2] {
-                for (unshot, layer) in patch.unshot.iter_mut().skip(1).zip(&layers) {
-                    (0..2).for_each(|i| unshot[i] += sent[i] * *layer);
+            for (scattered, layer) in (1..).zip(layers.iter().take(last_layer)) {
+                if *sent != [Bands::ZERO; 2] && !layer.is_black() {
+                    patch.add_unshot(scattered, sent.map(|side| side * *layer));
                 }
             }
         }
@@ -214,15 +222,12 @@ impl Solution {
         };
         // Once to know how much light there is, and again to see where it changes fast.
         let ids: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
-        let lit = each_element(&self.cut, &ids, control, stats, shine)?;
-        let power = |(element, lit): (&Element, &Lit)| {
-            let Lit { quarters } = lit;
-            let quarter = |k: usize| {
-                wavelengths.brightness(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight
-            };
-            element.area * (0..4).map(quarter).sum::<f32>()
+        let power = |element: &Element, stats: &mut RayStats| {
+            let brightnesses = shine(element, stats).brightnesses(&wavelengths);
+            let sum: f32 = brightnesses.iter().zip(&element.points).map(|(b, point)| b * point.weight).sum();
+            element.area * sum
         };
-        self.total += self.cut.elements.iter().zip(&lit).map(power).sum::<f32>();
+        self.total += each_element(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
         let lit = self.receive(scene, 1.0, |cut, ids| each_element(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
             element.quarters = lit.quarters;
@@ -230,9 +235,12 @@ impl Solution {
             let scattered = element.albedo.scatter(&sides);
             let patch = &mut self.cut.patches[element.patch as usize];
             (0..2).for_each(|i| patch.faced[i] |= !sides[i].is_black());
-            let Some(once) = patch.unshot.get_mut(1) else { continue };
+            if self.settings.max_depth == 1 {
+                element.last = sides;
+                continue;
+            }
+            patch.add_unshot(1, scattered.map(|side| side * element.area));
             for i in 0..2 {
-                once[i] += scattered[i] * element.area;
                 let brightness = self.wavelengths.brightness(&scattered[i]) * element.area;
                 let arrived = lit.brightnesses(&self.wavelengths);
                 element
@@ -290,13 +298,12 @@ impl Solution {
             return Bands::ZERO;
         }
         let rho = reflecting * area.recip();
-        let depth = patches.first().map_or(0, |patch| patch.unshot.len());
         let mut ambient = Bands::ZERO;
         // Light that was scattered last counts once; what was scattered less often, as often as it may be scattered yet.
         let mut series = Bands::splat(1.0);
-        for layer in (0..depth).rev() {
-            let unshot: Bands =
-                patches.iter().map(|patch| patch.unshot[layer][0] + patch.unshot[layer][1]).sum();
+        for layer in (0..self.settings.max_depth as usize).rev() {
+            let of_layer = patches.iter().filter_map(|patch| patch.unshot.get(layer));
+            let unshot: Bands = of_layer.map(|sides| sides[0] + sides[1]).sum();
             ambient += unshot * series * area.recip();
             series = Bands::splat(1.0) + series * rho;
         }
@@ -305,8 +312,8 @@ impl Solution {
 
     /// Bytes of memory that patches, elements and the mesh take.
     pub fn bytes(&self) -> usize {
-        let layers = self.cut.patches.first().map_or(0, |patch| size_of_val(&*patch.unshot));
-        let patches = self.cut.patches.len() * (size_of::<Patch>() + layers);
+        let patch = |patch: &Patch| size_of::<Patch>() + patch.unshot.capacity() * size_of::<[Bands; 2]>();
+        let patches: usize = self.cut.patches.iter().map(patch).sum();
         self.cut.mesh.bytes() + patches + size_of_val(&*self.cut.elements)
     }
 }
@@ -344,10 +351,12 @@ fn each_element<T: Send>(
     answer: impl Fn(&Element, &mut RayStats) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
     let some = |ids: &[u32]| {
-        control.check()?;
         let mut stats = RayStats::default();
-        let mut answer = |&id: &u32| answer(&cut.elements[id as usize], &mut stats);
-        let answers: Vec<T> = ids.iter().map(&mut answer).collect();
+        let mut answer = |&id: &u32| {
+            control.check()?;
+            Ok(answer(&cut.elements[id as usize], &mut stats))
+        };
+        let answers: Vec<T> = ids.iter().map(&mut answer).collect::<Result<_, Cancelled>>()?;
         Ok((answers, stats))
     };
     let answers: Vec<_> = ids.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;

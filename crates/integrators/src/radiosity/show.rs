@@ -22,6 +22,7 @@ use super::element::Albedo;
 use super::mesh::{Cell, Corner};
 use super::shooting::{Solution, arrives, sample_light};
 use crate::direct::pass_through;
+use crate::{Cancelled, Control};
 
 /// A solution made ready to be looked at.
 pub(crate) struct View {
@@ -44,19 +45,19 @@ impl View {
         let outline =
             |element: &super::element::Element| mesh.outline(scene.world(), mesh.cell(element.cell));
         let outlines: Vec<Vec<Corner>> = elements.par_iter().map(outline).collect();
-        let mut sums = vec![([Bands::ZERO; 2], 0.0); mesh.vertices().len()];
+        let mut vertices = vec![[Bands::ZERO; 2]; mesh.vertices().len()];
+        let mut counts = vec![0.0f32; vertices.len()];
         for (element, outline) in elements.iter().zip(&outlines) {
             for corner in outline {
-                let (sum, count) = &mut sums[corner.vertex as usize];
+                let sum = &mut vertices[corner.vertex as usize];
                 let here = element.irradiance_at(&mesh.cell(element.cell).domain(), corner.uv);
                 (0..2).for_each(|i| sum[i] += here[i]);
-                *count += 1.0;
+                counts[corner.vertex as usize] += 1.0;
             }
         }
-        let vertices = sums
-            .into_iter()
-            .map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip()))
-            .collect();
+        for (sum, count) in vertices.iter_mut().zip(counts) {
+            *sum = sum.map(|side| side * f32::max(count, 1.0).recip());
+        }
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
@@ -106,13 +107,14 @@ impl View {
         solution: &Solution,
         mut ray: RayDifferential,
         sampler: &mut Sampler,
+        control: &Control,
         stats: &mut RayStats,
-    ) -> Bands {
+    ) -> Result<Bands, Cancelled> {
         let wavelengths = &solution.wavelengths;
         let mut l = Bands::ZERO;
         loop {
             let Some(hit) = scene.hit(&ray.ray, f32::INFINITY, stats) else {
-                return l + wavelengths.sample(|lambda| scene.escaped(&ray.ray, lambda));
+                return Ok(l + wavelengths.sample(|lambda| scene.escaped(&ray.ray, lambda)));
             };
             let surface = scene.world().surface(&ray.ray, &hit);
             let mut interaction = scene.interaction(&hit, surface);
@@ -123,12 +125,15 @@ impl View {
                 ray = pass_through(&ray, &interaction, hit.t);
                 continue;
             };
+            if solution.settings.max_depth == 0 {
+                return Ok(l);
+            }
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
             if let (Some((leaf, uv)), 0) = (leaf, self.gather) {
                 let sides = albedo.scatter(&self.irradiance(solution, leaf, uv));
-                return l + sides[seen_side(&surface)] * FRAC_1_PI;
+                return Ok(l + sides[seen_side(&surface)] * FRAC_1_PI);
             }
-            return l + self.gathered(scene, solution, &interaction, &albedo, sampler, stats);
+            return Ok(l + self.gathered(scene, solution, &interaction, &albedo, sampler, control, stats)?);
         }
     }
 
@@ -140,8 +145,9 @@ impl View {
         interaction: &SurfaceInteraction,
         albedo: &Albedo,
         sampler: &mut Sampler,
+        control: &Control,
         stats: &mut RayStats,
-    ) -> Bands {
+    ) -> Result<Bands, Cancelled> {
         let s = &interaction.surface;
         let ns = s.shading.n;
         let toward = if s.wo.dot(ns) < 0.0 { -ns } else { ns };
@@ -149,6 +155,7 @@ impl View {
         let samples = self.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
+            control.check()?;
             sum += self.direct(scene, solution, interaction, albedo, sampler, stats);
             let (uc, u) = (sampler.get_1d(), sampler.get_2d());
             let (back, on) = (albedo.reflectance.mean(), albedo.transmittance.mean());
@@ -165,7 +172,7 @@ impl View {
             };
             sum += weight * found(scene, solution, interaction.spawn_ray(frame.from_local(wi)), stats);
         }
-        sum * (samples as f32).recip()
+        Ok(sum * (samples as f32).recip())
     }
 
     /// What a surface scatters of the light that comes straight from the lights, by one sample of one.
@@ -194,7 +201,7 @@ impl View {
     }
 }
 
-/// The radiance that elements send back along a ray, emission apart.
+/// The radiance that elements send back along a ray to be scattered once more, emission apart.
 fn found(scene: &Scene, solution: &Solution, ray: Ray, stats: &mut RayStats) -> Bands {
     let Some((hit, surface)) = first_solid(scene, ray, stats) else { return Bands::ZERO };
     let Some((leaf, uv)) = solution.cut.mesh.leaf(scene.world(), &hit, &surface) else { return Bands::ZERO };

@@ -5,8 +5,9 @@ use scene::Scene;
 
 use super::RadiositySettings;
 use super::bands::Wavelengths;
-use super::element::{Element, Patch, Place, albedo_at};
+use super::element::{Element, Patch, Place};
 use super::mesh::Mesh;
+use crate::{Cancelled, Control};
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.
 const PATCHES_PER_RADIUS: f32 = 6.0;
@@ -20,42 +21,56 @@ pub(crate) struct Cut {
 
 impl Cut {
     /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more than `max_patches`, they
-    /// are twice as long, and so on; but one for each primitive there will be.
-    pub fn new(scene: &Scene, settings: &RadiositySettings, wavelengths: &Wavelengths, depth: usize) -> Self {
-        let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
-        let [open, close] = scene.camera().shutter();
-        let whole = Mesh::new(scene, 0.5 * (open + close), |hit, surface| {
-            albedo_at(scene, hit, surface, wavelengths).is_some()
-        });
+    /// are twice as long, and so on. No more than half of `max_patches` primitives are cut at all, so that large ones always can be.
+    pub fn new(
+        scene: &Scene,
+        settings: &RadiositySettings,
+        wavelengths: &Wavelengths,
+        control: &Control,
+    ) -> Result<Self, Cancelled> {
         let max_patches = settings.max_patches as usize;
+        let [open, close] = scene.camera().shutter();
+        let whole = Mesh::new(scene, 0.5 * (open + close), max_patches.div_ceil(2), control)?;
+        let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
+        // No patch is larger than a square with sides of this length.
+        let area = whole.whole_area(scene.world());
+        while f64::from(size).powi(2) * (max_patches as f64) < area {
+            size *= 2.0;
+        }
         let (mut mesh, leaves) = loop {
-            match cut(scene, whole.clone(), size, max_patches) {
+            match cut(scene, whole.clone(), size, max_patches, control)? {
                 Some(cut) => break cut,
                 None => size *= 2.0,
             }
         };
         let ids: Vec<(u32, u32)> = (0..).zip(leaves).collect();
-        let made: Vec<(Patch, Element)> = ids
-            .par_iter()
-            .map(|&(id, cell)| {
-                let patch = Patch::new(scene, &mesh, wavelengths, cell, depth);
-                let place = Place { patch: id, quarter: 0, level: 0 };
-                (patch, Element::new(scene, &mesh, wavelengths, cell, place))
-            })
-            .collect();
+        let make = |&(id, cell): &(u32, u32)| {
+            control.check()?;
+            let patch = Patch::new(scene, &mesh, wavelengths, cell, settings.max_depth);
+            let place = Place { patch: id, quarter: 0, level: 0 };
+            Ok((patch, Element::new(scene, &mesh, wavelengths, cell, place)))
+        };
+        let made: Vec<(Patch, Element)> = ids.par_iter().map(make).collect::<Result<_, Cancelled>>()?;
         ids.iter().for_each(|&(id, cell)| mesh.set_element(cell, id));
         let (patches, elements) = made.into_iter().unzip();
-        Self { mesh, patches, elements }
+        Ok(Self { mesh, patches, elements })
     }
 }
 
 /// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some could be longer.
-fn cut(scene: &Scene, mut mesh: Mesh, size: f32, most: usize) -> Option<(Mesh, Vec<u32>)> {
+fn cut(
+    scene: &Scene,
+    mut mesh: Mesh,
+    size: f32,
+    most: usize,
+    control: &Control,
+) -> Result<Option<(Mesh, Vec<u32>)>, Cancelled> {
     let world = scene.world();
     let mut rest: Vec<u32> = (0..mesh.len() as u32).rev().collect();
     let mut leaves = Vec::new();
     let mut splits = false;
     while let Some(cell) = rest.pop() {
+        control.check()?;
         let length = mesh.size(world, cell);
         // Bent cells are cut as long as that makes patches, not dust.
         let is_bent = length > size * BENT_PART && mesh.is_bent(world, cell);
@@ -67,10 +82,10 @@ fn cut(scene: &Scene, mut mesh: Mesh, size: f32, most: usize) -> Option<(Mesh, V
             leaves.push(cell);
         }
         if splits && leaves.len() + rest.len() > most {
-            return None;
+            return Ok(None);
         }
     }
-    Some((mesh, leaves))
+    Ok(Some((mesh, leaves)))
 }
 
 /// The part of a patch's size below which bent cells are good enough.
@@ -107,7 +122,10 @@ impl Cut {
             let domain = mesh.cell(whole.cell).domain();
             let quarters = mesh.cell(cell).domain().quarters();
             let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
-            Element { quarters: inherited, ..part }
+            let mut part = Element { quarters: inherited, ..part };
+            let (all, last) = (part.irradiance(), whole.last_part());
+            part.last = [0, 1].map(|i| all[i] * last[i]);
+            part
         };
         let made: Vec<Element> = parts.par_iter().map(make).collect();
         let mut changed = Vec::with_capacity(made.len());
