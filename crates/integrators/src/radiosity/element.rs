@@ -158,6 +158,24 @@ impl Element {
         })
     }
 
+    /// Takes what a larger one, which it is a part of, received as a whole.
+    pub fn inherit(&mut self, mesh: &Mesh, whole: &Self) {
+        let domain = mesh.cell(whole.cell).domain();
+        let quarters = mesh.cell(self.cell).domain().quarters();
+        let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
+        let all = weighted(&inherited, self.points.each_ref().map(|point| point.weight));
+        let last = whole.last_part();
+        for i in 0..2 {
+            self.quarters.iter_mut().zip(&inherited).for_each(|(own, light)| own[i] += light[i]);
+            self.last[i] += all[i] * last[i];
+        }
+    }
+
+    /// Forgets what it received.
+    pub fn darken(&mut self) {
+        (self.quarters, self.last) = ([[Bands::ZERO; 2]; 4], [Bands::ZERO; 2]);
+    }
+
     /// How light that leaves it is spread over the quarters of its patch, if this much arrived in each of its own.
     pub fn spread(&self, brightness: f32, arrived: [f32; 4]) -> [f32; 4] {
         if self.level > 0 {
@@ -213,6 +231,8 @@ pub(crate) struct Patch {
     pub spread: [[f32; 2]; 4],
     /// Which sides have faced a patch that shot.
     pub faced: [bool; 2],
+    /// If it is cut into elements: itself as one, with the faint light that it received as a whole.
+    pub whole: Option<Box<Element>>,
 }
 
 impl Patch {
@@ -226,7 +246,7 @@ impl Patch {
         let sends = depth > 0 && emitted.iter().any(|side| !side.is_black());
         let unshot = if sends { vec![emitted.map(|side| side * area)] } else { Vec::new() };
         let even = emitted.map(|side| if sends { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
-        Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
+        Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2], whole: None }
     }
 
     /// Adds light that was scattered so many times, as power from either side.

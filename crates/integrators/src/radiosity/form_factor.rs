@@ -66,6 +66,7 @@ pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
 const DARK: f32 = 1e-3;
 
 /// A cell that sends light.
+#[derive(Clone)]
 pub(crate) struct Emitter {
     /// Counter-clockwise about the emitting side.
     corners: Vec<Point3>,
@@ -155,6 +156,12 @@ impl Emitter {
         let g = cos.abs() * -way.dot(to_n) / way.length_squared().powi(2);
         let ray = || Ray::between(from.p, from.n, to, to_n, time);
         (g > 0.0 && g.is_finite()).then(|| (g, usize::from(cos < 0.0), ray()))
+    }
+
+    /// The most that arrives at a quarter of an element, if nothing is between.
+    pub fn most_on(&self, element: &Element) -> f32 {
+        let facing = element.points.iter().filter(|from| self.faces(from.p.p));
+        facing.flat_map(|from| self.seen_from(from.p.p, from.n)).fold(0.0, f32::max)
     }
 
     /// What an element receives.

@@ -14,7 +14,9 @@
 //! environment) shine on every element once, before the first shot, by samples of the light.
 //!
 //! Where what a shot brings changes by more than a share of the light that is there, elements are cut and the shot is
-//! received again: elements get fine at the edges of shadows, as those shots make them that cast the shadows.
+//! received again: elements get fine at the edges of shadows, as those shots make them that cast the shadows. Most shots are faint, though, and
+//! most patches are far from them: what would bring much less to a patch than the change that is worth a cut, even if nothing were between, is
+//! received by the patch as a whole, as if it had not been cut, and handed to its elements later.
 //!
 //! Sources: [Cohen 1988], [Cohen 1986] for elements.
 
@@ -36,6 +38,9 @@ use crate::{Cancelled, Control};
 
 /// The part of all light, spread evenly, below which an irradiance is next to nothing.
 const FAINT: f32 = 1e-3;
+
+/// The part of the change of light that is worth a cut, below which light comes to patches as if they were not cut.
+const UNCUT: f32 = 0.1;
 
 /// The state of a solution.
 pub(crate) struct Solution {
@@ -86,6 +91,7 @@ impl Solution {
             let Some((patch, side)) = self.brightest() else { break };
             self.shoot_from(scene, patch, side, control, &mut stats)?;
         }
+        self.cut.settle();
         Ok(stats)
     }
 
@@ -112,13 +118,13 @@ impl Solution {
     fn shoot_from(
         &mut self,
         scene: &Scene,
-        patch: u32,
+        source: u32,
         side: usize,
         control: &Control,
         stats: &mut RayStats,
     ) -> Result<(), Cancelled> {
         let time = self.cut.mesh.time();
-        let Patch { cell, area, ref unshot, .. } = self.cut.patches[patch as usize];
+        let Patch { cell, area, ref unshot, .. } = self.cut.patches[source as usize];
         let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
         let all: Bands = layers.iter().copied().sum();
         // What was scattered last before it is scattered for the last time is not sent on.
@@ -126,68 +132,60 @@ impl Solution {
         let last = layers.get(last_layer).copied().unwrap_or_default();
         let sent_on: Bands = layers.iter().take(last_layer).copied().sum();
         let brightness = self.wavelengths.brightness(&all);
+        // What patches receive as wholes.
+        let mut wholes = Vec::new();
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
-                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[patch as usize], side)
-                    .hastily(FAINT * self.even() / brightness, self.shots);
-                self.receive(scene, brightness, |cut, ids| {
-                    each_element(cut, ids, control, stats, |element, stats| match element.patch == patch {
+                let careful = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[source as usize], side);
+                let unit = self.even() / brightness;
+                let hasty = careful.clone().hastily(FAINT * unit, self.shots);
+                let too_little = UNCUT * self.settings.gradient * unit;
+                let on_whole = |patch: &Patch, stats: &mut RayStats| {
+                    let whole = patch.whole.as_ref().filter(|whole| careful.most_on(whole) <= too_little)?;
+                    let is_itself = whole.patch == source;
+                    Some(if is_itself {
+                        Received::default()
+                    } else {
+                        careful.shine(scene, whole, time, stats)
+                    })
+                };
+                wholes = each(&self.cut.patches, control, stats, on_whole)?;
+                self.receive(scene, brightness, &wholes, |cut, ids| {
+                    each_element(cut, ids, control, stats, |element, stats| match element.patch == source {
                         // What is bent stands off its chord, and would see it: from behind, as if it filled the sky.
                         true => Received::default(),
-                        false => emitter.shine(scene, element, time, stats),
+                        false => hasty.shine(scene, element, time, stats),
                     })
                 })?
             }
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
                 let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
-                self.receive(scene, brightness, |cut, ids| Ok(seen.received(cut, area, ids)))?
+                self.receive(scene, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };
-        let source = &mut self.cut.patches[patch as usize];
-        source.unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
-        source.spread.iter_mut().for_each(|sides| sides[side] = 0.0);
-        let mut sent = vec![[Bands::ZERO; 2]; self.cut.patches.len()];
-        for (element, received) in self.cut.elements.iter_mut().zip(&received) {
-            let sides = received.sides(element);
-            if sides == [0.0; 2] {
-                continue;
-            }
-            for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
-                for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0)
-                {
-                    *light += all * factor;
-                }
-            }
-            let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
-            let patch = &mut self.cut.patches[element.patch as usize];
-            for (i, power) in sides.map(|factor| factor * element.area).into_iter().enumerate() {
-                if power == 0.0 {
-                    continue;
-                }
-                patch.faced[i] = true;
-                element.last[i] += last * sides[i];
-                let Albedo { reflectance, transmittance } = &element.albedo;
-                for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
-                    if albedo.is_black() {
-                        continue;
-                    }
-                    let scattered = *albedo * power;
-                    sent[element.patch as usize][side] += scattered;
-                    let brightness = self.wavelengths.brightness(&(scattered * sent_on));
-                    element
-                        .spread(brightness, arrived)
-                        .iter()
-                        .zip(&mut patch.spread)
-                        .for_each(|(b, to)| to[side] += b);
-                }
+        let Cut { patches, elements, .. } = &mut self.cut;
+        patches[source as usize].unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
+        patches[source as usize].spread.iter_mut().for_each(|sides| sides[side] = 0.0);
+        let shot = Shot { wavelengths: &self.wavelengths, all, sent_on, last };
+        let mut sent = vec![[Bands::ZERO; 2]; patches.len()];
+        for (element, received) in elements.iter_mut().zip(&received) {
+            let patch = element.patch as usize;
+            shot.arrive(element, received, &mut patches[patch], &mut sent[patch]);
+        }
+        for ((patch, received), sent) in patches.iter_mut().zip(&wholes).zip(&mut sent) {
+            if let Some(received) = received
+                && let Some(mut whole) = patch.whole.take()
+            {
+                shot.arrive(&mut whole, received, patch, sent);
+                patch.whole = Some(whole);
             }
         }
-        for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
-            for (scattered, layer) in (1..).zip(layers.iter().take(last_layer)) {
-                if *sent != [Bands::ZERO; 2] && !layer.is_black() {
-                    patch.add_unshot(scattered, sent.map(|side| side * *layer));
-                }
+        let going_on: Vec<_> =
+            (1..).zip(layers.iter().take(last_layer)).filter(|(_, layer)| !layer.is_black()).collect();
+        for (patch, sent) in patches.iter_mut().zip(&sent).filter(|(_, sent)| **sent != [Bands::ZERO; 2]) {
+            for &(scattered, layer) in &going_on {
+                patch.add_unshot(scattered, sent.map(|side| side * *layer));
             }
         }
         self.shots += 1;
@@ -228,7 +226,7 @@ impl Solution {
             element.area * sum
         };
         self.total += each_element(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
-        let lit = self.receive(scene, 1.0, |cut, ids| each_element(cut, ids, control, stats, shine))?;
+        let lit = self.receive(scene, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
             element.quarters = lit.quarters;
             let sides = element.irradiance();
@@ -253,16 +251,21 @@ impl Solution {
         Ok(())
     }
 
-    /// Asks all elements what they receive of light of this brightness, and those again that are cut because of it.
+    /// Asks all elements what they receive of light of this brightness, and those again that are cut because of it; but not those of
+    /// patches that receive it as `wholes`.
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
         brightness: f32,
+        wholes: &[Option<Received>],
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
     ) -> Result<Vec<T>, Cancelled> {
         let even = self.even();
         let mut received = Vec::new();
-        let mut fresh: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
+        let is_asked = |patch: u32| wholes.get(patch as usize).is_none_or(Option::is_none);
+        let elements = (0..).zip(&self.cut.elements);
+        let mut fresh: Vec<u32> =
+            elements.filter(|(_, element)| is_asked(element.patch)).map(|(id, _)| id).collect();
         while !fresh.is_empty() {
             received.resize_with(self.cut.elements.len(), T::default);
             let answers = answer(&self.cut, &fresh)?;
@@ -272,11 +275,11 @@ impl Solution {
                 let quarters = received[id as usize].brightnesses(&self.wavelengths);
                 let least = quarters.into_iter().fold(f32::INFINITY, f32::min);
                 let most = quarters.into_iter().fold(0.0, f32::max);
-                let [outer, inner] = element.irradiance();
-                let here = self.wavelengths.brightness(&(outer + inner));
                 let contrast = (most - least) * brightness;
+                let here = || self.wavelengths.brightness(&element.irradiance().into_iter().sum());
                 element.level < self.settings.subdivision
-                    && contrast > self.settings.gradient * here.max(even)
+                    && contrast > self.settings.gradient * even
+                    && contrast > self.settings.gradient * here()
             };
             let coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
             fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
@@ -312,9 +315,53 @@ impl Solution {
 
     /// Bytes of memory that patches, elements and the mesh take.
     pub fn bytes(&self) -> usize {
-        let patch = |patch: &Patch| size_of::<Patch>() + patch.unshot.capacity() * size_of::<[Bands; 2]>();
+        let patch = |patch: &Patch| {
+            let whole = patch.whole.as_ref().map_or(0, |whole| size_of_val(&**whole));
+            size_of::<Patch>() + whole + patch.unshot.capacity() * size_of::<[Bands; 2]>()
+        };
         let patches: usize = self.cut.patches.iter().map(patch).sum();
         self.cut.mesh.bytes() + patches + size_of_val(&*self.cut.elements)
+    }
+}
+
+/// The light of a shot, per area of the patch that it leaves.
+struct Shot<'a> {
+    wavelengths: &'a Wavelengths,
+    all: Bands,
+    /// That which may be scattered more than once.
+    sent_on: Bands,
+    /// That which may be scattered once.
+    last: Bands,
+}
+
+impl Shot<'_> {
+    /// Lets light arrive at an element of a patch, which has more to send then, and adds what is scattered of light of unit radiosity.
+    fn arrive(&self, element: &mut Element, received: &Received, patch: &mut Patch, sent: &mut [Bands; 2]) {
+        let sides = received.sides(element);
+        if sides == [0.0; 2] {
+            return;
+        }
+        for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
+            for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0) {
+                *light += self.all * factor;
+            }
+        }
+        let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
+        for (i, factor) in sides.into_iter().enumerate().filter(|(_, factor)| *factor > 0.0) {
+            patch.faced[i] = true;
+            element.last[i] += self.last * factor;
+            let Albedo { reflectance, transmittance } = &element.albedo;
+            for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
+                if albedo.is_black() {
+                    continue;
+                }
+                let scattered = *albedo * (factor * element.area);
+                sent[side] += scattered;
+                let brightness = self.wavelengths.brightness(&(scattered * self.sent_on));
+                let spread = element.spread(brightness, arrived);
+                spread.iter().zip(&mut patch.spread).for_each(|(b, to)| to[side] += b);
+            }
+        }
     }
 }
 
@@ -342,7 +389,7 @@ impl Arrival for Lit {
     }
 }
 
-/// Asks elements by their indices, on all threads.
+/// Asks elements by their indices.
 fn each_element<T: Send>(
     cut: &Cut,
     ids: &[u32],
@@ -350,16 +397,26 @@ fn each_element<T: Send>(
     stats: &mut RayStats,
     answer: impl Fn(&Element, &mut RayStats) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    let some = |ids: &[u32]| {
+    each(ids, control, stats, |&id, stats| answer(&cut.elements[id as usize], stats))
+}
+
+/// Asks all of them, on all threads.
+fn each<I: Sync, T: Send>(
+    asked: &[I],
+    control: &Control,
+    stats: &mut RayStats,
+    answer: impl Fn(&I, &mut RayStats) -> T + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    let some = |asked: &[I]| {
         let mut stats = RayStats::default();
-        let mut answer = |&id: &u32| {
+        let mut answer = |one: &I| {
             control.check()?;
-            Ok(answer(&cut.elements[id as usize], &mut stats))
+            Ok(answer(one, &mut stats))
         };
-        let answers: Vec<T> = ids.iter().map(&mut answer).collect::<Result<_, Cancelled>>()?;
+        let answers: Vec<T> = asked.iter().map(&mut answer).collect::<Result<_, Cancelled>>()?;
         Ok((answers, stats))
     };
-    let answers: Vec<_> = ids.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
+    let answers: Vec<_> = asked.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
     answers.iter().for_each(|(_, some)| *stats += *some);
     Ok(answers.into_iter().flat_map(|(answers, _)| answers).collect())
 }

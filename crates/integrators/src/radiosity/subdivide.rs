@@ -92,6 +92,17 @@ fn cut(
 const BENT_PART: f32 = 0.05;
 
 impl Cut {
+    /// Hands what patches received as wholes to their elements.
+    pub fn settle(&mut self) {
+        let Self { mesh, patches, elements } = self;
+        elements.par_iter_mut().for_each(|element| {
+            if let Some(whole) = &patches[element.patch as usize].whole {
+                element.inherit(mesh, whole);
+            }
+        });
+        patches.iter_mut().filter_map(|patch| patch.whole.as_mut()).for_each(|whole| whole.darken());
+    }
+
     /// Halves elements twice, as long as there is room for more of them. The parts inherit the light of the whole. Returns those
     /// that are new or have become smaller.
     pub fn split(
@@ -118,13 +129,8 @@ impl Cut {
             let quarter_of = |cell: u32| mesh.cell(cell).domain().quarter_of(center);
             let quarter = quarter_of(self.patches[whole.patch as usize].cell);
             let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
-            let part = Element::new(scene, mesh, wavelengths, cell, place);
-            let domain = mesh.cell(whole.cell).domain();
-            let quarters = mesh.cell(cell).domain().quarters();
-            let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
-            let mut part = Element { quarters: inherited, ..part };
-            let (all, last) = (part.irradiance(), whole.last_part());
-            part.last = [0, 1].map(|i| all[i] * last[i]);
+            let mut part = Element::new(scene, mesh, wavelengths, cell, place);
+            part.inherit(mesh, whole);
             part
         };
         let made: Vec<Element> = parts.par_iter().map(make).collect();
@@ -133,7 +139,12 @@ impl Cut {
             // The first part takes the place of the whole.
             let id = if i % 4 == 0 { whole } else { self.elements.len() as u32 };
             if i % 4 == 0 {
-                self.elements[id as usize] = element;
+                let mut whole = std::mem::replace(&mut self.elements[id as usize], element);
+                if whole.level == 0 {
+                    whole.darken();
+                    let patch = &mut self.patches[whole.patch as usize];
+                    patch.whole = Some(Box::new(whole));
+                }
             } else {
                 self.elements.push(element);
             }
