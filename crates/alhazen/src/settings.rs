@@ -221,7 +221,7 @@ pub static SETTINGS: [Setting; 40] = [
     },
     Setting {
         name: "maxpatches",
-        help: "radiosity: most elements, unless there are more primitives",
+        help: "radiosity: most elements; of more primitives than half of it the smallest pass no light on",
         apply: |desc, text| set(Some(&mut radiosity(desc)?.max_patches), text),
     },
     Setting {
