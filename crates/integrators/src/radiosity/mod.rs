@@ -73,7 +73,7 @@ use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
 use shooting::Solution;
-use show::View;
+use show::{Look, View};
 
 /// How form factors are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -222,7 +222,7 @@ impl Integrator for Radiosity {
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, filter: &filter, sampler: &self.sampler };
-        let (solution, view) = (&state.solution, &state.view);
+        let look = Look { view: &state.view, solution: &state.solution, scene, control };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
@@ -232,9 +232,14 @@ impl Integrator for Radiosity {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
                     let mut l = Bands::ZERO;
                     if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
-                        l = view.radiance(scene, solution, ray, &mut sampler, control, &mut stats)? * weight;
+                        l = look.radiance(ray, &mut sampler, &mut stats)? * weight;
                     }
-                    tile.add_groups([x, y], l.groups(), solution.wavelengths.groups(), sample.filter_weight);
+                    tile.add_groups(
+                        [x, y],
+                        l.groups(),
+                        look.solution.wavelengths.groups(),
+                        sample.filter_weight,
+                    );
                 }
             }
             Ok(stats)

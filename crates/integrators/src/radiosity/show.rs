@@ -104,17 +104,25 @@ impl View {
     pub fn outline(&self, element: u32) -> &[Corner] {
         &self.outlines[element as usize]
     }
+}
 
+/// A look at a solution, which may be broken off.
+pub(crate) struct Look<'a> {
+    pub view: &'a View,
+    pub solution: &'a Solution,
+    pub scene: &'a Scene,
+    pub control: &'a Control,
+}
+
+impl Look<'_> {
     /// The radiance that arrives along a ray.
     pub fn radiance(
         &self,
-        scene: &Scene,
-        solution: &Solution,
         mut ray: RayDifferential,
         sampler: &mut Sampler,
-        control: &Control,
         stats: &mut RayStats,
     ) -> Result<Bands, Cancelled> {
+        let Self { view, solution, scene, .. } = *self;
         let wavelengths = &solution.wavelengths;
         let mut l = Bands::ZERO;
         loop {
@@ -134,34 +142,31 @@ impl View {
                 return Ok(l);
             }
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
-            if let (Some((leaf, uv)), 0) = (leaf, self.gather) {
-                let sides = albedo.scatter(&self.irradiance(solution, leaf, uv));
+            if let (Some((leaf, uv)), 0) = (leaf, view.gather) {
+                let sides = albedo.scatter(&view.irradiance(solution, leaf, uv));
                 return Ok(l + sides[seen_side(&surface)] * FRAC_1_PI);
             }
-            return Ok(l + self.gathered(scene, solution, &interaction, &albedo, sampler, control, stats)?);
+            return Ok(l + self.gathered(&interaction, &albedo, sampler, stats)?);
         }
     }
 
     /// What a surface scatters to where it is seen from, by samples.
     fn gathered(
         &self,
-        scene: &Scene,
-        solution: &Solution,
         interaction: &SurfaceInteraction,
         albedo: &Albedo,
         sampler: &mut Sampler,
-        control: &Control,
         stats: &mut RayStats,
     ) -> Result<Bands, Cancelled> {
         let s = &interaction.surface;
         let ns = s.shading.n;
         let toward = if s.wo.dot(ns) < 0.0 { -ns } else { ns };
         let frame = Frame::from_z(toward);
-        let samples = self.gather.max(1);
+        let samples = self.view.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
-            control.check()?;
-            sum += self.direct(scene, solution, interaction, albedo, sampler, stats);
+            self.control.check()?;
+            sum += self.direct(interaction, albedo, sampler, stats);
             let (uc, u) = (sampler.get_1d(), sampler.get_2d());
             let (back, on) = (albedo.reflectance.mean(), albedo.transmittance.mean());
             if back + on == 0.0 {
@@ -175,7 +180,8 @@ impl View {
                 wi.z = -wi.z;
                 albedo.transmittance * ((back + on) / on)
             };
-            sum += weight * found(scene, solution, interaction.spawn_ray(frame.from_local(wi)), stats);
+            sum +=
+                weight * found(self.scene, self.solution, interaction.spawn_ray(frame.from_local(wi)), stats);
         }
         Ok(sum * (samples as f32).recip())
     }
@@ -183,17 +189,16 @@ impl View {
     /// What a surface scatters of the light that comes straight from the lights, by one sample of one.
     fn direct(
         &self,
-        scene: &Scene,
-        solution: &Solution,
         interaction: &SurfaceInteraction,
         albedo: &Albedo,
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> Bands {
+        let Self { view, solution, scene, .. } = *self;
         let s = &interaction.surface;
         let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
         let context = interaction.light_context();
-        let Some((light, pmf)) = self.lights.sample(&context, u) else { return Bands::ZERO };
+        let Some((light, pmf)) = view.lights.sample(&context, u) else { return Bands::ZERO };
         let found = sample_light(scene, &solution.wavelengths, light, &context, u_light);
         let Some((l, sample)) = found else { return Bands::ZERO };
         let cos_theta = sample.wi.dot(s.shading.n);
