@@ -45,7 +45,7 @@ impl Job {
         };
         let warnings = [scene.warnings, film.warnings, built.warnings].concat();
         let (scene, film, integrator) = (scene.scene, film.film, built.integrator);
-        let header = header(desc, integrator.passes());
+        let header = header(desc, integrator.samples_per_pixel());
         Ok(CompiledJob { job: Self { scene, film, integrator, header }, warnings })
     }
 
@@ -76,6 +76,11 @@ impl Job {
     /// How many passes make the picture.
     pub fn passes(&self) -> u32 {
         self.integrator.passes()
+    }
+
+    /// How many of these passes a pixel of the finished picture is the mean of.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.integrator.samples_per_pixel()
     }
 
     /// The film as it stands.

@@ -208,6 +208,7 @@ fn the_light_is_saved_as_a_mesh() {
     let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
     assert!(job.by_products().is_empty(), "nothing is known before the first pass");
+    assert_eq!((job.passes(), job.samples_per_pixel()), (9, 1), "passes that send light are no samples");
     job.render(&Control::default()).unwrap();
     let summary = job.summary();
     let told = |name: &str| summary.iter().find(|(known, _)| *known == name).unwrap().1.clone();

@@ -91,7 +91,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         beside: &beside,
         notes: &job.summary(),
         integrator: integrator_name(&imported.desc.integrator),
-        samples_per_pixel: job.passes(),
+        samples_per_pixel: job.samples_per_pixel(),
         film: job.film(),
         progress: last,
         threads: rayon::current_num_threads(),

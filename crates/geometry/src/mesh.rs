@@ -165,6 +165,28 @@ impl TriangleMesh {
         self.indices[triangle].map(|i| self.positions[i as usize])
     }
 
+    /// Whether the triangles of both have the same vertices, wherever these are.
+    pub(crate) fn has_triangles_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.indices, &other.indices) || self.indices == other.indices
+    }
+
+    /// How many vertices there are.
+    pub(crate) fn vertices(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Which vertices the corners of a triangle are.
+    #[inline]
+    pub(crate) fn indices(&self, triangle: usize) -> [u32; 3] {
+        self.indices[triangle]
+    }
+
+    /// Where a vertex is.
+    #[inline]
+    pub(crate) fn position(&self, vertex: u32) -> Point3 {
+        self.positions[vertex as usize]
+    }
+
     /// Asks for the indices of a triangle, soon to be read.
     #[inline(always)]
     pub(crate) fn prefetch_indices(&self, triangle: usize) {

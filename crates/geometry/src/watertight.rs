@@ -96,9 +96,10 @@ impl Sheared {
     /// and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
-        let corner = |k: usize, axis: usize| Lanes([corners[k][axis]]);
         // SAFETY: every processor has single floats.
-        let found = unsafe { self.lanes::<1, Lanes<1>>().intersect(corner, Lanes([t_max])) }?;
+        let lane = unsafe { self.lanes::<1, Lanes<1>>() };
+        let found =
+            LaneHits::of(corners.map(|corner| lane.shear(|axis| Lanes([corner[axis]]))), Lanes([t_max]))?;
         if found.doubts != 0 {
             return self.decide(corners).filter(|hit| hit.0 < t_max);
         }
@@ -148,34 +149,31 @@ impl Sheared {
 }
 
 impl<V> ShearedLanes<V> {
-    /// Tests for hits at 0 < t ≤ `t_max` in each lane, given the coordinates of the corners: corner 0 to 2, axis 0 to 2.
-    ///
-    /// # Safety
-    /// The processor must have the instructions that `V` takes.
+    /// Moves and shears a point in each lane, given by its coordinates.
     #[inline(always)]
-    pub unsafe fn intersect<const N: usize>(
-        &self,
-        corner: impl Fn(usize, usize) -> V,
-        t_max: V,
-    ) -> Option<LaneHits<N>>
+    pub fn shear<const N: usize>(&self, coordinate: impl Fn(usize) -> V) -> [V; 3]
     where
         V: Vector<N>,
     {
         let [ax, ay, az] = self.axes;
         let [sx, sy, sz] = self.shear;
         let [ox, oy, oz] = self.o;
-        let sheared = |k: usize| {
-            let [x, y, z] = [corner(k, ax).sub(ox), corner(k, ay).sub(oy), corner(k, az).sub(oz)];
-            [sx.mul_add(z, x), sy.mul_add(z, y), z.mul(sz)]
-        };
-        let [a, b, c] = [sheared(0), sheared(1), sheared(2)];
+        let [x, y, z] = [coordinate(ax).sub(ox), coordinate(ay).sub(oy), coordinate(az).sub(oz)];
+        [sx.mul_add(z, x), sy.mul_add(z, y), z.mul(sz)]
+    }
+}
+
+impl<const N: usize> LaneHits<N> {
+    /// Tests for hits at 0 < t ≤ `t_max` in each lane, given the sheared corners.
+    #[inline(always)]
+    pub fn of<V: Vector<N>>([a, b, c]: [[V; 3]; 3], t_max: V) -> Option<Self> {
         let edge = |p: [V; 3], q: [V; 3]| {
             let yx = p[1].mul(q[0]);
             let difference = p[0].mul_sub(q[1], yx);
             difference.add(p[1].neg_mul_add(q[0], yx))
         };
         let e = [edge(b, c), edge(c, a), edge(a, b)];
-        // SAFETY: as the caller promises.
+        // SAFETY: who has vectors has the instructions.
         let (zero, vanishing) = unsafe { (V::splat(0.0), V::splat(VANISHING)) };
         let lowest = e[0].min(e[1]).min(e[2]);
         let highest = e[0].max(e[1]).max(e[2]);
@@ -184,7 +182,7 @@ impl<V> ShearedLanes<V> {
             return None;
         }
         let determinant = e[0].add(e[1]).add(e[2]);
-        // SAFETY: as the caller promises.
+        // SAFETY: who has vectors has the instructions.
         let (one, tiny) = unsafe { (V::splat(1.0), V::splat(TINY)) };
         let inverse = one.div(determinant);
         let t = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2].mul(c[2]))).mul(inverse);
@@ -196,7 +194,7 @@ impl<V> ShearedLanes<V> {
         // The error of t, as `distance_error` bounds it.
         let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
         let [x, y, z] = [largest(0), largest(1), largest(2)];
-        // SAFETY: as the caller promises.
+        // SAFETY: who has vectors has the instructions.
         let [g2, g3, g5] = [2, 3, 5].map(|n| unsafe { V::splat(gamma(n)) });
         let [dx, dy, dz] = [g5.mul(x.add(z)), g5.mul(y.add(z)), g3.mul(z)];
         let de = g2.mul(x).mul_add(y, dy.mul_add(x, dx.mul(y)));
@@ -207,7 +205,7 @@ impl<V> ShearedLanes<V> {
         let before = error.lt(t);
         let hits = candidates & (unsure | !behind);
         let doubts = hits & (unsure | !before);
-        (hits != 0).then(|| LaneHits {
+        (hits != 0).then(|| Self {
             hits,
             doubts,
             t: t.store(),

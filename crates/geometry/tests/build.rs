@@ -197,6 +197,9 @@ fn other_primitives_are_refused() {
         world.refit([(second, ball(9, 0.0, &Transform::IDENTITY).into())]),
         Err(RefitError::Different(second))
     );
+    let Geometry::Mesh(turned) = &cube else { panic!("a mesh") };
+    let corners = (0..turned.len()).map(|i| turned.corners(i)).map(|[a, b, c]| [b, c, a]).collect();
+    assert_eq!(world.refit([(second, triangles(corners).into())]), Err(RefitError::Different(second)));
     assert_eq!(world.refit([(third, cube.clone())]), Err(RefitError::Unknown(third)));
     assert_eq!(world.refit([(first, sphere), (second, cube)]), Ok(()));
     let Geometry::Mesh(mesh) = world.geometry(second) else { panic!("a mesh") };

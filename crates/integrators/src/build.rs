@@ -163,7 +163,8 @@ impl Builder<'_> {
                     self.error(format!("`alpha` is above 0 and at most 1, not {alpha}"), "alpha");
                 }
                 let radius = radius.map(|radius| self.radius(radius));
-                let settings = VcmSettings { max_depth: self.depth(max_depth), radius, alpha };
+                let max_depth = self.depth(max_depth);
+                let settings = VcmSettings { max_depth, radius, alpha, ..VcmSettings::default() };
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(Vcm::new(settings, sampler, light_sampler, self.photon_seed(None)))
             }

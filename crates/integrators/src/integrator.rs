@@ -19,6 +19,11 @@ pub trait Integrator: Send {
     /// How many passes make the picture.
     fn passes(&self) -> u32;
 
+    /// How many of these passes a pixel of the finished picture is the mean of.
+    fn samples_per_pixel(&self) -> u32 {
+        self.passes()
+    }
+
     /// Looks at the scene; called once, before the first pass.
     fn prepare(&mut self, scene: &Scene);
 

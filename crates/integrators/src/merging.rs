@@ -26,12 +26,11 @@
 
 use geometry::RayStats;
 use rayon::prelude::*;
-use sampling::sampler::PaddedSobol;
-use sampling::{Randomize, Sampler};
+use sampling::Sampler;
 use scene::Scene;
 
 use crate::bidirectional::{Bidirectional, Vertex};
-use crate::photon_grid::{Photon, PhotonGrid};
+use crate::photon_grid::{LightVertex, PhotonGrid};
 use crate::pixel_loop::Moment;
 use crate::{Cancelled, Control};
 
@@ -59,10 +58,44 @@ struct LastPass {
     bytes: usize,
 }
 
+/// What is kept of the vertices of light subpaths, in the order of the paths.
+#[derive(Clone, Debug)]
+pub(crate) struct LightSubpaths<V> {
+    /// That of all.
+    pub vertices: Vec<V>,
+    /// Where that of each path ends.
+    ends: Vec<usize>,
+}
+
+impl<V> Default for LightSubpaths<V> {
+    fn default() -> Self {
+        Self { vertices: Vec::new(), ends: Vec::new() }
+    }
+}
+
+impl<V> LightSubpaths<V> {
+    /// What is kept of one path, if there are as many.
+    pub fn get(&self, path: usize) -> Option<&[V]> {
+        let &end = self.ends.get(path)?;
+        let start = if path == 0 { 0 } else { self.ends[path - 1] };
+        Some(&self.vertices[start..end])
+    }
+
+    /// Memory taken, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.vertices) + size_of_val(&*self.ends)
+    }
+}
+
 impl Merging {
     /// With the radius of the first pass.
     pub fn new(radius: f32, alpha: f32, seed: u32) -> Self {
         Self { radius, alpha, seed, last: LastPass::default() }
+    }
+
+    /// What chooses the wavelengths and times of passes.
+    pub fn seed(&self) -> u32 {
+        self.seed
     }
 
     /// The radius of a pass, which are counted from 0.
@@ -77,46 +110,58 @@ impl Merging {
         Moment::of_pass(scene, self.seed, pass)
     }
 
-    /// Follows a pass's light subpaths and keeps those of their vertices that are wanted. Each path takes a sample of one
-    /// sequence, so that all the photons of a pass are well spread.
-    pub fn shoot(
-        &mut self,
+    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `sampler` begins a path's sample.
+    pub fn shoot<V: Send>(
+        &self,
         paths: &Bidirectional,
         count: usize,
         pass: u32,
-        is_wanted: impl Fn(&Vertex) -> bool + Sync,
+        sampler: impl Fn(usize) -> Sampler + Sync,
+        keep: impl Fn(&Vertex, &mut Sampler) -> Option<V> + Sync,
         control: &Control,
-    ) -> Result<(PhotonGrid, RayStats), Cancelled> {
+    ) -> Result<(LightSubpaths<V>, RayStats), Cancelled> {
         let moment = self.moment(paths.scene, pass);
         let time = moment.time(paths.scene);
-        let sampler = PaddedSobol::new(count as u32, Randomize::FastOwen, self.seed);
-        let batch = |start: usize| {
+        let batch = |first: usize| {
             control.check()?;
-            let mut sampler = Sampler::PaddedSobol(sampler.clone());
-            let (mut photons, mut stats) = (Vec::new(), RayStats::default());
-            for i in start..count.min(start + BATCH) {
-                sampler.start_pixel_sample([pass as i32, 0], i as u32, 0);
-                paths.light_subpath(time, &moment.lambda, &mut sampler, &mut stats, |vertex, _, _| {
-                    if is_wanted(vertex) {
-                        photons.push(Photon::from(vertex));
-                    }
-                });
+            let (mut subpaths, mut stats) = (LightSubpaths::default(), RayStats::default());
+            for path in first..count.min(first + BATCH) {
+                paths.light_subpath(
+                    time,
+                    &moment.lambda,
+                    &mut sampler(path),
+                    &mut stats,
+                    |vertex, sampler, _| {
+                        subpaths.vertices.extend(keep(vertex, sampler));
+                    },
+                );
+                subpaths.ends.push(subpaths.vertices.len());
             }
-            Ok((photons, stats))
+            Ok((subpaths, stats))
         };
-        let starts = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
-        let batches: Vec<(Vec<Photon>, RayStats)> = starts.map(batch).collect::<Result<_, _>>()?;
+        let batches = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
+        let batches: Vec<(LightSubpaths<V>, RayStats)> = batches.map(batch).collect::<Result<_, _>>()?;
         let mut stats = RayStats::default();
-        let mut photons = Vec::with_capacity(batches.iter().map(|(photons, _)| photons.len()).sum());
+        let mut all = LightSubpaths {
+            vertices: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.vertices.len()).sum()),
+            ends: Vec::with_capacity(count),
+        };
         for (batch, of_batch) in batches {
-            photons.extend(batch);
+            let before = all.vertices.len();
+            all.ends.extend(batch.ends.iter().map(|end| before + end));
+            all.vertices.extend(batch.vertices);
             stats += of_batch;
         }
+        Ok((all, stats))
+    }
+
+    /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in which they will be looked for.
+    pub fn sort(&mut self, photons: Vec<LightVertex>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
         let radius = self.radius(pass);
         let grid = PhotonGrid::new(photons, radius);
-        self.last =
-            LastPass { passes: pass + 1, radius, paths: count, photons: grid.len(), bytes: grid.bytes() };
-        Ok((grid, stats))
+        let bytes = bytes + grid.bytes();
+        self.last = LastPass { passes: pass + 1, radius, paths, photons: grid.len(), bytes };
+        grid
     }
 
     /// What the integrators tell of it.

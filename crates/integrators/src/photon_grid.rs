@@ -14,9 +14,9 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Partial, Vertex};
 
-/// A vertex of a light subpath, as far as merging needs it.
+/// A vertex of a light subpath, as far as merging needs it: a photon that knows its part of the weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Photon {
+pub(crate) struct LightVertex {
     /// Position.
     pub p: Point3,
     /// Unit direction to the vertex before.
@@ -31,7 +31,7 @@ pub(crate) struct Photon {
     pub hero_only: bool,
 }
 
-impl From<&Vertex> for Photon {
+impl From<&Vertex> for LightVertex {
     fn from(vertex: &Vertex) -> Self {
         let &Vertex { p, wo, beta, partial, depth, hero_only, .. } = vertex;
         Self { p: p.p, wo, beta, partial, depth: depth.min(u16::MAX.into()) as u16, hero_only }
@@ -43,7 +43,7 @@ impl From<&Vertex> for Photon {
 pub(crate) struct PhotonGrid {
     radius: f32,
     cells_per_length: f32,
-    photons: Vec<Photon>,
+    photons: Vec<LightVertex>,
     /// Where each bucket's photons begin, and at the end how many there are.
     starts: Vec<u32>,
 }
@@ -53,11 +53,11 @@ const MARGIN: f32 = 1.000_001;
 
 impl PhotonGrid {
     /// Sorts photons to be found within `radius`, which is above 0.
-    pub fn new(photons: Vec<Photon>, radius: f32) -> Self {
+    pub fn new(photons: Vec<LightVertex>, radius: f32) -> Self {
         let buckets = photons.len().next_power_of_two();
         let cells_per_length = 0.5 / (radius * MARGIN * MARGIN);
         let grid = Self { radius, cells_per_length, photons: Vec::new(), starts: vec![0; buckets + 1] };
-        let key = |(i, photon): (usize, &Photon)| {
+        let key = |(i, photon): (usize, &LightVertex)| {
             (grid.bucket(photon.p.to_array().map(|x| grid.cell(x))) as u64) << 32 | i as u64
         };
         let mut keys: Vec<u64> = photons.par_iter().enumerate().map(key).collect();
@@ -88,7 +88,7 @@ impl PhotonGrid {
 
     /// Visits the photons whose distance from `p` is at most the radius.
     #[inline]
-    pub fn within(&self, p: Point3, mut visit: impl FnMut(&Photon)) {
+    pub fn within(&self, p: Point3, mut visit: impl FnMut(&LightVertex)) {
         let range = p.to_array().map(|x| {
             let reach = self.radius * MARGIN;
             (self.cell(x - reach), self.cell(x + reach))
@@ -138,8 +138,8 @@ mod tests {
     use testkit::Random;
 
     /// Photons at these places, known again by their depth.
-    fn photons(places: &[Point3]) -> Vec<Photon> {
-        let photon = |(i, &p): (usize, &Point3)| Photon {
+    fn photons(places: &[Point3]) -> Vec<LightVertex> {
+        let photon = |(i, &p): (usize, &Point3)| LightVertex {
             p,
             wo: Vector3::Z,
             beta: SampledSpectrum::ONE,
@@ -199,7 +199,7 @@ mod tests {
         let mut found = Vec::new();
         grid.within(Point3::ONE, |photon| found.push(photon.depth));
         assert!(found.len() == 100 && found.is_sorted());
-        assert_eq!(size_of::<Photon>(), 56);
+        assert_eq!(size_of::<LightVertex>(), 56);
         assert_eq!(grid.bytes(), 100 * 56 + 129 * 4);
     }
 }

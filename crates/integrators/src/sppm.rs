@@ -22,12 +22,14 @@
 
 use film::Film;
 use geometry::RayStats;
-use sampling::Sampler;
+use sampling::sampler::PaddedSobol;
+use sampling::{Randomize, Sampler};
 use scene::Scene;
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
 use crate::merging::Merging;
+use crate::photon_grid::LightVertex;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -68,12 +70,6 @@ impl Sppm {
     }
 }
 
-/// Whether paths from the camera end there, at the photons.
-fn is_end(vertex: &Vertex) -> bool {
-    let flags = vertex.bsdf.flags();
-    flags.is_diffuse() && !flags.is_specular()
-}
-
 impl Integrator for Sppm {
     fn passes(&self) -> u32 {
         self.sampler.samples_per_pixel()
@@ -99,8 +95,19 @@ impl Integrator for Sppm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        let is_wanted = |vertex: &Vertex| vertex.can_merge() && is_end(vertex);
-        let (photons, mut stats) = self.merging.shoot(&paths, photon_paths, pass, is_wanted, control)?;
+        let photon = |vertex: &Vertex, _: &mut Sampler| {
+            (vertex.can_merge() && vertex.is_diffuse()).then(|| LightVertex::from(vertex))
+        };
+        // Each path takes a sample of one sequence, so that all the photons of a pass are well spread.
+        let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());
+        let sampler = |path| {
+            let mut sampler = Sampler::PaddedSobol(sampler.clone());
+            sampler.start_pixel_sample([pass as i32, 0], path as u32, 0);
+            sampler
+        };
+        let (subpaths, mut stats) =
+            self.merging.shoot(&paths, photon_paths, pass, sampler, photon, control)?;
+        let photons = self.merging.sort(subpaths.vertices, photon_paths, 0, pass);
         let moment = self.merging.moment(scene, pass);
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, filter: &filter, sampler: &self.sampler };
@@ -109,7 +116,7 @@ impl Integrator for Sppm {
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;
             paths.camera_subpath_to(
-                is_end,
+                Vertex::is_diffuse,
                 camera_ray,
                 lambda,
                 sampler,
@@ -118,7 +125,7 @@ impl Integrator for Sppm {
                     OnTheWay::Light(found) => l += found.weighted(),
                     OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
                         let direct = paths.direct(vertex, lambda, sampler, stats);
-                        if !is_end(vertex) {
+                        if !vertex.is_diffuse() {
                             l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
                             return;
                         }

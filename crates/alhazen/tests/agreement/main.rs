@@ -4,6 +4,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod means;
 mod promises;
 mod scenes;
 
@@ -158,34 +159,4 @@ fn photon_maps_hold_nearly_what_path_tracing_finds() {
 fn chains_of_paths_find_what_path_tracing_finds() {
     // Where few paths carry light, the squares of so few chains are too far from normally distributed.
     assert_agrees("mlt", &[], 32, |scene| scene.name != "a door that is almost closed");
-}
-
-/// How far means may differ, beyond two standard errors.
-const THREE_IN_A_THOUSAND: f64 = 3e-3;
-
-#[test]
-#[ignore = "slow: three minutes of two cores; cargo test -p alhazen --profile checked --test agreement -- --ignored"]
-fn means_agree_to_three_in_a_thousand() {
-    let mut failures = Vec::new();
-    // Behind the door, next to nothing is found by path tracing.
-    for scene in SCENES.iter().filter(|scene| scene.name != "a door that is almost closed") {
-        let reference = Pictures::new(scene, "vol-path", &[], 16 * scene.path_samples, 1000);
-        for (integrator, samples) in [("bdpt", 256), ("light-tracing", 512)] {
-            if integrator == "light-tracing" && scene.has_mirrors {
-                continue;
-            }
-            let found = Pictures::new(scene, integrator, &[], samples, 0);
-            for (channel, (a, b)) in found.0.iter().zip(&reference.0).take(3).enumerate() {
-                let error = a.mean / b.mean - 1.0;
-                let deviation = (a.variance_of_mean() + b.variance_of_mean()).sqrt() / b.mean;
-                if error.abs() > THREE_IN_A_THOUSAND + 2.0 * deviation || deviation > 8e-3 {
-                    failures.push(format!(
-                        "{integrator} in {}, channel {channel}: {error:.2e} ± {deviation:.2e}",
-                        scene.name
-                    ));
-                }
-            }
-        }
-    }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
 }

@@ -207,6 +207,11 @@ impl WideNode {
         self.len += 1;
     }
 
+    /// Puts others in the place of all children.
+    pub fn renew_children(&mut self, renewed: impl Fn(Child) -> Child) {
+        self.children = self.children.map(renewed);
+    }
+
     pub fn set_bounds(&mut self, lane: usize, bounds: &Bounds3) {
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.min[axis];

@@ -12,6 +12,17 @@ impl Simd for Avx2 {
     type Eight = Eight;
 
     #[inline(always)]
+    fn pick<const BYTE: usize>(from: Eight, places: &[u32; 4]) -> Four {
+        // SAFETY: who has vectors has the instructions; the array has as many numbers as are read.
+        unsafe {
+            let places = _mm_loadu_si128(places.as_ptr().cast());
+            let places = _mm_srl_epi32(places, _mm_cvtsi32_si128(8 * BYTE as i32));
+            let picked = _mm256_permutevar8x32_ps(from.0, _mm256_castsi128_si256(places));
+            Four(_mm256_castps256_ps128(picked))
+        }
+    }
+
+    #[inline(always)]
     fn prefetch(address: *const u8) {
         // SAFETY: every x86-64 processor has SSE, and this reads nothing.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) }
@@ -27,7 +38,7 @@ pub unsafe fn run<T: Task>(task: T) -> T::Output {
 
 /// Four floats.
 #[derive(Clone, Copy)]
-pub(crate) struct Four(__m128);
+pub(crate) struct Four(pub(super) __m128);
 
 // SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
 // from them. Arrays have as many floats as are read or written.
@@ -102,7 +113,7 @@ impl Vector<4> for Four {
 
 /// Eight floats.
 #[derive(Clone, Copy)]
-pub(crate) struct Eight(__m256);
+pub(crate) struct Eight(pub(super) __m256);
 
 // SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
 // from them. Arrays have as many floats as are read or written.

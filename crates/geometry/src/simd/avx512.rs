@@ -1,6 +1,6 @@
 //! The vectors of AVX2 with twice the registers. Comparisons stay vectors: bits from masks take longer.
 
-use super::avx2::{Eight, Four};
+use super::avx2::{Avx2, Eight, Four};
 use super::{Simd, Task};
 use std::arch::x86_64::*;
 
@@ -11,6 +11,11 @@ pub(crate) struct Avx512;
 impl Simd for Avx512 {
     type Four = Four;
     type Eight = Eight;
+
+    #[inline(always)]
+    fn pick<const BYTE: usize>(from: Eight, places: &[u32; 4]) -> Four {
+        Avx2::pick::<BYTE>(from, places)
+    }
 
     #[inline(always)]
     fn prefetch(address: *const u8) {

@@ -68,6 +68,14 @@ pub(crate) trait Simd: Copy {
     type Four: Vector<4>;
     type Eight: Vector<8>;
 
+    /// Takes four lanes of eight: those that byte `BYTE` of each place names, of which three bits count.
+    #[inline(always)]
+    fn pick<const BYTE: usize>(from: Self::Eight, places: &[u32; 4]) -> Self::Four {
+        let from = from.store();
+        // SAFETY: who has vectors has the instructions.
+        unsafe { Self::Four::load(&places.map(|place| from[(place >> (8 * BYTE)) as usize & 7])) }
+    }
+
     /// Asks for the line of the cache around an address, which need not be one, soon to be read.
     #[inline(always)]
     fn prefetch(_: *const u8) {}
@@ -81,6 +89,15 @@ pub(crate) fn prefetch<T>(value: &T) {
     #[cfg(not(target_arch = "x86_64"))]
     type Least = scalar::Scalar;
     Least::prefetch(std::ptr::from_ref(value).cast());
+}
+
+/// The index of the first key that is the same as the one at an index, with what every processor has.
+#[inline(always)]
+pub(crate) fn first_equal(keys: &[u32; 16], to: usize) -> usize {
+    #[cfg(target_arch = "x86_64")]
+    return sse2::first_equal(keys, to);
+    #[cfg(not(target_arch = "x86_64"))]
+    keys[..to].iter().position(|&key| key == keys[to]).unwrap_or(to)
 }
 
 /// Something that is written for all sets.

@@ -26,6 +26,18 @@ pub unsafe fn run<T: Task>(task: T) -> T::Output {
     unsafe { task.run::<Sse2>() }
 }
 
+/// See [`super::first_equal`].
+#[inline(always)]
+pub(super) fn first_equal(keys: &[u32; 16], to: usize) -> usize {
+    // SAFETY: every x86-64 processor has SSE2; as many keys are read as there are.
+    unsafe {
+        let key = _mm_set1_epi32(keys[to] as i32);
+        let same = |four: usize| _mm_cmpeq_epi32(_mm_loadu_si128(keys.as_ptr().add(4 * four).cast()), key);
+        let halves = [_mm_packs_epi32(same(0), same(1)), _mm_packs_epi32(same(2), same(3))];
+        _mm_movemask_epi8(_mm_packs_epi16(halves[0], halves[1])).trailing_zeros() as usize
+    }
+}
+
 /// Four floats.
 #[derive(Clone, Copy)]
 pub(crate) struct Four(__m128);

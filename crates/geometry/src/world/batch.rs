@@ -181,11 +181,11 @@ impl<'a> SideBySide<'a> {
                         if t_max[i] < 0.0 {
                             continue;
                         }
-                        let mut triangles = Triangles {
+                        let mut triangles = Triangles::<S, Q> {
                             group,
                             instance: InstancePath::TOP,
                             sheared: &self.sheared[i],
-                            lanes: &self.sheared[i].lanes::<{ Packet::WIDTH }, S::Four>(),
+                            lanes: &self.sheared[i].lanes::<{ WIDTH }, S::Eight>(),
                             query: &mut queries[i],
                             primitives: 0,
                         };

@@ -8,10 +8,10 @@ use super::packet::{MeshTriangles, Packet};
 use super::query::Query;
 use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
-use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
-use crate::simd::{Simd, Task, Vector};
+use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference, WIDTH};
+use crate::simd::{Simd, Task};
 use crate::watertight::{Sheared, ShearedLanes};
-use math::{Bounds3, Ray, Vec3, gamma};
+use math::{Bounds3, Ray, gamma};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -96,7 +96,8 @@ impl Group {
     pub fn refit_meshes_and_spheres(&mut self, geometries: &[Geometry]) {
         self.spheres.refit(geometries);
         let numbers = &self.numbers;
-        self.triangles.refit(&mut self.packets, |packet| renew_packet(packet, numbers, geometries));
+        let corners = |number| numbers.corners(number, geometries);
+        self.triangles.refit(&mut self.packets, |packet| packet.renew(corners));
     }
 
     /// The same for all else. `placed_groups` begin with the first one below the top group.
@@ -227,9 +228,9 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
         let sheared = Sheared::new(trace.ray);
         // SAFETY: the caller promises the instructions.
         unsafe {
-            let lanes = sheared.lanes::<{ Packet::WIDTH }, S::Four>();
+            let lanes = sheared.lanes::<{ WIDTH }, S::Eight>();
             let mut t_max = query.t_max();
-            let mut leaves = Triangles {
+            let mut leaves = Triangles::<S, Q> {
                 group,
                 instance: trace.instance,
                 sheared: &sheared,
@@ -245,17 +246,17 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
 }
 
 /// The triangles of a group before a ray.
-pub(super) struct Triangles<'a, V, Q> {
+pub(super) struct Triangles<'a, S: Simd, Q> {
     pub group: &'a Group,
     pub instance: InstancePath,
     pub sheared: &'a Sheared,
-    pub lanes: &'a ShearedLanes<V>,
+    pub lanes: &'a ShearedLanes<S::Eight>,
     pub query: &'a mut Q,
     /// How many were tested.
     pub primitives: u64,
 }
 
-impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
+impl<S: Simd, Q: Query> Leaves for Triangles<'_, S, Q> {
     type Block = Packet;
 
     #[inline(always)]
@@ -268,7 +269,7 @@ impl<V: Vector<{ Packet::WIDTH }>, Q: Query> Leaves for Triangles<'_, V, Q> {
         // SAFETY: the tree was built over these packets.
         for packet in unsafe { self.group.packets.get_unchecked(blocks) } {
             self.primitives += Packet::WIDTH as u64;
-            let Some(found) = packet.intersect(self.lanes, *t_max) else { continue };
+            let Some(found) = packet.intersect::<S>(self.lanes, *t_max) else { continue };
             let mut hits = found.hits;
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % Packet::WIDTH;
@@ -415,24 +416,8 @@ impl Primitives for BoundedItems {
         Some(Extent::from(&self.0[item as usize].1))
     }
 
-    fn block(&self, items: &[Reference]) -> (Item, Extent) {
+    fn block(&self, items: &[Reference]) -> (Item, usize, Extent) {
         let (item, bounds) = &self.0[items[0].primitive() as usize];
-        (*item, bounds.into())
+        (*item, 1, bounds.into())
     }
-}
-
-/// Fetches the corners of all triangles again. Nothing hits those that are not finite.
-fn renew_packet(packet: &mut Packet, numbers: &Numbers, geometries: &[Geometry]) -> Bounds3 {
-    let mut renewed = Packet::EMPTY;
-    let mut bounds = Bounds3::EMPTY;
-    for (lane, &number) in packet.numbers().iter().enumerate() {
-        let corners = numbers.corners(number, geometries);
-        let finite = corners.filter(|corners| corners.iter().all(|p| p.is_finite()));
-        if let Some(corners) = finite {
-            bounds = bounds.union(Bounds3::around(corners));
-        }
-        renewed.set(lane, finite.unwrap_or([Vec3::NAN; 3]), number);
-    }
-    *packet = renewed;
-    bounds
 }

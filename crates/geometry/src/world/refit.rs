@@ -9,8 +9,8 @@ use std::fmt;
 pub enum RefitError {
     /// The world has no such geometry.
     Unknown(GeometryId),
-    /// One is a mesh and the other is not, they differ in the number of primitives, or a primitive has an end where its
-    /// successor has none.
+    /// One is a mesh and the other is not, they differ in the number of primitives or in the vertices of triangles, or a
+    /// primitive has an end where its successor has none.
     Different(GeometryId),
 }
 
@@ -67,7 +67,7 @@ impl World {
 
 fn same_primitives(old: &Geometry, new: &Geometry) -> bool {
     match (old, new) {
-        (Geometry::Mesh(old), Geometry::Mesh(new)) => old.len() == new.len(),
+        (Geometry::Mesh(old), Geometry::Mesh(new)) => old.has_triangles_of(new),
         (Geometry::Shapes(old), Geometry::Shapes(new)) => {
             let ends =
                 |(old, new): (&crate::Shape, &crate::Shape)| old.bounds().is_some() == new.bounds().is_some();

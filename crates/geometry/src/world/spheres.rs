@@ -86,9 +86,9 @@ impl Primitives for Sets<'_> {
         }
     }
 
-    fn block(&self, spheres: &[Reference]) -> (Packet, Extent) {
+    fn block(&self, spheres: &[Reference]) -> (Packet, usize, Extent) {
         let (packet, bounds) = Packet::new(spheres, self.geometries);
-        (packet, Extent::from(&bounds))
+        (packet, spheres.len(), Extent::from(&bounds))
     }
 }
 
@@ -180,7 +180,7 @@ impl<V: Vector<{ Packet::WIDTH }>> UnitRay<V> {
 }
 
 /// Spheres of one set or of many, axis by axis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 struct Packet {
     center: [[f32; Packet::WIDTH]; 3],

@@ -8,8 +8,8 @@ use scene::light::LightId;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Bidirectional, Vertex, Walk, hero_only};
-use crate::photon_grid::Photon;
+use super::{Bidirectional, Merges, Vertex, Walk, hero_only};
+use crate::photon_grid::LightVertex;
 
 /// What a strategy has found.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,8 @@ impl Bidirectional<'_> {
             let partial = &walk.partial;
             let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
             let end = self.light_end(light, &context, wi, place, direct);
-            let by_light = self.balance.connecting_from_light(partial, before.cos_theta(wi));
+            let by_light =
+                self.balance.connecting_from_light(partial, before.cos_theta(wi), before.can_merge());
             weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
         let l = if walk.lambda.secondary_terminated() { hero_only(l) } else { l };
@@ -121,7 +122,11 @@ impl Bidirectional<'_> {
         let end = self.light_end(light, &context, wi, place, direct);
         let by_chance = if end.is_delta { 0.0 } else { vertex.pdf(wi) / direct };
         let from_light = end.emission * vertex.cos_theta(wi) / (direct * end.cos_theta);
-        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), false);
+        let back = self.balance.connecting_back(
+            &vertex.partial,
+            vertex.pdf_back(wi),
+            Merges { here: false, ..vertex.merges() },
+        );
         Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
     }
 
@@ -136,9 +141,10 @@ impl Bidirectional<'_> {
         }
         let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
         let to_camera = light.pdf(-wi) * camera.cos_theta(wi) / distance_squared;
+        let of_light = light.merges().only_if(camera.can_merge() && !camera.is_diffuse());
         let weight = weight(
-            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi), light.can_merge()),
-            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi), true),
+            to_light * self.balance.connecting_back(&light.partial, light.pdf_back(-wi), of_light),
+            to_camera * self.balance.connecting_back(&camera.partial, camera.pdf_back(wi), camera.merges()),
         );
         let hero = camera.hero_only || light.hero_only;
         Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
@@ -167,24 +173,25 @@ impl Bidirectional<'_> {
         let pdf_area =
             if camera.is_parallel() { pdf_position } else { pdf_direction / vertex.p.p.distance_squared(p) }
                 * vertex.cos_theta(wi);
-        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.can_merge());
+        let back = self.balance.connecting_back(&vertex.partial, vertex.pdf_back(wi), vertex.merges());
         let weight = weight(pdf_area / self.balance.light_paths * back, 0.0);
         Some(OnFilm { film, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
     }
 
     /// s, t ≥ 2: a photon is taken as if it had arrived at the vertex, near which it lies.
-    pub fn merge(&self, camera: &Vertex, photon: &Photon) -> Found {
+    pub fn merge(&self, camera: &Vertex, photon: &LightVertex) -> Found {
         let wi = photon.wo;
         let l = self.merged(camera, photon);
+        let of_light = Merges { here: false, before: !camera.is_diffuse() };
         let weight = weight(
-            self.balance.merging_back(&photon.partial, camera.pdf(wi)),
-            self.balance.merging_back(&camera.partial, camera.pdf_back(wi)),
+            self.balance.merging_back(&photon.partial, camera.pdf(wi), of_light),
+            self.balance.merging_back(&camera.partial, camera.pdf_back(wi), camera.merges()),
         );
         Found { l, weight, s: photon.depth.into(), t: camera.depth + 1 }
     }
 
     /// The light of [`Self::merge`] alone.
-    pub fn merged(&self, camera: &Vertex, photon: &Photon) -> SampledSpectrum {
+    pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
         // Power has been through the cosine of the surface, light is scattered by that of the shading.
         let cos_theta = camera.cos_theta(wi);

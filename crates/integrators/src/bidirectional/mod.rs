@@ -39,7 +39,7 @@ use scene::light_sampler::{LightSampler, LightSamplerKind, PowerLightSampler};
 use spectrum::SampledSpectrum;
 
 pub(crate) use connect::Found;
-pub(crate) use partial::{Balance, Partial};
+pub(crate) use partial::{Balance, Merges, Partial};
 pub(crate) use subpaths::OnTheWay;
 pub(crate) use vertex::Vertex;
 pub(crate) use walk::Walk;

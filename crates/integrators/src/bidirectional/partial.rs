@@ -11,14 +11,16 @@
 //!
 //! ```text
 //! d_vcm = 1 / p→
-//! d_vc  = g←/p→ · (η + d_vcm' + p←'·d_vc')
-//! d_vm  = g←/p→ · (1 + d_vcm'/η + p←'·d_vm')
+//! d_vc  = g←/p→ · (d_vcm' + p←'·d_vc')
+//! d_vm  = g←/p→ · (m'·η + k'·p←'·d_vm')
 //! ```
 //!
-//! where ' marks the vertex before and p←' is per solid angle. What is specular can neither be connected nor merged: its
-//! d_vcm is 0 and the sums lose those terms. What comes straight from a light is not merged either, because choosing a point on the
-//! light finds the same with less noise: next to a light the sums lose the terms η and 1. A [`Partial`] on its way between two vertices
-//! lacks the factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
+//! where ' marks the vertex before and p←' is per solid angle. d_vc sums what connects, d_vm what merges: m is 1 where
+//! a vertex can be merged, else 0, and k is 1 where merges further back count. What comes straight from a light is not merged, because
+//! choosing a point on the light finds the same with less noise (m = 0 next to a light). Nor is anything merged that lies beyond a diffuse
+//! surface, seen from the camera ([`vcm`](crate::vcm) says why): behind one a camera subpath has m = 0, and at one a light
+//! subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its d_vcm is 0 and the sums lose those terms. A
+//! [`Partial`] on its way between two vertices lacks the factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
 
@@ -30,6 +32,22 @@ pub(crate) struct Partial {
     pub vcm: f32,
     pub vc: f32,
     pub vm: f32,
+}
+
+/// Where merging is one of a path's strategies, on one side of a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Merges {
+    /// At the vertex there.
+    pub here: bool,
+    /// At those before it on its subpath that can be merged themselves.
+    pub before: bool,
+}
+
+impl Merges {
+    /// These if something is so, else none.
+    pub fn only_if(self, it_is: bool) -> Self {
+        Self { here: self.here && it_is, before: self.before && it_is }
+    }
 }
 
 /// How strategies share paths.
@@ -60,11 +78,6 @@ impl Balance {
         Self { connecting: 0.0, ..Self::merging(photon_paths, photon_paths, radius) }
     }
 
-    /// 1/η, or 0 without merging.
-    fn per_merging(&self) -> f32 {
-        if self.merging > 0.0 { 1.0 / self.merging } else { 0.0 }
-    }
-
     /// What a camera subpath begins with, whose first direction has the density `pdf` on the film (per pixel).
     pub fn at_camera(&self, pdf: f32) -> Partial {
         Partial { vcm: self.light_paths / pdf, vc: 0.0, vm: 0.0 }
@@ -74,29 +87,35 @@ impl Balance {
     pub fn at_light(&self, end: &LightEnd, cos_theta: f32) -> Partial {
         let scale = end.cos_theta / (end.emission * cos_theta);
         let vc = if end.is_delta { 0.0 } else { scale };
-        Partial { vcm: end.direct * scale, vc, vm: vc * self.per_merging() }
+        Partial { vcm: end.direct * scale, vc, vm: 0.0 }
     }
 
     /// The sum over the strategies with s ≥ 2 for a camera subpath that has met a light, along a direction at `cos_theta` to the normal
     /// of the vertex before; to be multiplied by the density with which the light sends light there. That vertex cannot be merged,
-    /// which was not known when it was left.
-    pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32) -> f32 {
-        let sum = partial.vc - self.connecting * self.merging * cos_theta * partial.vcm;
+    /// which was not known when it was left: `merged` says whether it was counted then.
+    pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32, merged: bool) -> f32 {
+        let here = if merged { self.merging * cos_theta * partial.vcm } else { 0.0 };
+        let before = partial.vm - here;
         // Not `max`, which would hide what is no number.
-        if sum < 0.0 { 0.0 } else { sum }
+        self.connecting * (partial.vc + if before < 0.0 { 0.0 } else { before })
     }
 
     /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
-    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end. Whether it
-    /// could be merged there is `can_merge`.
-    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32, can_merge: bool) -> f32 {
-        let merging = if can_merge { self.merging } else { 0.0 };
-        self.connecting * (merging + partial.vcm + pdf_back * partial.vc)
+    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
+    pub fn connecting_back(&self, partial: &Partial, pdf_back: f32, merges: Merges) -> f32 {
+        let merging = self.merging_there(partial, pdf_back, merges);
+        self.connecting * (partial.vcm + pdf_back * partial.vc + merging)
     }
 
     /// The same for merging, to be used as it is.
-    pub fn merging_back(&self, partial: &Partial, pdf_back: f32) -> f32 {
-        self.per_merging() * partial.vcm + pdf_back * partial.vm
+    pub fn merging_back(&self, partial: &Partial, pdf_back: f32, merges: Merges) -> f32 {
+        self.connecting_back(partial, pdf_back, Merges { here: false, ..merges }) / self.merging
+    }
+
+    /// The part of merging in these sums.
+    fn merging_there(&self, partial: &Partial, pdf_back: f32, merges: Merges) -> f32 {
+        let here = if merges.here { self.merging } else { 0.0 };
+        if merges.before { here + pdf_back * partial.vm } else { here }
     }
 
     /// Leaves a vertex along a direction of the density `pdf`, at `cos_theta` to the normal; `pdf_back` is the density of the way
@@ -107,13 +126,13 @@ impl Balance {
         pdf: f32,
         pdf_back: f32,
         cos_theta: f32,
-        can_merge: bool,
+        merges: Merges,
     ) -> Partial {
-        let merging = if can_merge { 1.0 } else { 0.0 };
+        let scale = cos_theta / pdf;
         Partial {
             vcm: 1.0 / pdf,
-            vc: cos_theta / pdf * self.connecting_back(partial, pdf_back, can_merge),
-            vm: cos_theta / pdf * (merging + self.merging_back(partial, pdf_back)),
+            vc: scale * (partial.vcm + pdf_back * partial.vc),
+            vm: scale * self.merging_there(partial, pdf_back, merges),
         }
     }
 }

@@ -17,7 +17,7 @@ use scene::light::LightId;
 use spectrum::SampledWavelengths;
 
 use super::{Balance, Bidirectional, Lights, Vertex, Walk};
-use crate::photon_grid::Photon;
+use crate::photon_grid::LightVertex;
 
 const LIGHT_PATHS: usize = 37;
 
@@ -144,6 +144,8 @@ impl Path<'_> {
         let vertices = self.surfaces.len() + 2;
         match strategy {
             Strategy::Connect(s) => self.light_density(paths, s) * self.camera_density(paths, vertices - s),
+            // Beyond a diffuse surface, seen from the camera, nothing is merged.
+            Strategy::Merge(s) if self.surfaces[s - 1..].iter().any(|surface| surface.is_diffuse()) => 0.0,
             Strategy::Merge(s) => {
                 let eta = f64::from(paths.balance.merging);
                 eta * self.light_density(paths, s) * self.camera_density(paths, vertices + 1 - s)
@@ -270,9 +272,11 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     let path = Path { light: start, surfaces, camera };
                     check(&path, connect(found.s), found.weight, 3);
                     if balance.merging > 0.0 && light.can_merge() {
-                        let photon = Photon::from(light);
-                        let merged = paths.merge(&stepped(&paths.balance, &vertex, light), &photon);
-                        check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
+                        let stepped = stepped(&paths.balance, &vertex, light);
+                        if stepped.can_merge() {
+                            let merged = paths.merge(&stepped, &LightVertex::from(light));
+                            check(&path, Strategy::Merge(found.s as usize), merged.weight, 4);
+                        }
                     }
                 }
             }
@@ -290,7 +294,8 @@ fn stepped(balance: &Balance, before: &Vertex, at: &Vertex) -> Vertex {
     let way = at.p.p - before.p.p;
     let wi = way.normalize();
     let partial = balance
-        .leave(&before.partial, before.pdf(wi), before.pdf_back(wi), before.cos_theta(wi), true)
+        .leave(&before.partial, before.pdf(wi), before.pdf_back(wi), before.cos_theta(wi), before.merges())
         .arrive(way.length_squared(), at.cos_theta(wi));
-    Vertex { wo: -wi, partial, mode: before.mode, depth: before.depth + 1, ..*at }
+    let after_diffuse = before.after_diffuse || before.is_diffuse();
+    Vertex { wo: -wi, partial, mode: before.mode, depth: before.depth + 1, after_diffuse, ..*at }
 }

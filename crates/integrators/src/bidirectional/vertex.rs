@@ -5,7 +5,7 @@ use scattering::{Bsdf, TransportMode};
 use scene::light::LightSampleContext;
 use spectrum::SampledSpectrum;
 
-use super::Partial;
+use super::{Merges, Partial};
 use crate::direct::on_its_side;
 
 /// A vertex of a subpath.
@@ -29,6 +29,8 @@ pub(crate) struct Vertex {
     pub partial: Partial,
     /// Scattering events on the subpath, this one included.
     pub depth: u32,
+    /// Whether the subpath has left a diffuse surface before.
+    pub after_diffuse: bool,
     /// What the subpath carries.
     pub mode: TransportMode,
 }
@@ -47,10 +49,28 @@ impl Vertex {
         self.bsdf.flags().is_non_specular()
     }
 
-    /// Whether a vertex of the other kind could be merged with it: what comes straight from a light is not.
+    /// Whether a vertex of the other kind could be merged with it: not what comes straight from a light, nor what a diffuse surface has
+    /// sent the camera's subpath to.
     #[inline]
     pub fn can_merge(&self) -> bool {
-        self.mode == TransportMode::Radiance || self.depth > 1
+        match self.mode {
+            TransportMode::Radiance => !self.after_diffuse,
+            TransportMode::Importance => self.depth > 1,
+        }
+    }
+
+    /// Whether it scatters to all sides and is no mirror besides: whoever comes from the camera merges no further.
+    #[inline]
+    pub fn is_diffuse(&self) -> bool {
+        let flags = self.bsdf.flags();
+        flags.is_diffuse() && !flags.is_specular()
+    }
+
+    /// Where merging is possible at the vertex and before, if it is possible beyond it.
+    #[inline]
+    pub fn merges(&self) -> Merges {
+        let before = self.mode == TransportMode::Radiance || !self.is_diffuse();
+        Merges { here: self.can_merge(), before }
     }
 
     /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to it.

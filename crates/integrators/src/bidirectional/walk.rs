@@ -38,6 +38,7 @@ pub(crate) struct Walk<'a> {
     /// Way since the vertex before.
     distance: f32,
     rough_before: bool,
+    after_diffuse: bool,
     origin: Origin,
     mode: TransportMode,
 }
@@ -102,6 +103,7 @@ impl<'a> Walk<'a> {
             share: SampledSpectrum::ONE,
             distance: 0.0,
             rough_before: false,
+            after_diffuse: false,
             origin,
             mode,
         }
@@ -136,6 +138,7 @@ impl<'a> Walk<'a> {
             hero_only: self.lambda.secondary_terminated(),
             partial: Partial::default(),
             depth: self.depth,
+            after_diffuse: self.after_diffuse,
             mode: self.mode,
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
@@ -189,9 +192,10 @@ impl<'a> Walk<'a> {
             vertex.partial.leave_specular(cos_theta)
         } else {
             let pdf = if sample.pdf_is_proportional { vertex.pdf(sample.wi) } else { sample.pdf };
-            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta, vertex.can_merge())
+            balance.leave(&vertex.partial, pdf, vertex.pdf_back(sample.wi), cos_theta, vertex.merges())
         };
         self.rough_before |= !sample.flags.is_specular();
+        self.after_diffuse |= vertex.is_diffuse();
         self.beta *= scale;
         self.share *= scale;
         if vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {

@@ -200,6 +200,10 @@ impl Integrator for Radiosity {
         self.settings.steps + self.sampler.samples_per_pixel()
     }
 
+    fn samples_per_pixel(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
     fn prepare(&mut self, _scene: &Scene) {
         // Surfaces are cut in the first pass, which can be cancelled.
         self.state = None;

@@ -40,20 +40,6 @@ fn a_closed_furnace_shows_emission_over_absorption() {
 }
 
 #[test]
-fn depth_counts_scattering_events() {
-    let scene = closed_sphere(0.6);
-    let depths = [0, 1, 2, 4];
-    let tests = depths.len() * Unbiased::all(0).len();
-    for max_depth in depths {
-        let expected = (0..=max_depth).map(|k| 0.6f64.powi(k as i32)).sum();
-        for (name, mut rays) in Unbiased::all(max_depth) {
-            let found = radiance(&mut rays, &scene, v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7), 6_000);
-            assert_mean(&found, expected, tests, &format!("{name} of depth {max_depth}"));
-        }
-    }
-}
-
-#[test]
 fn without_indirect_light_a_furnace_shows_one_reflection() {
     let scene = closed_box(0.5);
     let (o, d) = (v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7));

@@ -7,9 +7,12 @@
 //! that primitives are looked up three times: for the range of their centroids, their codes and their blocks.
 
 use super::balanced::PARALLEL;
+use super::overflow::Overflow;
 use super::primitives::{MAX_WIDTH, Numbering, Primitives};
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Grown, Inner, Planted};
+use super::widen::{Wide, widen};
+use super::{AHEAD, Built};
 use math::Vec4;
 use rayon::prelude::*;
 
@@ -23,11 +26,9 @@ const PART: usize = 1 << 16;
 const FULL_BLOCKS: usize = 4;
 /// Ranges of so many blocks are not divided.
 const LEAF_BLOCKS: usize = 2;
-/// Memory is asked for what is in a block so many blocks before that is made, and twice as many for what leads there.
-const AHEAD: usize = 8;
 
 /// Makes blocks, and grows a tree over them: each reference is a block.
-pub(super) fn plant<P: Primitives>(primitives: &P) -> (Planted, Vec<P::Block>) {
+pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
     let numbering = Numbering::of(primitives);
     let keys = sorted_keys(primitives, &numbering);
     let starts = starts(&keys, 0, primitives.width());
@@ -36,6 +37,11 @@ pub(super) fn plant<P: Primitives>(primitives: &P) -> (Planted, Vec<P::Block>) {
         let keys = &keys[start(block)..start(block + 1)];
         keys.iter().map(|key| numbering.id((key >> BITS) as usize))
     };
+    let members_of = |block| -> Vec<Reference> {
+        let reference = |(geometry, primitive)| Reference::new(Extent::EMPTY, geometry, primitive);
+        members(block).map(reference).collect()
+    };
+    let overflow = Overflow::default();
     let block = |block: usize| {
         members(block + 2 * AHEAD)
             .for_each(|(geometry, primitive)| primitives.prefetch_indices(geometry, primitive));
@@ -44,17 +50,21 @@ pub(super) fn plant<P: Primitives>(primitives: &P) -> (Planted, Vec<P::Block>) {
         for (reference, (geometry, primitive)) in references.iter_mut().zip(members(block)) {
             *reference = Reference::new(Extent::EMPTY, geometry, primitive);
         }
-        let (made, extent) = primitives.block(&references[..members(block).len()]);
+        let members = &references[..members(block).len()];
+        let (made, extent) = overflow.block(primitives, block, members);
         (Reference::new(extent, 0, block as u32), made)
     };
-    let (mut references, mut blocks) = (Vec::new(), Vec::new());
+    let (mut references, mut blocks) = (Vec::new(), overflow.room(starts.len()));
     let made = (0..starts.len()).into_par_iter().with_min_len(PARALLEL / 4).map(block);
     made.unzip_into_vecs(&mut references, &mut blocks);
     let codes: Vec<_> = starts.iter().map(|&start| code(keys[start as usize])).collect();
     let mut inner = vec![Inner::default(); references.len()];
     let tree = grow(&codes, &references, &mut inner, 0);
     let size = tree.as_node(&inner);
-    (Planted { references, inner, root: tree.root, size }, blocks)
+    let planted = Planted { references, inner, root: tree.root, size };
+    let Wide { mut nodes, extent, depth, .. } = widen(&planted, Blocks::of(1));
+    let blocks = overflow.resolve(primitives, members_of, blocks, &mut nodes);
+    Built { nodes, bounds: extent.bounds(), depth, blocks }
 }
 
 /// The code of a key.

@@ -11,6 +11,7 @@ mod balanced;
 mod bins;
 mod fast;
 mod high;
+mod overflow;
 mod partition;
 mod primitives;
 mod reference;
@@ -24,9 +25,10 @@ mod widen;
 use super::node::WideNode;
 use math::Bounds3;
 use rayon::prelude::*;
-use std::ops::Range;
 use tree::Blocks;
+use widen::Wide;
 
+use overflow::Overflow;
 use primitives::Numbering;
 pub(crate) use primitives::Primitives;
 pub(crate) use reference::{Extent, Reference};
@@ -56,13 +58,13 @@ pub(crate) struct Built<B> {
     pub blocks: Vec<B>,
 }
 
+/// Memory is asked for what is in a block so many blocks before that is made, and twice as many for what leads there.
+const AHEAD: usize = 8;
+
 /// Builds a tree.
 pub(crate) fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> Built<P::Block> {
-    let (wide, blocks) = match quality {
-        BuildQuality::Fast => {
-            let (planted, blocks) = fast::plant(primitives);
-            (widen::widen(&planted, Blocks::of(1)), blocks)
-        }
+    match quality {
+        BuildQuality::Fast => fast::build(primitives),
         BuildQuality::Balanced | BuildQuality::High => {
             let mut references =
                 Numbering::of(primitives).map(primitives, |_, geometry, primitive, extent| {
@@ -80,13 +82,23 @@ pub(crate) fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> Bui
                 ),
                 _ => balanced::plant(references, blocks),
             };
-            let wide = widen::widen(&planted, blocks);
-            let block = |range: &Range<u32>| {
-                primitives.block(&planted.references[range.start as usize..range.end as usize]).0
+            let Wide { mut nodes, blocks, extent, depth } = widen::widen(&planted, blocks);
+            let members = |block: usize| {
+                let range = blocks.get(block).cloned().unwrap_or_default();
+                &planted.references[range.start as usize..range.end as usize]
             };
-            let blocks = wide.blocks.par_iter().map(block).collect();
-            (wide, blocks)
+            let overflow = Overflow::default();
+            let block = |block: usize| {
+                let later = members(block + 2 * AHEAD);
+                later.iter().for_each(|r| primitives.prefetch_indices(r.geometry(), r.primitive()));
+                let soon = members(block + AHEAD);
+                soon.iter().for_each(|r| primitives.prefetch(r.geometry(), r.primitive()));
+                overflow.block(primitives, block, members(block)).0
+            };
+            let mut made = overflow.room(blocks.len());
+            made.par_extend((0..blocks.len()).into_par_iter().map(block));
+            let blocks = overflow.resolve(primitives, members, made, &mut nodes);
+            Built { nodes, bounds: extent.bounds(), depth, blocks }
         }
-    };
-    Built { nodes: wide.nodes, bounds: wide.extent.bounds(), depth: wide.depth, blocks }
+    }
 }

@@ -10,7 +10,7 @@ const PARALLEL: usize = 4096;
 /// Geometries of numbered primitives, which leaves test in blocks.
 pub(crate) trait Primitives: Sync {
     /// What a leaf tests at once.
-    type Block: Send;
+    type Block: Copy + Send + Sync;
 
     /// The most primitives in a block: 1, 2, 4 or 8.
     fn width(&self) -> usize;
@@ -32,8 +32,9 @@ pub(crate) trait Primitives: Sync {
     /// Asks for a primitive, soon to be put into a block.
     fn prefetch(&self, _geometry: u32, _primitive: u32) {}
 
-    /// Makes a block, and the box around it. Of the references only the ids count.
-    fn block(&self, primitives: &[Reference]) -> (Self::Block, Extent);
+    /// Makes a block; gives how many of the primitives, of which only the ids count, have found room in it, and the box around
+    /// these. Those that have not will have blocks of their own.
+    fn block(&self, primitives: &[Reference]) -> (Self::Block, usize, Extent);
 }
 
 /// The most that [`Primitives::width`] may be.

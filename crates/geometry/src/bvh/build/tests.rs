@@ -45,10 +45,14 @@ fn inputs() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
 struct Triangles<'a> {
     corners: &'a [[Vec3; 3]],
     width: usize,
+    /// How many find room in a block.
+    room: usize,
 }
 
+type Block = [Option<Reference>; 8];
+
 impl Primitives for Triangles<'_> {
-    type Block = Vec<Reference>;
+    type Block = Block;
 
     fn width(&self) -> usize {
         self.width
@@ -67,21 +71,20 @@ impl Primitives for Triangles<'_> {
     }
 
     /// Whole triangles, or parts of them where they are known.
-    fn block(&self, triangles: &[Reference]) -> (Vec<Reference>, Extent) {
+    fn block(&self, triangles: &[Reference]) -> (Block, usize, Extent) {
         let part = |r: &Reference| match r.extent().is_empty() {
             true => {
                 Reference::new(self.extent(7, r.primitive()).expect("finite"), r.geometry(), r.primitive())
             }
             false => *r,
         };
-        let parts: Vec<_> = triangles.iter().map(part).collect();
-        let extent = Extent::around(&parts);
-        (parts, extent)
+        let parts: Vec<_> = triangles.iter().take(self.room).map(part).collect();
+        (std::array::from_fn(|i| parts.get(i).copied()), parts.len(), Extent::around(&parts))
     }
 }
 
-fn built(corners: &[[Vec3; 3]], quality: BuildQuality, width: usize) -> Built<Vec<Reference>> {
-    build(&Triangles { corners, width }, quality)
+fn built(corners: &[[Vec3; 3]], quality: BuildQuality, width: usize, room: usize) -> Built<Block> {
+    build(&Triangles { corners, width, room }, quality)
 }
 
 fn contains(outer: &Bounds3, inner: &Bounds3) -> bool {
@@ -89,7 +92,7 @@ fn contains(outer: &Bounds3, inner: &Bounds3) -> bool {
 }
 
 /// Walks a subtree: each node and block is met once, and lies in the box of its parent.
-fn walk(built: &Built<Vec<Reference>>, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bounds3) {
+fn walk(built: &Built<Block>, node: usize, seen: &mut (Vec<u32>, Vec<u32>), bounds: &Bounds3) {
     seen.0[node] += 1;
     let wide: &WideNode = &built.nodes[node];
     for lane in 0..wide.len() {
@@ -101,7 +104,7 @@ fn walk(built: &Built<Vec<Reference>>, node: usize, seen: &mut (Vec<u32>, Vec<u3
         }
         for block in child.blocks() {
             seen.1[block] += 1;
-            for r in &built.blocks[block] {
+            for r in built.blocks[block].iter().flatten() {
                 assert!(contains(&inside, &r.extent().bounds()));
             }
         }
@@ -112,13 +115,13 @@ fn walk(built: &Built<Vec<Reference>>, node: usize, seen: &mut (Vec<u32>, Vec<u3
 fn every_primitive_is_in_the_boxes_above_it() {
     for (name, triangles) in inputs() {
         for quality in QUALITIES {
-            for width in [1, 4, 8] {
-                let built = built(&triangles, quality, width);
+            for (width, room) in [(1, 1), (4, 4), (4, 2), (8, 8)] {
+                let built = built(&triangles, quality, width, room);
                 let mut seen = (vec![0; built.nodes.len()], vec![0; built.blocks.len()]);
                 walk(&built, 0, &mut seen, &built.bounds);
                 assert!(seen.0.iter().chain(&seen.1).all(|&n| n == 1), "{name} {quality:?} {width}");
                 let mut parts = vec![Bounds3::EMPTY; triangles.len()];
-                for r in built.blocks.iter().flatten() {
+                for r in built.blocks.iter().flatten().flatten() {
                     assert_eq!(r.geometry(), 7);
                     let part = &mut parts[r.primitive() as usize];
                     *part = part.union(r.extent().bounds());
@@ -127,11 +130,10 @@ fn every_primitive_is_in_the_boxes_above_it() {
                     assert!(contains(part, &Bounds3::around(*triangle)), "{name} {quality:?} {width}");
                 }
                 let most = if quality == BuildQuality::High { 2 * triangles.len() } else { triangles.len() };
-                assert!(
-                    built.blocks.iter().map(Vec::len).sum::<usize>() <= most,
-                    "{name} {quality:?} {width}"
-                );
-                assert!(built.blocks.iter().all(|b| (1..=width).contains(&b.len())));
+                let counts: Vec<_> =
+                    built.blocks.iter().map(|block| block.iter().flatten().count()).collect();
+                assert!(counts.iter().sum::<usize>() <= most, "{name} {quality:?} {width}");
+                assert!(counts.iter().all(|count| (1..=room).contains(count)));
             }
         }
     }
@@ -147,11 +149,11 @@ fn cut_triangles_have_no_gaps() {
         [start, start + point(rng, 0.01), start + along]
     };
     let triangles: Vec<[Vec3; 3]> = (0..500).map(strip).collect();
-    let built = built(&triangles, BuildQuality::High, 4);
-    let count = built.blocks.iter().map(Vec::len).sum::<usize>();
+    let built = built(&triangles, BuildQuality::High, 4, 4);
+    let count = built.blocks.iter().flatten().flatten().count();
     assert!(count > 600, "{count} parts of 500 triangles");
     let mut parts = vec![Vec::new(); triangles.len()];
-    for r in built.blocks.iter().flatten() {
+    for r in built.blocks.iter().flatten().flatten() {
         parts[r.primitive() as usize].push(r.extent().bounds());
     }
     for (parts, [a, b, c]) in parts.iter().zip(&triangles) {
@@ -176,7 +178,7 @@ fn any_number_of_threads_builds_the_same_tree() {
     for quality in QUALITIES {
         let bytes = [1, 2, 7].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            let built = pool.install(|| built(&triangles, quality, 4));
+            let built = pool.install(|| built(&triangles, quality, 4, 3));
             format!("{:?} {:?}", built.nodes, built.blocks)
         });
         assert!(bytes[0] == bytes[1] && bytes[1] == bytes[2], "{quality:?}");
