@@ -271,7 +271,7 @@ pub static SETTINGS: [Setting; 40] = [
     },
     Setting {
         name: "maxpatches",
-        help: "radiosity: most elements, unless there are more primitives",
+        help: "radiosity: most elements; of more primitives than half of it the smallest pass no light on",
         place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.max_patches))),
     },
     Setting {

@@ -14,7 +14,7 @@ use alhazen::import::{Files, import, read_ply};
 use alhazen::integrators::{ByProduct, Control};
 use alhazen::{Job, Overrides};
 
-use common::{render_scene, rgb_values};
+use common::{render_scene, render_text, rgb_values};
 
 fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
@@ -119,6 +119,91 @@ fn a_pass_can_be_stopped() {
 }
 
 #[test]
+fn a_gather_of_endless_rays_can_be_stopped() {
+    let settings = [("gather", "2147483647"), ("steps", "1"), ("tolerance", "0.9"), ("patchsize", "3")];
+    let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 4, 1, &settings));
+    let mut control = Control::default();
+    let cancel = Arc::clone(&control.cancel);
+    // Once light was sent, the gather begins.
+    control.progress = Some(Box::new(move |_| {
+        let cancel = Arc::clone(&cancel);
+        std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(200));
+            cancel.store(true, Ordering::Relaxed);
+        });
+    }));
+    assert!(job.render(&control).is_err());
+}
+
+/// The part before a wall of a floor without end, which has no patches, below a lamp at a point.
+const FLOOR: &str = r#"LookAt 0 -3 4  0 0.5 0  0 0 1
+    Camera "perspective" "float fov" 25
+    Film "rgb" "integer xresolution" 24 "integer yresolution" 24 "bool savefp16" false
+    PixelFilter "box" "float xradius" 0.5 "float yradius" 0.5
+    Sampler "independent" "integer pixelsamples" 16
+    Integrator "path"
+    WorldBegin
+    AttributeBegin
+      Translate 0 -1 4
+      LightSource "point" "rgb I" [ 20 20 20 ]
+    AttributeEnd
+    Material "diffuse" "rgb reflectance" [ 0.8 0.8 0.8 ]
+    Shape "plane"
+    Shape "trianglemesh" "point3 P" [ -3 3 0  3 3 0  3 3 6  -3 3 6 ] "integer indices" [ 0 1 2 0 2 3 ]"#;
+
+#[test]
+fn depth_counts_as_in_path_tracing() {
+    let mean = |integrator: &str, depth: u32, gather: u32| {
+        let mut settings = vec![("maxdepth".to_owned(), depth.to_string())];
+        if integrator == "radiosity" {
+            settings.push(("gather".into(), gather.to_string()));
+        }
+        let integrator = Some(integrator.to_owned());
+        let samples_per_pixel = Some(if gather == 0 { 64 } else { 32 });
+        let overrides = Overrides { integrator, settings, samples_per_pixel, ..Overrides::default() };
+        means(&render_text(FLOOR, &overrides), 24).0
+    };
+    // What the wall gets from the floor, and sends back to it, is scattered a third time.
+    for depth in 0..=2 {
+        let expected = mean("path", depth, 0);
+        for gather in [0, 1] {
+            let found = mean("radiosity", depth, gather);
+            assert!(
+                (found - expected).abs() <= 0.015 * expected,
+                "{depth}, {gather}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+/// A pass that is rendered alone is what it is after all those before it.
+#[test]
+fn a_pass_depends_on_its_number_alone() {
+    let settings = [("tolerance", "0.5"), ("steps", "2"), ("patchsize", "3"), ("subdivision", "1")];
+    let mut desc = import(scene("radiosity-room.pbrt"), &Files).desc;
+    overrides("radiosity", 16, 2, &settings).apply(&mut desc).unwrap();
+    let scene = alhazen::scene::compile(&desc).unwrap().scene;
+    let picture = |passes: &[u32]| {
+        let mut integrator = alhazen::integrators::build(&desc).ok().unwrap().integrator;
+        let mut film = alhazen::film::compile(&desc).unwrap().film;
+        integrator.prepare(&scene);
+        for &pass in passes {
+            integrator.pass(pass, &scene, &mut film, &Control::default()).unwrap();
+        }
+        film
+    };
+    let values = |film: &alhazen::film::Film| film.develop().values().map(f32::to_bits).collect::<Vec<_>>();
+    for passes in [0..=1, 0..=2] {
+        let last = [*passes.end()];
+        assert_eq!(values(&picture(&passes.collect::<Vec<_>>())), values(&picture(&last)));
+    }
+    // The samples of the finished solution add up, whoever takes them.
+    let mut merged = picture(&[2]);
+    merged.merge(&picture(&[3]));
+    assert_eq!(values(&merged), values(&picture(&[0, 1, 2, 3])));
+}
+
+#[test]
 fn the_light_is_saved_as_a_mesh() {
     let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
@@ -128,7 +213,8 @@ fn the_light_is_saved_as_a_mesh() {
     let summary = job.summary();
     let told = |name: &str| summary.iter().find(|(known, _)| *known == name).unwrap().1.clone();
     assert!(told("elements").parse::<u32>().unwrap() > told("patches").parse::<u32>().unwrap());
-    assert!(told("patch memory").ends_with(" MB"));
+    assert!(told("patch memory").ends_with(" MiB"));
+    assert_eq!(job.film().sample_count(), 16 * 16, "one for each pixel, at all wavelengths");
     let products = job.by_products();
     let [ByProduct::File(path, bytes)] = &products[..] else { panic!("one file") };
     assert_eq!(path, Path::new("somewhere/room.ply"));

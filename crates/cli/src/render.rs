@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use alhazen::description::SceneDesc;
+use alhazen::description::{IntegratorDesc, RadiosityDesc, SceneDesc};
 use alhazen::image::replace_file;
 use alhazen::import::{Files, Imported, import};
 use alhazen::integrators::{ByProduct, Control, FilmSink, Progress};
@@ -41,6 +41,11 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     } else {
         arguments.output.clone()
     };
+    if let IntegratorDesc::Radiosity(RadiosityDesc { mesh_out: Some(file), .. }) =
+        &imported.desc.integrator.value
+    {
+        output::check_place(Path::new(file)).map_err(Failure::Input)?;
+    }
     let imported_at = Instant::now();
     let mut job = match Job::compile(&imported.desc) {
         Ok(compiled) => {

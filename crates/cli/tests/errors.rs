@@ -102,6 +102,22 @@ fn a_scene_that_names_an_impossible_output_is_wrong() {
 }
 
 #[test]
+fn a_mesh_that_cannot_be_written_is_told_before_the_render() {
+    let folder = Folder::new("mesh-out");
+    let scene = |file: &str| {
+        let integrator = format!("Integrator \"radiosity\" \"string mesh-out\" \"{file}\"");
+        SCENE.replace("Integrator \"path\" \"integer maxdepth\" 3", &integrator)
+    };
+    folder.write("scene.pbrt", &scene("room.obj"));
+    let err = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(1).err;
+    assert!(err.contains("scene.pbrt:6:") && err.contains("ends in .ply, not as `room.obj`"), "{err}");
+    folder.write("scene.pbrt", &scene("no/such/room.ply"));
+    let err = folder.alhazen(&["render", "scene.pbrt"]).expect(1).err;
+    assert!(err.contains("no/such does not exist"), "{err}");
+    assert_eq!(folder.files(), ["scene.pbrt"], "nothing was rendered");
+}
+
+#[test]
 fn a_wrong_command_line_is_told() {
     let folder = Folder::with_scene("usage");
     for (arguments, part) in [

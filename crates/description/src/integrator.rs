@@ -269,7 +269,7 @@ pub struct RadiosityDesc {
     pub subdivision: i32,
     /// The change of light across an element, in parts of what is there, above which it is quartered.
     pub gradient: f32,
-    /// Most elements, unless there are more primitives.
+    /// Most elements.
     pub max_patches: i32,
     /// Share of light that need not be sent.
     pub tolerance: f32,

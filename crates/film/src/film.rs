@@ -7,6 +7,7 @@
 //! Pixels are stored tile by tile, so that each tile is a contiguous slice that one thread can fill.
 
 use std::collections::BTreeSet;
+use std::slice::from_ref;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use image::{Chromaticities, Image, ImageError, ImageMetadata, Window};
@@ -133,16 +134,21 @@ impl Gate {
         self.rejected().add(at);
     }
 
+    /// Adds a sample of equal parts, each with wavelengths of its own.
     fn add(
         &self,
         at: [i32; 2],
         pixel: &mut Pixel,
-        l: &SampledSpectrum,
-        lambda: &SampledWavelengths,
+        l: &[SampledSpectrum],
+        lambda: &[SampledWavelengths],
         weight: f32,
     ) {
         let weight = f64::from(weight);
-        let terms = self.measure(l, lambda, 1.0).map(|rgb| rgb.map(|c| weight * c));
+        let part = weight / l.len() as f64;
+        let terms = l.iter().zip(lambda).try_fold([0.0; 3], |sum, (l, lambda)| {
+            let rgb = self.measure(l, lambda, 1.0)?;
+            Some([0, 1, 2].map(|c: usize| sum[c] + part * rgb[c]))
+        });
         match terms {
             Some(terms) if terms.into_iter().chain([weight]).all(ExactSum::can_add) => {
                 pixel.rgb.iter_mut().zip(terms).for_each(|(sum, term)| sum.add(term));
@@ -258,7 +264,7 @@ impl Film {
         weight: f32,
     ) {
         let index = self.index(pixel);
-        self.gate.add(pixel, &mut self.pixels[index], l, lambda, weight);
+        self.gate.add(pixel, &mut self.pixels[index], from_ref(l), from_ref(lambda), weight);
     }
 
     /// The film cut into tiles, at most [`TILE_SIZE`] pixels wide and high, that different threads can fill.
@@ -401,6 +407,20 @@ impl FilmTile<'_> {
         pixel: [i32; 2],
         l: &SampledSpectrum,
         lambda: &SampledWavelengths,
+        weight: f32,
+    ) {
+        self.add_groups(pixel, from_ref(l), from_ref(lambda), weight);
+    }
+
+    /// Adds one sample of radiance to a pixel that is known at several groups of wavelengths, which count alike.
+    ///
+    /// # Panics
+    /// If the pixel is not in the tile.
+    pub fn add_groups(
+        &mut self,
+        pixel: [i32; 2],
+        l: &[SampledSpectrum],
+        lambda: &[SampledWavelengths],
         weight: f32,
     ) {
         assert!(self.bounds.contains(pixel), "{pixel:?} is not in the tile");

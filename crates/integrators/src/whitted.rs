@@ -1,11 +1,12 @@
 //! Whitted's ray tracing: shadows, perfect reflection and refraction.
 //!
-//! At each surface, L = L_e + Σ_lights f L_i V |cos θ_i| / p + k_r L(reflected) + k_t L(refracted): a shadow ray to one point of
-//! every light (point lights need no more, area lights show soft shadows as samples grow), and both directions of a smooth
-//! mirror, metal or glass. Rough surfaces scatter light that comes straight from lights only, so that there is no indirect
-//! light and there are no caustics. The tree of rays grows as 2^depth in glass.
+//! At each surface, L = L_e + Σ_lights f L_i V |cos θ_i| / p + k_r L(reflected) + k_t L(refracted): a shadow
+//! ray to one point of every light (point lights need no more, area lights show soft shadows as samples
+//! grow), and both directions of a smooth mirror, metal or glass. Rough surfaces scatter light that comes
+//! straight from lights only, so that there is no indirect light and there are no caustics. The tree of rays
+//! grows as 2^depth in glass.
 //!
-//! Settings: `max_depth`, the number of reflections and refractions on the way, default 5.
+//! Settings: `max_depth`, most scattering events of a path, default 5: with 1, mirrors are black.
 //! Source: [Whitted 1980].
 
 use geometry::RayStats;
@@ -21,7 +22,7 @@ use crate::direct::{Shadows, all_lights, pass_through};
 /// Whitted's ray tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted {
-    /// Most reflections and refractions on the way.
+    /// Most scattering events of a path.
     pub max_depth: u32,
 }
 
@@ -60,8 +61,11 @@ impl RayIntegrator for Whitted {
                 next = Some(Pending { ray: pass_through(&ray, &surface, t), beta, depth });
                 continue;
             };
+            if depth == self.max_depth {
+                continue;
+            }
             l += beta * all_lights(scene, &surface, &bsdf, Shadows::Cast, lambda, sampler, stats);
-            if depth == self.max_depth || !bsdf.flags().is_specular() {
+            if !bsdf.flags().is_specular() {
                 continue;
             }
             for directions in [Directions::Reflection, Directions::Transmission] {

@@ -6,7 +6,7 @@ use crate::light::{Light, LightId, LightLeSample, LightLiSample, LightSampleCont
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
-use geometry::{Hit, RayStats, SurfacePoint, World};
+use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
 use math::{Point2, Ray, RayDifferential, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
@@ -147,6 +147,12 @@ impl Scene {
             area_light: entry.first_light.map(|first| LightId(first.0 + hit.primitive)),
             footprint: Footprint::default(),
         }
+    }
+
+    /// Whether all of a geometry is nothing but a change of medium.
+    pub fn is_all_interface(&self, geometry: GeometryId) -> bool {
+        let entry = &self.entries[geometry.0 as usize];
+        matches!(self.materials.get(entry.material).material, Material::Interface)
     }
 
     /// Whether `ray` has hit nothing but a change of medium.

@@ -1,8 +1,9 @@
 //! What carries light: elements that receive it, patches that send it on.
 //!
-//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb it sends on from its whole
-//! area evenly. An *element* is a leaf of the mesh within a patch; it remembers how much light fell on each of its two sides.
-//! Elements may be much finer than patches: light is sent on coarsely and received finely [Cohen 1986].
+//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb it sends
+//! on from its whole area evenly. An *element* is a leaf of the mesh within a patch; it remembers how much
+//! light fell on each of its two sides. Elements may be much finer than patches: light is sent on coarsely
+//! and received finely [Cohen 1986].
 
 use geometry::{Hit, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, RayDifferential, Vec2};
@@ -13,7 +14,8 @@ use scene::{Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::bands::{Bands, Wavelengths};
-use super::mesh::{Cell, Domain, Mesh};
+use super::domain::Domain;
+use super::mesh::{Cell, Mesh};
 
 /// The shares of light that a surface sends back, and through, evenly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,8 +34,8 @@ impl Albedo {
         Self { reflectance: self.reflectance * factor, transmittance: self.transmittance * factor }
     }
 
-    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all directions. Bends the shading normal on the
-    /// way. `None`: nothing is there but a change of medium.
+    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all directions.
+    /// Bends the shading normal on the way. `None`: nothing is there but a change of medium.
     pub fn at(
         scene: &Scene,
         interaction: &mut SurfaceInteraction,
@@ -109,6 +111,8 @@ pub(crate) struct Element {
     pub albedo: Albedo,
     /// What fell on its outer and inner side, in each quarter.
     pub quarters: [[Bands; 2]; 4],
+    /// How much of that may be scattered here for the last time.
+    pub last: [Bands; 2],
 }
 
 impl Element {
@@ -134,7 +138,8 @@ impl Element {
             SamplePoint { p: surface.p, n: surface.n, weight }
         };
         let points = [point(0), point(1), point(2), point(3)];
-        Self { cell, patch, quarter, level, area, points, albedo, quarters: [[Bands::ZERO; 2]; 4] }
+        let dark = [Bands::ZERO; 2];
+        Self { cell, patch, quarter, level, area, points, albedo, quarters: [dark; 4], last: dark }
     }
 
     /// What fell on its outer and inner side.
@@ -142,8 +147,8 @@ impl Element {
         weighted(&self.quarters, self.points.each_ref().map(|point| point.weight))
     }
 
-    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of the quarters the change goes on as far
-    /// as it does in any direction, no further.
+    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of the
+    /// quarters the change goes on as far as it does in any direction, no further.
     pub fn irradiance_at(&self, domain: &Domain, uv: Vec2) -> [Bands; 2] {
         let at = weighted(&self.quarters, domain.weights(uv));
         [0, 1].map(|i| {
@@ -154,7 +159,26 @@ impl Element {
         })
     }
 
-    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in each of its own.
+    /// Takes what a larger one, which it is a part of, received as a whole.
+    pub fn inherit(&mut self, mesh: &Mesh, whole: &Self) {
+        let domain = mesh.cell(whole.cell).domain();
+        let quarters = mesh.cell(self.cell).domain().quarters();
+        let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
+        let all = weighted(&inherited, self.points.each_ref().map(|point| point.weight));
+        let last = whole.last_part();
+        for i in 0..2 {
+            self.quarters.iter_mut().zip(&inherited).for_each(|(own, light)| own[i] += light[i]);
+            self.last[i] += all[i] * last[i];
+        }
+    }
+
+    /// Forgets what it received.
+    pub fn darken(&mut self) {
+        (self.quarters, self.last) = ([[Bands::ZERO; 2]; 4], [Bands::ZERO; 2]);
+    }
+
+    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in each of its
+    /// own.
     pub fn spread(&self, brightness: f32, arrived: [f32; 4]) -> [f32; 4] {
         if self.level > 0 {
             return std::array::from_fn(|quarter| if quarter == self.quarter { brightness } else { 0.0 });
@@ -164,9 +188,17 @@ impl Element {
         parts.map(|part| if sum > 0.0 { brightness * part / sum } else { 0.0 })
     }
 
-    /// What leaves its two sides in one quarter, emission apart.
+    /// The part of what fell on its sides that may be scattered here for the last time.
+    pub fn last_part(&self) -> [Bands; 2] {
+        let all = self.irradiance();
+        [0, 1].map(|i| self.last[i].part_of(all[i]))
+    }
+
+    /// What leaves its two sides in one quarter and may be scattered once more, emission apart.
     pub fn radiosity(&self, quarter: usize) -> [Bands; 2] {
-        self.albedo.scatter(&self.quarters[quarter])
+        let last = self.last_part();
+        let going_on = |i: usize| self.quarters[quarter][i] * (Bands::splat(1.0) + last[i] * -1.0);
+        self.albedo.scatter(&[0, 1].map(going_on))
     }
 }
 
@@ -174,7 +206,8 @@ fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
     [0, 1].map(|i| quarters.iter().zip(weights).map(|(sides, weight)| sides[i] * weight).sum())
 }
 
-/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a change of medium.
+/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a change of
+/// medium.
 pub(crate) fn albedo_at(
     scene: &Scene,
     primitive: &Hit,
@@ -194,29 +227,38 @@ pub(crate) struct Patch {
     pub area: f32,
     /// What leaves its two sides of its own accord, per area.
     pub emitted: [Bands; 2],
-    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how often it was scattered.
+    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how
+    /// often it was scattered, as far as there is any.
     pub unshot: Vec<[Bands; 2]>,
     /// How the brightness of that light is spread over the quarters.
     pub spread: [[f32; 2]; 4],
     /// Which sides have faced a patch that shot.
     pub faced: [bool; 2],
+    /// If it is cut into elements: itself as one, with the faint light that it received as a whole.
+    pub whole: Option<Box<Element>>,
 }
 
 impl Patch {
-    /// A patch that has not sent out its own light yet; it sends light that was scattered less than `depth` times.
-    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: usize) -> Self {
+    /// A patch that has not sent out its own light yet; it sends light that was scattered less than `depth`
+    /// times.
+    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: u32) -> Self {
         let area = {
             let leaf = mesh.cell(cell);
             leaf.domain().quarters().iter().map(|quarter| mesh.area(scene.world(), leaf, quarter)).sum()
         };
         let emitted = emission(scene, mesh, mesh.cell(cell), wavelengths);
-        let mut unshot = vec![[Bands::ZERO; 2]; depth];
-        if let Some(first) = unshot.first_mut() {
-            *first = emitted.map(|side| side * area);
+        let sends = depth > 0 && emitted.iter().any(|side| !side.is_black());
+        let unshot = if sends { vec![emitted.map(|side| side * area)] } else { Vec::new() };
+        let even = emitted.map(|side| if sends { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
+        Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2], whole: None }
+    }
+
+    /// Adds light that was scattered so many times, as power from either side.
+    pub fn add_unshot(&mut self, scattered: usize, power: [Bands; 2]) {
+        if self.unshot.len() <= scattered {
+            self.unshot.resize(scattered + 1, [Bands::ZERO; 2]);
         }
-        let even =
-            emitted.map(|side| if depth > 0 { wavelengths.brightness(&side) * area / 4.0 } else { 0.0 });
-        Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2] }
+        (0..2).for_each(|i| self.unshot[scattered][i] += power[i]);
     }
 
     /// How much of what one side has to send comes from each quarter, in parts of the mean.

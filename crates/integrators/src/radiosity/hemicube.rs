@@ -1,19 +1,21 @@
 //! The hemicube: all form factors of a patch at once, from its middle.
 //!
-//! Around the middle of a patch stands half a cube of 2 × 2 × 1 with its faces cut into pixels. Through each pixel a ray looks for the element
-//! that is seen there; the element's form factor is the sum over its pixels of
+//! Around the middle of a patch stands half a cube of 2 × 2 × 1 with its faces cut into pixels. Through each
+//! pixel a ray looks for the element that is seen there; the element's form factor is the sum over its pixels
+//! of
 //!
 //! ΔF = ΔA / (π (x² + y² + 1)²) on the face above, ΔF = z ΔA / (π (y² + z² + 1)²) on the faces at the sides,
 //!
-//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the errors of different shots differ. All that
-//! leaves the patch arrives somewhere: where nothing is open, the factors sum to one, and energy is conserved without more ado.
+//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the errors of
+//! different shots differ. All that leaves the patch arrives somewhere: where nothing is open, the factors
+//! sum to one, and energy is conserved without more ado.
 //!
-//! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all, and near by, where the patch is no point, its
-//! middle is not the whole. Here the pixels are filled by rays instead of by a z-buffer; the factors are those of the original.
-//! Source: [Cohen 1985].
+//! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all, and near by,
+//! where the patch is no point, its middle is not the whole. Here the pixels are filled by rays instead of by
+//! a z-buffer; the factors are those of the original. Source: [Cohen 1985].
 
-use geometry::{Hit, RayStats, SurfacePoint};
-use math::{Frame, Vector3};
+use geometry::RayStats;
+use math::{Frame, Vec2, Vector3};
 use rayon::prelude::*;
 use sampling::hash_float;
 use scene::Scene;
@@ -38,10 +40,11 @@ pub(crate) struct Hemicube {
 
 /// What is seen through a pixel.
 struct Pixel {
-    hit: Hit,
-    surface: SurfacePoint,
+    /// The first cell of the primitive there, and where on it.
+    root: u32,
+    uv: Vec2,
     /// The side that is seen.
-    side: usize,
+    side: u8,
     factor: f32,
 }
 
@@ -54,8 +57,8 @@ impl Hemicube {
         Self { resolution: resolution.max(2).next_multiple_of(2), angle: TAU * hash_float(&[shot]) }
     }
 
-    /// The directions of a row of pixels in a frame with the normal along +z, and their shares. Rows of the face above come first, then those
-    /// of the four at the sides, which have half as many.
+    /// The directions of a row of pixels in a frame with the normal along +z, and their shares. Rows of the
+    /// face above come first, then those of the four at the sides, which have half as many.
     fn row(&self, row: u32) -> impl Iterator<Item = (Vector3, f32)> {
         let n = self.resolution;
         let step = 2.0 / n as f32;
@@ -105,7 +108,8 @@ impl Hemicube {
             let pixels = self.row(row).filter_map(|(d, factor)| {
                 let ray = eye.spawn_ray(frame.from_local(d));
                 let (hit, surface) = first_solid(scene, ray, &mut stats)?;
-                Some(Pixel { hit, surface, side: seen_side(&surface), factor })
+                let (root, uv) = mesh.place(scene.world(), &hit, &surface)?;
+                Some(Pixel { root, uv, side: seen_side(&surface) as u8, factor })
             });
             let pixels: Vec<Pixel> = pixels.collect();
             Ok((pixels, stats))
@@ -118,15 +122,15 @@ impl Hemicube {
 
 impl Seen {
     /// What the elements with these indices receive of unit radiosity from a patch of this area.
-    pub fn received(&self, scene: &Scene, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
+    pub fn received(&self, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
         let mut all = vec![(Received::default(), 0); cut.elements.len()];
-        for Pixel { hit, surface, side, factor } in &self.0 {
-            let Some((leaf, uv)) = cut.mesh.leaf(scene.world(), hit, surface) else { continue };
+        for &Pixel { root, uv, side, factor } in &self.0 {
+            let leaf = cut.mesh.leaf_in(root, uv);
             let (received, pixels) = &mut all[leaf.element as usize];
             let element = &cut.elements[leaf.element as usize];
             let quarter = leaf.domain().quarter_of(uv);
             let factor = factor * area / (element.area * element.points[quarter].weight);
-            received.quarters[quarter][*side] += factor;
+            received.quarters[quarter][usize::from(side)] += factor;
             *pixels += 1;
         }
         let answer = |&id: &u32| {

@@ -1,20 +1,26 @@
 //! Surfaces cut into cells.
 //!
-//! A cell is a part of one primitive of the scene: a triangle or rectangle of the primitive's own parameters, with corners on the true
-//! surface. Its first cell is the whole primitive, and cutting halves a cell across its longer side, so that the cells
-//! of a primitive are a binary tree and the leaf under a ray's hit is found by walking down it.
+//! A cell is a part of one primitive of the scene: a triangle or rectangle of the primitive's own parameters,
+//! with corners on the true surface. Its first cell is the whole primitive, and cutting halves a cell across
+//! its longer side, so that the cells of a primitive are a binary tree and the leaf under a ray's hit is
+//! found by walking down it.
 //!
-//! Vertices are shared: two corners that stand at one place with nearly one normal are one vertex, whichever primitives they belong to.
-//! Where a cell's neighbour is cut more finely, a vertex stands in the middle of the cell's side: a T-vertex. If the cell were drawn from its
-//! corners alone, light would jump across that side. So T-vertices are *anchored*: [`Mesh::outline`] gives the corners and all the vertices
-//! that neighbours have put on the sides between them, and whatever is interpolated over the fan of triangles between that outline and the
-//! cell's centre is continuous ([Cohen 1986]; [Baum 1991] for anchors).
+//! Vertices are shared: two corners that stand at one place with nearly one normal are one vertex, whichever
+//! primitives they belong to. Where a cell's neighbour is cut more finely, a vertex stands in the middle of
+//! the cell's side: a T-vertex. If the cell were drawn from its corners alone, light would jump across that
+//! side. So T-vertices are *anchored*: [`Mesh::outline`] gives the corners and all the vertices that
+//! neighbours have put on the sides between them, and whatever is interpolated over the fan of triangles
+//! between that outline and the cell's centre is continuous ([Cohen 1986]; [Baum 1991] for anchors).
 
 use std::collections::{HashMap, HashSet};
 
-use geometry::{Geometry, GeometryId, Hit, InstancePath, Shape, SurfacePoint, World};
+use geometry::{Geometry, GeometryId, Hit, InstancePath, SurfacePoint, World};
 use math::{Normal3, Point3, Vec2};
 use scene::Scene;
+
+use super::domain::Domain;
+use super::primitives::{self, is_sound};
+use crate::{Cancelled, Control};
 
 /// A corner of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,76 +29,6 @@ pub(crate) struct Corner {
     pub vertex: u32,
     /// Parameters on the cell's primitive.
     pub uv: Vec2,
-}
-
-/// A triangle or rectangle of parameters, its corners in turn.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Domain {
-    Triangle([Vec2; 3]),
-    Rectangle([Vec2; 4]),
-}
-
-impl Domain {
-    /// The middle.
-    pub fn center(&self) -> Vec2 {
-        match self {
-            Self::Triangle([a, b, c]) => (*a + *b + *c) / 3.0,
-            Self::Rectangle([a, b, c, d]) => (*a + *b + *c + *d) / 4.0,
-        }
-    }
-
-    /// Four parts alike.
-    pub fn quarters(&self) -> [Self; 4] {
-        let mid = |a: Vec2, b: Vec2| (a + b) * 0.5;
-        match *self {
-            Self::Triangle([a, b, c]) => {
-                let (ab, bc, ca) = (mid(a, b), mid(b, c), mid(c, a));
-                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]].map(Self::Triangle)
-            }
-            Self::Rectangle([a, b, c, d]) => {
-                let (ab, bc, cd, da, m) = (mid(a, b), mid(b, c), mid(c, d), mid(d, a), self.center());
-                [[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]].map(Self::Rectangle)
-            }
-        }
-    }
-
-    /// The weights of four values, one in the middle of each quarter, that make the value at a point of the linear function that they
-    /// determine best.
-    pub fn weights(&self, uv: Vec2) -> [f32; 4] {
-        match self {
-            Self::Triangle([a, b, c]) => {
-                let whole = (*b - *a).perp_dot(*c - *a);
-                let outer = |a: Vec2, b: Vec2| 2.0 * (a - uv).perp_dot(b - uv) / whole - 2.0 / 3.0 + 0.25;
-                [outer(*b, *c), outer(*c, *a), outer(*a, *b), 0.25]
-            }
-            Self::Rectangle([a, b, _, d]) => {
-                let along = |side: Vec2| (uv - *a).dot(side) / side.length_squared() - 0.5;
-                let (x, y) = (along(*b - *a), along(*d - *a));
-                [0.25 - x - y, 0.25 + x - y, 0.25 + x + y, 0.25 - x + y]
-            }
-        }
-    }
-
-    /// Which of the quarters a point lies in.
-    pub fn quarter_of(&self, uv: Vec2) -> usize {
-        match self {
-            Self::Triangle([a, b, c]) => {
-                let whole = (*b - *a).perp_dot(*c - *a);
-                let weights =
-                    [(*b - uv).perp_dot(*c - uv), (*c - uv).perp_dot(*a - uv), (*a - uv).perp_dot(*b - uv)];
-                weights.iter().position(|w| w / whole > 0.5).unwrap_or(3)
-            }
-            Self::Rectangle([a, b, _, d]) => {
-                let along = |side: Vec2| (uv - *a).dot(side) > 0.5 * side.length_squared();
-                match (along(*b - *a), along(*d - *a)) {
-                    (false, false) => 0,
-                    (true, false) => 1,
-                    (true, true) => 2,
-                    (false, true) => 3,
-                }
-            }
-        }
-    }
 }
 
 /// A part of a primitive.
@@ -181,8 +117,9 @@ impl Vertices {
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     primitives: Vec<Hit>,
-    /// The first cells of the primitives of every geometry; none where a primitive has no parameters to cut.
-    roots: HashMap<(GeometryId, InstancePath), Vec<Option<u32>>>,
+    left_out: usize,
+    /// The first cells of primitives.
+    roots: HashMap<(GeometryId, InstancePath, u32), u32>,
     cells: Vec<Cell>,
     vertices: Vertices,
     /// Sides that were cut: both ends, the lower first, and the vertex between.
@@ -192,62 +129,49 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// One cell for each primitive of the scene that can be cut and is `wanted`.
-    pub fn new(scene: &Scene, time: f32, wanted: impl Fn(&Hit, &SurfacePoint) -> bool) -> Self {
+    /// One cell for each primitive of the scene that can be cut and is more than a change of medium. Where
+    /// there are more than `most`, for lights first and then for the largest.
+    pub fn new(scene: &Scene, time: f32, most: usize, control: &Control) -> Result<Self, Cancelled> {
         let sphere = scene.sphere();
         let size = sphere.center.abs().max_element() + sphere.radius;
         let tolerance = (1e-6 * size).max(f32::MIN_POSITIVE);
         let vertices = Vertices { all: Vec::new(), grid: HashMap::new(), tolerance };
+        let (primitives, left_out) = primitives::choose(scene, time, most, control)?;
         let mut mesh = Self {
-            primitives: Vec::new(),
+            primitives,
+            left_out,
             roots: HashMap::new(),
             cells: Vec::new(),
             vertices,
             cut: HashSet::new(),
             time,
         };
-        let world = scene.world();
-        for (geometry, instance) in world.placed_geometries() {
-            let primitives = 0..world.geometry(geometry).len() as u32;
-            let hit = |primitive| Hit { t: 0.0, uv: Vec2::ZERO, geometry, primitive, instance };
-            let roots = primitives.map(|primitive| mesh.root(world, hit(primitive), &wanted)).collect();
-            mesh.roots.insert((geometry, instance), roots);
+        for primitive in 0..mesh.primitives.len() as u32 {
+            control.check()?;
+            mesh.add_root(scene.world(), primitive);
         }
-        mesh
+        Ok(mesh)
     }
 
-    fn root(
-        &mut self,
-        world: &World,
-        hit: Hit,
-        wanted: &impl Fn(&Hit, &SurfacePoint) -> bool,
-    ) -> Option<u32> {
-        let is_triangle = match world.geometry(hit.geometry) {
-            Geometry::Mesh(_) => true,
-            Geometry::Shapes(shapes) => {
-                matches!(shapes[hit.primitive as usize], Shape::Triangle(_) | Shape::MovingTriangle(_))
-            }
-            Geometry::Spheres(_) | Geometry::Curves(_) => false,
-        };
-        let uvs = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
-        let uvs: Vec<Vec2> = if is_triangle { vec![uvs[0], uvs[1], uvs[3]] } else { uvs.into() };
-        let center = uvs.iter().sum::<Vec2>() / uvs.len() as f32;
-        let primitive = self.primitives.len() as u32;
-        self.primitives.push(hit);
-        let is_sound = |s: &SurfacePoint| s.p.p.is_finite() && s.n.is_normalized();
-        let whole = self.surface(world, primitive, center).filter(|s| is_sound(s) && wanted(&hit, s));
-        let corners = uvs.iter().map(|&uv| self.surface(world, primitive, uv).filter(is_sound));
-        let Some(surfaces) = whole.and_then(|_| corners.collect::<Option<Vec<_>>>()) else {
-            self.primitives.pop();
-            return None;
-        };
+    /// Makes the first cell of a primitive, if it has sound corners.
+    fn add_root(&mut self, world: &World, primitive: u32) {
+        let hit = self.primitives[primitive as usize];
+        let domain = Domain::of(world, &hit);
+        let surfaces: Option<Vec<SurfacePoint>> =
+            domain.corners().iter().map(|&uv| self.surface(world, primitive, uv).filter(is_sound)).collect();
+        let Some(surfaces) = surfaces else { return };
         let corner = |(surface, &uv): (SurfacePoint, &Vec2)| Corner {
             vertex: self.vertices.find_or_add(vertex_at(&surface)),
             uv,
         };
-        let corners: Vec<Corner> = surfaces.into_iter().zip(&uvs).map(corner).collect();
+        let corners: Vec<Corner> = surfaces.into_iter().zip(domain.corners()).map(corner).collect();
+        self.roots.insert((hit.geometry, hit.instance, hit.primitive), self.cells.len() as u32);
         self.cells.push(Cell::new(primitive, &corners));
-        Some(self.cells.len() as u32 - 1)
+    }
+
+    /// How many primitives have no cells because there are too many.
+    pub fn left_out(&self) -> usize {
+        self.left_out
     }
 
     /// A cell by its index.
@@ -291,20 +215,19 @@ impl Mesh {
         self.surface(world, cell.primitive, uv).map_or(Point3::ZERO, |surface| surface.p.p)
     }
 
-    /// The area of a part of a primitive: of a rectangle to second order.
+    /// The area of a part of a primitive.
     pub fn area(&self, world: &World, cell: &Cell, domain: &Domain) -> f32 {
-        let p = |uv| self.position(world, cell, uv).as_dvec3();
-        let area = match *domain {
-            Domain::Triangle([a, b, c]) => 0.5 * (p(b) - p(a)).cross(p(c) - p(a)).length(),
-            Domain::Rectangle([a, b, c, d]) => {
-                let mid = |a: Vec2, b: Vec2| p((a + b) * 0.5);
-                (mid(b, c) - mid(d, a)).cross(mid(c, d) - mid(a, b)).length()
-            }
-        };
-        area as f32
+        domain.area(|uv| self.position(world, cell, uv))
     }
 
-    /// How long a cell is along its first side and, if it has four, along its second; through the middle where that is another way.
+    /// The area of all surfaces, as long as nothing is cut.
+    pub fn whole_area(&self, world: &World) -> f64 {
+        let quarters = self.cells.iter().flat_map(|cell| cell.domain().quarters().map(|part| (cell, part)));
+        quarters.map(|(cell, part)| f64::from(self.area(world, cell, &part))).sum()
+    }
+
+    /// How long a cell is along its first side and, if it has four, along its second; through the middle
+    /// where that is another way.
     fn lengths(&self, world: &World, cell: &Cell) -> [f32; 2] {
         let p = |uv| self.position(world, cell, uv);
         match cell.domain() {
@@ -382,10 +305,21 @@ impl Mesh {
 
     /// The leaf that a ray has hit, and where on its primitive; `None` on what has no cells.
     pub fn leaf(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(&Cell, Vec2)> {
-        let root = self.roots.get(&(hit.geometry, hit.instance))?[hit.primitive as usize]?;
-        let uv =
-            if matches!(world.geometry(hit.geometry), Geometry::Spheres(_)) { surface.uv } else { hit.uv };
-        let mut cell = self.cell(root);
+        let (root, uv) = self.place(world, hit, surface)?;
+        Some((self.leaf_in(root, uv), uv))
+    }
+
+    /// The first cell of the primitive that a ray has hit, and where on the primitive; `None` on what has no
+    /// cells.
+    pub fn place(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(u32, Vec2)> {
+        let root = self.roots.get(&(hit.geometry, hit.instance, hit.primitive))?;
+        let is_sphere = matches!(world.geometry(hit.geometry), Geometry::Spheres(_));
+        Some((*root, if is_sphere { surface.uv } else { hit.uv }))
+    }
+
+    /// The leaf within a cell at some parameters.
+    pub fn leaf_in(&self, cell: u32, uv: Vec2) -> &Cell {
+        let mut cell = self.cell(cell);
         while let Some(first) = cell.children {
             // The second and third corner of the first half are the ends of the cut.
             let half = self.cell(first);
@@ -394,7 +328,7 @@ impl Mesh {
             let is_first = (b - a).perp_dot(uv - a) * (b - a).perp_dot(inner - a) >= 0.0;
             cell = if is_first { half } else { self.cell(first + 1) };
         }
-        Some((cell, uv))
+        cell
     }
 
     /// The corners of a leaf and all vertices that its neighbours have put between them, in turn.
@@ -424,7 +358,8 @@ impl Mesh {
 
     /// Bytes of memory that it takes, about.
     pub fn bytes(&self) -> usize {
-        let hashed = self.cut.capacity() * size_of::<[u32; 3]>() + self.vertices.all.len() * 56;
+        let roots = self.roots.capacity() * size_of::<((GeometryId, InstancePath, u32), u32)>();
+        let hashed = roots + self.cut.capacity() * size_of::<[u32; 3]>() + self.vertices.all.len() * 56;
         size_of_val(&*self.primitives) + size_of_val(&*self.cells) + size_of_val(&*self.vertices.all) + hashed
     }
 }

@@ -1,45 +1,56 @@
 //! Radiosity: the light between diffuse surfaces as a balance of energy, found once for all views.
 //!
-//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j F_ij B_j: its own light, and its share of what
-//! comes from all others, F_ij being the [form factor](form_factor) from i to j. [Progressive shooting](shooting) solves this without ever
-//! holding the matrix: the brightest patch sends its light to all others, again and again. Each of the first `steps` passes
-//! sends light until a smaller share of it is left, the last one until `tolerance` is reached, and draws the picture anew, with
-//! an ambient term for what is missing. The passes after these, as many as there are samples a pixel, draw the finished solution.
+//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j F_ij B_j:
+//! its own light, and its share of what comes from all others, F_ij being the [form factor](form_factor) from
+//! i to j. [Progressive shooting](shooting) solves this without ever holding the matrix: the brightest patch
+//! sends its light to all others, again and again. Each of the first `steps` passes sends light until a
+//! smaller share of it is left, the last one until `tolerance` is reached, and draws the picture anew, with
+//! an ambient term for what is missing. The passes after these, as many as there are samples a pixel, draw
+//! the finished solution.
 //!
-//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by interpolation between vertices, or by a final gather.
-//! Light is carried at fixed [wavelengths](bands).
+//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by interpolation between
+//! vertices, or by a final gather. Light is carried at fixed [wavelengths](bands).
 //!
-//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white, grey or coloured plaster; glass becomes a sheet
-//! that passes light diffusely. Surfaces reflect on both sides. Shading normals count in the final gather alone. Things that move are where
-//! they are in the middle of the shutter's time.
+//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white, grey or
+//! coloured plaster; glass becomes a sheet that passes light diffusely. Surfaces reflect on both sides.
+//! Shading normals count in the final gather alone. Things that move are where they are in the middle of the
+//! shutter's time.
 //!
-//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a patch that sends it and of an element that
-//! receives it, and visibility is known from a few rays. In the Cornell box the mean of a gathered picture is right to 0.5 %, single
-//! places in the shadow of the blocks to 4 %, or to 2 % with patches half as long; interpolated, shadows are as blurred as their elements are large. `max_depth` counts as in all algorithms: light that was scattered more often is missing.
+//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a patch that
+//! sends it and of an element that receives it, and visibility is known from a few rays. In the Cornell box
+//! the mean of a gathered picture is right to 0.5 %, single places in the shadow of the blocks to 4 %, or to
+//! 2 % with patches half as long; interpolated, shadows are as blurred as their elements are large.
+//! `max_depth` counts as in all algorithms: light that was scattered more often is missing.
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `max_depth` | most scattering events | 5 |
+//! | `max_depth` | most scattering events, up to 100 | 5 |
 //! | `form_factors` | `analytic` or `hemicube` | analytic |
 //! | `hemicube_resolution` | pixels along an edge of the hemicube | 128 |
 //! | `patch_size` | longest side of a patch, in scene units | a sixth of the scene's radius |
 //! | `subdivision` | how often an element may be quartered | 3 |
 //! | `gradient` | change of light across an element, in parts of what is there, above which it is quartered | 0.1 |
-//! | `max_patches` | most elements, unless there are more primitives | 50 000 |
+//! | `max_patches` | most elements, and twice the number of primitives that are cut | 50 000 |
 //! | `tolerance` | share of light that need not be sent | 0.002 |
 //! | `steps` | passes in which light is sent | 8 |
 //! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
 //! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
 //!
-//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering event more. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
+//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering event more,
+//! and again 2 kB if it is cut. Where there are more primitives than half of `max_patches`,
+//! [lights and the largest](primitives) are cut; the rest is lit, as what has no patches is, but passes no
+//! light on. The time of a shot grows with the number of elements, and the number of shots with that of
+//! patches. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
 
 mod bands;
 mod described;
+mod domain;
 mod element;
 mod form_factor;
 mod hemicube;
 mod mesh;
 mod ply;
+mod primitives;
 mod shooting;
 mod show;
 mod subdivide;
@@ -53,6 +64,7 @@ use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::Scene;
+use scene::camera::CameraRayDifferential;
 use scene::light_sampler::{LightSampler, LightSamplerKind};
 use spectrum::RgbColorSpace;
 
@@ -61,7 +73,7 @@ use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
 use shooting::Solution;
-use show::View;
+use show::{Look, View};
 
 /// How form factors are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,11 +100,11 @@ pub struct RadiositySettings {
     pub subdivision: u32,
     /// The change of light across an element, in parts of what is there, above which it is quartered.
     pub gradient: f32,
-    /// Most elements, unless there are more primitives.
+    /// Most elements.
     pub max_patches: u32,
     /// Share of light that need not be sent.
     pub tolerance: f32,
-    /// Passes in which light is sent.
+    /// Passes in which light is sent, one at least.
     pub steps: u32,
     /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
     pub gather: u32,
@@ -128,10 +140,52 @@ pub struct Radiosity {
 /// What is known of a scene.
 struct State {
     solution: Solution,
-    view: View,
     lights: LightSampler,
+    /// How many steps of sending are done.
+    sent: u32,
+    view: View,
+    /// The step after which the view shows the solution.
+    shown: Option<u32>,
     /// The mesh to be saved.
     mesh: Vec<u8>,
+}
+
+impl State {
+    /// Before light is sent.
+    fn new(scene: &Scene, settings: &RadiositySettings, control: &Control) -> Result<Self, Cancelled> {
+        let solution = Solution::new(scene, settings, control)?;
+        let lights = scene.light_sampler(LightSamplerKind::Bvh);
+        let view = View::new(scene, &solution, &lights, 0);
+        Ok(Self { solution, lights, sent: 0, view, shown: None, mesh: Vec::new() })
+    }
+
+    /// Sends light as a pass asks for. Steps that earlier passes have not done are done now, one by one, so
+    /// that the solution depends on the pass alone.
+    fn advance(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        color_space: &RgbColorSpace,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let RadiositySettings { steps, tolerance, gather, .. } = self.solution.settings;
+        let mut stats = RayStats::default();
+        while self.sent < steps.min(pass + 1) {
+            let share = tolerance.powf((self.sent + 1) as f32 / steps as f32);
+            stats += self.solution.shoot(scene, share, control)?;
+            self.sent += 1;
+        }
+        let step = pass.min(steps);
+        if self.shown != Some(step) {
+            let is_finished = step == steps;
+            self.view = View::new(scene, &self.solution, &self.lights, if is_finished { gather } else { 0 });
+            self.shown = Some(step);
+            if is_finished && self.solution.settings.mesh_out.is_some() {
+                self.mesh = ply::encode(scene, &self.solution, &self.view, color_space);
+            }
+        }
+        Ok(stats)
+    }
 }
 
 impl Radiosity {
@@ -139,29 +193,20 @@ impl Radiosity {
     pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
         Self { settings, sampler, color_space, state: None }
     }
-
-    /// The passes that send light.
-    fn steps(&self) -> u32 {
-        self.settings.steps.max(1)
-    }
 }
 
 impl Integrator for Radiosity {
     fn passes(&self) -> u32 {
-        self.steps() + self.sampler.samples_per_pixel()
+        self.settings.steps + self.sampler.samples_per_pixel()
     }
 
     fn samples_per_pixel(&self) -> u32 {
         self.sampler.samples_per_pixel()
     }
 
-    fn prepare(&mut self, scene: &Scene) {
-        // A final gather scatters once more.
-        let depth = self.settings.max_depth.saturating_sub(u32::from(self.settings.gather > 0));
-        let solution = Solution::new(scene, &self.settings, depth);
-        let lights = scene.light_sampler(LightSamplerKind::Bvh);
-        let view = View::new(scene, &solution, &lights, 0);
-        self.state = Some(State { solution, view, lights, mesh: Vec::new() });
+    fn prepare(&mut self, _scene: &Scene) {
+        // Surfaces are cut in the first pass, which can be cancelled.
+        self.state = None;
     }
 
     fn pass(
@@ -171,27 +216,17 @@ impl Integrator for Radiosity {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
-        let steps = self.steps();
+        let steps = self.settings.steps;
         let samples = self.sampler.samples_per_pixel();
-        let Some(State { solution, view, lights, mesh }) = &mut self.state else {
-            return Ok(RayStats::default());
-        };
-        let mut stats = RayStats::default();
-        if pass < steps {
-            let share = self.settings.tolerance.powf((pass + 1) as f32 / steps as f32);
-            stats += solution.shoot(scene, share, control)?;
-            *view = View::new(scene, solution, lights, 0);
+        if self.state.is_none() {
+            self.state = Some(State::new(scene, &self.settings, control)?);
         }
-        if pass == steps {
-            *view = View::new(scene, solution, lights, self.settings.gather);
-            if self.settings.mesh_out.is_some() {
-                *mesh = ply::encode(scene, solution, view, self.color_space);
-            }
-        }
+        let Some(state) = &mut self.state else { return Ok(RayStats::default()) };
+        let mut stats = state.advance(pass, scene, self.color_space, control)?;
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, filter: &filter, sampler: &self.sampler };
-        let (solution, view) = (&*solution, &*view);
+        let look = Look { view: &state.view, solution: &state.solution, scene, control };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
@@ -199,12 +234,16 @@ impl Integrator for Radiosity {
             for y in bounds.min[1]..bounds.max[1] {
                 for x in bounds.min[0]..bounds.max[0] {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
-                    let l = sample.camera_ray.map_or(Bands::ZERO, |camera| {
-                        view.radiance(scene, solution, camera.ray, &mut sampler, &mut stats) * camera.weight
-                    });
-                    for (l, lambda) in l.groups().iter().zip(solution.wavelengths.groups()) {
-                        tile.add_sample([x, y], l, lambda, sample.filter_weight);
+                    let mut l = Bands::ZERO;
+                    if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
+                        l = look.radiance(ray, &mut sampler, &mut stats)? * weight;
                     }
+                    tile.add_groups(
+                        [x, y],
+                        l.groups(),
+                        look.solution.wavelengths.groups(),
+                        sample.filter_weight,
+                    );
                 }
             }
             Ok(stats)
@@ -228,12 +267,18 @@ impl Integrator for Radiosity {
 
     fn summary(&self) -> Vec<(&'static str, String)> {
         let Some(State { solution, view, .. }) = &self.state else { return Vec::new() };
-        vec![
+        let mebibytes = (solution.bytes() + view.bytes()) as f64 / f64::from(1 << 20);
+        let mut notes = vec![
             ("patches", solution.cut.patches.len().to_string()),
             ("elements", solution.cut.elements.len().to_string()),
             ("shots", solution.shots.to_string()),
             ("unshot light", format!("{:.3} %", 100.0 * solution.unshot_share())),
-            ("patch memory", format!("{:.1} MB", (solution.bytes() + view.bytes()) as f64 * 1e-6)),
-        ]
+            ("patch memory", format!("{mebibytes:.1} MiB")),
+        ];
+        let left_out = solution.cut.mesh.left_out();
+        if left_out > 0 {
+            notes.push(("left out", format!("{left_out} small primitives, beyond what maxpatches allows")));
+        }
+        notes
     }
 }

@@ -1,20 +1,26 @@
 //! Progressive shooting: light leaves the brightest patch first.
 //!
-//! Of diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is what leaves an area, the exitance E what leaves it of its own accord.
-//! Instead of solving the system at once, the patch l that has most to send sends it: every other one receives
+//! Of diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is what leaves an area, the
+//! exitance E what leaves it of its own accord. Instead of solving the system at once, the patch l that has
+//! most to send sends it: every other one receives
 //!
 //! ΔB_i = ρ_i B_l F_li A_l / A_i,
 //!
-//! keeps it, and has that much more to send itself. After each shot there is a picture, and each is better than the last: what is missing is the
-//! light that has not been sent yet. Until then an *ambient* term stands for it: the irradiance that unshot power would make if it were spread
-//! evenly and reflected with the mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It is shown, never sent, and goes to zero.
+//! keeps it, and has that much more to send itself. After each shot there is a picture, and each is better
+//! than the last: what is missing is the light that has not been sent yet. Until then an *ambient* term
+//! stands for it: the irradiance that unshot power would make if it were spread evenly and reflected with the
+//! mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It is shown, never sent, and goes to zero.
 //!
-//! Unshot light is kept apart by how often it was scattered, so that `max_depth` counts the edges of a path as everywhere: a patch sends what was
-//! scattered less than `max_depth` times. One form factor serves for all of it. Lights that are not surfaces (points, distant ones, the
-//! environment) shine on every element once, before the first shot, by samples of the light.
+//! Unshot light is kept apart by how often it was scattered, so that `max_depth` counts the edges of a path
+//! as everywhere: a patch sends what was scattered less than `max_depth` times. One form factor serves for
+//! all of it. Lights that are not surfaces (points, distant ones, the environment) shine on every element
+//! once, before the first shot, by samples of the light.
 //!
-//! Where what a shot brings changes by more than a share of the light that is there, elements are cut and the shot is
-//! received again: elements get fine at the edges of shadows, as those shots make them that cast the shadows.
+//! Where what a shot brings changes by more than a share of the light that is there, elements are cut and the
+//! shot is received again: elements get fine at the edges of shadows, as those shots make them that cast the
+//! shadows. Most shots are faint, though, and most patches are far from them: what would bring much less to a
+//! patch than the change that is worth a cut, even if nothing were between, is received by the patch as a
+//! whole, as if it had not been cut, and handed to its elements later.
 //!
 //! Sources: [Cohen 1988], [Cohen 1986] for elements.
 
@@ -37,6 +43,10 @@ use crate::{Cancelled, Control};
 /// The part of all light, spread evenly, below which an irradiance is next to nothing.
 const FAINT: f32 = 1e-3;
 
+/// The part of the change of light that is worth a cut, below which light comes to patches as if they were
+/// not cut.
+const UNCUT: f32 = 0.04;
+
 /// The state of a solution.
 pub(crate) struct Solution {
     pub wavelengths: Wavelengths,
@@ -51,14 +61,15 @@ pub(crate) struct Solution {
 }
 
 impl Solution {
-    /// Nothing has been sent yet; of light that is scattered up to `depth` times in all.
-    pub fn new(scene: &Scene, settings: &RadiositySettings, depth: u32) -> Self {
+    /// Nothing has been sent yet.
+    pub fn new(scene: &Scene, settings: &RadiositySettings, control: &Control) -> Result<Self, Cancelled> {
         let wavelengths = Wavelengths::new(!scene.options().disable_wavelength_jitter);
-        let cut = Cut::new(scene, settings, &wavelengths, depth as usize);
+        let cut = Cut::new(scene, settings, &wavelengths, control)?;
         let settings = settings.clone();
-        let mut solution = Self { wavelengths, cut, settings, begun: depth == 0, total: 0.0, shots: 0 };
+        let begun = settings.max_depth == 0;
+        let mut solution = Self { wavelengths, cut, settings, begun, total: 0.0, shots: 0 };
         solution.total = solution.unshot_brightness();
-        solution
+        Ok(solution)
     }
 
     /// The brightness of what is still to be sent, as a power.
@@ -66,9 +77,13 @@ impl Solution {
         self.cut.patches.iter().map(|patch| patch.brightness(0) + patch.brightness(1)).sum()
     }
 
-    /// The share of all light that is still to be sent.
+    /// The share of all light that is still to be sent: all of it, as long as it is not known how much there
+    /// is.
     pub fn unshot_share(&self) -> f32 {
-        if self.total > 0.0 { self.unshot_brightness() / self.total } else { 0.0 }
+        match self.total > 0.0 {
+            true => self.unshot_brightness() / self.total,
+            false => f32::from(u8::from(!self.begun)),
+        }
     }
 
     /// Shoots until no more than a share of all light is left to be sent.
@@ -82,6 +97,7 @@ impl Solution {
             let Some((patch, side)) = self.brightest() else { break };
             self.shoot_from(scene, patch, side, control, &mut stats)?;
         }
+        self.cut.settle();
         Ok(stats)
     }
 
@@ -108,78 +124,75 @@ impl Solution {
     fn shoot_from(
         &mut self,
         scene: &Scene,
-        patch: u32,
+        source: u32,
         side: usize,
         control: &Control,
         stats: &mut RayStats,
     ) -> Result<(), Cancelled> {
         let time = self.cut.mesh.time();
-        let Patch { cell, area, ref unshot, .. } = self.cut.patches[patch as usize];
+        let Patch { cell, area, ref unshot, .. } = self.cut.patches[source as usize];
         let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
         let all: Bands = layers.iter().copied().sum();
-        let sent_on: Bands = layers.iter().rev().skip(1).copied().sum();
+        // What was scattered last before it is scattered for the last time is not sent on.
+        let last_layer = self.settings.max_depth as usize - 1;
+        let last = layers.get(last_layer).copied().unwrap_or_default();
+        let sent_on: Bands = layers.iter().take(last_layer).copied().sum();
         let brightness = self.wavelengths.brightness(&all);
+        // What patches receive as wholes.
+        let mut wholes = Vec::new();
         let received = match self.settings.form_factors {
             FormFactors::Analytic => {
-                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[patch as usize], side)
-                    .hastily(FAINT * self.even() / brightness, self.shots);
-                self.receive(scene, brightness, |cut, ids| {
-                    each_element(cut, ids, control, stats, |element, stats| match element.patch == patch {
-                        // What is bent stands off its chord, and would see it: from behind, as if it filled the sky.
+                let careful = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[source as usize], side);
+                let unit = self.even() / brightness;
+                let hasty = careful.clone().hastily(FAINT * unit, self.shots);
+                let too_little = UNCUT * self.settings.gradient * unit;
+                let on_whole = |patch: &Patch, stats: &mut RayStats| {
+                    let whole = patch.whole.as_ref().filter(|whole| careful.most_on(whole) <= too_little)?;
+                    let is_itself = whole.patch == source;
+                    Some(if is_itself {
+                        Received::default()
+                    } else {
+                        careful.shine(scene, whole, time, stats)
+                    })
+                };
+                wholes = each(&self.cut.patches, control, stats, on_whole)?;
+                self.receive(scene, brightness, &wholes, |cut, ids| {
+                    each_element(cut, ids, control, stats, |element, stats| match element.patch == source {
+                        // What is bent stands off its chord, and would see it: from behind, as if it filled
+                        // the sky.
                         true => Received::default(),
-                        false => emitter.shine(scene, element, time, stats),
+                        false => hasty.shine(scene, element, time, stats),
                     })
                 })?
             }
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
                 let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
-                self.receive(scene, brightness, |cut, ids| Ok(seen.received(scene, cut, area, ids)))?
+                self.receive(scene, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };
-        let source = &mut self.cut.patches[patch as usize];
-        source.unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
-        source.spread.iter_mut().for_each(|sides| sides[side] = 0.0);
-        let mut sent = vec![[Bands::ZERO; 2]; self.cut.patches.len()];
-        for (element, received) in self.cut.elements.iter_mut().zip(&received) {
-            let sides = received.sides(element);
-            if sides == [0.0; 2] {
-                continue;
-            }
-            for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
-                for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0)
-                {
-                    *light += all * factor;
-                }
-            }
-            let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
-            let patch = &mut self.cut.patches[element.patch as usize];
-            for (i, power) in sides.map(|factor| factor * element.area).into_iter().enumerate() {
-                if power == 0.0 {
-                    continue;
-                }
-                patch.faced[i] = true;
-                let Albedo { reflectance, transmittance } = &element.albedo;
-                for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
-                    if albedo.is_black() {
-                        continue;
-                    }
-                    let scattered = *albedo * power;
-                    sent[element.patch as usize][side] += scattered;
-                    let brightness = self.wavelengths.brightness(&(scattered * sent_on));
-                    element
-                        .spread(brightness, arrived)
-                        .iter()
-                        .zip(&mut patch.spread)
-                        .for_each(|(b, to)| to[side] += b);
-                }
+        let Cut { patches, elements, .. } = &mut self.cut;
+        patches[source as usize].unshot.iter_mut().for_each(|sides| sides[side] = Bands::ZERO);
+        patches[source as usize].spread.iter_mut().for_each(|sides| sides[side] = 0.0);
+        let shot = Shot { wavelengths: &self.wavelengths, all, sent_on, last };
+        let mut sent = vec![[Bands::ZERO; 2]; patches.len()];
+        for (element, received) in elements.iter_mut().zip(&received) {
+            let patch = element.patch as usize;
+            shot.arrive(element, received, &mut patches[patch], &mut sent[patch]);
+        }
+        for ((patch, received), sent) in patches.iter_mut().zip(&wholes).zip(&mut sent) {
+            if let Some(received) = received
+                && let Some(mut whole) = patch.whole.take()
+            {
+                shot.arrive(&mut whole, received, patch, sent);
+                patch.whole = Some(whole);
             }
         }
-        for (patch, sent) in self.cut.patches.iter_mut().zip(&sent) {
-            if *sent != [Bands::ZERO; 2] {
-                for (unshot, layer) in patch.unshot.iter_mut().skip(1).zip(&layers) {
-                    (0..2).for_each(|i| unshot[i] += sent[i] * *layer);
-                }
+        let going_on: Vec<_> =
+            (1..).zip(layers.iter().take(last_layer)).filter(|(_, layer)| !layer.is_black()).collect();
+        for (patch, sent) in patches.iter_mut().zip(&sent).filter(|(_, sent)| **sent != [Bands::ZERO; 2]) {
+            for &(scattered, layer) in &going_on {
+                patch.add_unshot(scattered, sent.map(|side| side * *layer));
             }
         }
         self.shots += 1;
@@ -214,25 +227,25 @@ impl Solution {
         };
         // Once to know how much light there is, and again to see where it changes fast.
         let ids: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
-        let lit = each_element(&self.cut, &ids, control, stats, shine)?;
-        let power = |(element, lit): (&Element, &Lit)| {
-            let Lit { quarters } = lit;
-            let quarter = |k: usize| {
-                wavelengths.brightness(&(quarters[k][0] + quarters[k][1])) * element.points[k].weight
-            };
-            element.area * (0..4).map(quarter).sum::<f32>()
+        let power = |element: &Element, stats: &mut RayStats| {
+            let brightnesses = shine(element, stats).brightnesses(&wavelengths);
+            let sum: f32 = brightnesses.iter().zip(&element.points).map(|(b, point)| b * point.weight).sum();
+            element.area * sum
         };
-        self.total += self.cut.elements.iter().zip(&lit).map(power).sum::<f32>();
-        let lit = self.receive(scene, 1.0, |cut, ids| each_element(cut, ids, control, stats, shine))?;
+        self.total += each_element(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
+        let lit = self.receive(scene, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
             element.quarters = lit.quarters;
             let sides = element.irradiance();
             let scattered = element.albedo.scatter(&sides);
             let patch = &mut self.cut.patches[element.patch as usize];
             (0..2).for_each(|i| patch.faced[i] |= !sides[i].is_black());
-            let Some(once) = patch.unshot.get_mut(1) else { continue };
+            if self.settings.max_depth == 1 {
+                element.last = sides;
+                continue;
+            }
+            patch.add_unshot(1, scattered.map(|side| side * element.area));
             for i in 0..2 {
-                once[i] += scattered[i] * element.area;
                 let brightness = self.wavelengths.brightness(&scattered[i]) * element.area;
                 let arrived = lit.brightnesses(&self.wavelengths);
                 element
@@ -245,16 +258,21 @@ impl Solution {
         Ok(())
     }
 
-    /// Asks all elements what they receive of light of this brightness, and those again that are cut because of it.
+    /// Asks all elements what they receive of light of this brightness, and those again that are cut because
+    /// of it; but not those of patches that receive it as `wholes`.
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
         brightness: f32,
+        wholes: &[Option<Received>],
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
     ) -> Result<Vec<T>, Cancelled> {
         let even = self.even();
         let mut received = Vec::new();
-        let mut fresh: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
+        let is_asked = |patch: u32| wholes.get(patch as usize).is_none_or(Option::is_none);
+        let elements = (0..).zip(&self.cut.elements);
+        let mut fresh: Vec<u32> =
+            elements.filter(|(_, element)| is_asked(element.patch)).map(|(id, _)| id).collect();
         while !fresh.is_empty() {
             received.resize_with(self.cut.elements.len(), T::default);
             let answers = answer(&self.cut, &fresh)?;
@@ -264,11 +282,11 @@ impl Solution {
                 let quarters = received[id as usize].brightnesses(&self.wavelengths);
                 let least = quarters.into_iter().fold(f32::INFINITY, f32::min);
                 let most = quarters.into_iter().fold(0.0, f32::max);
-                let [outer, inner] = element.irradiance();
-                let here = self.wavelengths.brightness(&(outer + inner));
                 let contrast = (most - least) * brightness;
+                let here = || self.wavelengths.brightness(&element.irradiance().into_iter().sum());
                 element.level < self.settings.subdivision
-                    && contrast > self.settings.gradient * here.max(even)
+                    && contrast > self.settings.gradient * even
+                    && contrast > self.settings.gradient * here()
             };
             let coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
             fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
@@ -290,13 +308,13 @@ impl Solution {
             return Bands::ZERO;
         }
         let rho = reflecting * area.recip();
-        let depth = patches.first().map_or(0, |patch| patch.unshot.len());
         let mut ambient = Bands::ZERO;
-        // Light that was scattered last counts once; what was scattered less often, as often as it may be scattered yet.
+        // Light that was scattered last counts once; what was scattered less often, as often as it may be
+        // scattered yet.
         let mut series = Bands::splat(1.0);
-        for layer in (0..depth).rev() {
-            let unshot: Bands =
-                patches.iter().map(|patch| patch.unshot[layer][0] + patch.unshot[layer][1]).sum();
+        for layer in (0..self.settings.max_depth as usize).rev() {
+            let of_layer = patches.iter().filter_map(|patch| patch.unshot.get(layer));
+            let unshot: Bands = of_layer.map(|sides| sides[0] + sides[1]).sum();
             ambient += unshot * series * area.recip();
             series = Bands::splat(1.0) + series * rho;
         }
@@ -305,9 +323,54 @@ impl Solution {
 
     /// Bytes of memory that patches, elements and the mesh take.
     pub fn bytes(&self) -> usize {
-        let layers = self.cut.patches.first().map_or(0, |patch| size_of_val(&*patch.unshot));
-        let patches = self.cut.patches.len() * (size_of::<Patch>() + layers);
+        let patch = |patch: &Patch| {
+            let whole = patch.whole.as_ref().map_or(0, |whole| size_of_val(&**whole));
+            size_of::<Patch>() + whole + patch.unshot.capacity() * size_of::<[Bands; 2]>()
+        };
+        let patches: usize = self.cut.patches.iter().map(patch).sum();
         self.cut.mesh.bytes() + patches + size_of_val(&*self.cut.elements)
+    }
+}
+
+/// The light of a shot, per area of the patch that it leaves.
+struct Shot<'a> {
+    wavelengths: &'a Wavelengths,
+    all: Bands,
+    /// That which may be scattered more than once.
+    sent_on: Bands,
+    /// That which may be scattered once.
+    last: Bands,
+}
+
+impl Shot<'_> {
+    /// Lets light arrive at an element of a patch, which has more to send then, and adds what is scattered of
+    /// light of unit radiosity.
+    fn arrive(&self, element: &mut Element, received: &Received, patch: &mut Patch, sent: &mut [Bands; 2]) {
+        let sides = received.sides(element);
+        if sides == [0.0; 2] {
+            return;
+        }
+        for (quarter, received) in element.quarters.iter_mut().zip(&received.quarters) {
+            for (light, &factor) in quarter.iter_mut().zip(received).filter(|(_, factor)| **factor > 0.0) {
+                *light += self.all * factor;
+            }
+        }
+        let arrived = received.quarters.map(|sides| sides[0] + sides[1]);
+        for (i, factor) in sides.into_iter().enumerate().filter(|(_, factor)| *factor > 0.0) {
+            patch.faced[i] = true;
+            element.last[i] += self.last * factor;
+            let Albedo { reflectance, transmittance } = &element.albedo;
+            for (albedo, side) in [(reflectance, i), (transmittance, 1 - i)] {
+                if albedo.is_black() {
+                    continue;
+                }
+                let scattered = *albedo * (factor * element.area);
+                sent[side] += scattered;
+                let brightness = self.wavelengths.brightness(&(scattered * self.sent_on));
+                let spread = element.spread(brightness, arrived);
+                spread.iter().zip(&mut patch.spread).for_each(|(b, to)| to[side] += b);
+            }
+        }
     }
 }
 
@@ -335,7 +398,7 @@ impl Arrival for Lit {
     }
 }
 
-/// Asks elements by their indices, on all threads.
+/// Asks elements by their indices.
 fn each_element<T: Send>(
     cut: &Cut,
     ids: &[u32],
@@ -343,14 +406,26 @@ fn each_element<T: Send>(
     stats: &mut RayStats,
     answer: impl Fn(&Element, &mut RayStats) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    let some = |ids: &[u32]| {
-        control.check()?;
+    each(ids, control, stats, |&id, stats| answer(&cut.elements[id as usize], stats))
+}
+
+/// Asks all of them, on all threads.
+fn each<I: Sync, T: Send>(
+    asked: &[I],
+    control: &Control,
+    stats: &mut RayStats,
+    answer: impl Fn(&I, &mut RayStats) -> T + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    let some = |asked: &[I]| {
         let mut stats = RayStats::default();
-        let mut answer = |&id: &u32| answer(&cut.elements[id as usize], &mut stats);
-        let answers: Vec<T> = ids.iter().map(&mut answer).collect();
+        let mut answer = |one: &I| {
+            control.check()?;
+            Ok(answer(one, &mut stats))
+        };
+        let answers: Vec<T> = asked.iter().map(&mut answer).collect::<Result<_, Cancelled>>()?;
         Ok((answers, stats))
     };
-    let answers: Vec<_> = ids.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
+    let answers: Vec<_> = asked.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
     answers.iter().for_each(|(_, some)| *stats += *some);
     Ok(answers.into_iter().flat_map(|(answers, _)| answers).collect())
 }

@@ -1,13 +1,18 @@
 //! From a solution to a picture.
 //!
-//! *Interpolated*: every vertex has the mean of the irradiances that the elements around it have there, as their quarters tell, and light changes linearly over the fan of triangles between an
-//! element's centre, which has the element's own irradiance, and its outline. What is seen is L = L_e + (ρ E + τ E′)/π with the albedo of the very
-//! point, so that textures are sharp, E being the irradiance of the side that is seen and E′ that of the other.
+//! *Interpolated*: every vertex has the mean of the irradiances that the elements around it have there, as
+//! their quarters tell, and light changes linearly over the fan of triangles between an element's centre,
+//! which has the element's own irradiance, and its outline. What is seen is L = L_e + (ρ E + τ E′)/π with the
+//! albedo of the very point, so that textures are sharp, E being the irradiance of the side that is seen and
+//! E′ that of the other.
 //!
-//! *Gathered*: direct light is sampled as by paths, one light a sample, and indirect light is what rays in random directions of the cosine's density
-//! find on the elements. Shadows are then as sharp as they are, and errors of the solution count only after one more diffuse reflection
-//! ([Lischinski 1993]; [Cohen 1993]). Surfaces that have no elements (planes without end, formulas, solids, curves) are always
-//! shown so; they take light but pass none on.
+//! *Gathered*: direct light is sampled as by paths, one light a sample, and indirect light is what rays in
+//! random directions of the cosine's density find on the elements. Shadows are then as sharp as they are, and
+//! errors of the solution count only after one more diffuse reflection ([Lischinski 1993]; [Cohen 1993]).
+//! Surfaces that have no elements (planes without end, formulas, solids, curves, and the smallest where there
+//! are too many primitives) are always shown so; they take light but pass none on. What is gathered is
+//! scattered once more than what the elements show, so that of their light that part is left out which was
+//! scattered as often as it may be.
 
 use geometry::{Hit, RayStats, SurfacePoint};
 use math::{Frame, Ray, RayDifferential, Vec2};
@@ -22,6 +27,7 @@ use super::element::Albedo;
 use super::mesh::{Cell, Corner};
 use super::shooting::{Solution, arrives, sample_light};
 use crate::direct::pass_through;
+use crate::{Cancelled, Control};
 
 /// A solution made ready to be looked at.
 pub(crate) struct View {
@@ -44,19 +50,19 @@ impl View {
         let outline =
             |element: &super::element::Element| mesh.outline(scene.world(), mesh.cell(element.cell));
         let outlines: Vec<Vec<Corner>> = elements.par_iter().map(outline).collect();
-        let mut sums = vec![([Bands::ZERO; 2], 0.0); mesh.vertices().len()];
+        let mut vertices = vec![[Bands::ZERO; 2]; mesh.vertices().len()];
+        let mut counts = vec![0.0f32; vertices.len()];
         for (element, outline) in elements.iter().zip(&outlines) {
             for corner in outline {
-                let (sum, count) = &mut sums[corner.vertex as usize];
+                let sum = &mut vertices[corner.vertex as usize];
                 let here = element.irradiance_at(&mesh.cell(element.cell).domain(), corner.uv);
                 (0..2).for_each(|i| sum[i] += here[i]);
-                *count += 1.0;
+                counts[corner.vertex as usize] += 1.0;
             }
         }
-        let vertices = sums
-            .into_iter()
-            .map(|(sum, count)| sum.map(|side| side * f32::max(count, 1.0).recip()))
-            .collect();
+        for (sum, count) in vertices.iter_mut().zip(counts) {
+            *sum = sum.map(|side| side * f32::max(count, 1.0).recip());
+        }
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
@@ -98,21 +104,30 @@ impl View {
     pub fn outline(&self, element: u32) -> &[Corner] {
         &self.outlines[element as usize]
     }
+}
 
+/// A look at a solution, which may be broken off.
+pub(crate) struct Look<'a> {
+    pub view: &'a View,
+    pub solution: &'a Solution,
+    pub scene: &'a Scene,
+    pub control: &'a Control,
+}
+
+impl Look<'_> {
     /// The radiance that arrives along a ray.
     pub fn radiance(
         &self,
-        scene: &Scene,
-        solution: &Solution,
         mut ray: RayDifferential,
         sampler: &mut Sampler,
         stats: &mut RayStats,
-    ) -> Bands {
+    ) -> Result<Bands, Cancelled> {
+        let Self { view, solution, scene, .. } = *self;
         let wavelengths = &solution.wavelengths;
         let mut l = Bands::ZERO;
         loop {
             let Some(hit) = scene.hit(&ray.ray, f32::INFINITY, stats) else {
-                return l + wavelengths.sample(|lambda| scene.escaped(&ray.ray, lambda));
+                return Ok(l + wavelengths.sample(|lambda| scene.escaped(&ray.ray, lambda)));
             };
             let surface = scene.world().surface(&ray.ray, &hit);
             let mut interaction = scene.interaction(&hit, surface);
@@ -124,35 +139,34 @@ impl View {
                 continue;
             };
             if solution.settings.max_depth == 0 {
-                return l;
+                return Ok(l);
             }
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
-            if let (Some((leaf, uv)), 0) = (leaf, self.gather) {
-                let sides = albedo.scatter(&self.irradiance(solution, leaf, uv));
-                return l + sides[seen_side(&surface)] * FRAC_1_PI;
+            if let (Some((leaf, uv)), 0) = (leaf, view.gather) {
+                let sides = albedo.scatter(&view.irradiance(solution, leaf, uv));
+                return Ok(l + sides[seen_side(&surface)] * FRAC_1_PI);
             }
-            return l + self.gathered(scene, solution, &interaction, &albedo, sampler, stats);
+            return Ok(l + self.gathered(&interaction, &albedo, sampler, stats)?);
         }
     }
 
     /// What a surface scatters to where it is seen from, by samples.
     fn gathered(
         &self,
-        scene: &Scene,
-        solution: &Solution,
         interaction: &SurfaceInteraction,
         albedo: &Albedo,
         sampler: &mut Sampler,
         stats: &mut RayStats,
-    ) -> Bands {
+    ) -> Result<Bands, Cancelled> {
         let s = &interaction.surface;
         let ns = s.shading.n;
         let toward = if s.wo.dot(ns) < 0.0 { -ns } else { ns };
         let frame = Frame::from_z(toward);
-        let samples = self.gather.max(1);
+        let samples = self.view.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
-            sum += self.direct(scene, solution, interaction, albedo, sampler, stats);
+            self.control.check()?;
+            sum += self.direct(interaction, albedo, sampler, stats);
             let (uc, u) = (sampler.get_1d(), sampler.get_2d());
             let (back, on) = (albedo.reflectance.mean(), albedo.transmittance.mean());
             if back + on == 0.0 {
@@ -166,25 +180,25 @@ impl View {
                 wi.z = -wi.z;
                 albedo.transmittance * ((back + on) / on)
             };
-            sum += weight * found(scene, solution, interaction.spawn_ray(frame.from_local(wi)), stats);
+            sum +=
+                weight * found(self.scene, self.solution, interaction.spawn_ray(frame.from_local(wi)), stats);
         }
-        sum * (samples as f32).recip()
+        Ok(sum * (samples as f32).recip())
     }
 
     /// What a surface scatters of the light that comes straight from the lights, by one sample of one.
     fn direct(
         &self,
-        scene: &Scene,
-        solution: &Solution,
         interaction: &SurfaceInteraction,
         albedo: &Albedo,
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> Bands {
+        let Self { view, solution, scene, .. } = *self;
         let s = &interaction.surface;
         let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
         let context = interaction.light_context();
-        let Some((light, pmf)) = self.lights.sample(&context, u) else { return Bands::ZERO };
+        let Some((light, pmf)) = view.lights.sample(&context, u) else { return Bands::ZERO };
         let found = sample_light(scene, &solution.wavelengths, light, &context, u_light);
         let Some((l, sample)) = found else { return Bands::ZERO };
         let cos_theta = sample.wi.dot(s.shading.n);
@@ -197,7 +211,7 @@ impl View {
     }
 }
 
-/// The radiance that elements send back along a ray, emission apart.
+/// The radiance that elements send back along a ray to be scattered once more, emission apart.
 fn found(scene: &Scene, solution: &Solution, ray: Ray, stats: &mut RayStats) -> Bands {
     let Some((hit, surface)) = first_solid(scene, ray, stats) else { return Bands::ZERO };
     let Some((leaf, uv)) = solution.cut.mesh.leaf(scene.world(), &hit, &surface) else { return Bands::ZERO };

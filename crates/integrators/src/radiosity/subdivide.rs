@@ -1,12 +1,14 @@
-//! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller and smaller elements.
+//! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller and smaller
+//! elements.
 
 use rayon::prelude::*;
 use scene::Scene;
 
 use super::RadiositySettings;
 use super::bands::Wavelengths;
-use super::element::{Element, Patch, Place, albedo_at};
+use super::element::{Element, Patch, Place};
 use super::mesh::Mesh;
+use crate::{Cancelled, Control};
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.
 const PATCHES_PER_RADIUS: f32 = 6.0;
@@ -19,43 +21,59 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more than `max_patches`, they
-    /// are twice as long, and so on; but one for each primitive there will be.
-    pub fn new(scene: &Scene, settings: &RadiositySettings, wavelengths: &Wavelengths, depth: usize) -> Self {
-        let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
-        let [open, close] = scene.camera().shutter();
-        let whole = Mesh::new(scene, 0.5 * (open + close), |hit, surface| {
-            albedo_at(scene, hit, surface, wavelengths).is_some()
-        });
+    /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more than
+    /// `max_patches`, they are twice as long, and so on. No more than half of `max_patches` primitives are
+    /// cut at all, so that large ones always can be.
+    pub fn new(
+        scene: &Scene,
+        settings: &RadiositySettings,
+        wavelengths: &Wavelengths,
+        control: &Control,
+    ) -> Result<Self, Cancelled> {
         let max_patches = settings.max_patches as usize;
+        let [open, close] = scene.camera().shutter();
+        let whole = Mesh::new(scene, 0.5 * (open + close), max_patches.div_ceil(2), control)?;
+        let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
+        // No patch is larger than a square with sides of this length.
+        let area = whole.whole_area(scene.world());
+        while f64::from(size).powi(2) * (max_patches as f64) < area {
+            size *= 2.0;
+        }
         let (mut mesh, leaves) = loop {
-            match cut(scene, whole.clone(), size, max_patches) {
+            match cut(scene, whole.clone(), size, max_patches, control)? {
                 Some(cut) => break cut,
                 None => size *= 2.0,
             }
         };
         let ids: Vec<(u32, u32)> = (0..).zip(leaves).collect();
-        let made: Vec<(Patch, Element)> = ids
-            .par_iter()
-            .map(|&(id, cell)| {
-                let patch = Patch::new(scene, &mesh, wavelengths, cell, depth);
-                let place = Place { patch: id, quarter: 0, level: 0 };
-                (patch, Element::new(scene, &mesh, wavelengths, cell, place))
-            })
-            .collect();
+        let make = |&(id, cell): &(u32, u32)| {
+            control.check()?;
+            let patch = Patch::new(scene, &mesh, wavelengths, cell, settings.max_depth);
+            let place = Place { patch: id, quarter: 0, level: 0 };
+            Ok((patch, Element::new(scene, &mesh, wavelengths, cell, place)))
+        };
+        let made: Vec<(Patch, Element)> = ids.par_iter().map(make).collect::<Result<_, Cancelled>>()?;
         ids.iter().for_each(|&(id, cell)| mesh.set_element(cell, id));
         let (patches, elements) = made.into_iter().unzip();
-        Self { mesh, patches, elements }
+        Ok(Self { mesh, patches, elements })
     }
 }
 
-/// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some could be longer.
-fn cut(scene: &Scene, mut mesh: Mesh, size: f32, most: usize) -> Option<(Mesh, Vec<u32>)> {
+/// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some could be
+/// longer.
+fn cut(
+    scene: &Scene,
+    mut mesh: Mesh,
+    size: f32,
+    most: usize,
+    control: &Control,
+) -> Result<Option<(Mesh, Vec<u32>)>, Cancelled> {
     let world = scene.world();
     let mut rest: Vec<u32> = (0..mesh.len() as u32).rev().collect();
     let mut leaves = Vec::new();
     let mut splits = false;
     while let Some(cell) = rest.pop() {
+        control.check()?;
         let length = mesh.size(world, cell);
         // Bent cells are cut as long as that makes patches, not dust.
         let is_bent = length > size * BENT_PART && mesh.is_bent(world, cell);
@@ -67,18 +85,29 @@ fn cut(scene: &Scene, mut mesh: Mesh, size: f32, most: usize) -> Option<(Mesh, V
             leaves.push(cell);
         }
         if splits && leaves.len() + rest.len() > most {
-            return None;
+            return Ok(None);
         }
     }
-    Some((mesh, leaves))
+    Ok(Some((mesh, leaves)))
 }
 
 /// The part of a patch's size below which bent cells are good enough.
 const BENT_PART: f32 = 0.05;
 
 impl Cut {
-    /// Halves elements twice, as long as there is room for more of them. The parts inherit the light of the whole. Returns those
-    /// that are new or have become smaller.
+    /// Hands what patches received as wholes to their elements.
+    pub fn settle(&mut self) {
+        let Self { mesh, patches, elements } = self;
+        elements.par_iter_mut().for_each(|element| {
+            if let Some(whole) = &patches[element.patch as usize].whole {
+                element.inherit(mesh, whole);
+            }
+        });
+        patches.iter_mut().filter_map(|patch| patch.whole.as_mut()).for_each(|whole| whole.darken());
+    }
+
+    /// Halves elements twice, as long as there is room for more of them. The parts inherit the light of the
+    /// whole. Returns those that are new or have become smaller.
     pub fn split(
         &mut self,
         scene: &Scene,
@@ -103,11 +132,9 @@ impl Cut {
             let quarter_of = |cell: u32| mesh.cell(cell).domain().quarter_of(center);
             let quarter = quarter_of(self.patches[whole.patch as usize].cell);
             let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
-            let part = Element::new(scene, mesh, wavelengths, cell, place);
-            let domain = mesh.cell(whole.cell).domain();
-            let quarters = mesh.cell(cell).domain().quarters();
-            let inherited = quarters.map(|quarter| whole.irradiance_at(&domain, quarter.center()));
-            Element { quarters: inherited, ..part }
+            let mut part = Element::new(scene, mesh, wavelengths, cell, place);
+            part.inherit(mesh, whole);
+            part
         };
         let made: Vec<Element> = parts.par_iter().map(make).collect();
         let mut changed = Vec::with_capacity(made.len());
@@ -115,7 +142,12 @@ impl Cut {
             // The first part takes the place of the whole.
             let id = if i % 4 == 0 { whole } else { self.elements.len() as u32 };
             if i % 4 == 0 {
-                self.elements[id as usize] = element;
+                let mut whole = std::mem::replace(&mut self.elements[id as usize], element);
+                if whole.level == 0 {
+                    whole.darken();
+                    let patch = &mut self.patches[whole.patch as usize];
+                    patch.whole = Some(Box::new(whole));
+                }
             } else {
                 self.elements.push(element);
             }

@@ -68,8 +68,12 @@ fn settings(patch_size: f32) -> RadiositySettings {
     RadiositySettings { patch_size: Some(patch_size), ..RadiositySettings::default() }
 }
 
+fn unsolved(scene: &Scene, settings: &RadiositySettings) -> Solution {
+    Solution::new(scene, settings, &Control::default()).unwrap()
+}
+
 fn solved(scene: &Scene, settings: &RadiositySettings) -> Solution {
-    let mut solution = Solution::new(scene, settings, settings.max_depth);
+    let mut solution = unsolved(scene, settings);
     solution.shoot(scene, settings.tolerance, &Control::default()).unwrap();
     solution
 }
@@ -89,7 +93,7 @@ fn column(scene: &Scene, solution: &Solution, patch: &Patch) -> Vec<f32> {
 fn the_rows_of_a_closed_room_sum_to_one() {
     let scene = compile(&room(Point3::new(1.0, 1.5, 0.8), [0.5; 6]));
     let settings = settings(0.2);
-    let solution = Solution::new(&scene, &settings, 1);
+    let solution = unsolved(&scene, &settings);
     let mut rows = vec![0.0; solution.cut.elements.len()];
     for patch in &solution.cut.patches {
         let column = column(&scene, &solution, patch);
@@ -104,7 +108,7 @@ fn the_rows_of_a_closed_room_sum_to_one() {
 #[test]
 fn a_hemicube_agrees_within_its_resolution() {
     let scene = compile(&room(Point3::new(1.0, 1.5, 0.8), [0.5; 6]));
-    let solution = Solution::new(&scene, &settings(0.4), 1);
+    let solution = unsolved(&scene, &settings(0.4));
     let ids: Vec<u32> = (0..solution.cut.elements.len() as u32).collect();
     let patch = &solution.cut.patches[7];
     let exact = column(&scene, &solution, patch);
@@ -113,7 +117,7 @@ fn a_hemicube_agrees_within_its_resolution() {
         let cube = Hemicube::new(resolution, 0);
         let seen =
             cube.look(&scene, &solution.cut.mesh, patch.cell, 0, &Control::default(), &mut stats).unwrap();
-        let received = seen.received(&scene, &solution.cut, patch.area, &ids);
+        let received = seen.received(&solution.cut, patch.area, &ids);
         let mut sum = 0.0;
         for ((received, element), exact) in received.iter().zip(&solution.cut.elements).zip(&exact) {
             let found = received.sides(element)[0];
@@ -138,7 +142,7 @@ fn energy_is_conserved_while_shooting() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), reflectances));
     for form_factors in [FormFactors::Analytic, FormFactors::Hemicube { resolution: 64 }] {
         let settings = RadiositySettings { max_depth: 12, form_factors, subdivision: 1, ..settings(0.5) };
-        let mut solution = Solution::new(&scene, &settings, settings.max_depth);
+        let mut solution = unsolved(&scene, &settings);
         let power = |solution: &Solution| {
             let unshot =
                 solution.cut.patches.iter().flat_map(|patch| &patch.unshot).map(|sides| sides[0] + sides[1]);
@@ -270,4 +274,45 @@ fn the_mesh_is_written_whole() {
     let vertex = |i: usize| &bytes[header_end + i * 39..][..39];
     let brightest = (0..vertices).map(|i| vertex(i)[24..27].iter().copied().max().unwrap()).max();
     assert_eq!(brightest, Some(255));
+}
+
+#[test]
+fn a_sky_that_nothing_has_received_is_all_to_be_sent() {
+    let mut desc = SceneDesc::default();
+    let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(1.0));
+    desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
+    desc.shapes.push(ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 360.0 }.into());
+    assert_eq!(unsolved(&compile(&desc), &settings(0.5)).unshot_share(), 1.0);
+}
+
+/// Of more primitives than there may be patches, the lights and the largest are cut.
+#[test]
+fn many_primitives_do_not_make_more_patches_than_there_may_be() {
+    let dust = |i: u32| {
+        let p = Point3::new(i as f32 / 400.0, 0.5, 0.2);
+        [p, p + Point3::new(1e-3, 0.0, 0.0), p + Point3::new(0.0, 0.0, 1e-3)]
+    };
+    let mesh = MeshDesc {
+        positions: (0..400).flat_map(dust).collect::<Vec<_>>().into(),
+        indices: (0..400).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect::<Vec<_>>().into(),
+        ..MeshDesc::default()
+    };
+    let mut desc = room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]);
+    desc.shapes.push(ShapeKind::Triangles(mesh).into());
+    let scene = furnished(desc);
+    let solution = solved(&scene, &RadiositySettings { max_patches: 200, tolerance: 0.1, ..settings(1e-6) });
+    // The room, the lamp and the ball.
+    assert_eq!(solution.cut.mesh.left_out(), 400 + 6 + 2 + 1 - 100);
+    assert!(solution.cut.patches.len() > 100 && solution.cut.elements.len() <= 200);
+    let area: f32 = solution.cut.patches.iter().map(|patch| patch.area).sum();
+    assert!(area > 6.5, "{area}");
+    assert!(solution.cut.elements.iter().any(|element| !element.irradiance()[0].is_black()));
+}
+
+#[test]
+fn cutting_can_be_stopped() {
+    let scene = compile(&room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
+    let control = Control::default();
+    control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+    assert!(Solution::new(&scene, &settings(0.1), &control).is_err());
 }

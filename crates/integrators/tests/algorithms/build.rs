@@ -120,6 +120,9 @@ fn radiosity_refuses_settings_without_sense() {
         patch_size: Some(0.0),
         tolerance: 1.0,
         steps: 0,
+        hemicube_resolution: 2_000_000_000,
+        max_patches: i32::MAX,
+        mesh_out: Some("room.obj".into()),
         ..RadiosityDesc::default()
     };
     let integrator = IntegratorDesc::Radiosity(settings).into();
@@ -127,10 +130,13 @@ fn radiosity_refuses_settings_without_sense() {
     assert_eq!(
         messages(&errors),
         [
-            "`maxdepth` is 0 or more, not -1",
+            "`hemicuberesolution` is from 2 to 1024, not 2000000000",
+            "`maxdepth` is from 0 to 100, not -1",
+            "`maxpatches` is from 1 to 1000000, not 2147483647",
             "`steps` is 1 or more, not 0",
             "`patchsize` is a number above 0, not 0",
             "`tolerance` is between 0 and 1, not 1",
+            "the name of `mesh-out` ends in .ply, not as `room.obj`",
         ]
     );
 }

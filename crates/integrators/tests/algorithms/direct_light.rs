@@ -111,6 +111,14 @@ fn lights_at_a_point_and_far_away() {
 }
 
 #[test]
+fn whitted_counts_scattering_events_as_all_do() {
+    let scene = under_delta_lights(|_| ());
+    assert_eq!(look(&mut Whitted { max_depth: 0 }, &scene, 10).mean, 0.0, "direct light is scattered once");
+    let expected = f64::from(RHO) / PI * (0.25 + 0.5);
+    assert_mean(&look(&mut Whitted { max_depth: 1 }, &scene, 10), expected, 1, "Whitted");
+}
+
+#[test]
 fn only_ray_casting_ignores_shadows() {
     let (lit, shadowed) = (f64::from(RHO) / PI * 0.75, f64::from(RHO) / PI * 0.5);
     // Delta lights throw the shadow of interfaces, too.

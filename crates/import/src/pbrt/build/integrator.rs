@@ -149,7 +149,7 @@ fn radiosity(reader: &mut Reader) -> RadiosityDesc {
             default.form_factors,
             &[("analytic", FormFactorsDesc::Analytic), ("hemicube", FormFactorsDesc::Hemicube)],
         ),
-        hemicube_resolution: reader.integer("hemicuberesolution", default.hemicube_resolution, 2..=4096),
+        hemicube_resolution: reader.integer("hemicuberesolution", default.hemicube_resolution, 2..=1024),
         patch_size: Some(reader.positive("patchsize", f32::INFINITY)).filter(|size| size.is_finite()),
         subdivision: reader.integer("subdivision", default.subdivision, 0..=10),
         gradient: reader.positive("gradient", default.gradient),
