@@ -185,26 +185,26 @@ impl<const N: usize> LaneHits<N> {
         // SAFETY: who has vectors has the instructions.
         let (one, tiny) = unsafe { (V::splat(1.0), V::splat(TINY)) };
         let inverse = one.div(determinant);
-        let t = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2].mul(c[2]))).mul(inverse);
-        let candidates = inside & (t.le(t_max) | determinant.abs().lt(tiny));
+        let sum = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2].mul(c[2])));
+        let t = sum.mul(inverse);
+        let is_tiny = determinant.abs().lt(tiny);
+        let candidates = inside & (t.le(t_max) | is_tiny);
         if candidates == 0 {
             return None;
         }
-        let unsure = e[0].abs().min(e[1].abs()).min(e[2].abs()).lt(vanishing) | determinant.abs().lt(tiny);
-        // The error of t, as `distance_error` bounds it.
+        let clear = vanishing.le(lowest) | highest.le(zero.sub(vanishing));
+        let unsure = !clear | is_tiny;
+        // The error of the sum, not below what `distance_error` says: one size for x and y, and no edge function is greater
+        // than all three together.
         let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
-        let [x, y, z] = [largest(0), largest(1), largest(2)];
+        let (xy, z) = (largest(0).max(largest(1)), largest(2));
         // SAFETY: who has vectors has the instructions.
-        let [g2, g3, g5] = [2, 3, 5].map(|n| unsafe { V::splat(gamma(n)) });
-        let [dx, dy, dz] = [g5.mul(x.add(z)), g5.mul(y.add(z)), g3.mul(z)];
-        let de = g2.mul(x).mul_add(y, dy.mul_add(x, dx.mul(y)));
-        let e_max = lowest.abs().max(highest.abs());
-        let error = g3.mul(e_max).mul_add(z, de.add(de).mul_add(z, dz.mul(e_max))).mul(inverse.abs());
-        let error = error.add(error).add(error);
-        let behind = t.add(error).lt(zero);
-        let before = error.lt(t);
-        let hits = candidates & (unsure | !behind);
-        let doubts = hits & (unsure | !before);
+        let [g3, g5, two, three] = [6.0 * gamma(3), 6.0 * gamma(5), 2.0, 3.0].map(|x| unsafe { V::splat(x) });
+        let of_edges = g5.mul(xy).mul(three.mul_add(xy, two.mul(z)));
+        let error = g3.mul_add(determinant.abs(), of_edges).mul(z);
+        let certain = error.lt(sum.abs());
+        let hits = candidates & (unsure | !(certain & t.lt(zero)));
+        let doubts = hits & (unsure | !certain);
         (hits != 0).then(|| Self {
             hits,
             doubts,
