@@ -38,7 +38,7 @@ pub unsafe fn run<T: Task>(task: T) -> T::Output {
 
 /// Four floats.
 #[derive(Clone, Copy)]
-pub(crate) struct Four(pub(super) __m128);
+pub(crate) struct Four(__m128);
 
 // SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
 // from them. Arrays have as many floats as are read or written.
@@ -113,7 +113,7 @@ impl Vector<4> for Four {
 
 /// Eight floats.
 #[derive(Clone, Copy)]
-pub(crate) struct Eight(pub(super) __m256);
+pub(crate) struct Eight(__m256);
 
 // SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
 // from them. Arrays have as many floats as are read or written.
