@@ -31,6 +31,7 @@ mod build;
 mod control;
 mod direct;
 mod endless;
+mod glints;
 mod integrator;
 mod light_tracing;
 mod merging;

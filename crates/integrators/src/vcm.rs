@@ -26,6 +26,9 @@
 //! recursion can know. What is left out is found all the same, by photons that the bright spot has sent to the first diffuse surface, and
 //! by connections. In the mirror room, at 300 × 200 pixels, variance is half of what it is with merges everywhere.
 //!
+//! What camera rays alone find, light that comes by specular surfaces all the way, has more of them ([`glints`](crate::glints)). In
+//! the mirror room at 96 × 64 pixels nine tenths of the error were such glints, and five rays instead of one halve it for a seventh more time.
+//!
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a third of the variance; behind a
 //! door, light seeps under it then.
 //!
@@ -44,6 +47,7 @@ use scene::Scene;
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
+use crate::glints::{Glints, Look};
 use crate::merging::Merging;
 use crate::photon_grid::LightVertex;
 use crate::pixel_loop::PixelSamples;
@@ -78,16 +82,18 @@ pub struct Vcm {
     settings: VcmSettings,
     sampler: Sampler,
     light_sampler: Sampler,
+    glints: Glints,
     photon_seed: u32,
     lights: Lights,
     merging: Merging,
 }
 
 impl Vcm {
-    /// With a sampler for each end of what is connected, and a seed for photons.
+    /// With a sampler for each end of what is connected, and a seed for photons and glints.
     pub fn new(settings: VcmSettings, sampler: Sampler, light_sampler: Sampler, photon_seed: u32) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
-        Self { settings, sampler, light_sampler, photon_seed, lights: Lights::none(), merging }
+        let glints = Glints::new(sampler.samples_per_pixel(), !photon_seed);
+        Self { settings, sampler, light_sampler, glints, photon_seed, lights: Lights::none(), merging }
     }
 }
 
@@ -98,6 +104,7 @@ impl Integrator for Vcm {
 
     fn prepare(&mut self, scene: &Scene) {
         self.lights = Lights::of(scene);
+        self.glints.prepare(scene);
         let radius = self.settings.radius.unwrap_or(SHARE_OF_SCENE * scene.sphere().radius);
         self.merging = Merging::new(radius, self.settings.alpha, self.photon_seed);
     }
@@ -158,10 +165,14 @@ impl Integrator for Vcm {
             }
             splatter.add_paths(1);
 
-            let mut l = SampledSpectrum::ZERO;
+            let (mut l, mut look) = (SampledSpectrum::ZERO, Look::default());
             let Some(camera_ray) = &sample.camera_ray else { return l };
             paths.camera_subpath(camera_ray, lambda, sampler, stats, |on_the_way, sampler, stats| {
+                if let OnTheWay::Vertex(vertex) = on_the_way {
+                    look.meet(vertex);
+                }
                 match on_the_way {
+                    OnTheWay::Light(found) if look.take(&found) => (),
                     OnTheWay::Light(found) => l += found.weighted(),
                     OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
                         let depths = paths.max_depth - vertex.depth;
@@ -185,7 +196,7 @@ impl Integrator for Vcm {
                     OnTheWay::Vertex(_) => (),
                 }
             });
-            l
+            l + self.glints.seen(&look, sample, &pixels, &moment, &paths, stats)
         })?;
         Ok(stats)
     }
