@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use alhazen::image::Image;
 use alhazen::{INTEGRATORS, Overrides};
-use testkit::{Moments, t_test};
+use testkit::{Moments, t_test, welch_test};
 
 use crate::common::{means, render_text};
 use crate::scenes::SCENES;
@@ -160,4 +160,33 @@ fn a_closed_furnace_shows_all_paths_up_to_a_depth_once() {
             }
         }
     }
+}
+
+/// Small mirrors, on which a lamp behind the camera glints.
+const MIRRORS: &str = r#"Camera "perspective" "float fov" 40
+    Film "rgb" "integer xresolution" 4 "integer yresolution" 4 "bool savefp16" false
+    PixelFilter "mitchell"
+    Sampler "independent" "integer pixelsamples" 64
+    WorldBegin
+    AttributeBegin AreaLightSource "diffuse" Translate 1 1 -3 Shape "sphere" "float radius" 1 AttributeEnd
+    Material "conductor" "float roughness" 0
+    AttributeBegin Translate -0.4 0.2 3 Shape "sphere" "float radius" 0.7 AttributeEnd
+    AttributeBegin Translate 0.6 -0.1 3 Shape "sphere" "float radius" 0.5 AttributeEnd
+    Material "diffuse" Translate 0 0 4 Shape "disk""#;
+
+#[test]
+fn glints_beside_the_edges_of_mirrors_are_what_path_tracing_finds_with_more_noise() {
+    let found = |integrator: &str, first_seed: i32| -> Moments {
+        let depth = vec![("maxdepth".into(), "1".into())];
+        let mean = |seed| {
+            let integrator = Some(integrator.into());
+            let overrides =
+                Overrides { integrator, settings: depth.clone(), seed: Some(seed), ..Overrides::default() };
+            means(&render_text(MIRRORS, &overrides))[1]
+        };
+        (first_seed..first_seed + 200).map(mean).collect()
+    };
+    let (path, vcm) = (found("path", 0), found("vcm", 1000));
+    welch_test(&vcm, &path, 1).unwrap();
+    assert!(vcm.variance_of_mean() < path.variance_of_mean() / 2.0);
 }
