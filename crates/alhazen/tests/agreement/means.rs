@@ -13,11 +13,18 @@ use crate::scenes::{SCENES, Scene};
 /// How far means may differ.
 const THREE_IN_A_THOUSAND: f64 = 3e-3;
 
-/// Behind the door and in the pool, path tracing knows the mean to a part in a thousand after many minutes. In the prism a path is left
-/// with the first of its wavelengths, which has to be another for each.
-const NOT_COMPARED: [&str; 3] = ["a door that is almost closed", "a pool", "a prism"];
+/// In the pool, path tracing knows the mean to a part in a thousand after many minutes. In the prism a path is left with the first of its
+/// wavelengths, which has to be another for each.
+const NOT_COMPARED: [&str; 2] = ["a pool", "a prism"];
 
-/// Where chains know the mean after a minute: they find out how light goes, less so how much there is.
+/// Where few of all paths carry light: minutes pass until anything knows how much there is.
+const DOOR: &str = "a door that is almost closed";
+const CAUSTIC: &str = "the caustic of a glass ball";
+
+/// Where chains know the mean after a minute or two: they find out how light goes, less so how much there is. That they know from the
+/// independent paths alone among which they choose their starts, a fifth of all that they look at. Elsewhere a part in a thousand would take them
+/// from ten minutes to an hour. What three to five minutes show, all channels: over `path`, mirrors +0.0 ± 0.25 % and door −0.2 to +0.1 ± 0.3 %;
+/// over `bdpt`, caustic −0.2 ± 0.3 %, mirrors −0.5 ± 0.6 % and door −0.2 to +0.1 ± 0.3 to 0.5 %.
 const FOR_CHAINS: [&str; 8] = [
     "a diffuse box",
     "a glossy box",
@@ -44,7 +51,7 @@ struct Member {
 const EVEN: (&str, &str) = ("sampler", "zsobol");
 
 /// Path tracing first, which the others are held to; last those that are not unbiased but consistent: with radii as small, the blur
-/// is below the noise.
+/// is below the noise, save at a door without thickness, through which photons seep.
 const MEMBERS: [Member; 7] = [
     Member {
         name: "path",
@@ -75,15 +82,15 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "path")],
         size: (128, 16),
-        known: 8e-4,
-        can: |scene| FOR_CHAINS.contains(&scene.name),
+        known: 1.2e-3,
+        can: |scene| FOR_CHAINS.contains(&scene.name) || scene.name == CAUSTIC,
     },
     Member {
         name: "mlt over bdpt",
         integrator: "mlt",
         settings: &[("technique", "bdpt")],
         size: (128, 16),
-        known: 8e-4,
+        known: 1.2e-3,
         can: |scene| FOR_CHAINS.contains(&scene.name),
     },
     Member {
@@ -92,7 +99,7 @@ const MEMBERS: [Member; 7] = [
         settings: &[EVEN, ("radius", "0.01")],
         size: (32, 32),
         known: 8e-4,
-        can: |_| true,
+        can: |scene| scene.name != DOOR,
     },
     Member {
         name: "sppm",
@@ -100,11 +107,20 @@ const MEMBERS: [Member; 7] = [
         settings: &[EVEN, ("radius", "0.02"), ("photons", "4096")],
         size: (64, 16),
         known: 8e-4,
-        can: |scene| scene.name != "a plane without end",
+        can: |scene| !["a plane without end", DOOR].contains(&scene.name),
     },
 ];
 
 impl Member {
+    /// The standard error with which the scene's mean is to be known.
+    fn known(&self, scene: &Scene) -> f64 {
+        match (scene.name, self.integrator) {
+            (DOOR, "path") => 1e-3,
+            (DOOR, _) => 1.2e-3,
+            _ => self.known,
+        }
+    }
+
     /// Means of the channels of as many pictures as are needed.
     fn means(&self, scene: &Scene, first_seed: i32) -> [Moments; 3] {
         const FEWEST: i32 = 16;
@@ -126,7 +142,7 @@ impl Member {
             };
             let means = means(&render_text(&text, &overrides));
             found.iter_mut().zip(means).for_each(|(moments, mean)| moments.push(mean));
-            if run + 1 >= FEWEST && found.iter().all(|m| error(m) < self.known) {
+            if run + 1 >= FEWEST && found.iter().all(|m| error(m) < self.known(scene)) {
                 break;
             }
         }
@@ -144,7 +160,7 @@ fn error(moments: &Moments) -> f64 {
 }
 
 #[test]
-#[ignore = "slow: ten minutes of two cores; cargo test -p alhazen --profile checked --test agreement -- --ignored --nocapture"]
+#[ignore = "slow: half an hour of one core; cargo test -p alhazen --profile checked --test agreement -- --ignored --nocapture"]
 fn means_agree_to_three_in_a_thousand() {
     let scenes = SCENES.iter().zip(0..).filter(|(scene, _)| !NOT_COMPARED.contains(&scene.name));
     let tests = 3 * (MEMBERS.len() - 1) * SCENES.len();
@@ -169,7 +185,7 @@ fn means_agree_to_three_in_a_thousand() {
                 );
                 println!("{line}");
                 let differs = member.is_unbiased() && welch_test(found, expected, tests).is_err();
-                if differs || difference.abs() > THREE_IN_A_THOUSAND || error(found) > member.known {
+                if differs || difference.abs() > THREE_IN_A_THOUSAND || error(found) > member.known(scene) {
                     failures.push(format!("{}, {},{line}", scene.name, member.name));
                 }
             }
