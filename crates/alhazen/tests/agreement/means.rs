@@ -82,7 +82,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "path")],
         size: (128, 16),
-        known: 1.2e-3,
+        known: 8e-4,
         can: |scene| FOR_CHAINS.contains(&scene.name) || scene.name == CAUSTIC,
     },
     Member {
@@ -90,7 +90,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "bdpt")],
         size: (128, 16),
-        known: 1.2e-3,
+        known: 8e-4,
         can: |scene| FOR_CHAINS.contains(&scene.name),
     },
     Member {
@@ -116,7 +116,7 @@ impl Member {
     fn known(&self, scene: &Scene) -> f64 {
         match (scene.name, self.integrator) {
             (DOOR, "path") => 1e-3,
-            (DOOR, _) => 1.2e-3,
+            (DOOR, _) | (CAUSTIC, "mlt") => 1.2e-3,
             _ => self.known,
         }
     }
