@@ -27,7 +27,7 @@
 //! by connections. In the mirror room, at 300 × 200 pixels, variance is half of what it is with merges everywhere.
 //!
 //! What camera rays alone find, light that comes by specular surfaces all the way, has more of them ([`glints`](crate::glints)). In
-//! the mirror room at 96 × 64 pixels nine tenths of the error were such glints, and five rays instead of one halve it for a seventh more time.
+//! the mirror room at 96 × 64 pixels nine tenths of the error were such glints, and five rays instead of one take a third of it or more for a seventh more time.
 //!
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a third of the variance; behind a
 //! door, light seeps under it then.
