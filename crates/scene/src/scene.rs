@@ -76,6 +76,15 @@ impl Scene {
         &self.camera
     }
 
+    /// Shows the scene as its camera sees it with pixels `n` times as wide and high.
+    pub fn with_coarser_pixels<T>(&mut self, n: u32, look: impl FnOnce(&Self) -> T) -> T {
+        let coarser = self.camera.coarser(n);
+        let camera = std::mem::replace(&mut self.camera, coarser);
+        let seen = look(self);
+        self.camera = camera;
+        seen
+    }
+
     /// Switches that concern all algorithms.
     pub fn options(&self) -> SceneOptions {
         self.options
