@@ -97,8 +97,8 @@ fn lighten(integrator: &mut IntegratorDesc, n: i32) {
         IntegratorDesc::Radiosity(desc) => {
             *desc = RadiosityDesc {
                 subdivision: 0,
-                max_patches: desc.max_patches.min(2000),
-                tolerance: desc.tolerance.max(0.2),
+                max_patches: desc.max_patches.min(1000),
+                tolerance: desc.tolerance.max(0.3),
                 steps: 1,
                 gather: 0,
                 mesh_out: None,
@@ -114,8 +114,7 @@ fn enlarged(sketch: &Image, n: u32, film: &Film) -> Image {
     let (bounds, [x0, y0]) = (film.pixel_bounds(), film.pixel_bounds().min.map(|x| x as u32));
     let size = [bounds.width() as u32, bounds.height() as u32];
     let at = |x: u32, first: u32| (first + x) / n - first / n;
-    let picture =
-        Image::from_fn(size[0], size[1], ["R", "G", "B"], |x, y| sketch.rgb(at(x, x0), at(y, y0)));
+    let picture = Image::from_fn(size[0], size[1], ["R", "G", "B"], |x, y| sketch.rgb(at(x, x0), at(y, y0)));
     let mut picture = if matches!(sketch.pixels(), Pixels::F16(_)) { picture.to_f16() } else { picture };
     picture.metadata = sketch.metadata.clone();
     picture.metadata.data_window = Some(Window { min: bounds.min, max: bounds.max });
