@@ -54,7 +54,8 @@ impl Interfaces {
     }
 }
 
-/// Everything that is rendered. Never changes once compiled.
+/// Everything that is rendered. Never changes once compiled, but for the size of pixels while
+/// [`with_coarser_pixels`](Self::with_coarser_pixels) shows it.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) camera: Camera,
