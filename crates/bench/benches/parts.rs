@@ -5,7 +5,7 @@ use alhazen_bench::mesh::{BenchMesh, spheres};
 use alhazen_bench::rays::{BenchRay, Query, RaySet, ray_sets};
 use alhazen_bench::tracing::{closest, trace};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use geometry::{BilinearPatch, Cylinder, Disk, Plane, Shape, Sphere, Triangle, World};
+use geometry::{BilinearPatch, BuildQuality, Cylinder, Disk, Plane, Shape, Sphere, Triangle, World};
 use math::{Ray, Transform, Vec3};
 
 /// A million triangles or spheres, balanced.
@@ -15,17 +15,19 @@ fn build(c: &mut Criterion) {
     for mesh in meshes() {
         let triangles = mesh.triangles().expect("a mesh");
         group.throughput(Throughput::Elements(mesh.indices.len() as u64));
-        group.bench_function(mesh.name, |b| b.iter(|| building::world(triangles.clone())));
+        group.bench_function(mesh.name, |b| {
+            b.iter(|| building::world(triangles.clone(), BuildQuality::Balanced))
+        });
     }
     let set = spheres(1_000_000).expect("spheres");
     group.throughput(Throughput::Elements(set.len() as u64));
-    group.bench_function("spheres", |b| b.iter(|| building::world(set.clone())));
+    group.bench_function("spheres", |b| b.iter(|| building::world(set.clone(), BuildQuality::Balanced)));
 }
 
 /// The nearest hit and any hit, by sets of rays.
 fn queries(c: &mut Criterion) {
     for mesh in meshes() {
-        let world = building::world(mesh.triangles().expect("a mesh"));
+        let world = building::world(mesh.triangles().expect("a mesh"), BuildQuality::Balanced);
         for set in sets(&mesh, &world) {
             let query = match set.query {
                 Query::Closest => "closest hit",
@@ -40,7 +42,7 @@ fn queries(c: &mut Criterion) {
 
 /// Rays through a million spheres, from side to side.
 fn spheres_hit(c: &mut Criterion) {
-    let world = building::world(spheres(1_000_000).expect("spheres"));
+    let world = building::world(spheres(1_000_000).expect("spheres"), BuildQuality::Balanced);
     let middle = Vec3::splat(0.5);
     let rays: Vec<Ray> = pairs(16_384).map(|(o, p)| Ray::new(middle + o, p - o, 0.0)).collect();
     let mut group = c.benchmark_group("closest hit");

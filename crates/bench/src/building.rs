@@ -1,66 +1,118 @@
-//! Building: seconds on one thread and on two, and the memory that mesh and tree take.
+//! Building and refitting: seconds on one thread and on two, and the memory that primitives and tree take.
 
 use crate::embree::{Embree, Quality, SceneOptions};
-use crate::mesh::BenchMesh;
+use crate::mesh::{BenchMesh, spheres};
 use crate::table::{Table, ratios};
 use crate::timing::Seconds;
-use geometry::{Geometry, GroupId, World};
+use geometry::{BuildQuality, Geometry, GeometryId, GroupId, RefitError, World};
 use std::error::Error;
 
 /// How Embree builds what we build balanced.
 const MEDIUM: SceneOptions = SceneOptions { quality: Quality::Medium, robust: false };
 
 /// A world of one geometry.
-pub fn world(geometry: impl Into<Geometry>) -> World {
-    let mut builder = World::builder();
+pub fn world(geometry: impl Into<Geometry>, quality: BuildQuality) -> World {
+    let mut builder = World::builder().quality(quality);
     builder.add_geometry(GroupId::TOP, geometry);
     builder.build()
 }
 
-/// Builds in turn with us and with Embree, so many times, and makes a table of the medians.
+/// Builds with us and with Embree in turn, so many times, and makes a table of the medians.
 pub fn table(mesh: &BenchMesh, embree: Option<&Embree>, repeats: usize) -> Result<Table, Box<dyn Error>> {
-    let [mut ours, mut theirs] = [Run::default(); 2];
+    let triangles = Geometry::from(mesh.triangles()?);
+    let mut ours = Ours::default();
+    let mut theirs = Runs::default();
     for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let [mut our_seconds, mut their_seconds] = [Vec::new(), Vec::new()];
         for _ in 0..repeats {
-            let triangles = mesh.triangles()?;
-            let (seconds, world) = Seconds::of(|| pool.install(|| world(triangles)));
-            our_seconds.push(seconds);
-            ours.bytes = world.bytes();
-            drop(world);
+            pool.install(|| ours.run(&triangles))?;
             if let Some(embree) = embree {
                 let device = embree.device(threads)?;
                 let prepared = device.prepare(mesh, MEDIUM)?;
                 let (seconds, _scene) = Seconds::of(|| prepared.commit());
-                their_seconds.push(seconds);
-                theirs.bytes = device.bytes();
+                theirs.push(seconds, device.bytes());
             }
         }
-        for (run, seconds) in [(&mut ours, our_seconds), (&mut theirs, their_seconds)] {
-            run.seconds[threads - 1] = Seconds::median(&seconds);
-        }
     }
-    let mut table =
-        Table::new(["building", "1 thread, CPU s", "2 threads, s", "2 threads, CPU s", "memory, MB"]);
-    table.row("alhazen, balanced", ours.values().map(|v| format!("{v:.3}")));
+    let mut table = ours.table(mesh.name);
     if embree.is_some() {
-        table.row("Embree, medium", theirs.values().map(|v| format!("{v:.3}")));
-        table.row("alhazen ÷ Embree", ratios(&ours.values(), &theirs.values()));
+        table.row("Embree, medium", theirs.texts());
+        for (name, runs) in [("balanced", &ours.balanced), ("fast", &ours.fast)] {
+            table.row(&format!("alhazen, {name} ÷ Embree"), ratios(&runs.values(), &theirs.values()));
+        }
     }
     Ok(table)
 }
 
-#[derive(Clone, Copy, Default)]
-struct Run {
-    /// On one thread and on two.
-    seconds: [Seconds; 2],
+/// The same for a million spheres, with us alone.
+pub fn spheres_table(repeats: usize) -> Result<Table, Box<dyn Error>> {
+    let set = Geometry::from(spheres(1_000_000)?);
+    let mut ours = Ours::default();
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        for _ in 0..repeats {
+            pool.install(|| ours.run(&set))?;
+        }
+    }
+    Ok(ours.table("a million spheres"))
+}
+
+/// What we are measured at.
+#[derive(Default)]
+struct Ours {
+    balanced: Runs,
+    fast: Runs,
+    refit: Runs,
+}
+
+impl Ours {
+    fn run(&mut self, geometry: &Geometry) -> Result<(), RefitError> {
+        let build = |quality, runs: &mut Runs| {
+            let geometry = geometry.clone();
+            let (seconds, world) = Seconds::of(|| world(geometry, quality));
+            runs.push(seconds, world.bytes());
+            world
+        };
+        build(BuildQuality::Fast, &mut self.fast);
+        let mut world = build(BuildQuality::Balanced, &mut self.balanced);
+        let (seconds, refitted) = Seconds::of(|| world.refit([(GeometryId(0), geometry.clone())]));
+        self.refit.push(seconds, world.bytes());
+        refitted
+    }
+
+    fn table(&self, what: &str) -> Table {
+        let heads = ["1 thread, CPU s", "2 threads, s", "2 threads, CPU s", "memory, MB"];
+        let mut table = Table::new([what].into_iter().chain(heads));
+        let rows = [("balanced", &self.balanced), ("fast", &self.fast), ("refit", &self.refit)];
+        for (name, runs) in rows {
+            table.row(&format!("alhazen, {name}"), runs.texts());
+        }
+        table
+    }
+}
+
+/// Runs on one thread, then as many on two.
+#[derive(Default)]
+struct Runs {
+    seconds: Vec<Seconds>,
     bytes: usize,
 }
 
-impl Run {
+impl Runs {
+    fn push(&mut self, seconds: Seconds, bytes: usize) {
+        self.seconds.push(seconds);
+        self.bytes = bytes;
+    }
+
     fn values(&self) -> [f64; 4] {
-        let [one, two] = self.seconds;
+        let (one, two) = self.seconds.split_at(self.seconds.len() / 2);
+        let [one, two] = [one, two].map(Seconds::median);
         [one.cpu, two.wall, two.cpu, self.bytes as f64 / 1e6]
+    }
+
+    fn texts(&self) -> [String; 4] {
+        let [one, wall, two, megabytes] = self.values();
+        let seconds = |seconds: f64| format!("{seconds:.4}");
+        [seconds(one), seconds(wall), seconds(two), format!("{megabytes:.1}")]
     }
 }

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "cargo xtask bench rays")]
 struct Arguments {
-    /// Which meshes; all of them when none is named.
+    /// Which meshes; all of them, and spheres, when none is named.
     #[arg(value_name = "MESH", value_parser = PossibleValuesParser::new(BenchMesh::NAMES))]
     meshes: Vec<String>,
     /// How often everything is measured; the median counts.
@@ -51,6 +51,9 @@ fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         let tracing = tracing::measure(&mesh, embree.as_ref(), width, arguments.repeats)?;
         println!("{}\n{}", tracing.rates(), tracing.answers());
         tracing.check()?;
+    }
+    if arguments.meshes.is_empty() {
+        println!("{}", building::spheres_table(arguments.repeats)?);
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use crate::mesh::BenchMesh;
 use crate::rays::{Answer, BenchRay, Query, RaySet, ray_sets};
 use crate::table::{Table, ratios};
 use crate::timing::in_turn;
-use geometry::{Hit, RayStats, World};
+use geometry::{BuildQuality, Hit, RayStats, World};
 use math::Ray;
 use std::error::Error;
 
@@ -38,7 +38,7 @@ pub fn measure(
     width: usize,
     repeats: usize,
 ) -> Result<Tracing, Box<dyn Error>> {
-    let world = building::world(mesh.triangles()?);
+    let world = building::world(mesh.triangles()?, BuildQuality::Balanced);
     let sets = ray_sets(mesh, width, |ray| closest(&world, ray).map(|hit| (hit.t, hit.primitive as usize)));
     let device = embree.map(|embree| embree.device(1)).transpose()?;
     let mut engines: Vec<Engine> = vec![("alhazen".to_owned(), Box::new(|set| trace(&world, set)))];

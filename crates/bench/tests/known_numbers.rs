@@ -7,6 +7,7 @@ use alhazen_bench::rays::{Answer, ray_sets};
 use alhazen_bench::table::{Table, ratios};
 use alhazen_bench::timing::in_turn;
 use alhazen_bench::tracing::{closest, trace};
+use geometry::BuildQuality;
 use math::{DVec3, Vec3};
 use std::cell::RefCell;
 
@@ -40,7 +41,7 @@ fn meshes_are_those_of_their_formulas() {
 #[test]
 fn rays_meet_what_they_met_elsewhere() {
     let mesh = mesh("blob");
-    let world = building::world(mesh.triangles().expect("a mesh"));
+    let world = building::world(mesh.triangles().expect("a mesh"), BuildQuality::Balanced);
     let sets = ray_sets(&mesh, 1024, |ray| closest(&world, ray).map(|hit| (hit.t, hit.primitive as usize)));
     let answers = [0, 1, 2, 3, 4].map(|i| trace(&world, &sets[i]));
     let close = |a: f64, b: f64, tolerance: f64| assert!((a / b - 1.0).abs() < tolerance, "{a}, {b}");

@@ -1,6 +1,7 @@
 //! Top-down by the surface-area heuristic over bins: good trees in little time.
 
 use super::bins::{Border, centroids};
+use super::pages;
 use super::partition::partition;
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Grown, Inner, Planted};
@@ -12,7 +13,7 @@ pub(super) const PARALLEL: usize = 4096;
 
 /// Brings references into order and grows a tree over them.
 pub(super) fn plant(mut references: Vec<Reference>, blocks: Blocks) -> Planted {
-    let mut inner = vec![Inner::default(); references.len()];
+    let mut inner = pages::filled(Inner::default(), references.len());
     let extent = Extent::around(&references);
     let tree = grow(&mut references, &mut inner, 0, extent, blocks, 0);
     let size = tree.as_node(&inner);

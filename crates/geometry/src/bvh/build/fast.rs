@@ -8,6 +8,7 @@
 
 use super::balanced::PARALLEL;
 use super::overflow::Overflow;
+use super::pages;
 use super::primitives::{MAX_WIDTH, Numbering, Primitives};
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Grown, Inner, Planted};
@@ -37,11 +38,7 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
         let keys = &keys[start(block)..start(block + 1)];
         keys.iter().map(|key| numbering.id((key >> BITS) as usize))
     };
-    let members_of = |block| -> Vec<Reference> {
-        let reference = |(geometry, primitive)| Reference::new(Extent::EMPTY, geometry, primitive);
-        members(block).map(reference).collect()
-    };
-    let overflow = Overflow::default();
+    let overflow = Overflow::new();
     let block = |block: usize| {
         members(block + 2 * AHEAD)
             .for_each(|(geometry, primitive)| primitives.prefetch_indices(geometry, primitive));
@@ -54,16 +51,16 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
         let (made, extent) = overflow.block(primitives, block, members);
         (Reference::new(extent, 0, block as u32), made)
     };
-    let (mut references, mut blocks) = (Vec::new(), overflow.room(starts.len()));
+    let (mut references, mut blocks) = (pages::room(starts.len()), overflow.room(starts.len()));
     let made = (0..starts.len()).into_par_iter().with_min_len(PARALLEL / 4).map(block);
     made.unzip_into_vecs(&mut references, &mut blocks);
     let codes: Vec<_> = starts.iter().map(|&start| code(keys[start as usize])).collect();
-    let mut inner = vec![Inner::default(); references.len()];
+    let mut inner = pages::filled(Inner::default(), references.len());
     let tree = grow(&codes, &references, &mut inner, 0);
     let size = tree.as_node(&inner);
     let planted = Planted { references, inner, root: tree.root, size };
     let Wide { mut nodes, extent, depth, .. } = widen(&planted, Blocks::of(1));
-    let blocks = overflow.resolve(primitives, members_of, blocks, &mut nodes);
+    let blocks = overflow.resolve(blocks, &mut nodes);
     Built { nodes, bounds: extent.bounds(), depth, blocks }
 }
 
@@ -83,7 +80,7 @@ fn sorted_keys(primitives: &impl Primitives, numbering: &Numbering) -> Vec<u64> 
     if keys.contains(&NOTHING) {
         keys.retain(|&key| key != NOTHING);
     }
-    let mut sorted = vec![0; keys.len()];
+    let mut sorted = pages::filled(0, keys.len());
     for shift in (0..BITS).step_by(DIGIT as usize) {
         sort_by_digit(&keys, &mut sorted, shift);
         std::mem::swap(&mut keys, &mut sorted);

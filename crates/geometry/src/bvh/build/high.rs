@@ -8,6 +8,7 @@
 
 use super::balanced::{DEEPEST, PARALLEL, halve};
 use super::bins::Border;
+use super::pages;
 use super::partition::partition;
 use super::reference::{Extent, Reference};
 use super::spatial::{Corners, Plane};
@@ -21,7 +22,7 @@ pub(super) fn plant(mut references: Vec<Reference>, corners: &impl Corners, bloc
     let count = references.len();
     let extent = Extent::around(&references);
     references.resize((2 * count).min(u32::MAX as usize), Reference::none());
-    let mut inner = vec![Inner::default(); references.len()];
+    let mut inner = pages::filled(Inner::default(), references.len());
     let builder = Builder { corners, blocks, least_overlap: OVERLAP * extent.half_area() };
     let tree = builder.grow(Set { references: &mut references, count, extent }, &mut inner, 0, 0);
     let size = tree.as_node(&inner);
@@ -39,7 +40,7 @@ fn close_gaps(planted: Planted) -> Planted {
     };
     let places: Vec<u32> = references.iter().map(place).collect();
     let place = |border: u32| places[border as usize];
-    let mut closed = vec![Inner::default(); used as usize];
+    let mut closed = pages::filled(Inner::default(), used as usize);
     for (mut node, &border) in inner.into_iter().zip(&places).filter(|(node, _)| node.is_used()) {
         node.halves = node.halves.map(place);
         closed[border as usize] = node;

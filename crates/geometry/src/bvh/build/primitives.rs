@@ -1,5 +1,6 @@
 //! What trees are built over.
 
+use super::pages;
 use super::reference::{Extent, Reference};
 use math::Vec3;
 use rayon::prelude::*;
@@ -77,7 +78,7 @@ impl Numbering {
         primitives: &impl Primitives,
         make: impl Fn(usize, u32, u32, Option<Extent>) -> T + Sync,
     ) -> Vec<T> {
-        let mut list = Vec::with_capacity(self.len);
+        let mut list = pages::room(self.len);
         for (geometry, first, len) in self.geometries() {
             let make = |i: usize| {
                 let primitive = i as u32;

@@ -9,6 +9,7 @@
 //! the chance is the ratio of the surfaces of the primitives' boxes and of its own, and the cost its blocks; in a node, both
 //! follow from those of the children, each of which is entered with the probability of the ratio of surfaces.
 
+use super::pages;
 use super::reference::{Extent, Reference};
 use super::tree::{Blocks, Cut, Inner, Planted, Size};
 use crate::bvh::node::{Child, WIDTH, WideNode};
@@ -34,8 +35,8 @@ pub(super) fn widen(planted: &Planted, blocks: Blocks) -> Wide {
         return Wide { nodes: Vec::new(), blocks: Vec::new(), extent: Extent::EMPTY, depth: 0 };
     }
     let whole = Branch { range: 0..references.len() as u32, root: *root };
-    let mut nodes = vec![WideNode::EMPTY; size.nodes as usize];
-    let mut list = vec![0..0; size.blocks as usize];
+    let mut nodes = pages::filled(WideNode::EMPTY, size.nodes as usize);
+    let mut list = pages::filled(0..0, size.blocks as usize);
     let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
     let Written { extent, depth, .. } = Writer { references, inner, blocks }.write(&whole, part);
     Wide { nodes, blocks: list, extent, depth }
