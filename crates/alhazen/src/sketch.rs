@@ -2,7 +2,8 @@
 //!
 //! A sketch is made by the scene's own algorithm with its own settings, on a film that has n times fewer pixels along each side. So it
 //! shows what the picture will show, with the noise of one sample in squares of n × n pixels. What an algorithm does however many pixels
-//! there are, such as sending photons, it does n² times less. Film, statistics and integrator of the picture know nothing of it.
+//! there are, such as sending photons, it does n² times less; `whitted` follows no more than five events, and `radiosity` cuts its patches
+//! no further. Film, statistics and integrator of the picture know nothing of it.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -86,6 +87,8 @@ fn div_ceil(x: i32, n: i32) -> i32 {
 fn lighten(integrator: &mut IntegratorDesc, n: i32) {
     let fewer = |count: &mut i32| *count = div_ceil(*count, n.saturating_mul(n));
     match integrator {
+        // Glass doubles its rays at each event.
+        IntegratorDesc::Whitted { max_depth } => *max_depth = (*max_depth).min(5),
         IntegratorDesc::PhotonMapping(desc) => {
             fewer(&mut desc.photons);
             fewer(&mut desc.caustic_photons);
