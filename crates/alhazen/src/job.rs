@@ -1,6 +1,8 @@
 //! A scene on its way to a picture: compiled, rendered, developed.
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use description::{CameraKind, Diagnostic, SceneDesc};
 use film::Film;
@@ -9,6 +11,7 @@ use import::{AssetSource, Imported};
 use integrators::{ByProduct, Cancelled, Control, Integrator, RenderReport};
 use scene::Scene;
 
+use crate::sketch::Sketch;
 use crate::{OverrideError, Overrides, integrator_name, sampler_name};
 
 /// Everything that one render needs, and the film that holds what it has found so far.
@@ -17,6 +20,7 @@ pub struct Job {
     film: Film,
     integrator: Box<dyn Integrator>,
     header: Header,
+    sketch: Option<Sketch>,
 }
 
 /// What the header of a picture says: the scene's camera, and settings.
@@ -60,7 +64,14 @@ impl Job {
         let warnings = [scene.warnings, film.warnings, built.warnings].concat();
         let (scene, film, integrator) = (scene.scene, film.film, built.integrator);
         let header = header(desc, integrator.samples_per_pixel());
-        Ok(CompiledJob { job: Self { scene, film, integrator, header }, warnings })
+        let sketch = Sketch::new(desc, &film);
+        Ok(CompiledJob { job: Self { scene, film, integrator, header, sketch }, warnings })
+    }
+
+    /// A first look at the picture, before it is rendered and without any part in it: in pixels so large that a render takes many times
+    /// as long, repeated to the size of the picture. `None` where the picture has so few pixels itself, or if it was cancelled.
+    pub fn sketch(&mut self, cancel: &Arc<AtomicBool>) -> Option<Image> {
+        self.sketch.as_ref()?.draw(&mut self.scene, &self.film, &self.header, cancel)
     }
 
     /// Renders all passes. Where the render is cancelled, the film has what was found until then.

@@ -22,6 +22,7 @@ mod names;
 mod overrides;
 mod picture;
 mod settings;
+mod sketch;
 mod values;
 
 pub use job::{CompiledJob, Header, Job, RenderError, render_file};

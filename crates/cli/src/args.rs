@@ -24,8 +24,8 @@ const EXIT_CODES: &str =
 pub enum Command {
     /// Render a scene file to pictures.
     ///
-    /// Pictures are written when they are done, and before that now and then as they stand: first after about a second, then whenever twice as
-    /// much time has gone by. Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second
+    /// Pictures are written when they are done, and before that now and then as they stand: first, of more than 65536 pixels, as a sketch
+    /// in larger pixels, then after about a second, then whenever twice as much time has gone by. Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second
     /// Ctrl-C ends the program at once.
     Render(Box<Render>),
     /// Render a scene by several algorithms, and report how far each is from a reference.

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use alhazen::description::{IntegratorDesc, RadiosityDesc, SceneDesc};
-use alhazen::image::replace_file;
+use alhazen::image::{Image, replace_file};
 use alhazen::import::{Files, Imported, import};
 use alhazen::integrators::{ByProduct, Control, FilmSink, Progress};
 use alhazen::{Header, Job, integrator_name, write_picture};
@@ -69,8 +69,12 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     let bar = Arc::new(Bar::new(talkative, job.passes()));
     let sink = Arc::clone(&bar);
     let progress = Box::new(move |progress: &Progress| sink.show(progress));
+    let cancel = interrupt.cancel();
+    if let Some(sketch) = job.sketch(&cancel) {
+        write_early(&sketch, &outputs);
+    }
     let outcome = job.render(&Control {
-        cancel: interrupt.cancel(),
+        cancel,
         progress: Some(progress),
         preview: Some(preview(job.header().clone(), outputs.clone())),
         ..Control::default()
@@ -133,12 +137,16 @@ fn preview(header: Header, outputs: Vec<PathBuf>) -> FilmSink {
         if begin.elapsed() < *next {
             return;
         }
-        let picture = header.picture(film);
-        for path in &outputs {
-            let _ = write_picture(&picture, path);
-        }
+        write_early(&header.picture(film), &outputs);
         *next = 2 * begin.elapsed();
     })
+}
+
+/// Writes a picture that a better one will replace. Whether it can be written is told at the end.
+fn write_early(picture: &Image, outputs: &[PathBuf]) {
+    for path in outputs {
+        let _ = write_picture(picture, path);
+    }
 }
 
 /// Makes the threads that everything runs on.

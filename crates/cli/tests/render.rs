@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::time::{Duration, Instant};
+
 use alhazen::image::{Attribute, Pixels};
 use common::{Folder, SCENE};
 
@@ -21,6 +23,28 @@ fn pictures_are_written_in_every_format_asked_for() {
         let difference = (0..3).map(|c| (image.rgb(12, 8)[c] - exr.rgb(12, 8)[c]).abs()).fold(0.0, f32::max);
         assert!(difference < 0.05, "{name}: {:?} is not {:?}", image.rgb(12, 8), exr.rgb(12, 8));
     }
+}
+
+#[test]
+fn a_sketch_is_there_before_the_first_pass_is_done() {
+    let folder = Folder::with_scene("sketch");
+    // A single pass that takes minutes.
+    let deep = ["--resolution", "4000x3000", "--set", "maxdepth=100", "--spp", "1", "-o", "a.pfm"];
+    let arguments = ["render", "scene.pbrt", "--integrator", "bdpt", "--threads", "1"];
+    let mut child = folder.command(&[&arguments[..], &deep].concat()).spawn().expect("the program runs");
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !folder.path().join("a.pfm").exists() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let is_at_it = child.try_wait().expect("the program is known").is_none();
+    child.kill().expect("the program runs");
+    child.wait().expect("the program ends");
+    assert!(is_at_it, "the picture was done before");
+    let sketch = folder.image("a.pfm");
+    assert_eq!((sketch.width(), sketch.height()), (4000, 3000));
+    // Larger pixels, 14 × 14 of the picture's.
+    assert!((0..13).all(|i| sketch.rgb(2016 + i, 1512 + i) == sketch.rgb(2016, 1512)));
+    assert!(sketch.rgb(2016, 1512) != sketch.rgb(2030, 1512));
 }
 
 #[test]

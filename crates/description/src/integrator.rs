@@ -263,7 +263,7 @@ pub struct RadiosityDesc {
     pub form_factors: FormFactorsDesc,
     /// Pixels along an edge of a hemicube.
     pub hemicube_resolution: i32,
-    /// Longest side of a patch in scene units; a sixth of the scene's radius if absent.
+    /// Longest side of a patch in scene units; a tenth of the scene's radius if absent.
     pub patch_size: Option<f32>,
     /// How often an element may be quartered.
     pub subdivision: i32,

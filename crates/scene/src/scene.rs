@@ -54,7 +54,8 @@ impl Interfaces {
     }
 }
 
-/// Everything that is rendered. Never changes once compiled.
+/// Everything that is rendered. Never changes once compiled, but for the size of pixels while
+/// [`with_coarser_pixels`](Self::with_coarser_pixels) shows it.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) camera: Camera,
@@ -74,6 +75,15 @@ impl Scene {
     /// The observer.
     pub fn camera(&self) -> &Camera {
         &self.camera
+    }
+
+    /// Shows the scene as its camera sees it with pixels `n` times as wide and high.
+    pub fn with_coarser_pixels<T>(&mut self, n: u32, look: impl FnOnce(&Self) -> T) -> T {
+        let coarser = self.camera.coarser(n);
+        let camera = std::mem::replace(&mut self.camera, coarser);
+        let seen = look(self);
+        self.camera = camera;
+        seen
     }
 
     /// Switches that concern all algorithms.

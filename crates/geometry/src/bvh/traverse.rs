@@ -8,7 +8,7 @@
 
 #![allow(unsafe_code)]
 
-use super::node::{Beam, Child, Slabs, WIDTH, WideNode};
+use super::node::{Beam, Child, RAYS, Slabs, WIDTH, WideNode};
 use super::{Bvh, MAX_DEPTH};
 use crate::simd::{Simd, Vector};
 use math::Ray;
@@ -64,16 +64,16 @@ impl Waiting {
 struct Together(Waiting);
 
 impl Together {
-    const RAYS: u32 = (1 << WIDTH) - 1;
+    const ALL: u32 = (1 << RAYS) - 1;
 
     #[inline(always)]
     fn new(near: f32, rays: u32, child: Child) -> Self {
-        Self(Waiting::new(f32::from_bits(near.to_bits() & !Self::RAYS | rays), child))
+        Self(Waiting::new(f32::from_bits(near.to_bits() & !Self::ALL | rays), child))
     }
 
     #[inline(always)]
     fn rays(self) -> u32 {
-        self.0.near() & Self::RAYS
+        self.0.near() & Self::ALL
     }
 
     #[inline(always)]
@@ -84,7 +84,7 @@ impl Together {
                 *top = top.sub(1);
                 **top
             };
-            if waiting.near() & !Self::RAYS <= t_max.to_bits() {
+            if waiting.near() & !Self::ALL <= t_max.to_bits() {
                 return Self(waiting);
             }
         }
@@ -112,7 +112,7 @@ impl Bvh {
         // SAFETY: the caller promises the instructions. Children were made by `Child::node` and `Child::leaf` for nodes and
         // blocks that there are, and the tree is not deeper than what the stack was measured for: `Bvh::build` saw to both.
         unsafe {
-            let slabs = Slabs::<S::Eight>::new(ray, &self.bounds);
+            let slabs = Slabs::<S::Sixteen>::new(ray, &self.bounds);
             let nodes = self.nodes.as_ptr();
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
@@ -147,9 +147,9 @@ impl Bvh {
     pub unsafe fn traverse_together<S: Simd, B>(
         &self,
         blocks: &[B],
-        rays: &[(Ray, f32); WIDTH],
-        t_max: &mut [f32; WIDTH],
-        mut test: impl FnMut(Range<usize>, u32, &mut [f32; WIDTH]),
+        rays: &[(Ray, f32); RAYS],
+        t_max: &mut [f32; RAYS],
+        mut test: impl FnMut(Range<usize>, u32, &mut [f32; RAYS]),
     ) -> u64 {
         let mut extents = 0;
         if self.nodes.is_empty() {
@@ -157,7 +157,7 @@ impl Bvh {
         }
         // SAFETY: as in `traverse`.
         unsafe {
-            let beam = Beam::<S::Eight>::new(rays, &self.bounds);
+            let beam = Beam::<S::Eight, S::Sixteen>::new(rays, &self.bounds);
             let zero = S::Eight::splat(0.0);
             let mut furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
@@ -175,7 +175,8 @@ impl Bvh {
                 } else {
                     let node = self.nodes.get_unchecked(child.index());
                     let ends = S::Eight::load(t_max);
-                    let (near, mut entered) = node.intersect_beam(&beam, S::Eight::splat(furthest), zero);
+                    let (near, mut entered) =
+                        node.intersect_beam(&beam, S::Sixteen::splat(furthest), S::Sixteen::splat(0.0));
                     extents += node.len() as u64;
                     let near = near.store();
                     let floor = top;
@@ -183,7 +184,7 @@ impl Bvh {
                         let lane = entered.trailing_zeros() as usize;
                         entered &= entered - 1;
                         let (_, hits) = node.intersect_rays(lane, &beam, ends, zero);
-                        extents += WIDTH as u64;
+                        extents += RAYS as u64;
                         if hits != 0 {
                             let child = *node.children().get_unchecked(lane);
                             self.prefetch::<S, _>(blocks, child);
@@ -215,14 +216,14 @@ impl Bvh {
 #[inline(always)]
 unsafe fn descend<S: Simd, const ANY: bool>(
     node: &WideNode,
-    slabs: &Slabs<S::Eight>,
+    slabs: &Slabs<S::Sixteen>,
     t_max: f32,
     top: &mut *mut Waiting,
     ahead: impl Fn(Child),
 ) -> Child {
     // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the tree.
     unsafe {
-        let (near, hits) = node.intersect(slabs, S::Eight::splat(t_max), S::Eight::splat(0.0));
+        let (near, hits) = node.intersect(slabs, S::Sixteen::splat(t_max), S::Sixteen::splat(0.0));
         if hits == 0 {
             pop(top, t_max)
         } else if ANY {
@@ -282,7 +283,7 @@ unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahe
             return child;
         }
         ahead(child);
-        // SAFETY: one of at most seven.
+        // SAFETY: a node leaves at most all children but one waiting.
         unsafe { push(top, Waiting::new(0.0, child)) };
     }
 }
@@ -291,7 +292,7 @@ unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahe
 #[inline(always)]
 unsafe fn choose_nearest<S: Simd>(
     node: &WideNode,
-    near: S::Eight,
+    near: S::Sixteen,
     mut hits: u32,
     top: &mut *mut Waiting,
     ahead: impl Fn(Child),
@@ -312,7 +313,7 @@ unsafe fn choose_nearest<S: Simd>(
     let b = waiting(lane);
     let (mut nearest, other) = (a.min(b), a.max(b));
     ahead(other.child());
-    // SAFETY: a node leaves at most seven children waiting.
+    // SAFETY: a node leaves at most all children but one waiting.
     unsafe {
         if hits == 0 {
             push(top, other);

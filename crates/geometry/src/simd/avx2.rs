@@ -1,5 +1,6 @@
 //! Eight floats at once, with fused multiplication and addition.
 
+use super::pair::Pair;
 use super::{Simd, Task, Vector};
 use std::arch::x86_64::*;
 
@@ -10,6 +11,7 @@ pub(crate) struct Avx2;
 impl Simd for Avx2 {
     type Four = Four;
     type Eight = Eight;
+    type Sixteen = Pair<Eight>;
 
     #[inline(always)]
     fn pick<const BYTE: usize>(from: Eight, places: &[u32; 4]) -> Four {

@@ -15,7 +15,6 @@ mod avx2;
 mod avx512;
 #[cfg(target_arch = "aarch64")]
 mod neon;
-#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod pair;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
@@ -67,6 +66,7 @@ pub(crate) trait Vector<const N: usize>: Copy {
 pub(crate) trait Simd: Copy {
     type Four: Vector<4>;
     type Eight: Vector<8>;
+    type Sixteen: Vector<16>;
 
     /// Takes four lanes of eight: those that byte `BYTE` of each place names, of which three bits count.
     #[inline(always)]
@@ -120,7 +120,7 @@ pub enum InstructionSet {
     Sse2,
     /// Eight floats at once: x86-64 since 2013.
     Avx2,
-    /// Eight floats at once and masks: x86-64 with AVX-512.
+    /// Sixteen floats at once: x86-64 with AVX-512.
     Avx512,
     /// Four floats at once: 64-bit Arm.
     Neon,

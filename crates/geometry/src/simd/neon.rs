@@ -11,6 +11,7 @@ pub(crate) struct Neon;
 impl Simd for Neon {
     type Four = Four;
     type Eight = Pair<Four>;
+    type Sixteen = Pair<Pair<Four>>;
 }
 
 /// Runs a task.

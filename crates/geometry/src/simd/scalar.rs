@@ -9,6 +9,7 @@ pub(crate) struct Scalar;
 impl Simd for Scalar {
     type Four = Lanes<4>;
     type Eight = Lanes<8>;
+    type Sixteen = Lanes<16>;
 }
 
 /// Runs a task.

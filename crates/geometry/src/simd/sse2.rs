@@ -11,6 +11,7 @@ pub(crate) struct Sse2;
 impl Simd for Sse2 {
     type Four = Four;
     type Eight = Pair<Four>;
+    type Sixteen = Pair<Pair<Four>>;
 
     #[inline(always)]
     fn prefetch(address: *const u8) {

@@ -167,6 +167,7 @@ impl<'a> MeshTriangles<'a> {
 
 impl Primitives for MeshTriangles<'_> {
     type Block = Packet;
+    const COST: f32 = 0.2;
 
     fn width(&self) -> usize {
         Packet::WIDTH

@@ -62,6 +62,7 @@ struct Sets<'a> {
 
 impl Primitives for Sets<'_> {
     type Block = Packet;
+    const COST: f32 = 0.25;
 
     fn width(&self) -> usize {
         Packet::WIDTH

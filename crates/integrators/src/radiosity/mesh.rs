@@ -341,6 +341,15 @@ impl Mesh {
         outline
     }
 
+    /// Whether the neighbour at a side of a leaf is cut more than once more: more than one vertex then stands between its corners.
+    pub fn is_beside_finer(&self, world: &World, leaf: &Cell) -> bool {
+        sides(leaf.corners()).any(|side| {
+            let mut between = Vec::new();
+            self.anchors(world, leaf, side, &mut between);
+            between.len() > 1
+        })
+    }
+
     fn anchors(&self, world: &World, cell: &Cell, side: [Corner; 2], outline: &mut Vec<Corner>) {
         if side[0].vertex == side[1].vertex {
             return;

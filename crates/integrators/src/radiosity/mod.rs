@@ -18,8 +18,8 @@
 //!
 //! It has no noise but that of a final gather, and is biased: light is even over each quarter of a patch that
 //! sends it and of an element that receives it, and visibility is known from a few rays. In the Cornell box
-//! the mean of a gathered picture is right to 0.5 %, single places in the shadow of the blocks to 4 %, or to
-//! 2 % with patches half as long; interpolated, shadows are as blurred as their elements are large.
+//! the mean of a gathered picture is right to 0.5 %, and single places in the shadow of the blocks to 2 %, with
+//! the settings' defaults; interpolated, shadows are as blurred as their elements are large.
 //! `max_depth` counts as in all algorithms: light that was scattered more often is missing.
 //!
 //! | setting | meaning | default |
@@ -27,7 +27,7 @@
 //! | `max_depth` | most scattering events, up to 100 | 5 |
 //! | `form_factors` | `analytic` or `hemicube` | analytic |
 //! | `hemicube_resolution` | pixels along an edge of the hemicube | 128 |
-//! | `patch_size` | longest side of a patch, in scene units | a sixth of the scene's radius |
+//! | `patch_size` | longest side of a patch, in scene units | a tenth of the scene's radius |
 //! | `subdivision` | how often an element may be quartered | 3 |
 //! | `gradient` | change of light across an element, in parts of what is there, above which it is quartered | 0.1 |
 //! | `max_patches` | most elements, and twice the number of primitives that are cut | 50 000 |
@@ -94,7 +94,7 @@ pub struct RadiositySettings {
     pub max_depth: u32,
     /// How form factors are found.
     pub form_factors: FormFactors,
-    /// Longest side of a patch, in scene units; a sixth of the scene's radius if `None`.
+    /// Longest side of a patch, in scene units; a tenth of the scene's radius if `None`.
     pub patch_size: Option<f32>,
     /// How often an element may be quartered.
     pub subdivision: u32,

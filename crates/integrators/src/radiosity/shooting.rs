@@ -18,7 +18,11 @@
 //!
 //! Where what a shot brings changes by more than a share of the light that is there, elements are cut and the
 //! shot is received again: elements get fine at the edges of shadows, as those shots make them that cast the
-//! shadows. Most shots are faint, though, and most patches are far from them: what would bring much less to a
+//! shadows. An edge may pass between the few points of a coarse element, though, and be missed. So where a
+//! shot has cut elements, those beside them are cut too, until neighbours differ by one cut at most, and each
+//! new element is asked again: edges that were found are followed to where they were missed ([Baum 1991]).
+//!
+//! Most shots are faint, though, and most patches are far from them: what would bring much less to a
 //! patch than the change that is worth a cut, even if nothing were between, is received by the patch as a
 //! whole, as if it had not been cut, and handed to its elements later.
 //!
@@ -273,6 +277,7 @@ impl Solution {
         let elements = (0..).zip(&self.cut.elements);
         let mut fresh: Vec<u32> =
             elements.filter(|(_, element)| is_asked(element.patch)).map(|(id, _)| id).collect();
+        let mut has_cut = false;
         while !fresh.is_empty() {
             received.resize_with(self.cut.elements.len(), T::default);
             let answers = answer(&self.cut, &fresh)?;
@@ -288,7 +293,11 @@ impl Solution {
                     && contrast > self.settings.gradient * even
                     && contrast > self.settings.gradient * here()
             };
-            let coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
+            let mut coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
+            if coarse.is_empty() && has_cut {
+                coarse = self.cut.lagging(scene, &self.settings, is_asked);
+            }
+            has_cut |= !coarse.is_empty();
             fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
         }
         Ok(received)

@@ -11,7 +11,7 @@ use super::mesh::Mesh;
 use crate::{Cancelled, Control};
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.
-const PATCHES_PER_RADIUS: f32 = 6.0;
+const PATCHES_PER_RADIUS: f32 = 10.0;
 
 /// The scene cut into patches, each a single element yet.
 pub(crate) struct Cut {
@@ -104,6 +104,23 @@ impl Cut {
             }
         });
         patches.iter_mut().filter_map(|patch| patch.whole.as_mut()).for_each(|whole| whole.darken());
+    }
+
+    /// Elements of these patches that have a side at which others are cut more than once more. What made those fine, such as the edge of
+    /// a shadow, may go on here and be missed by the few points of a coarse element.
+    pub fn lagging(
+        &self,
+        scene: &Scene,
+        settings: &RadiositySettings,
+        is_asked: impl Fn(u32) -> bool + Sync,
+    ) -> Vec<u32> {
+        let lags = |&id: &u32| {
+            let element = &self.elements[id as usize];
+            is_asked(element.patch)
+                && element.level < settings.subdivision
+                && self.mesh.is_beside_finer(scene.world(), self.mesh.cell(element.cell))
+        };
+        (0..self.elements.len() as u32).into_par_iter().filter(lags).collect()
     }
 
     /// Halves elements twice, as long as there is room for more of them. The parts inherit the light of the

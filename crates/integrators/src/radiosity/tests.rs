@@ -236,6 +236,30 @@ fn there_are_no_cracks() {
     }
 }
 
+/// What lies beside elements that were cut is cut until neighbours differ by one cut at most.
+#[test]
+fn fine_elements_are_followed() {
+    let scene = compile(&room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
+    let settings = settings(0.5);
+    let Solution { wavelengths, mut cut, .. } = unsolved(&scene, &settings);
+    let mut divide = |ids: &[u32]| {
+        let parts = cut.split(&scene, &settings, &wavelengths, ids);
+        let lagging = cut.lagging(&scene, &settings, |_| true);
+        assert_eq!(cut.lagging(&scene, &settings, |patch| patch == 0), [0; 0], "it is as fine as any");
+        (parts, lagging)
+    };
+    let (parts, lagging) = divide(&[0]);
+    assert_eq!(parts.len(), 4);
+    assert!(lagging.is_empty(), "one cut more is no more than one cut");
+    let (_, mut lagging) = divide(&parts);
+    // The two neighbours on the same wall, which has four patches.
+    assert_eq!(lagging.len(), 2);
+    while !lagging.is_empty() {
+        lagging = divide(&lagging).1;
+    }
+    assert_eq!(cut.elements.len(), 24 + 15 + 2 * 3);
+}
+
 #[test]
 fn every_point_has_its_leaf() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));

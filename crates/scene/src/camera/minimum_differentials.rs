@@ -52,6 +52,12 @@ impl MinimumDifferentials {
         least
     }
 
+    /// Those between the rays of pixels `n` times as wide and high, to first order.
+    pub fn coarser(&self, n: u32) -> Self {
+        let [origin, direction] = [self.origin, self.direction].map(|both| both.map(|v| v * n as f32));
+        Self { origin, direction }
+    }
+
     /// ∂p/∂x and ∂p/∂y in camera space, on the plane with normal `n` that the ray along `d` of unit length
     /// meets after `distance`; zero where that plane is seen edge-on.
     pub fn dp_dxy(&self, d: Vector3, distance: f32, n: Normal3) -> [Vector3; 2] {

@@ -103,6 +103,15 @@ impl Projection {
         }
     }
 
+    /// The same view in pixels `n` times as wide and high.
+    fn coarser(&self, n: u32) -> Self {
+        match self {
+            Self::Perspective(p) => Self::Perspective(p.coarser(n)),
+            Self::Orthographic(p) => Self::Orthographic(p.coarser(n)),
+            Self::Spherical(p) => Self::Spherical(p.coarser(n)),
+        }
+    }
+
     /// What rays pass when they enter.
     fn aperture(&self) -> Aperture {
         match self {
@@ -175,6 +184,16 @@ impl Camera {
     ) -> Self {
         let minimum_differentials = MinimumDifferentials::new(&projection, resolution);
         Self { projection, transform, shutter, minimum_differentials }
+    }
+
+    /// The same camera with pixels `n` times as wide and high: the film position x is seen at x/n.
+    pub fn coarser(&self, n: u32) -> Self {
+        Self {
+            projection: self.projection.coarser(n),
+            transform: self.transform.clone(),
+            shutter: self.shutter,
+            minimum_differentials: self.minimum_differentials.coarser(n),
+        }
     }
 
     /// How the film sees camera space.

@@ -33,6 +33,11 @@ impl Orthographic {
         self.lens.refract(self.screen.at(film).extend(0.0), Vec3::Z, lens)
     }
 
+    /// The same view in pixels `n` times as wide and high.
+    pub(super) fn coarser(&self, n: u32) -> Self {
+        Self { screen: self.screen.coarser(n), ..*self }
+    }
+
     pub(super) fn lens(&self) -> ThinLens {
         self.lens
     }

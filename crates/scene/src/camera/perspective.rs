@@ -51,6 +51,11 @@ impl Perspective {
         self.lens.refract(Vec3::ZERO, self.screen.at(film).extend(1.0), lens)
     }
 
+    /// The same view in pixels `n` times as wide and high.
+    pub(super) fn coarser(&self, n: u32) -> Self {
+        Self { screen: self.screen.coarser(n), ..*self }
+    }
+
     pub(super) fn lens(&self) -> ThinLens {
         self.lens
     }

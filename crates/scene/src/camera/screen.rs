@@ -28,6 +28,11 @@ impl Screen {
         }
     }
 
+    /// The same screen, filled by pixels `n` times as wide and high.
+    pub fn coarser(&self, n: u32) -> Self {
+        Self { per_pixel: self.per_pixel * n as f32, ..*self }
+    }
+
     /// The part of the screen plane that a picture of `resolution` pixels shows.
     pub fn window(desc: &ScreenDesc, resolution: [u32; 2]) -> Bounds2 {
         if let Some([x0, x1, y0, y1]) = desc.window {

@@ -25,6 +25,11 @@ impl Spherical {
         Self { mapping, resolution: Vec2::new(resolution[0] as f32, resolution[1] as f32) }
     }
 
+    /// The same sphere in pixels `n` times as wide and high.
+    pub(super) fn coarser(&self, n: u32) -> Self {
+        Self { resolution: self.resolution / n as f32, ..*self }
+    }
+
     pub(super) fn mapping(&self) -> SphericalMapping {
         self.mapping
     }

@@ -45,6 +45,29 @@ pub(super) fn sample(x: f32, y: f32, lens: Vec2, time: f32) -> CameraSample {
 }
 
 #[test]
+fn coarser_pixels_see_the_same_at_other_numbers() {
+    for (name, kind) in kinds() {
+        let fine = build(kind, somewhere(), RenderSpace::CameraWorld);
+        let coarse = fine.coarser(3);
+        let lens = Vec2::new(0.2, 0.7);
+        for (x, y) in [(37.3, 20.9), (120.2, 141.6), (199.9, 0.1)] {
+            let [seen, same] = [(&fine, 1.0), (&coarse, 3.0)]
+                .map(|(camera, n)| camera.generate_ray(&sample(x / n, y / n, lens, 0.4)).unwrap().ray);
+            assert!((seen.d - same.d).length() < 1e-6 && (seen.o - same.o).length() < 1e-5, "{name}");
+            let (p, n) = (seen.at(2.0), -seen.d);
+            let ways = [&fine, &coarse].map(|camera| camera.sample_wi(p, 0.4, lens).unwrap());
+            assert!((ways[0].film - 3.0 * ways[1].film).length() < 1e-3, "{name}");
+            // A pixel nine times as large has nine times the light.
+            assert!((ways[0].we / ways[0].pdf / (ways[1].we / ways[1].pdf) - 9.0).abs() < 1e-3, "{name}");
+            let [least, largest] = [&fine, &coarse].map(|camera| camera.approximate_dp_dxy(p, n, 0.4, 1.0));
+            for (least, largest) in least.into_iter().zip(largest) {
+                assert!((3.0 * least - largest).length() < 0.05 * largest.length() + 1e-6, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
 fn differentials_are_finite_differences() {
     for (name, kind) in kinds() {
         let camera = build(kind, somewhere(), RenderSpace::CameraWorld);

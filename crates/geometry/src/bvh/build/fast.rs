@@ -56,10 +56,11 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
     made.unzip_into_vecs(&mut references, &mut blocks);
     let codes: Vec<_> = starts.iter().map(|&start| code(keys[start as usize])).collect();
     let mut inner = pages::filled(Inner::default(), references.len());
-    let tree = grow(&codes, &references, &mut inner, 0);
+    let single = Blocks::of(1, P::COST);
+    let tree = grow(&codes, &references, &mut inner, 0, single);
     let size = tree.as_node(&inner);
     let planted = Planted { references, inner, root: tree.root, size };
-    let Wide { mut nodes, extent, depth, .. } = widen(&planted, Blocks::of(1));
+    let Wide { mut nodes, extent, depth, .. } = widen(&planted, single);
     let blocks = overflow.resolve(blocks, &mut nodes);
     Built { nodes, bounds: extent.bounds(), depth, blocks }
 }
@@ -188,20 +189,20 @@ fn middle<T: Copy>(range: &[T], code: impl Fn(T) -> u32) -> usize {
 
 /// Grows a tree over blocks, whose first primitives have `codes`, and fills in `inner`. `first` is the index of the first
 /// block.
-fn grow(codes: &[u32], blocks: &[Reference], inner: &mut [Inner], first: usize) -> Grown {
+fn grow(codes: &[u32], blocks: &[Reference], inner: &mut [Inner], first: usize, single: Blocks) -> Grown {
     let n = blocks.len();
     if n <= LEAF_BLOCKS {
         let extent = blocks.iter().fold(Extent::EMPTY, |all, block| all.union(block.extent()));
-        return Grown::leaf(extent, n as u32, Blocks::of(1));
+        return Grown::leaf(extent, n as u32, single);
     }
     let middle = middle(codes, |code| code);
     let (left_codes, right_codes) = codes.split_at(middle);
     let (left_blocks, right_blocks) = blocks.split_at(middle);
     let (left_inner, right_inner) = inner.split_at_mut(middle);
-    let mut left = || grow(left_codes, left_blocks, left_inner, first);
-    let mut right = || grow(right_codes, right_blocks, right_inner, first + middle);
+    let mut left = || grow(left_codes, left_blocks, left_inner, first, single);
+    let mut right = || grow(right_codes, right_blocks, right_inner, first + middle, single);
     let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
-    let (grown, node) = Grown::join(&left, &right, first + middle, Blocks::of(1));
+    let (grown, node) = Grown::join(&left, &right, first + middle, single);
     inner[middle] = node;
     grown
 }

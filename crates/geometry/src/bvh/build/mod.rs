@@ -74,7 +74,7 @@ pub(crate) fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> Bui
             if references.iter().any(Reference::is_none) {
                 references.retain(|r| !r.is_none());
             }
-            let blocks = Blocks::of(primitives.width());
+            let blocks = Blocks::of(primitives.width(), P::COST);
             let planted = match quality {
                 BuildQuality::High => high::plant(
                     references,

@@ -13,6 +13,9 @@ pub(crate) trait Primitives: Sync {
     /// What a leaf tests at once.
     type Block: Copy + Send + Sync;
 
+    /// What the test of a block costs, where that of a wide node's boxes costs 1.
+    const COST: f32;
+
     /// The most primitives in a block: 1, 2, 4 or 8.
     fn width(&self) -> usize;
 

@@ -53,6 +53,7 @@ type Block = [Option<Reference>; 8];
 
 impl Primitives for Triangles<'_> {
     type Block = Block;
+    const COST: f32 = 0.5;
 
     fn width(&self) -> usize {
         self.width

@@ -7,32 +7,36 @@
 //! A wide node takes the place of a connected part of the binary tree with at most [`WIDTH`] branches. Which
 //! parts are cheapest to trace is found from the leaves upwards: the cost C(n, i) of representing what is
 //! below n by at most i children of some wide node is
-//!   C(n, 1) = min(A·blocks (if that is a leaf), A·c + min_k C(l, k) + C(r, WIDTH − k)),
+//!   C(n, 1) = min(A·c·blocks (if that is a leaf), A + min_k C(l, k) + C(r, WIDTH − k)),
 //!   C(n, i) = min(C(n, i − 1), min_k C(l, k) + C(r, i − k))
-//! with the area A of its box and the cost c of a wide node, where the test of a block costs 1 ([Ylitie et
-//! al. 2017 §3.1]).
+//! with the area A of its box and the cost c of a block, where the test of a wide node costs 1 ([Ylitie et al. 2017 §3.1]).
 
 use super::reference::{Extent, Reference};
 use crate::bvh::node::WIDTH;
 
-/// What the test of a wide node costs, where testing a block of primitives costs 1.
-const NODE_COST: f32 = 1.8;
 /// Leaves have at most this many blocks.
 const LARGEST_LEAF: u32 = 4;
 
-/// Primitives are tested in blocks of a power of two.
+/// Primitives are tested in blocks of a power of two, each at a cost.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     log2: u32,
+    cost: f32,
 }
 
 impl Blocks {
-    pub fn of(width: usize) -> Self {
-        Self { log2: width.ilog2() }
+    pub fn of(width: usize, cost: f32) -> Self {
+        Self { log2: width.ilog2(), cost }
     }
 
     pub fn width(&self) -> usize {
         1 << self.log2
+    }
+
+    /// What it costs to test so many blocks.
+    #[inline]
+    pub fn cost(&self, blocks: u32) -> f32 {
+        blocks as f32 * self.cost
     }
 
     /// How many blocks hold so many primitives.
@@ -47,10 +51,10 @@ impl Blocks {
 pub(super) struct Inner {
     /// Borders at which the halves are divided in turn; 0 where a half is not.
     pub halves: [u32; 2],
-    /// Three bits for each number of branches i from 2: how many the left half gets, 0 to do with i − 1.
-    /// Bit 0 says that, as one branch, this is a leaf; the bits above all others how many the left half gets of a
-    /// wide node here.
-    plan: u32,
+    /// Four bits for each number of branches i from 2: how many the left half gets, 0 to do with i − 1. No branch of a wide
+    /// node has all of its branches: the last bits say how many the left half gets of a wide node here. Bit 0 says that, as one
+    /// branch, this is a leaf.
+    plan: u64,
     /// What there is below this if it becomes a wide node.
     pub below: Size,
 }
@@ -81,7 +85,7 @@ impl Inner {
     #[inline]
     pub fn cut(&self, mut branches: usize) -> Cut {
         while branches > 1 {
-            let left = (self.plan >> (3 * (branches - 1))) as usize & 7;
+            let left = (self.plan >> (4 * (branches - 1))) as usize & 15;
             if left > 0 {
                 return Cut::Opened([left, branches - left]);
             }
@@ -98,7 +102,7 @@ impl Inner {
     /// How this node as a wide node shares its branches.
     #[inline]
     pub fn open(&self) -> [usize; 2] {
-        let left = (self.plan >> (3 * WIDTH)) as usize;
+        let left = (self.plan >> (4 * (WIDTH - 1))) as usize;
         [left, WIDTH - left]
     }
 
@@ -133,7 +137,7 @@ pub(super) struct Grown {
 
 impl Grown {
     pub fn leaf(extent: Extent, count: u32, blocks: Blocks) -> Self {
-        let cost = extent.half_area() * blocks.count(count) as f32;
+        let cost = extent.half_area() * blocks.cost(blocks.count(count));
         let size = Size { nodes: 0, blocks: blocks.count(count) };
         Self { root: 0, count, extent, cost: [cost; WIDTH], size: [size; WIDTH] }
     }
@@ -142,26 +146,14 @@ impl Grown {
     pub fn join(left: &Self, right: &Self, border: usize, blocks: Blocks) -> (Self, Inner) {
         let extent = left.extent.union(right.extent);
         let count = left.count + right.count;
-        // By i − 1: the cost of sharing i branches between the halves, and how many the left one gets. All i at a time, so
-        // that this becomes vector code without a branch: the right half has no cost for less than one branch.
-        let mut right_cost = [f32::INFINITY; 2 * WIDTH];
-        right_cost[WIDTH..].copy_from_slice(&right.cost);
-        let (mut shared_cost, mut left_shares) = ([f32::INFINITY; WIDTH], [1; WIDTH]);
-        for k in 1..WIDTH {
-            for i in 0..WIDTH {
-                let cost = left.cost[k - 1] + right_cost[WIDTH + i - k];
-                let is_less = cost < shared_cost[i];
-                shared_cost[i] = if is_less { cost } else { shared_cost[i] };
-                left_shares[i] = if is_less { k as u32 } else { left_shares[i] };
-            }
-        }
+        let (shared_cost, left_shares) = share(left, right);
         let size_of = |left_share: u32, branches: usize| {
             left.size[left_share as usize - 1].plus(right.size[branches - left_share as usize - 1])
         };
         let below = size_of(left_shares[WIDTH - 1], WIDTH);
-        let mut plan = left_shares[WIDTH - 1] << (3 * WIDTH);
-        let as_node = extent.half_area() * NODE_COST + shared_cost[WIDTH - 1];
-        let as_leaf = extent.half_area() * blocks.count(count) as f32;
+        let mut plan = u64::from(left_shares[WIDTH - 1]) << (4 * (WIDTH - 1));
+        let as_node = extent.half_area() + shared_cost[WIDTH - 1];
+        let as_leaf = extent.half_area() * blocks.cost(blocks.count(count));
         let is_leaf = blocks.count(count) <= LARGEST_LEAF && as_leaf <= as_node;
         let (one, one_size) = if is_leaf {
             plan |= 1;
@@ -171,12 +163,12 @@ impl Grown {
         };
         let mut cost = [one; WIDTH];
         let mut size = [one_size; WIDTH];
-        for i in 1..WIDTH {
+        for i in 1..WIDTH - 1 {
             let (opened, left_share) = (shared_cost[i], left_shares[i]);
             if opened > cost[i - 1] {
                 (cost[i], size[i]) = (cost[i - 1], size[i - 1]);
             } else {
-                plan |= left_share << (3 * i);
+                plan |= u64::from(left_share) << (4 * i);
                 (cost[i], size[i]) = (opened, size_of(left_share, i + 1));
             }
         }
@@ -191,4 +183,31 @@ impl Grown {
             root => inner[root as usize].as_node(),
         }
     }
+}
+
+/// By i − 1: the cost of sharing i branches between two neighbours, and how many the left one gets.
+fn share(left: &Grown, right: &Grown) -> ([f32; WIDTH], [u32; WIDTH]) {
+    // What is one branch anyway gets one.
+    let mut cost = [f32::INFINITY; WIDTH];
+    if left.root == 0 {
+        cost[1..].copy_from_slice(&right.cost[..WIDTH - 1]);
+        return (cost.map(|cost| left.cost[0] + cost), [1; WIDTH]);
+    }
+    if right.root == 0 {
+        cost[1..].copy_from_slice(&left.cost[..WIDTH - 1]);
+        return (cost.map(|cost| cost + right.cost[0]), std::array::from_fn(|i| (i as u32).max(1)));
+    }
+    // All i at a time, so that this becomes vector code without a branch: the right half has no cost for less than one branch.
+    let mut right_cost = [f32::INFINITY; 2 * WIDTH];
+    right_cost[WIDTH..].copy_from_slice(&right.cost);
+    let mut left_shares = [1; WIDTH];
+    for k in 1..WIDTH {
+        for i in 0..WIDTH {
+            let shared = left.cost[k - 1] + right_cost[WIDTH + i - k];
+            let is_less = shared < cost[i];
+            cost[i] = if is_less { shared } else { cost[i] };
+            left_shares[i] = if is_less { k as u32 } else { left_shares[i] };
+        }
+    }
+    (cost, left_shares)
 }

@@ -135,10 +135,10 @@ struct Written {
 impl Written {
     const NOTHING: Self = Self { extent: Extent::EMPTY, depth: 0, chance: 0.0, cost: 0.0 };
 
-    fn leaf(references: &[Reference], blocks: u32) -> Self {
+    fn leaf(references: &[Reference], cost: f32) -> Self {
         let extent = Extent::around(references);
         let area: f32 = references.iter().map(|r| r.extent().half_area()).sum();
-        Self { extent, depth: 0, chance: share(area, &extent), cost: blocks as f32 }
+        Self { extent, depth: 0, chance: share(area, &extent), cost }
     }
 
     /// A node over children, the one to be visited first last.
@@ -213,6 +213,9 @@ impl Writer<'_> {
             *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
         }
         let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
-        (Written::leaf(references, count), Child::leaf(mine.first_block as usize, count as usize))
+        (
+            Written::leaf(references, self.blocks.cost(count)),
+            Child::leaf(mine.first_block as usize, count as usize),
+        )
     }
 }

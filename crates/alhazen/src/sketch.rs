@@ -1,0 +1,126 @@
+//! A first look at a picture: one pass in pixels so large that it costs a small part of a pass, enlarged to the size of the picture.
+//!
+//! A sketch is made by the scene's own algorithm with its own settings, on a film that has n times fewer pixels along each side. So it
+//! shows what the picture will show, with the noise of one sample in squares of n × n pixels. What an algorithm does however many pixels
+//! there are, such as sending photons, it does n² times less; `whitted` follows no more than five events, and `radiosity` cuts its patches
+//! no further. Film, statistics and integrator of the picture know nothing of it.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use description::{IntegratorDesc, RadiosityDesc, SceneDesc};
+use film::Film;
+use image::{Image, Pixels, Window};
+use integrators::Control;
+use math::Bounds2i;
+use scene::Scene;
+
+use crate::{Header, Overrides};
+
+/// Most pixels of a sketch.
+const MOST_PIXELS: usize = 1 << 16;
+
+/// How a sketch of a picture is made.
+pub(crate) struct Sketch {
+    /// Pixels of the picture along a side of one of the sketch.
+    n: u32,
+    /// Film, sampler and algorithm of the sketch.
+    desc: SceneDesc,
+}
+
+impl Sketch {
+    /// Of the picture on `film`; `None` where that is as small itself.
+    pub fn new(desc: &SceneDesc, film: &Film) -> Option<Self> {
+        let bounds = film.pixel_bounds();
+        if bounds.area() <= MOST_PIXELS {
+            return None;
+        }
+        let n = (2..i32::MAX).find(|&n| coarse(&bounds, n).area() <= MOST_PIXELS)?;
+        let Bounds2i { min, max } = coarse(&bounds, n);
+        let mut small = SceneDesc {
+            options: desc.options.clone(),
+            film: desc.film.clone(),
+            camera: desc.camera.clone(),
+            filter: desc.filter.clone(),
+            sampler: desc.sampler.clone(),
+            integrator: desc.integrator.clone(),
+            ..SceneDesc::default()
+        };
+        small.film.resolution = desc.film.resolution.map(|side| div_ceil(side, n));
+        small.film.crop_window = None;
+        small.film.pixel_bounds = Some([min[0], max[0], min[1], max[1]]);
+        lighten(&mut small.integrator, n);
+        Overrides { samples_per_pixel: Some(1), ..Overrides::default() }.apply(&mut small).ok()?;
+        Some(Self { n: n as u32, desc: small })
+    }
+
+    /// Renders it as the picture of `film`; `None` if it was cancelled.
+    pub fn draw(
+        &self,
+        scene: &mut Scene,
+        film: &Film,
+        header: &Header,
+        cancel: &Arc<AtomicBool>,
+    ) -> Option<Image> {
+        let mut integrator = integrators::build(&self.desc).ok()?.integrator;
+        let mut small = film::compile(&self.desc).ok()?.film;
+        let control = Control { cancel: Arc::clone(cancel), ..Control::default() };
+        let drawn = scene.with_coarser_pixels(self.n, |scene| {
+            integrator.prepare(scene);
+            integrator.pass(0, scene, &mut small, &control)
+        });
+        drawn.ok()?;
+        Some(enlarged(&header.picture(&small), self.n, film))
+    }
+}
+
+/// The pixels, `n` times as wide and high as those within `bounds`, that cover them.
+fn coarse(bounds: &Bounds2i, n: i32) -> Bounds2i {
+    Bounds2i::new(bounds.min.map(|x| x / n), bounds.max.map(|x| div_ceil(x, n)))
+}
+
+fn div_ceil(x: i32, n: i32) -> i32 {
+    x / n + i32::from(x % n > 0)
+}
+
+/// Takes the work that pixels do not share out, and what is made beside the picture, from an algorithm.
+fn lighten(integrator: &mut IntegratorDesc, n: i32) {
+    let fewer = |count: &mut i32| *count = div_ceil(*count, n.saturating_mul(n));
+    match integrator {
+        // Glass doubles its rays at each event.
+        IntegratorDesc::Whitted { max_depth } => *max_depth = (*max_depth).min(5),
+        IntegratorDesc::PhotonMapping(desc) => {
+            fewer(&mut desc.photons);
+            fewer(&mut desc.caustic_photons);
+        }
+        IntegratorDesc::Sppm(desc) => desc.photons_per_iteration.iter_mut().for_each(fewer),
+        IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
+            (*visualize_strategies, *visualize_weights) = (false, false);
+        }
+        IntegratorDesc::Radiosity(desc) => {
+            *desc = RadiosityDesc {
+                subdivision: 0,
+                max_patches: desc.max_patches.min(1000),
+                tolerance: desc.tolerance.max(0.3),
+                steps: 1,
+                gather: 0,
+                mesh_out: None,
+                ..desc.clone()
+            };
+        }
+        _ => (),
+    }
+}
+
+/// The picture that fills the pixels of `film`, each square of `n` × `n` of them with one of the sketch's.
+fn enlarged(sketch: &Image, n: u32, film: &Film) -> Image {
+    let (bounds, [x0, y0]) = (film.pixel_bounds(), film.pixel_bounds().min.map(|x| x as u32));
+    let size = [bounds.width() as u32, bounds.height() as u32];
+    let at = |x: u32, first: u32| (first + x) / n - first / n;
+    let picture = Image::from_fn(size[0], size[1], ["R", "G", "B"], |x, y| sketch.rgb(at(x, x0), at(y, y0)));
+    let mut picture = if matches!(sketch.pixels(), Pixels::F16(_)) { picture.to_f16() } else { picture };
+    picture.metadata = sketch.metadata.clone();
+    picture.metadata.data_window = Some(Window { min: bounds.min, max: bounds.max });
+    picture.metadata.display_window = Some(Window { min: [0, 0], max: film.full_resolution() });
+    picture
+}
