@@ -82,14 +82,17 @@ impl Sheared {
     #[inline(always)]
     pub unsafe fn each<const N: usize, V: Vector<N>>(rays: &[Self; N]) -> ShearedLanes<V> {
         let axes = rays[0].axes;
-        // SAFETY: as the caller promises.
-        unsafe {
-            ShearedLanes {
-                axes,
-                shear: [0, 1, 2].map(|i| V::load(&std::array::from_fn(|lane| rays[lane].shear[i]))),
-                o: axes.map(|a| V::load(&std::array::from_fn(|lane| rays[lane].o[a]))),
+        let (mut shear, mut o) = ([[0.0; N]; 3], [[0.0; N]; 3]);
+        for (lane, ray) in rays.iter().enumerate() {
+            for i in 0..3 {
+                shear[i][lane] = ray.shear[i];
+                o[i][lane] = ray.o[axes[i]];
             }
         }
+        // SAFETY: as the caller promises.
+        let load =
+            |from: &[[f32; N]; 3]| unsafe { [V::load(&from[0]), V::load(&from[1]), V::load(&from[2])] };
+        ShearedLanes { axes, shear: load(&shear), o: load(&o) }
     }
 
     /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
@@ -199,7 +202,8 @@ impl<const N: usize> LaneHits<N> {
         let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
         let (xy, z) = (largest(0).max(largest(1)), largest(2));
         // SAFETY: who has vectors has the instructions.
-        let [g3, g5, two, three] = [6.0 * gamma(3), 6.0 * gamma(5), 2.0, 3.0].map(|x| unsafe { V::splat(x) });
+        let splat = |x: f32| unsafe { V::splat(x) };
+        let (g3, g5, two, three) = (splat(6.0 * gamma(3)), splat(6.0 * gamma(5)), splat(2.0), splat(3.0));
         let of_edges = g5.mul(xy).mul(three.mul_add(xy, two.mul(z)));
         let error = g3.mul_add(determinant.abs(), of_edges).mul(z);
         let certain = error.lt(sum.abs());

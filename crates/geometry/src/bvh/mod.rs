@@ -11,7 +11,7 @@ mod node;
 mod traverse;
 
 use math::Bounds3;
-pub(crate) use node::RAYS;
+pub(crate) use node::WIDTH;
 use node::WideNode;
 
 pub use build::BuildQuality;

@@ -1,21 +1,20 @@
 //! Nodes of sixteen children, whose boxes are tested together.
 //!
 //! The idea is that of [Wald et al. 2008]. What a ray waits for on its way down is one answer after another, each the same
-//! time whether of eight boxes or of sixteen, and with sixteen there are fewer: that pays even where vectors are shorter. A ray enters a slab at t = p·(1/d) − o/d, which is one fused product;
-//! everything but the plane p is known beforehand. Boxes are widened by what that rounds, and by what the
-//! watertight triangle test may err: that test rounds vertices after moving them to the ray's origin, so that it
-//! may meet a triangle that the exact ray misses by γ(8) times the distance; a box that is not as generous would
-//! let such a ray slip through a closed surface.
+//! time whether of eight boxes or of sixteen, and with sixteen there are fewer: that pays even where vectors are shorter.
+//!
+//! A ray enters a slab at t = p·(1/d) − o/d, which is one fused product; everything but the plane p is known beforehand. Boxes
+//! are widened by what that rounds, and by what the watertight triangle test may err: that test rounds vertices after moving
+//! them to the ray's origin, so that it may meet a triangle that the exact ray misses by γ(8) times the distance; a box that is
+//! not as generous would let such a ray slip through a closed surface.
 
 #![allow(unsafe_code)]
 
 use crate::simd::Vector;
 use math::{Bounds3, Ray, Vec3, gamma};
 
-/// Children of a node.
+/// Children of a node, and rays that pass together.
 pub(crate) const WIDTH: usize = 16;
-/// How many rays pass a tree together.
-pub(crate) const RAYS: usize = 8;
 
 /// A child in 32 bits: a node, or a range of blocks of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,14 +83,11 @@ pub(crate) struct Slabs<V> {
     far: [V; 3],
 }
 
-impl<V> Slabs<V> {
+impl<V: Vector<WIDTH>> Slabs<V> {
     /// # Safety
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
-    pub unsafe fn new<const N: usize>(ray: &Ray, bounds: &Bounds3) -> Self
-    where
-        V: Vector<N>,
-    {
+    pub unsafe fn new(ray: &Ray, bounds: &Bounds3) -> Self {
         let slack = slack(ray.o, bounds);
         // SAFETY: as the caller promises.
         unsafe { Self::along(inverse(ray.d), ray.o, slack) }
@@ -100,10 +96,7 @@ impl<V> Slabs<V> {
     /// # Safety
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
-    unsafe fn along<const N: usize>(inverse: Vec3, o: Vec3, slack: f32) -> Self
-    where
-        V: Vector<N>,
-    {
+    unsafe fn along(inverse: Vec3, o: Vec3, slack: f32) -> Self {
         let shift = Vec3::splat(slack).copysign(inverse);
         // SAFETY: as the caller promises.
         let splat = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
@@ -116,27 +109,27 @@ impl<V> Slabs<V> {
     }
 }
 
-/// Eight rays from one point, and an interval around their directions [Reshetov et al. 2005].
+/// Rays from one point, and an interval around their directions [Reshetov et al. 2005].
 #[derive(Clone, Copy)]
-pub(crate) struct Beam<R, V> {
+pub(crate) struct Beam<V> {
     /// One in each lane.
-    rays: Slabs<R>,
+    rays: Slabs<V>,
     /// Two, each in all lanes, whose inverse directions have the least and the greatest size along each axis, so that they meet
     /// each plane before and after all others.
     least: Slabs<V>,
     greatest: Slabs<V>,
 }
 
-impl<R: Vector<RAYS>, V: Vector<WIDTH>> Beam<R, V> {
+impl<V: Vector<WIDTH>> Beam<V> {
     /// All rays must come from the same point, and all directions must have the same signs.
     ///
     /// # Safety
     /// The processor must have the instructions that `V` takes.
     #[inline(always)]
-    pub unsafe fn new(rays: &[(Ray, f32); RAYS], bounds: &Bounds3) -> Self {
+    pub unsafe fn new(rays: &[(Ray, f32); WIDTH], bounds: &Bounds3) -> Self {
         let o = rays[0].0.o;
         let slack = slack(o, bounds);
-        let mut lanes = [[0.0; RAYS]; 3];
+        let mut lanes = [[0.0; WIDTH]; 3];
         let (mut least, mut greatest) = (Vec3::INFINITY, Vec3::ZERO);
         for (lane, (ray, _)) in rays.iter().enumerate() {
             let inverse = inverse(ray.d);
@@ -148,14 +141,13 @@ impl<R: Vector<RAYS>, V: Vector<WIDTH>> Beam<R, V> {
         }
         // SAFETY: as the caller promises.
         unsafe {
-            let d = rays[0].0.d;
-            let mut rays = Slabs::<R>::along(greatest.copysign(d), o, slack);
-            let [least, greatest] = [least, greatest].map(|size| Slabs::along(size.copysign(d), o, slack));
+            let [mut rays, least, greatest] =
+                [greatest, least, greatest].map(|size| Slabs::along(size.copysign(rays[0].0.d), o, slack));
             for axis in 0..3 {
                 let shift = slack.copysign(lanes[axis][0]);
-                rays.inverse[axis] = R::load(&lanes[axis]);
-                rays.near[axis] = rays.inverse[axis].mul(R::splat(o[axis] + shift));
-                rays.far[axis] = rays.inverse[axis].mul(R::splat(o[axis] - shift));
+                rays.inverse[axis] = V::load(&lanes[axis]);
+                rays.near[axis] = rays.inverse[axis].mul(V::splat(o[axis] + shift));
+                rays.far[axis] = rays.inverse[axis].mul(V::splat(o[axis] - shift));
             }
             Self { rays, least, greatest }
         }
@@ -244,23 +236,23 @@ impl WideNode {
 
     /// Where each ray enters the box of a child, and a bit for each that does up to its `t_max`.
     #[inline(always)]
-    pub fn intersect_rays<R: Vector<RAYS>, V>(
+    pub fn intersect_rays<V: Vector<WIDTH>>(
         &self,
         lane: usize,
-        beam: &Beam<R, V>,
-        t_max: R,
-        zero: R,
-    ) -> (R, u32) {
+        beam: &Beam<V>,
+        t_max: V,
+        zero: V,
+    ) -> (V, u32) {
         let rays = &beam.rays;
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = rays.first[axis];
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below 8; whoever has `rays` has the
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below [`WIDTH`]; whoever has `rays` has the
             // instructions.
             let [enter, leave] = unsafe {
-                let first_plane = R::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
+                let first_plane = V::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
                 let last_plane =
-                    R::splat(*self.planes.get_unchecked(2 * axis + 3 - first).get_unchecked(lane));
+                    V::splat(*self.planes.get_unchecked(2 * axis + 3 - first).get_unchecked(lane));
                 [
                     first_plane.mul_sub_loosely(rays.inverse[axis], rays.near[axis]),
                     last_plane.mul_sub_loosely(rays.inverse[axis], rays.far[axis]),
@@ -274,7 +266,7 @@ impl WideNode {
 
     /// Where the first of the rays may enter each box, and a bit for each box that any may enter up to `t_max`.
     #[inline(always)]
-    pub fn intersect_beam<R, V: Vector<WIDTH>>(&self, beam: &Beam<R, V>, t_max: V, zero: V) -> (V, u32) {
+    pub fn intersect_beam<V: Vector<WIDTH>>(&self, beam: &Beam<V>, t_max: V, zero: V) -> (V, u32) {
         let Beam { least, greatest, .. } = beam;
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {

@@ -8,7 +8,7 @@
 
 #![allow(unsafe_code)]
 
-use super::node::{Beam, Child, RAYS, Slabs, WIDTH, WideNode};
+use super::node::{Beam, Child, Slabs, WIDTH, WideNode};
 use super::{Bvh, MAX_DEPTH};
 use crate::simd::{Simd, Vector};
 use math::Ray;
@@ -59,12 +59,12 @@ impl Waiting {
     }
 }
 
-/// What waits for eight rays: in the last bits of the distance, a bit for each ray that enters the box.
+/// What waits for rays that pass together: in the last bits of the distance, a bit for each ray that enters the box.
 #[derive(Clone, Copy)]
 struct Together(Waiting);
 
 impl Together {
-    const ALL: u32 = (1 << RAYS) - 1;
+    const ALL: u32 = (1 << WIDTH) - 1;
 
     #[inline(always)]
     fn new(near: f32, rays: u32, child: Child) -> Self {
@@ -137,7 +137,7 @@ impl Bvh {
         }
     }
 
-    /// Takes eight rays from one point through the tree together. `test` is given blocks, a bit for each ray that enters
+    /// Takes rays from one point through the tree together. `test` is given blocks, a bit for each ray that enters
     /// the box around them, and the end of each ray, which it may lower: below zero when the ray is to go no further.
     /// Returns the number of boxes tested. The rays must be finite and have the same signs.
     ///
@@ -147,9 +147,9 @@ impl Bvh {
     pub unsafe fn traverse_together<S: Simd, B>(
         &self,
         blocks: &[B],
-        rays: &[(Ray, f32); RAYS],
-        t_max: &mut [f32; RAYS],
-        mut test: impl FnMut(Range<usize>, u32, &mut [f32; RAYS]),
+        rays: &[(Ray, f32); WIDTH],
+        t_max: &mut [f32; WIDTH],
+        mut test: impl FnMut(Range<usize>, u32, &mut [f32; WIDTH]),
     ) -> u64 {
         let mut extents = 0;
         if self.nodes.is_empty() {
@@ -157,8 +157,8 @@ impl Bvh {
         }
         // SAFETY: as in `traverse`.
         unsafe {
-            let beam = Beam::<S::Eight, S::Sixteen>::new(rays, &self.bounds);
-            let zero = S::Eight::splat(0.0);
+            let beam = Beam::<S::Sixteen>::new(rays, &self.bounds);
+            let zero = S::Sixteen::splat(0.0);
             let mut furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
@@ -174,9 +174,8 @@ impl Bvh {
                     furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
                 } else {
                     let node = self.nodes.get_unchecked(child.index());
-                    let ends = S::Eight::load(t_max);
-                    let (near, mut entered) =
-                        node.intersect_beam(&beam, S::Sixteen::splat(furthest), S::Sixteen::splat(0.0));
+                    let ends = S::Sixteen::load(t_max);
+                    let (near, mut entered) = node.intersect_beam(&beam, S::Sixteen::splat(furthest), zero);
                     extents += node.len() as u64;
                     let near = near.store();
                     let floor = top;
@@ -184,7 +183,7 @@ impl Bvh {
                         let lane = entered.trailing_zeros() as usize;
                         entered &= entered - 1;
                         let (_, hits) = node.intersect_rays(lane, &beam, ends, zero);
-                        extents += RAYS as u64;
+                        extents += WIDTH as u64;
                         if hits != 0 {
                             let child = *node.children().get_unchecked(lane);
                             self.prefetch::<S, _>(blocks, child);

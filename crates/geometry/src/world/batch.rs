@@ -1,7 +1,7 @@
 //! Many rays at once.
 //!
-//! Rays that run side by side from one point, as those of a camera do, pass the tree together: a beam around eight of them
-//! finds the boxes that any of them may enter, and these boxes and the triangles in them are tested against all eight at once.
+//! Rays that run side by side from one point, as those of a camera do, pass the tree together: a beam around sixteen of them
+//! finds the boxes that any of them may enter, and these boxes and the triangles in them are tested against all sixteen at once.
 //!
 //! Other rays pass it one by one. Many with scattered origins do so in an order of their own, so that nodes and triangles of
 //! which one has just had need are at hand for the next.
@@ -15,7 +15,7 @@ use super::order::order;
 use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
 use super::{Hit, InstancePath, RayStats, World};
-use crate::bvh::{Leaves, RAYS};
+use crate::bvh::{Leaves, WIDTH};
 use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
 use math::Ray;
@@ -26,7 +26,7 @@ const AHEAD: usize = 16;
 
 impl World {
     /// What [`World::intersect`] says of each ray and its `t_max`. Rays of a camera are best given by rows or tiles, in any
-    /// number from eight on; rays with scattered origins by tens of thousands, for fewer are no faster than alone.
+    /// number from sixteen on; rays with scattered origins by tens of thousands, for fewer are no faster than alone.
     ///
     /// # Panics
     /// When there are not as many hits as rays.
@@ -98,14 +98,14 @@ impl<'a, Q: Query, F: Fn(&'a (Ray, f32)) -> Q> Task for Batch<'a, '_, Q, F> {
             }
             return;
         }
-        for (rays, answers) in rays.chunks(RAYS).zip(answers.chunks_mut(RAYS)) {
+        for (rays, answers) in rays.chunks(WIDTH).zip(answers.chunks_mut(WIDTH)) {
             match rays.try_into() {
-                Ok(eight) if are_side_by_side(eight) => {
-                    stats.rays += RAYS as u64;
+                Ok(group) if are_side_by_side(group) => {
+                    stats.rays += WIDTH as u64;
                     let mut queries = std::array::from_fn(|i| question(&rays[i]));
                     // SAFETY: the caller promises the instructions.
-                    unsafe { SideBySide::new(eight).trace::<S, Q>(world, &mut queries, stats) };
-                    for ((answer, (ray, _)), query) in answers.iter_mut().zip(eight).zip(queries) {
+                    unsafe { SideBySide::new(group).trace::<S, Q>(world, &mut queries, stats) };
+                    for ((answer, (ray, _)), query) in answers.iter_mut().zip(group).zip(queries) {
                         *answer = finish(world, ray, query, stats);
                     }
                 }
@@ -133,7 +133,7 @@ const SPREAD: f32 = 0.1;
 /// Whether rays are worth being taken together: they come from one point, go about the same way, with the same signs,
 /// and mostly along the same axis.
 #[inline(always)]
-fn are_side_by_side(rays: &[(Ray, f32); RAYS]) -> bool {
+fn are_side_by_side(rays: &[(Ray, f32); WIDTH]) -> bool {
     let lead = &rays[0].0;
     let axis = main_axis(lead.d);
     let spread = lead.d.length_squared() * (SPREAD * SPREAD);
@@ -149,30 +149,30 @@ fn are_side_by_side(rays: &[(Ray, f32); RAYS]) -> bool {
 
 /// Rays that are taken together.
 struct SideBySide<'a> {
-    rays: &'a [(Ray, f32); RAYS],
-    sheared: [Sheared; RAYS],
+    rays: &'a [(Ray, f32); WIDTH],
+    sheared: [Sheared; WIDTH],
 }
 
 impl<'a> SideBySide<'a> {
     /// So few are tested against triangles one by one.
-    const FEW: u32 = 2;
+    const FEW: u32 = 4;
 
     #[inline(always)]
-    fn new(rays: &'a [(Ray, f32); RAYS]) -> Self {
+    fn new(rays: &'a [(Ray, f32); WIDTH]) -> Self {
         Self { rays, sheared: std::array::from_fn(|i| Sheared::new(&rays[i].0)) }
     }
 
     /// # Safety
     /// The processor must have the instructions of the set.
     #[inline(always)]
-    unsafe fn trace<S: Simd, Q: Query>(&self, world: &World, queries: &mut [Q; RAYS], stats: &mut RayStats) {
+    unsafe fn trace<S: Simd, Q: Query>(&self, world: &World, queries: &mut [Q; WIDTH], stats: &mut RayStats) {
         let group = &world.groups[0];
         let mut t_max = std::array::from_fn(|i| self.rays[i].1);
         let mut primitives = 0;
         // SAFETY: the caller promises the instructions.
         unsafe {
-            let lanes: ShearedLanes<S::Eight> = Sheared::each(&self.sheared);
-            let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; RAYS]| {
+            let lanes: ShearedLanes<S::Sixteen> = Sheared::each(&self.sheared);
+            let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]| {
                 if entering.count_ones() <= Self::FEW {
                     let mut entering = entering;
                     while entering != 0 {
@@ -185,7 +185,7 @@ impl<'a> SideBySide<'a> {
                             group,
                             instance: InstancePath::TOP,
                             sheared: &self.sheared[i],
-                            lanes: &self.sheared[i].lanes::<{ RAYS }, S::Eight>(),
+                            lanes: &self.sheared[i].lanes::<{ Packet::VERTICES }, S::Eight>(),
                             query: &mut queries[i],
                             primitives: 0,
                         };
@@ -198,8 +198,8 @@ impl<'a> SideBySide<'a> {
                 }
                 for packet in &group.packets()[blocks] {
                     for lane in 0..packet.len() {
-                        primitives += RAYS as u64;
-                        let found = packet.intersect_rays(lane, &lanes, S::Eight::load(t_max));
+                        primitives += WIDTH as u64;
+                        let found = packet.intersect_rays(lane, &lanes, S::Sixteen::load(t_max));
                         if let Some(found) = found {
                             self.offer(group, packet, lane, &found, queries, t_max);
                         }
@@ -218,13 +218,13 @@ impl<'a> SideBySide<'a> {
         group: &Group,
         packet: &Packet,
         lane: usize,
-        found: &LaneHits<RAYS>,
-        queries: &mut [Q; RAYS],
-        t_max: &mut [f32; RAYS],
+        found: &LaneHits<WIDTH>,
+        queries: &mut [Q; WIDTH],
+        t_max: &mut [f32; WIDTH],
     ) {
         let mut hits = found.hits;
         while hits != 0 {
-            let i = hits.trailing_zeros() as usize % RAYS;
+            let i = hits.trailing_zeros() as usize % WIDTH;
             hits &= hits - 1;
             if t_max[i] < 0.0 {
                 continue;

@@ -8,7 +8,7 @@ use super::packet::{MeshTriangles, Packet};
 use super::query::Query;
 use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
-use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, RAYS, Reference};
+use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
 use crate::simd::{Simd, Task};
 use crate::watertight::{Sheared, ShearedLanes};
 use math::{Bounds3, Ray, gamma};
@@ -233,7 +233,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
         let sheared = Sheared::new(trace.ray);
         // SAFETY: the caller promises the instructions.
         unsafe {
-            let lanes = sheared.lanes::<{ RAYS }, S::Eight>();
+            let lanes = sheared.lanes::<{ Packet::VERTICES }, S::Eight>();
             let mut t_max = query.t_max();
             let mut leaves = Triangles::<S, Q> {
                 group,

@@ -30,7 +30,7 @@ impl Packet {
     pub const WIDTH: usize = 4;
 
     /// Vertices that these may have.
-    const VERTICES: usize = 8;
+    pub const VERTICES: usize = 8;
 
     /// The number of a lane that is not in use.
     const NOTHING: u32 = u32::MAX;
@@ -106,7 +106,7 @@ impl Packet {
             // SAFETY: whoever has `rays` has the instructions.
             rays.shear(|axis| unsafe { V::splat(self.vertices[axis][vertex]) })
         };
-        LaneHits::of([0, 1, 2].map(corner), t_max)
+        LaneHits::of([corner(0), corner(1), corner(2)], t_max)
     }
 
     /// What lane `of` of `found` says of the triangle in `lane`: its hit, unless there is no such triangle or a doubt is
