@@ -102,7 +102,7 @@ impl Summary<'_> {
     }
 
     fn rays_per_second(&self) -> f64 {
-        self.progress.stats.rays as f64 / self.seconds.render.max(1e-9)
+        self.progress.stats.rays as f64 / self.progress.elapsed.as_secs_f64().max(1e-9)
     }
 }
 
