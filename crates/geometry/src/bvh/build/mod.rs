@@ -3,7 +3,7 @@
 //! Every builder brings references to primitives into an order and grows a binary tree over them ([`tree`]);
 //! what becomes a wide node is then decided for all of them alike ([`widen`]).
 //!
-//! Memory for n primitives, beyond what is kept: 32 n bytes of references and 20 n of binary nodes, given back
+//! Memory for n primitives, beyond what is kept: 32 n bytes of references and 24 n of binary nodes, given back
 //! when the blocks are made; `high` takes twice as much. `fast` has a reference and a binary node for each block alone,
 //! and takes 16 n bytes to sort.
 
