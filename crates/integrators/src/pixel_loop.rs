@@ -154,19 +154,20 @@ impl PixelSamples<'_> {
         radiance: impl Fn(&mut PixelSample, &mut Sampler, &mut RayStats) -> SampledSpectrum + Sync,
     ) -> Result<RayStats, Cancelled> {
         let tile = |mut tile: FilmTile| {
-            control.check()?;
             let mut sampler = self.sampler.clone();
             let mut stats = RayStats::default();
             let bounds = tile.bounds();
-            for y in bounds.min[1]..bounds.max[1] {
+            let done = (bounds.min[1]..bounds.max[1]).try_for_each(|y| {
+                control.check()?;
                 for x in bounds.min[0]..bounds.max[0] {
                     let mut sample = self.begin(moment, [x, y], &mut sampler);
                     let l = radiance(&mut sample, &mut sampler, &mut stats);
                     tile.add_sample([x, y], &l, &sample.lambda, sample.filter_weight);
                 }
-            }
+                Ok(())
+            });
             control.count(&stats);
-            Ok(stats)
+            done.map(|()| stats)
         };
         tiles.into_par_iter().map(tile).try_reduce(RayStats::default, |mut sum, stats| {
             sum += stats;

@@ -25,9 +25,13 @@ impl Frame {
     /// An `x` along `z`, or of no length, gives way to [`Frame::from_z`].
     #[inline]
     pub fn from_z_and_x(z: Vector3, x: Vector3) -> Self {
-        let x = x - z * z.dot(x);
-        match x.try_normalize() {
-            Some(x) => Self { x, y: z.cross(x), z },
+        let across = |x: Vector3| x - z * z.dot(x);
+        match across(x).try_normalize() {
+            Some(x) => {
+                // Where x was almost along z, little more than rounding errors was left of it: once more takes those along z out.
+                let x = across(x).normalize();
+                Self { x, y: z.cross(x), z }
+            }
             None => Self::from_z(z),
         }
     }
@@ -58,6 +62,15 @@ pub fn coordinate_system(z: Vector3) -> (Vector3, Vector3) {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn an_x_almost_along_z_gives_right_angles() {
+        let z = Vec3::new(0.3, -1.0, 2.0).normalize();
+        for tilt in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+            let f = Frame::from_z_and_x(z, 3.0 * z + Vec3::new(tilt, 0.0, tilt));
+            assert!(f.x.dot(f.z).abs() < 1e-6 && f.x.is_normalized() && f.y.is_normalized(), "{tilt}: {f:?}");
+        }
+    }
 
     proptest! {
         #[test]
