@@ -129,7 +129,7 @@ pub(super) struct Grown {
     pub root: u32,
     pub count: u32,
     pub extent: Extent,
-    /// C(n, i + 1).
+    /// C(n, i + 1); the last is not asked for, as a branch of a wide node never has all of its branches.
     cost: [f32; WIDTH],
     /// What it becomes as so many branches.
     size: [Size; WIDTH],
