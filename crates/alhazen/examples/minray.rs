@@ -1,7 +1,10 @@
-//! Paul Heckbert's ray tracer on a business card, done again on this house's geometry ([Heckbert 1994]).
+//! Paul Heckbert's ray tracer on a business card, done again on this house's geometry
+//! ([Heckbert 1994]).
 //!
-//! Five spheres on the sky's own faint light. At each hit a ray splits in a reflected and a refracted one, and asks for every sphere that shines
-//! whether it sees its centre. `cargo run --release --example minray -- 256 > minray.ppm` draws it larger than the card's 32 × 32 pixels.
+//! Five spheres on the sky's own faint light. At each hit a ray splits in a reflected and a
+//! refracted one, and asks for every sphere that shines whether it sees its centre.
+//! `cargo run --release --example minray -- 256 > minray.ppm` draws it larger than the card's 32 ×
+//! 32 pixels.
 
 use alhazen::geometry::{Shape, Sphere, SurfacePoint};
 use alhazen::math::{Point3, Ray, Transform, Vec3};
@@ -13,7 +16,8 @@ const AMBIENT: Vec3 = Vec3::splat(0.02);
 /// Angle of view in degrees.
 const FIELD_OF_VIEW: f32 = 25.0;
 
-/// A sphere and how it takes part in the light: in diffuse and mirror reflection, in transmission, and shining itself.
+/// A sphere and how it takes part in the light: in diffuse and mirror reflection, in transmission,
+/// and shining itself.
 struct Ball {
     shape: Shape,
     center: Point3,

@@ -47,7 +47,8 @@ pub struct CompiledJob {
 }
 
 impl Job {
-    /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with it.
+    /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with
+    /// it.
     pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
         let (scene, film, built) = match (scene::compile(desc), film::compile(desc), integrators::build(desc))
         {
@@ -68,8 +69,9 @@ impl Job {
         Ok(CompiledJob { job: Self { scene, film, integrator, header, sketch }, warnings })
     }
 
-    /// A first look at the picture, before it is rendered and without any part in it: in pixels so large that a render takes many times
-    /// as long, repeated to the size of the picture. `None` where the picture has so few pixels itself, or if it was cancelled.
+    /// A first look at the picture, before it is rendered and without any part in it: in pixels so
+    /// large that a render takes many times as long, repeated to the size of the picture. `None`
+    /// where the picture has so few pixels itself, or if it was cancelled.
     pub fn sketch(&mut self, cancel: &Arc<AtomicBool>) -> Option<Image> {
         self.sketch.as_ref()?.draw(&mut self.scene, &self.film, &self.header, cancel)
     }

@@ -7,8 +7,9 @@ use description::{
 
 use crate::settings::{keep, settings_of};
 
-/// Of one list: the names of the algorithms that can be chosen with what they are when nothing is set, and after them the names of those
-/// that can only be described. An algorithm that is missing from it does not compile.
+/// Of one list: the names of the algorithms that can be chosen with what they are when nothing is
+/// set, and after them the names of those that can only be described. An algorithm that is missing
+/// from it does not compile.
 macro_rules! integrators {
     ($($name:literal: $variant:ident = $default:expr,)* ; $($undrawn:literal: $described:ident,)*) => {
         /// The names of the algorithms that can be chosen.
@@ -90,8 +91,9 @@ pub(crate) const QUALITIES: [(&str, BuildQualityDesc); 3] = [
     ("high", BuildQualityDesc::High),
 ];
 
-/// The algorithm called `name`: `current` if it is that, else one that has the settings of `current` that both have, as far as they are not
-/// left at their defaults. The format's spelling without hyphens is understood as well.
+/// The algorithm called `name`: `current` if it is that, else one that has the settings of
+/// `current` that both have, as far as they are not left at their defaults. The format's spelling
+/// without hyphens is understood as well.
 pub(crate) fn integrator_called(name: &str, current: &IntegratorDesc) -> Option<IntegratorDesc> {
     let name = INTEGRATORS.into_iter().find(|known| name == *known || name == known.replace('-', ""))?;
     if name == integrator_name(current) {

@@ -10,8 +10,8 @@ use crate::settings::{SETTINGS, Setting, set_samples_per_pixel};
 /// Changes to a scene. `None` leaves what the scene says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// The name of the algorithm, as in [`INTEGRATORS`]. Settings that both algorithms have are kept, all if
-    /// it is the scene's own.
+    /// The name of the algorithm, as in [`INTEGRATORS`]. Settings that both algorithms have are
+    /// kept, all if it is the scene's own.
     pub integrator: Option<String>,
     /// Settings by their names in [`SETTINGS`], with their values as text.
     pub settings: Vec<(String, String)>,
@@ -103,7 +103,8 @@ impl Overrides {
         Ok(())
     }
 
-    /// The error, among those that came of the scene after these changes, which is the fault of one of them.
+    /// The error, among those that came of the scene after these changes, which is the fault of one
+    /// of them.
     pub fn blamed(&self, diagnostics: &[Diagnostic]) -> Option<OverrideError> {
         let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
         let mut of_caller = errors.filter(|error| error.span().file == FileId::CALLER);

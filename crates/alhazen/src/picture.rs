@@ -6,8 +6,9 @@ use std::path::Path;
 use image::{Chromaticities, Format, Image, ImageError, WriteOptions};
 use spectrum::{Rgb, RgbColorSpace};
 
-/// Writes a picture in the format of the name's extension. EXR files keep the picture's colour space and everything that its
-/// header says; other formats cannot tell their colour space, and get sRGB.
+/// Writes a picture in the format of the name's extension. EXR files keep the picture's colour
+/// space and everything that its header says; other formats cannot tell their colour space, and get
+/// sRGB.
 pub fn write_picture(picture: &Image, path: impl AsRef<Path>) -> Result<(), ImageError> {
     let path = path.as_ref();
     let keeps_space = Format::from_name(&path.to_string_lossy()) == Some(Format::Exr);

@@ -363,7 +363,8 @@ fn at<'a>(place: Option<&'a mut (impl Value + 'a)>) -> Option<Box<dyn Value + 'a
     place.map(|place| -> Box<dyn Value> { Box::new(At(place)) })
 }
 
-/// Sets the number of samples; the strata of a stratified sampler become as nearly square as the number allows.
+/// Sets the number of samples; the strata of a stratified sampler become as nearly square as the
+/// number allows.
 pub(crate) fn set_samples_per_pixel(desc: &mut SceneDesc, samples: i32) {
     desc.sampler.pixel_samples = samples;
     if let SamplerKind::Stratified { strata, .. } = &mut desc.sampler.kind {

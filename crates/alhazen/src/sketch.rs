@@ -1,9 +1,12 @@
-//! A first look at a picture: one pass in pixels so large that it costs a small part of a pass, enlarged to the size of the picture.
+//! A first look at a picture: one pass in pixels so large that it costs a small part of a pass,
+//! enlarged to the size of the picture.
 //!
-//! A sketch is made by the scene's own algorithm with its own settings, on a film that has n times fewer pixels along each side. So it
-//! shows what the picture will show, with the noise of one sample in squares of n × n pixels. What an algorithm does however many pixels
-//! there are, such as sending photons, it does n² times less; `whitted` follows no more than five events, and `radiosity` cuts its patches
-//! no further. Film, statistics and integrator of the picture know nothing of it.
+//! A sketch is made by the scene's own algorithm with its own settings, on a film that has n times
+//! fewer pixels along each side. So it shows what the picture will show, with the noise of one
+//! sample in squares of n × n pixels. What an algorithm does however many pixels there are, such as
+//! sending photons, it does n² times less; `whitted` follows no more than five events, and
+//! `radiosity` cuts its patches no further. Film, statistics and integrator of the picture know
+//! nothing of it.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -83,7 +86,8 @@ fn div_ceil(x: i32, n: i32) -> i32 {
     x / n + i32::from(x % n > 0)
 }
 
-/// Takes the work that pixels do not share out, and what is made beside the picture, from an algorithm.
+/// Takes the work that pixels do not share out, and what is made beside the picture, from an
+/// algorithm.
 fn lighten(integrator: &mut IntegratorDesc, n: i32) {
     let fewer = |count: &mut i32| *count = div_ceil(*count, n.saturating_mul(n));
     match integrator {
@@ -112,7 +116,8 @@ fn lighten(integrator: &mut IntegratorDesc, n: i32) {
     }
 }
 
-/// The picture that fills the pixels of `film`, each square of `n` × `n` of them with one of the sketch's.
+/// The picture that fills the pixels of `film`, each square of `n` × `n` of them with one of the
+/// sketch's.
 fn enlarged(sketch: &Image, n: u32, film: &Film) -> Image {
     let (bounds, [x0, y0]) = (film.pixel_bounds(), film.pixel_bounds().min.map(|x| x as u32));
     let size = [bounds.width() as u32, bounds.height() as u32];

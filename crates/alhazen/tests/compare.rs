@@ -1,4 +1,5 @@
-//! The laboratory: its figures against direct computation, what it says of algorithms with and without bias, and its page.
+//! The laboratory: its figures against direct computation, what it says of algorithms with and
+//! without bias, and its page.
 #![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
 use std::collections::BTreeSet;
@@ -268,7 +269,8 @@ fn black_pictures_and_single_pixels_have_a_report_too() {
     }
 }
 
-/// Panics unless every element is closed where it has to be; gives their ids, none of which occurs twice.
+/// Panics unless every element is closed where it has to be; gives their ids, none of which occurs
+/// twice.
 fn check_elements(page: &str) -> BTreeSet<String> {
     const EMPTY: [&str; 4] = ["!DOCTYPE", "meta", "img", "input"];
     let (mut open, mut ids) = (Vec::new(), BTreeSet::new());

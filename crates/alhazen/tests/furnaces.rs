@@ -1,7 +1,9 @@
-//! Closed furnaces, and things that absorb nothing under a uniform sky, from the text of a scene to the picture in its file.
+//! Closed furnaces, and things that absorb nothing under a uniform sky, from the text of a scene to
+//! the picture in its file.
 //!
-//! Where every path carries the same radiance, a pixel's only noise is that of its wavelengths. The sky alone, seen with the same
-//! seed, has the same wavelengths: so each pixel, not only their mean, has a known value, and a single leaking ray shows.
+//! Where every path carries the same radiance, a pixel's only noise is that of its wavelengths. The
+//! sky alone, seen with the same seed, has the same wavelengths: so each pixel, not only their
+//! mean, has a known value, and a single leaking ray shows.
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! Damaged, odd and old files of others, from import to a small picture where they can be read: no panic, and soon an end.
+//! Damaged, odd and old files of others, from import to a small picture where they can be read: no
+//! panic, and soon an end.
 
 mod common;
 
@@ -25,7 +26,8 @@ fn draws(path: &Path, assets: &dyn AssetSource) -> bool {
     job.render(&Control::default()).is_ok() && job.film().sample_count() > 0
 }
 
-/// Draws all files of some folders that have one of the extensions, each in its time; gives how many could be drawn.
+/// Draws all files of some folders that have one of the extensions, each in its time; gives how
+/// many could be drawn.
 fn draw_all(folders: &[&str], extensions: &[&str], draw: impl Fn(&Path) -> bool) -> usize {
     let mut drawn = 0;
     for folder in folders.iter().filter_map(|folder| data(&format!("malformed/{folder}"))) {

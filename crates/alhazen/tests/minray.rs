@@ -1,4 +1,5 @@
-//! The picture of the business card, held to the one that the card's own program printed, and to some pixels of it where that is absent.
+//! The picture of the business card, held to the one that the card's own program printed, and to
+//! some pixels of it where that is absent.
 
 #[allow(dead_code)]
 #[path = "../examples/minray.rs"]

@@ -1,6 +1,8 @@
-//! Test scenes of Mitsuba and Ignis, written anew, against the pictures that come with them or means found by Mitsuba.
+//! Test scenes of Mitsuba and Ignis, written anew, against the pictures that come with them or
+//! means found by Mitsuba.
 //!
-//! The references hold three numbers for a colour, our pictures many: where light is reflected once both say the same.
+//! The references hold three numbers for a colour, our pictures many: where light is reflected once
+//! both say the same.
 
 mod common;
 
@@ -101,7 +103,8 @@ fn instances_of_a_group() {
     estimate(&text, 4).assert_parts(&expected, 8, 1e-2, 1, "instances");
 }
 
-/// The Cornell box in its measured colours; the means were found by Mitsuba with colours as spectra.
+/// The Cornell box in its measured colours; the means were found by Mitsuba with colours as
+/// spectra.
 #[test]
 fn cornell_box() {
     let Some(folder) = data("mitsuba-tests/scenes/cbox/meshes") else { return };

@@ -1,4 +1,5 @@
-//! Scenes of the Nori course, written anew: direct light with known answers, and means found by another renderer.
+//! Scenes of the Nori course, written anew: direct light with known answers, and means found by
+//! another renderer.
 
 mod common;
 
@@ -17,7 +18,8 @@ fn head(look_at: &str, fov: f32, size: [u32; 2], integrator: &str, samples: u32)
     )
 }
 
-/// The angle over the smaller side of a 4:3 or 3:2 picture, from that over the larger: both in degrees.
+/// The angle over the smaller side of a 4:3 or 3:2 picture, from that over the larger: both in
+/// degrees.
 fn smaller_fov(larger: f32, aspect: f32) -> f32 {
     2.0 * ((larger.to_radians() / 2.0).tan() / aspect).atan().to_degrees()
 }
@@ -33,8 +35,8 @@ fn emitter(radiance: &str, shape: &str) -> String {
     )
 }
 
-/// One triangle as the only light over a floor: what a point of the floor reflects is known in closed form. Light sampled by
-/// area, by the BSDF, and by both.
+/// One triangle as the only light over a floor: what a point of the floor reflects is known in
+/// closed form. Light sampled by area, by the BSDF, and by both.
 #[test]
 fn direct_light_of_a_triangle() {
     let Some(folder) = data("nori/pa5/tests") else { return };

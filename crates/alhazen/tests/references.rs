@@ -1,8 +1,9 @@
 //! Scenes of Bitterli's collection against the pictures that came with them.
 //!
-//! Those were rendered with three numbers for a colour; ours are spectra, and light of the Cornell box that is reflected often is
-//! bluer or redder by some percent for that. So the box is rendered once for each channel with its reflectances and emission as
-//! greys, where both kinds of renderer must say the same; and once as it is, against a mean found by Mitsuba with spectra.
+//! Those were rendered with three numbers for a colour; ours are spectra, and light of the Cornell
+//! box that is reflected often is bluer or redder by some percent for that. So the box is rendered
+//! once for each channel with its reflectances and emission as greys, where both kinds of renderer
+//! must say the same; and once as it is, against a mean found by Mitsuba with spectra.
 
 mod common;
 

@@ -66,7 +66,8 @@ fn a_sketch_shows_what_the_picture_will_show() {
         path.render(&Control::default()).unwrap();
         let picture = path.picture();
         let expected = means(&picture);
-        // Chains dwell, the photons of a pass have four wavelengths, and large patches blur shadows.
+        // Chains dwell, the photons of a pass have four wavelengths, and large patches blur
+        // shadows.
         for (integrator, tolerance) in [
             ("path", 0.2),
             ("light-tracing", 0.2),

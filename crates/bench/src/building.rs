@@ -1,4 +1,5 @@
-//! Building and refitting: seconds on one thread and on two, and the memory that primitives and tree take.
+//! Building and refitting: seconds on one thread and on two, and the memory that primitives and
+//! tree take.
 
 use crate::embree::{Embree, Quality, SceneOptions};
 use crate::mesh::{BenchMesh, spheres};

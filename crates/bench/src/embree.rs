@@ -1,7 +1,8 @@
 //! Embree 4, from a library that is found when the program runs; no headers are needed.
 //!
-//! Only what measuring takes: one mesh in one scene, single rays, the nearest hit and any hit. The numbers of enumerators and
-//! the layout of structures are those of the interface of Embree 4 ([Embree 2025]).
+//! Only what measuring takes: one mesh in one scene, single rays, the nearest hit and any hit. The
+//! numbers of enumerators and the layout of structures are those of the interface of Embree 4
+//! ([Embree 2025]).
 #![allow(unsafe_code, reason = "a library written in C++ is called")]
 
 use crate::mesh::BenchMesh;
@@ -140,7 +141,8 @@ pub struct Embree {
 impl Embree {
     /// Loads the library at a path.
     pub fn load(path: &OsStr) -> Result<Self, libloading::Error> {
-        // SAFETY: the path is the user's word that the library is Embree, whose initialisers have no demands.
+        // SAFETY: the path is the user's word that the library is Embree, whose initialisers have
+        // no demands.
         let library = unsafe { Library::new(path)? };
         // Its threads may outlive all devices, so that it is never unloaded.
         Ok(Self { functions: Functions::find(Box::leak(Box::new(library)))? })
@@ -154,7 +156,8 @@ impl Embree {
         let device = NonNull::new(device).ok_or("Embree makes no device")?;
         let bytes = Box::new(AtomicIsize::new(0));
         let counter: *const AtomicIsize = &*bytes;
-        // SAFETY: the counter lives on the heap until the device, which calls the function, is released.
+        // SAFETY: the counter lives on the heap until the device, which calls the function, is
+        // released.
         unsafe { (self.functions.watch_memory)(device.as_ptr(), count_memory, counter.cast_mut().cast()) };
         Ok(Device { functions: self.functions, device, bytes })
     }
@@ -198,7 +201,8 @@ impl Device {
         let f = &self.functions;
         let device = self.device.as_ptr();
         let (vertices, triangles) = (&*mesh.positions, &*mesh.indices);
-        // SAFETY: the device is alive. A buffer of Embree's has room for the elements that it was asked for.
+        // SAFETY: the device is alive. A buffer of Embree's has room for the elements that it was
+        // asked for.
         unsafe {
             let scene = Scene { functions: self.functions, scene: (f.new_scene)(device), _device: self };
             let prepared = Prepared { scene, geometry: (f.new_geometry)(device, TRIANGLE_GEOMETRY) };
@@ -260,7 +264,8 @@ impl Scene<'_> {
         let mut answer = Answer::default();
         for ray in &*set.rays {
             let mut hit = RtcRayHit::new(ray);
-            // SAFETY: the scene is committed and alive, and the structure is as large and as aligned as Embree's.
+            // SAFETY: the scene is committed and alive, and the structure is as large and as
+            // aligned as Embree's.
             match set.query {
                 Query::Closest => {
                     unsafe { (self.functions.intersect)(self.scene, &mut hit, null_mut()) };
@@ -285,8 +290,8 @@ impl Drop for Scene<'_> {
     }
 }
 
-/// While it lives, this thread's processor takes denormal numbers for zero, as Embree advises for speed. Nothing that is
-/// computed meanwhile on our side has such numbers.
+/// While it lives, this thread's processor takes denormal numbers for zero, as Embree advises for
+/// speed. Nothing that is computed meanwhile on our side has such numbers.
 struct DenormalsAreZero {
     #[cfg(target_arch = "x86_64")]
     before: u32,
@@ -326,6 +331,7 @@ fn control() -> u32 {
 
 #[cfg(target_arch = "x86_64")]
 fn set_control(control: u32) {
-    // SAFETY: loads four bytes, which came from the register but for bits that change how denormal numbers are treated.
+    // SAFETY: loads four bytes, which came from the register but for bits that change how denormal
+    // numbers are treated.
     unsafe { std::arch::asm!("ldmxcsr [{}]", in(reg) &control, options(nostack)) };
 }

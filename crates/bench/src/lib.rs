@@ -1,6 +1,8 @@
-//! Measures the ray engine: the meshes and rays that it is measured by, Embree to hold it against, and the clock.
+//! Measures the ray engine: the meshes and rays that it is measured by, Embree to hold it against,
+//! and the clock.
 //!
-//! `cargo xtask bench rays` runs the program of this crate; `cargo bench --package alhazen-bench` measures the parts.
+//! `cargo xtask bench rays` runs the program of this crate; `cargo bench --package alhazen-bench`
+//! measures the parts.
 
 pub mod building;
 pub mod embree;

@@ -9,7 +9,8 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Million rays a second of one thread, seconds to build, memory: alhazen's, Embree's, and their ratios.
+/// Million rays a second of one thread, seconds to build, memory: alhazen's, Embree's, and their
+/// ratios.
 #[derive(Parser)]
 #[command(name = "cargo xtask bench rays")]
 struct Arguments {

@@ -1,12 +1,15 @@
 //! Two meshes of about a million triangles, made from formulas in doubles and rounded once.
 //!
-//! Both are made of *blobs*: the unit sphere over m meridians and k bands of latitude, whose radius in direction d is
+//! Both are made of *blobs*: the unit sphere over m meridians and k bands of latitude, whose radius
+//! in direction d is
 //!
-//!   r(d) = 1 + Σ_{j<6} 0.18·2⁻ʲ · sin(f·d_x + 1.7j + s) · sin(f·d_y + 2.3j + 0.5 + s) · sin(f·d_z + 3.1j + 1 + s),   f = 3·2ʲ
+//! r(d) = 1 + Σ_{j<6} 0.18·2⁻ʲ · sin(f·d_x + 1.7j + s) · sin(f·d_y + 2.3j + 0.5 + s) · sin(f·d_z +
+//! 3.1j + 1 + s), f = 3·2ʲ
 //!
-//! with a shift s. `blob` is one of 1,046,528 triangles, seen from outside: even, finely tessellated, nothing hidden. `room` is a
-//! closed box with 6 × 6 × 6 of them, 1,028,172 triangles in all, seen from a corner: large and tiny triangles, much that is hidden.
-//! And [`spheres`], at random.
+//! with a shift s. `blob` is one of 1,046,528 triangles, seen from outside: even, finely
+//! tessellated, nothing hidden. `room` is a closed box with 6 × 6 × 6 of them, 1,028,172 triangles
+//! in all, seen from a corner: large and tiny triangles, much that is hidden. And [`spheres`], at
+//! random.
 
 use geometry::{MeshAttributes, MeshError, SphereSet, SphereSetError, TriangleMesh};
 use math::{DVec3, Point3, Transform, Vec3};
@@ -107,7 +110,8 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Adds a blob of 2·meridians·(bands − 1) triangles: north pole, rings from north to south, south pole.
+    /// Adds a blob of 2·meridians·(bands − 1) triangles: north pole, rings from north to south,
+    /// south pole.
     fn push_blob(&mut self, meridians: u32, bands: u32, shift: f64, place: impl Fn(DVec3) -> DVec3) {
         let north = self.positions.len() as u32;
         self.positions.push(place(DVec3::Y * radius(DVec3::Y, shift)).as_vec3());
@@ -141,7 +145,8 @@ impl Arrays {
     }
 }
 
-/// So many spheres within the unit cube, each as large as to fill a hundredth of what is its share of it.
+/// So many spheres within the unit cube, each as large as to fill a hundredth of what is its share
+/// of it.
 pub fn spheres(count: usize) -> Result<SphereSet, SphereSetError> {
     let random = &mut SplitMix64(7);
     let point = |_| DVec3::from_array([0; 3].map(|_| random.uniform())).as_vec3();
@@ -162,7 +167,8 @@ fn radius(d: DVec3, shift: f64) -> f64 {
     1.0 + (0..6).map(bump).sum::<f64>()
 }
 
-/// The generator SplitMix64 ([Steele et al. 2014]): the same numbers wherever the meshes and rays are made.
+/// The generator SplitMix64 ([Steele et al. 2014]): the same numbers wherever the meshes and rays
+/// are made.
 pub(crate) struct SplitMix64(pub u64);
 
 impl SplitMix64 {

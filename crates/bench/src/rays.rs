@@ -1,7 +1,8 @@
 //! The rays: five sets, as a path tracer would ask for them.
 //!
 //! - *primary*: one through the centre of each pixel, by rows;
-//! - *diffuse*: from each primary hit, 10⁻⁴ above the surface, along a direction that follows the cosine;
+//! - *diffuse*: from each primary hit, 10⁻⁴ above the surface, along a direction that follows the
+//!   cosine;
 //! - *shuffled*: the same in random order, so that neighbours have nothing in common;
 //! - *shadow*: from the same points to random points of the light, t from 0 to 0.999 of the way;
 //! - *any-hit diffuse*: the diffuse rays again, asked only whether they meet anything.
@@ -51,14 +52,16 @@ impl Answer {
         self.sum_t += f64::from(t);
     }
 
-    /// Whether two engines found the same but for rounding: it may decide at silhouettes, and of leaking edges.
+    /// Whether two engines found the same but for rounding: it may decide at silhouettes, and of
+    /// leaking edges.
     pub fn agrees(&self, other: &Self) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-4 * a.max(b);
         close(self.hits as f64, other.hits as f64) && close(self.sum_t, other.sum_t)
     }
 }
 
-/// The five sets for a mesh, from `width`² primary rays. `closest` gives distance and triangle of the nearest hit.
+/// The five sets for a mesh, from `width`² primary rays. `closest` gives distance and triangle of
+/// the nearest hit.
 pub fn ray_sets(
     mesh: &BenchMesh,
     width: usize,

@@ -1,11 +1,11 @@
-//! Processor seconds, which other programs' time slices do not inflate; several ways in turn, so that whatever slows the
-//! machine down slows all of them.
+//! Processor seconds, which other programs' time slices do not inflate; several ways in turn, so
+//! that whatever slows the machine down slows all of them.
 
 use cpu_time::{ProcessTime, ThreadTime};
 use std::time::Instant;
 
-/// Runs each of `ways` in turn, `repeats` times over, on this thread. Gives for each the median of its processor seconds, and
-/// what it returned last.
+/// Runs each of `ways` in turn, `repeats` times over, on this thread. Gives for each the median of
+/// its processor seconds, and what it returned last.
 pub fn in_turn<T>(ways: &[impl Fn() -> T], repeats: usize) -> Vec<(f64, T)> {
     let mut rounds: Vec<Vec<(f64, T)>> = ways.iter().map(|_| Vec::new()).collect();
     for _ in 0..repeats {

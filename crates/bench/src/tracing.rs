@@ -31,7 +31,8 @@ struct Measured {
 /// An engine's name, and how it traces a set.
 type Engine<'a> = (String, Box<dyn Fn(&RaySet) -> Answer + 'a>);
 
-/// Traces `width`² primary rays and those that follow from them with each engine in turn, so many times.
+/// Traces `width`² primary rays and those that follow from them with each engine in turn, so many
+/// times.
 pub fn measure(
     mesh: &BenchMesh,
     embree: Option<&Embree>,

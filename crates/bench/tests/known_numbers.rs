@@ -1,4 +1,5 @@
-//! Meshes and rays are the ones that figures were taken with elsewhere: counts, places and answers stay what they were.
+//! Meshes and rays are the ones that figures were taken with elsewhere: counts, places and answers
+//! stay what they were.
 
 use alhazen_bench::building;
 use alhazen_bench::embree::Embree;
@@ -37,7 +38,8 @@ fn meshes_are_those_of_their_formulas() {
     }
 }
 
-/// Embree's answers to rays that it made itself: points of origin differ from ours in their last bits.
+/// Embree's answers to rays that it made itself: points of origin differ from ours in their last
+/// bits.
 #[test]
 fn rays_meet_what_they_met_elsewhere() {
     let mesh = mesh("blob");

@@ -24,14 +24,16 @@ const EXIT_CODES: &str =
 pub enum Command {
     /// Render a scene file to pictures.
     ///
-    /// Pictures are written when they are done, and before that now and then as they stand: first, of more than 65536 pixels, as a sketch
-    /// in larger pixels, then after about a second, then whenever twice as much time has gone by. Ctrl-C ends the render after the samples in flight, and writes the picture as it stands; a second
-    /// Ctrl-C ends the program at once.
+    /// Pictures are written when they are done, and before that now and then as they stand: first,
+    /// of more than 65536 pixels, as a sketch in larger pixels, then after about a second, then
+    /// whenever twice as much time has gone by. Ctrl-C ends the render after the samples in flight,
+    /// and writes the picture as it stands; a second Ctrl-C ends the program at once.
     Render(Box<Render>),
     /// Render a scene by several algorithms, and report how far each is from a reference.
     ///
-    /// All get the same time, or the same number of samples. The report has the pictures beside the reference, maps of
-    /// their errors, error over time, bias and noise apart, efficiency and rays. Ctrl-C ends with a report of what has been done.
+    /// All get the same time, or the same number of samples. The report has the pictures beside the
+    /// reference, maps of their errors, error over time, bias and noise apart, efficiency and rays.
+    /// Ctrl-C ends with a report of what has been done.
     Compare(Box<Compare>),
     /// Look at scene files.
     #[command(subcommand)]
@@ -58,11 +60,12 @@ impl Command {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 pub struct Render {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
+    /// input.
     pub scene: PathBuf,
-    /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png, .jpg, .hdr, .tga, .pfm,
-    /// .bmp, .qoi, .tif. Can be given several times. [default: the name in the scene's film, else the scene's with .exr, in the
-    /// current folder]
+    /// Write the picture here, in the format of the extension: .exr (linear, all metadata), .png,
+    /// .jpg, .hdr, .tga, .pfm, .bmp, .qoi, .tif. Can be given several times. [default: the name in
+    /// the scene's film, else the scene's with .exr, in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// The algorithm; see the list below. [default: the scene's]
@@ -96,7 +99,8 @@ impl Render {
 /// Options that change a scene, and how it is rendered, for one algorithm as for many.
 #[derive(Args, Debug)]
 pub struct Changes {
-    /// What spares rays the test of every primitive: bvh, or none, for the same picture without it. [default: the scene's]
+    /// What spares rays the test of every primitive: bvh, or none, for the same picture without it.
+    /// [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub accelerator: Option<String>,
     /// Change a setting; see the list below. Can be given several times.
@@ -105,14 +109,15 @@ pub struct Changes {
     /// Width and height of the whole image in pixels. [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = resolution)]
     pub resolution: Option<[i32; 2]>,
-    /// Render a part of the image only, given in fractions of its width and height, from the upper left: 0,0.5,0,1 is the left
-    /// half. [default: the scene's]
+    /// Render a part of the image only, given in fractions of its width and height, from the upper
+    /// left: 0,0.5,0,1 is the left half. [default: the scene's]
     #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = crop, conflicts_with = "pixel")]
     pub crop: Option<[f32; 4]>,
     /// Render one pixel only: its column and row, counted from 0 at the upper left.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<[i32; 2]>,
-    /// Seed of all random numbers: the same seed gives the same picture, bit for bit. [default: the scene's]
+    /// Seed of all random numbers: the same seed gives the same picture, bit for bit.
+    /// [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(0..))]
     pub seed: Option<i32>,
     /// Threads to render with; their number never changes the picture. [default: all cores]
@@ -140,13 +145,16 @@ impl Changes {
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
 #[command(group = clap::ArgGroup::new("budget").required(true).args(["time", "spp"]))]
 pub struct Compare {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
+    /// input.
     pub scene: PathBuf,
-    /// The algorithms, see the list below, parted by commas. Each may have settings of its own: path,path:maxdepth=8.
+    /// The algorithms, see the list below, parted by commas. Each may have settings of its own:
+    /// path,path:maxdepth=8.
     #[arg(long, value_name = "NAME,NAME,…", required = true, value_delimiter = ',')]
     pub integrators: Vec<Contender>,
-    /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each algorithm renders two pictures, from different
-    /// seeds, so that noise and bias can be told apart. Samplers `stratified` and `paddedsobol` are as uneven as `independent` here.
+    /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each
+    /// algorithm renders two pictures, from different seeds, so that noise and bias can be told
+    /// apart. Samplers `stratified` and `paddedsobol` are as uneven as `independent` here.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Samples per pixel of each picture.
@@ -161,8 +169,8 @@ pub struct Compare {
     /// Samples per pixel of the reference. [default: 16 times the time or samples of one picture]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub reference_spp: Option<u32>,
-    /// Write the report here: a page that opens without a network; the same in numbers goes beside it, as .json. [default: the scene's
-    /// name with .html, in the current folder]
+    /// Write the report here: a page that opens without a network; the same in numbers goes beside
+    /// it, as .json. [default: the scene's name with .html, in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Changes to the scene, for all.
@@ -171,7 +179,8 @@ pub struct Compare {
     /// Say nothing but errors.
     #[arg(long, conflicts_with = "json")]
     pub quiet: bool,
-    /// Write the report's numbers to standard output, as one JSON object instead of text, errors too.
+    /// Write the report's numbers to standard output, as one JSON object instead of text, errors
+    /// too.
     #[arg(long)]
     pub json: bool,
 }
@@ -187,7 +196,8 @@ pub enum Scene {
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES)]
 pub struct Check {
-    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard input.
+    /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
+    /// input.
     pub scene: PathBuf,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
@@ -199,9 +209,9 @@ pub struct Check {
 pub enum Image {
     /// Tell how far a picture is from a reference: MSE, relative MSE, FLIP.
     ///
-    /// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² + 0.01); FLIP the mean of the
-    /// visible difference, from 0 to 1, over the exposures that show the reference's range. The exit code is 0 however large the
-    /// difference is.
+    /// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² +
+    /// 0.01); FLIP the mean of the visible difference, from 0 to 1, over the exposures that show
+    /// the reference's range. The exit code is 0 however large the difference is.
     Diff(Diff),
     /// Write a picture in another format: that of the new name's extension.
     Convert(Convert),

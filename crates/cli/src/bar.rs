@@ -1,4 +1,5 @@
-//! The progress bar: passes, samples, rays per second, elapsed and remaining time. Shown on a terminal only.
+//! The progress bar: passes, samples, rays per second, elapsed and remaining time. Shown on a
+//! terminal only.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! Text to standard output and standard error. Nobody listening at the other end is no reason to fail.
+//! Text to standard output and standard error. Nobody listening at the other end is no reason to
+//! fail.
 
 use std::io::Write;
 

@@ -1,4 +1,5 @@
-//! Diagnostics of scenes shown to people, with the lines that they are about, and to programs, as JSON.
+//! Diagnostics of scenes shown to people, with the lines that they are about, and to programs, as
+//! JSON.
 
 use std::io::IsTerminal;
 use std::ops::Range;
@@ -13,7 +14,8 @@ use crate::console::warn;
 /// Most bytes of a line that are shown after what a message is about.
 const MARGIN: usize = 200;
 
-/// Most bytes of a line before what a message is about; of longer lines the end of that part alone is shown.
+/// Most bytes of a line before what a message is about; of longer lines the end of that part alone
+/// is shown.
 const LONGEST_START: usize = 10_000;
 
 /// Writes diagnostics and their number to standard error.
@@ -110,7 +112,8 @@ impl Excerpt {
         let whole = start - line_start <= LONGEST_START;
         let first = if whole { line_start } else { start - MARGIN };
         let last = line_end.min(end + MARGIN).min(start + 4 * MARGIN);
-        // Each part is made text by itself, so that the marked range fits whatever bytes the file has.
+        // Each part is made text by itself, so that the marked range fits whatever bytes the file
+        // has.
         let part = |range: Range<usize>| String::from_utf8_lossy(&bytes[range]).into_owned();
         let end = end.min(last);
         let [before, marked, after] = [first..start, start..end, end..last].map(part);

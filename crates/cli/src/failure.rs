@@ -1,5 +1,5 @@
-//! Why a command did not do what it was asked for, and how that is told: text on standard error, or one JSON object on
-//! standard output; and the exit code.
+//! Why a command did not do what it was asked for, and how that is told: text on standard error, or
+//! one JSON object on standard output; and the exit code.
 
 use std::process::ExitCode;
 

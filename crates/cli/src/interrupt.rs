@@ -1,5 +1,6 @@
-//! Ctrl-C. While a picture is being rendered, the first one asks the render to stop, so that the picture can be written; at any
-//! other time, and the second time, it ends the program. A request to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
+//! Ctrl-C. While a picture is being rendered, the first one asks the render to stop, so that the
+//! picture can be written; at any other time, and the second time, it ends the program. A request
+//! to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use alhazen::image::Format;
 
-/// Whether a picture can be written to `path`: its extension names a format, its folder is there and takes files, and what
-/// stands in its place can be replaced. The error says which of these fails.
+/// Whether a picture can be written to `path`: its extension names a format, its folder is there
+/// and takes files, and what stands in its place can be replaced. The error says which of these
+/// fails.
 pub fn check(path: &Path) -> Result<(), String> {
     let shown = path.display();
     if Format::from_name(&path.to_string_lossy()).is_none() {
@@ -32,7 +33,8 @@ pub fn check_place(path: &Path) -> Result<(), String> {
     if path.is_dir() {
         return Err(format!("cannot write {shown}: it is a folder"));
     }
-    // Only an attempt tells whether the folder takes files: permissions, read-only and full file systems.
+    // Only an attempt tells whether the folder takes files: permissions, read-only and full file
+    // systems.
     let probe = folder.join(format!(".alhazen-{}.part", std::process::id()));
     let attempt = OpenOptions::new().write(true).create_new(true).open(&probe);
     attempt.map_err(|error| format!("cannot write to the folder {}: {error}", folder.display()))?;

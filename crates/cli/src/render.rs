@@ -127,8 +127,9 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     Ok(if summary.interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }
 
-/// Writes the picture as it stands, so that it can be looked at: after the first pass that ends later than half a second after the begin, and
-/// then whenever it has been rendered for twice as long as the last time. Whether it can be written is told at the end.
+/// Writes the picture as it stands, so that it can be looked at: after the first pass that ends
+/// later than half a second after the begin, and then whenever it has been rendered for twice as
+/// long as the last time. Whether it can be written is told at the end.
 fn preview(header: Header, outputs: Vec<PathBuf>) -> FilmSink {
     let begin = Instant::now();
     let next = Mutex::new(Duration::from_millis(500));
@@ -163,8 +164,8 @@ pub fn scene_failure(imported: Imported) -> Failure {
     Failure::Scene { diagnostics: imported.diagnostics, sources: imported.sources }
 }
 
-/// Where the picture goes if the command line does not say: where the scene's film says, else to the scene's name with the
-/// extension of OpenEXR, in the current folder.
+/// Where the picture goes if the command line does not say: where the scene's film says, else to
+/// the scene's name with the extension of OpenEXR, in the current folder.
 fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
     let said = &desc.film.filename;
     let path = if said.span.is_none() { named_after(scene, "exr") } else { PathBuf::from(&said.value) };

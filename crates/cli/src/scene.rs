@@ -11,10 +11,12 @@ use crate::console::say;
 use crate::diagnostics;
 use crate::failure::Failure;
 
-/// Tells everything that is wrong with a scene, or drawn otherwise than it says. What is wrong makes a failure.
+/// Tells everything that is wrong with a scene, or drawn otherwise than it says. What is wrong
+/// makes a failure.
 pub fn check(arguments: &Check) -> Result<(), Failure> {
     let mut imported = import(&arguments.scene, &Files);
-    // What was understood of a wrong scene is compiled all the same: its author wants to hear of everything at once.
+    // What was understood of a wrong scene is compiled all the same: its author wants to hear of
+    // everything at once.
     let (said, wrong) = match Job::compile(&imported.desc) {
         Ok(compiled) => (compiled.warnings, false),
         Err(said) => (said, true),

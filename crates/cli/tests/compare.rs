@@ -111,7 +111,8 @@ fn an_interruption_leaves_a_report() {
 
     let folder = Folder::with_scene("compare-interrupt");
     folder.alhazen(&["render", "scene.pbrt", "--quiet", "-o", "r.exr"]).expect(0);
-    // The warning about the sensor is printed when rendering begins, which tells when to interrupt it.
+    // The warning about the sensor is printed when rendering begins, which tells when to interrupt
+    // it.
     folder.write(
         "scene.pbrt",
         &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),

@@ -11,7 +11,8 @@ use common::{Folder, SCENE};
 
 /// A render that would take for ever, interrupted after a moment: its exit code and what it said.
 fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
-    // The warning about the sensor is printed when the render begins, which tells when to interrupt it.
+    // The warning about the sensor is printed when the render begins, which tells when to interrupt
+    // it.
     folder.write(
         "scene.pbrt",
         &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),

@@ -62,7 +62,8 @@ impl Default for AcceleratorDesc {
 }
 
 impl AcceleratorDesc {
-    /// How much time the structure is worth: as said, or as what was asked for takes in other programs.
+    /// How much time the structure is worth: as said, or as what was asked for takes in other
+    /// programs.
     pub fn quality(&self) -> BuildQualityDesc {
         match self {
             Self::Bvh { quality: Some(quality), .. } => *quality,

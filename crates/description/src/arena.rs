@@ -28,7 +28,8 @@ impl Origin {
         self.parameters.push((name, span));
     }
 
-    /// The place to blame for a parameter: where it was given, or the whole statement if it was left out.
+    /// The place to blame for a parameter: where it was given, or the whole statement if it was
+    /// left out.
     pub fn parameter(&self, name: &str) -> Span {
         self.parameters.iter().find(|(given, _)| *given == name).map_or(self.span, |&(_, span)| span)
     }

@@ -21,7 +21,8 @@ pub enum ColorSpaceDesc {
 pub enum SpectrumDesc {
     /// The same value at all wavelengths.
     Constant(f32),
-    /// A colour; how it becomes a spectrum depends on what it is used for (reflectance, light, or neither).
+    /// A colour; how it becomes a spectrum depends on what it is used for (reflectance, light, or
+    /// neither).
     Rgb {
         /// Red, green and blue, linear.
         rgb: [f32; 3],

@@ -20,7 +20,8 @@ pub struct Diagnostic {
     pub code: &'static str,
     /// What is wrong, in one sentence without a full stop.
     pub message: String,
-    /// The places it is about and what to say at each; the first one is the main one. A text may be empty.
+    /// The places it is about and what to say at each; the first one is the main one. A text may be
+    /// empty.
     pub labels: Vec<(Span, String)>,
     /// What to do about it.
     pub help: Option<String>,

@@ -11,7 +11,8 @@ pub struct FilmDesc {
     pub resolution: [i32; 2],
     /// The pixels to render, `[x0, x1, y0, y1)` in pixels of the whole image; all if absent.
     pub pixel_bounds: Option<[i32; 4]>,
-    /// The part to render as fractions `[x0, x1, y0, y1]` of the whole image, used if `pixel_bounds` is absent.
+    /// The part to render as fractions `[x0, x1, y0, y1]` of the whole image, used if
+    /// `pixel_bounds` is absent.
     pub crop_window: Option<[f32; 4]>,
     /// Diagonal of the film in millimetres, for physical cameras.
     pub diagonal: f32,
@@ -59,16 +60,16 @@ pub enum GBufferSpace {
     World,
 }
 
-/// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the exposure time is that of
-/// the camera's shutter.
+/// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the exposure
+/// time is that of the camera's shutter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorDesc {
     /// `cie1931` (an ideal XYZ sensor) or the name of a measured camera.
     pub name: Spanned<String>,
     /// Sensitivity.
     pub iso: f32,
-    /// Temperature in kelvin of the light that shall look white; 0 leaves colours as they are (`cie1931`) or takes
-    /// 6500 (measured cameras).
+    /// Temperature in kelvin of the light that shall look white; 0 leaves colours as they are
+    /// (`cie1931`) or takes 6500 (measured cameras).
     pub white_balance: f32,
 }
 

@@ -1,5 +1,5 @@
-//! Light transport algorithms and their settings. `max_depth` counts the edges of a path after the camera's: 0 shows
-//! emission only, 1 adds direct light.
+//! Light transport algorithms and their settings. `max_depth` counts the edges of a path after the
+//! camera's: 0 shows emission only, 1 adds direct light.
 
 /// How a light is chosen among many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,7 +95,8 @@ pub enum IntegratorDesc {
     Vcm(VcmDesc),
     /// Radiosity by progressive shooting.
     Radiosity(RadiosityDesc),
-    /// Integrates an analytic function over the unit square instead of a scene: for the study of samplers.
+    /// Integrates an analytic function over the unit square instead of a scene: for the study of
+    /// samplers.
     Function {
         /// The function's name.
         function: String,
@@ -183,7 +184,8 @@ pub struct PhotonMappingDesc {
     pub caustic_photons: i32,
     /// How many of the nearest photons make an estimate.
     pub nearest: i32,
-    /// The farthest that a photon may be away, in world units; if absent, a share of the scene's size.
+    /// The farthest that a photon may be away, in world units; if absent, a share of the scene's
+    /// size.
     pub radius: Option<f32>,
     /// How photons are weighed.
     pub kernel: PhotonKernel,
@@ -213,9 +215,11 @@ impl Default for PhotonMappingDesc {
 pub struct VcmDesc {
     /// Greatest depth of a path.
     pub max_depth: i32,
-    /// Distance within which vertices are merged in the first pass, in world units; if absent, a share of the scene's size.
+    /// Distance within which vertices are merged in the first pass, in world units; if absent, a
+    /// share of the scene's size.
     pub radius: Option<f32>,
-    /// How slowly the radius shrinks, in (0, 1]: after i passes its square is about i^(α − 1) of what it was.
+    /// How slowly the radius shrinks, in (0, 1]: after i passes its square is about i^(α − 1) of
+    /// what it was.
     pub alpha: f32,
 }
 
@@ -267,7 +271,8 @@ pub struct RadiosityDesc {
     pub patch_size: Option<f32>,
     /// How often an element may be quartered.
     pub subdivision: i32,
-    /// The change of light across an element, in parts of what is there, above which it is quartered.
+    /// The change of light across an element, in parts of what is there, above which it is
+    /// quartered.
     pub gradient: f32,
     /// Most elements.
     pub max_patches: i32,

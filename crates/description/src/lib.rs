@@ -1,10 +1,12 @@
 //! What the author of a scene said: plain typed data, nothing derived.
 //!
-//! A [`SceneDesc`] is what importers fill from files, and equally what tests and other programs build by hand:
-//! [`SceneDesc::default`] is a valid empty scene, and everything else is pushed into its arenas.
+//! A [`SceneDesc`] is what importers fill from files, and equally what tests and other programs
+//! build by hand: [`SceneDesc::default`] is a valid empty scene, and everything else is pushed into
+//! its arenas.
 //!
-//! One rule for all families: `XDesc` holds what all members share, and its field `kind`, an `XKind`, says which
-//! member it is and holds that member's own parameters. Defaults are those of the pbrt-v4 format.
+//! One rule for all families: `XDesc` holds what all members share, and its field `kind`, an
+//! `XKind`, says which member it is and holds that member's own parameters. Defaults are those of
+//! the pbrt-v4 format.
 //!
 //! Everything the format can say is described here, whether or not a renderer can draw it yet.
 

@@ -6,14 +6,16 @@ use crate::{
     ShapeDesc, SpectrumTextureDesc, Stated,
 };
 
-/// Everything that the author of a scene said. The default is a valid empty scene with the format's default camera,
-/// film and algorithm.
+/// Everything that the author of a scene said. The default is a valid empty scene with the format's
+/// default camera, film and algorithm.
 ///
 /// ```
-/// use alhazen_description::{LightKind, MaterialKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, InfiniteRadiance};
+/// use alhazen_description::{InfiniteRadiance, LightKind, MaterialKind, SceneDesc, ShapeDesc};
+/// use alhazen_description::{ShapeKind, SpectrumDesc};
 ///
 /// let mut desc = SceneDesc::default();
-/// let red = desc.materials.push(MaterialKind::Diffuse { reflectance: SpectrumDesc::rgb(0.6, 0.1, 0.1).into() }.into());
+/// let reflectance = SpectrumDesc::rgb(0.6, 0.1, 0.1).into();
+/// let red = desc.materials.push(MaterialKind::Diffuse { reflectance }.into());
 /// let sphere = ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 360.0 };
 /// desc.shapes.push(ShapeDesc { material: Some(red), ..sphere.into() });
 /// let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(1.0));

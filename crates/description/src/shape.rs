@@ -42,7 +42,8 @@ impl From<ShapeKind> for ShapeDesc {
     }
 }
 
-/// The shapes of the format, the quadrics of its third version, and an infinite plane. Angles are in degrees.
+/// The shapes of the format, the quadrics of its third version, and an infinite plane. Angles are
+/// in degrees.
 #[derive(Clone, Debug)]
 pub enum ShapeKind {
     /// About the origin.
@@ -116,19 +117,21 @@ pub enum ShapeKind {
         /// Two corners of the box that the surface is cut off at.
         bounds: [Point3; 2],
     },
-    /// What bodies make together. Every shape of an operand is a body, closed where it is cut off; several are one body.
+    /// What bodies make together. Every shape of an operand is a body, closed where it is cut off;
+    /// several are one body.
     Solid {
         /// How they are combined.
         operation: SolidOperation,
-        /// The bodies. Those of a shape in an object are objects before it, so that no solid is a part of itself.
+        /// The bodies. Those of a shape in an object are objects before it, so that no solid is a
+        /// part of itself.
         operands: Vec<Spanned<Handle<ObjectDesc>>>,
     },
     /// Triangles.
     Triangles(MeshDesc),
     /// Bilinear patches.
     Patches(PatchMeshDesc),
-    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which share vertices. There may be
-    /// none of either, not of both.
+    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which
+    /// share vertices. There may be none of either, not of both.
     PlyMesh {
         /// Its triangles (and larger polygons, cut).
         triangles: MeshDesc,
@@ -136,7 +139,8 @@ pub enum ShapeKind {
         patches: PatchMeshDesc,
         /// A height along the normal by which the surface is moved.
         displacement: Option<FloatParameter>,
-        /// Before it is moved, the surface is cut until its edges are shorter than this, in the world.
+        /// Before it is moved, the surface is cut until its edges are shorter than this, in the
+        /// world.
         edge_length: f32,
     },
     /// A curve.
@@ -185,8 +189,8 @@ pub struct MeshDesc {
     pub uvs: Arc<[Point2]>,
     /// A number per triangle, as the file gave it; or empty.
     pub face_indices: Arc<[i32]>,
-    /// Where the vertices are later on, at moments evenly spread from the first to the last time of the shape's transform
-    /// (`positions` are those at the first); empty where no vertex moves.
+    /// Where the vertices are later on, at moments evenly spread from the first to the last time of
+    /// the shape's transform (`positions` are those at the first); empty where no vertex moves.
     pub later: Vec<MeshKey>,
 }
 

@@ -8,7 +8,8 @@ use std::sync::Arc;
 pub struct FileId(pub u32);
 
 impl FileId {
-    /// Of what was said by who uses a scene, as on a command line, rather than in a file. Its spans count what was said.
+    /// Of what was said by who uses a scene, as on a command line, rather than in a file. Its spans
+    /// count what was said.
     pub const CALLER: Self = Self(u32::MAX - 1);
 }
 
@@ -79,7 +80,8 @@ pub struct Position {
 
 /// All files that were read as text, with what they held when they were read.
 ///
-/// Texts are bytes: comments may be in any encoding. Compressed files are kept as the text that was in them.
+/// Texts are bytes: comments may be in any encoding. Compressed files are kept as the text that was
+/// in them.
 #[derive(Clone, Debug, Default)]
 pub struct SourceMap {
     files: Vec<(String, Arc<[u8]>)>,

@@ -1,5 +1,5 @@
-//! Textures: values that vary over surfaces. Numbers and spectra have the same kinds of texture, so that one generic
-//! description serves both.
+//! Textures: values that vary over surfaces. Numbers and spectra have the same kinds of texture, so
+//! that one generic description serves both.
 
 use math::{DMat4, Vec3};
 
@@ -64,8 +64,8 @@ pub struct TextureDesc<V> {
     pub name: String,
     /// Which one.
     pub kind: TextureKind<V>,
-    /// From texture space to the world: the transform in force where the texture was named. It places mappings and
-    /// patterns that are functions of position.
+    /// From texture space to the world: the transform in force where the texture was named. It
+    /// places mappings and patterns that are functions of position.
     pub world_from_texture: DMat4,
 }
 

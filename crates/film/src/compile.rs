@@ -68,7 +68,8 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
     })
 }
 
-/// The pixels to render: those asked for, within the whole image. A crop window counts before pixel bounds.
+/// The pixels to render: those asked for, within the whole image. A crop window counts before pixel
+/// bounds.
 pub fn pixel_bounds(film: &FilmDesc) -> Bounds2i {
     let full = Bounds2i::new([0, 0], film.resolution);
     let bounds = match (film.pixel_bounds, film.crop_window) {

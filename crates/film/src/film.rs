@@ -1,10 +1,13 @@
-//! The film: samples of light go in, in any order and from any number of threads; a picture comes out.
+//! The film: samples of light go in, in any order and from any number of threads; a picture comes
+//! out.
 //!
-//! A pixel is Σ wᵢ cᵢ / Σ wᵢ over its samples, c being the sensor's response to a sample's light and w its filter weight.
-//! Both sums are [`ExactSum`]s, so that threads, tiles and merges never change a bit. Samples that are not numbers, or are
-//! too large for the sums, are left out with their weight, and counted.
+//! A pixel is Σ wᵢ cᵢ / Σ wᵢ over its samples, c being the sensor's response to a sample's light
+//! and w its filter weight. Both sums are [`ExactSum`]s, so that threads, tiles and merges never
+//! change a bit. Samples that are not numbers, or are too large for the sums, are left out with
+//! their weight, and counted.
 //!
-//! Pixels are stored tile by tile, so that each tile is a contiguous slice that one thread can fill.
+//! Pixels are stored tile by tile, so that each tile is a contiguous slice that one thread can
+//! fill.
 
 use std::collections::BTreeSet;
 use std::slice::from_ref;
@@ -49,7 +52,8 @@ pub struct FilmSettings {
 pub struct Rejected {
     /// How many.
     pub count: u64,
-    /// The pixels, as (row, column), of at most [`MAX_REJECTED_PIXELS`] of them: the first ones in reading order.
+    /// The pixels, as (row, column), of at most [`MAX_REJECTED_PIXELS`] of them: the first ones in
+    /// reading order.
     pixels: BTreeSet<(i32, i32)>,
 }
 
@@ -112,8 +116,8 @@ impl Gate {
         self.rejected.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The sensor's response to light that counts one in `samples` of a pixel, not beyond what a whole sample may have; `None` for
-    /// light that is no number.
+    /// The sensor's response to light that counts one in `samples` of a pixel, not beyond what a
+    /// whole sample may have; `None` for light that is no number.
     pub(crate) fn measure(
         &self,
         l: &SampledSpectrum,
@@ -175,7 +179,8 @@ pub struct Film {
 }
 
 impl Film {
-    /// A film without light. Refused if there is no pixel to render, or more than memory has room for.
+    /// A film without light. Refused if there is no pixel to render, or more than memory has room
+    /// for.
     pub fn new(settings: FilmSettings) -> Result<Self, ImageError> {
         let FilmSettings { full_resolution, pixel_bounds: bounds, diagonal, filter, sensor, .. } = settings;
         let full = Bounds2i::new([0, 0], full_resolution);
@@ -217,7 +222,8 @@ impl Film {
         Self { filter: self.filter.clone(), gate, pixels, splats: SplatSums::default(), ..*self }
     }
 
-    /// A [`blank`](Self::blank) film for splats alone, which takes [`SPLAT_BYTES`](crate::SPLAT_BYTES) for each pixel; it has no tiles.
+    /// A [`blank`](Self::blank) film for splats alone, which takes
+    /// [`SPLAT_BYTES`](crate::SPLAT_BYTES) for each pixel; it has no tiles.
     pub fn for_splats(&self) -> Self {
         Self { pixels: Vec::new(), ..self.blank() }
     }
@@ -267,7 +273,8 @@ impl Film {
         self.gate.add(pixel, &mut self.pixels[index], from_ref(l), from_ref(lambda), weight);
     }
 
-    /// The film cut into tiles, at most [`TILE_SIZE`] pixels wide and high, that different threads can fill.
+    /// The film cut into tiles, at most [`TILE_SIZE`] pixels wide and high, that different threads
+    /// can fill.
     pub fn tiles_mut(&mut self) -> Vec<FilmTile<'_>> {
         tiles(&self.bounds, &mut self.pixels, &self.gate)
     }
@@ -339,7 +346,8 @@ impl Film {
         image
     }
 
-    /// Where a pixel is stored: whole rows of tiles, then whole tiles, then rows of its tile come before it.
+    /// Where a pixel is stored: whole rows of tiles, then whole tiles, then rows of its tile come
+    /// before it.
     fn index(&self, pixel: [i32; 2]) -> usize {
         assert!(self.bounds.contains(pixel), "{pixel:?} is not rendered");
         let corner = |axis: usize| {
@@ -412,7 +420,8 @@ impl FilmTile<'_> {
         self.add_groups(pixel, from_ref(l), from_ref(lambda), weight);
     }
 
-    /// Adds one sample of radiance to a pixel that is known at several groups of wavelengths, which count alike.
+    /// Adds one sample of radiance to a pixel that is known at several groups of wavelengths, which
+    /// count alike.
     ///
     /// # Panics
     /// If the pixel is not in the tile.

@@ -1,11 +1,12 @@
 //! Radiance samples to pixels: filters, sensors and exact accumulation.
 //!
-//! [`compile`] makes a [`Film`] of what a scene's author said. An integrator takes its [`Filter`]'s samples, traces, and
-//! gives the light to [`Film::add_sample`], or, from many threads, to the tiles of [`Film::tiles_mut`]; light that arrives
-//! anywhere goes to a [`Splatter`]. [`Film::develop`] gives the picture at any time.
+//! [`compile`] makes a [`Film`] of what a scene's author said. An integrator takes its [`Filter`]'s
+//! samples, traces, and gives the light to [`Film::add_sample`], or, from many threads, to the
+//! tiles of [`Film::tiles_mut`]; light that arrives anywhere goes to a [`Splatter`].
+//! [`Film::develop`] gives the picture at any time.
 //!
-//! Film coordinates have x to the right, y down, pixel (0, 0) at the top left; the centre of pixel (x, y) is at
-//! (x + ½, y + ½).
+//! Film coordinates have x to the right, y down, pixel (0, 0) at the top left; the centre of pixel
+//! (x, y) is at (x + ½, y + ½).
 
 mod compile;
 mod film;

@@ -1,11 +1,12 @@
 //! Pixel sensors: from light at sampled wavelengths to three numbers, and from those to XYZ.
 //!
-//! A sensor's response is c = g ∫ L(λ) c̄(λ) dλ for each of its three sensitivities c̄, with the imaging ratio
-//! g = exposure time · ISO / 100 [Pharr 2023 §5.4.2]. There is no division by ∫ ȳ: lights are scaled so that one of unit
-//! strength has ∫ L ȳ dλ = 1, and thus gives the response 1 at g = 1.
+//! A sensor's response is c = g ∫ L(λ) c̄(λ) dλ for each of its three sensitivities c̄, with the
+//! imaging ratio g = exposure time · ISO / 100 [Pharr 2023 §5.4.2]. There is no division by ∫ ȳ:
+//! lights are scaled so that one of unit strength has ∫ L ȳ dλ = 1, and thus gives the response 1
+//! at g = 1.
 //!
-//! White balance turns the colour of the light at the scene, of chromaticity s, into the white of the film's colour space,
-//! by von Kries' scaling in Bradford's cone space.
+//! White balance turns the colour of the light at the scene, of chromaticity s, into the white of
+//! the film's colour space, by von Kries' scaling in Bradford's cone space.
 
 use spectrum::{
     CIE_Y_INTEGRAL, Matrix3, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, daylight,
@@ -20,8 +21,8 @@ pub struct PixelSensor {
 }
 
 impl PixelSensor {
-    /// The ideal XYZ sensor. `white_temperature`, in kelvin, is that of the daylight that shall look white in `color_space`;
-    /// `None` leaves colours as they are.
+    /// The ideal XYZ sensor. `white_temperature`, in kelvin, is that of the daylight that shall
+    /// look white in `color_space`; `None` leaves colours as they are.
     pub fn cie1931(color_space: &RgbColorSpace, white_temperature: Option<f32>, imaging_ratio: f32) -> Self {
         let balance = |kelvin| white_balance(daylight(kelvin).to_xyz().xy(), color_space.white());
         Self {
@@ -92,7 +93,8 @@ mod tests {
 
     #[test]
     fn white_balance_makes_the_named_light_white() {
-        // Illuminant A is a black body of 2855 K on the scale of temperatures on which D65 is daylight of 6500 K.
+        // Illuminant A is a black body of 2855 K on the scale of temperatures on which D65 is
+        // daylight of 6500 K.
         let lights = [
             ("stdillum-D65", 6500.0, RgbColorSpace::aces2065_1()),
             ("stdillum-A", 2855.0, RgbColorSpace::srgb()),

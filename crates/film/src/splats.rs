@@ -1,10 +1,12 @@
 //! Light that arrives anywhere on the film, from paths that begin at lights.
 //!
-//! Such a path does not choose its pixel: it adds its contribution c to every pixel whose filter h reaches its film position p.
-//! With n paths traced, wherever they ended, the pixel's value is 1/n Σ c·h(p)/∫h. That is why paths are counted apart from what
-//! they bring: most bring nothing. [Pharr 2023 §5.4.4]
+//! Such a path does not choose its pixel: it adds its contribution c to every pixel whose filter h
+//! reaches its film position p. With n paths traced, wherever they ended, the pixel's value is 1/n
+//! Σ c·h(p)/∫h. That is why paths are counted apart from what they bring: most bring nothing.
+//! [Pharr 2023 §5.4.4]
 //!
-//! Threads add to the same pixels, so each tile has a lock; the sums are exact, so the order does not matter.
+//! Threads add to the same pixels, so each tile has a lock; the sums are exact, so the order does
+//! not matter.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -21,7 +23,8 @@ type Splat = [ExactSum; 3];
 /// What the splats of a film take for each of its pixels, in bytes.
 pub const SPLAT_BYTES: usize = size_of::<Splat>();
 
-/// All that has been splatted on a film; takes no memory for pixels before the first splat is possible.
+/// All that has been splatted on a film; takes no memory for pixels before the first splat is
+/// possible.
 #[derive(Debug, Default)]
 pub(crate) struct SplatSums {
     tiles: Vec<Mutex<Box<[Splat]>>>,
@@ -79,8 +82,8 @@ impl Splatter<'_> {
         self.sums.paths.fetch_add(count, Ordering::Relaxed);
     }
 
-    /// All film positions (in pixels, (0, 0) being the top left corner of the whole picture) that reach a pixel which is rendered: the
-    /// pixels, and around them as far as the filter goes.
+    /// All film positions (in pixels, (0, 0) being the top left corner of the whole picture) that
+    /// reach a pixel which is rendered: the pixels, and around them as far as the filter goes.
     pub fn reach(&self) -> Bounds2 {
         let corner = |[x, y]: [i32; 2]| Vec2::new(x as f32, y as f32);
         // Pixels reach as far as the filter from their centres.

@@ -1,11 +1,11 @@
 //! Sums that do not depend on the order of addition.
 //!
-//! Floating-point addition rounds after each term, so its result depends on the order. Here each term is rounded once, to a
-//! multiple of 2⁻⁶⁴, and terms are added as integers of 128 bits, which is exact: any order, any grouping and any number of
-//! threads give the same bits.
+//! Floating-point addition rounds after each term, so its result depends on the order. Here each
+//! term is rounded once, to a multiple of 2⁻⁶⁴, and terms are added as integers of 128 bits, which
+//! is exact: any order, any grouping and any number of threads give the same bits.
 //!
-//! Range: a term may be as large as [`ExactSum::MAX_TERM`] = 2⁴⁰ ≈ 10¹², of which 2²³ fit into a sum; beyond that a sum stays
-//! at its largest value. A term is off by 2⁻⁶⁵ ≈ 3·10⁻²⁰ at most.
+//! Range: a term may be as large as [`ExactSum::MAX_TERM`] = 2⁴⁰ ≈ 10¹², of which 2²³ fit into a
+//! sum; beyond that a sum stays at its largest value. A term is off by 2⁻⁶⁵ ≈ 3·10⁻²⁰ at most.
 
 /// A sum of numbers, independent of their order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -78,7 +78,8 @@ mod tests {
     fn any_order_and_grouping_gives_the_same_sum() {
         let mut random = Random::new(1);
         for count in 1..200 {
-            // Magnitudes over sixty powers of two, where a floating-point sum would depend on the order.
+            // Magnitudes over sixty powers of two, where a floating-point sum would depend on the
+            // order.
             let mut term =
                 || f64::from(random.get_1d() - 0.5) * 2f64.powi((60.0 * random.get_1d()) as i32 - 30);
             let terms: Vec<f64> = (0..count).map(|_| term()).collect();

@@ -77,8 +77,8 @@ fn samples_lie_within_the_radius() {
     }
 }
 
-/// Samples have the density |f| / ∫|f|. Tabulated filters follow their tables, which the cells of this test do not resolve
-/// beyond the table's own.
+/// Samples have the density |f| / ∫|f|. Tabulated filters follow their tables, which the cells of
+/// this test do not resolve beyond the table's own.
 #[test]
 fn samples_follow_the_magnitude_of_the_filter() {
     let filters = all();
@@ -143,7 +143,8 @@ fn weighted_samples_estimate_integrals() {
             (0..200_000).map(|_| filter.sample(Vec2::from_array(random.get_2d()))).collect();
         let mean_weight = samples.iter().map(|s| f64::from(s.weight)).sum::<f64>() / samples.len() as f64;
         for (axis, expected) in expected.into_iter().enumerate() {
-            // A ratio of means, linearised: the mean of w (g − expected) is zero, up to the coarseness of the table.
+            // A ratio of means, linearised: the mean of w (g − expected) is zero, up to the
+            // coarseness of the table.
             let table = 2e-3 * f64::from(filter.radius()[axis]).powi(2);
             let moments: Moments = samples
                 .iter()

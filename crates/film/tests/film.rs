@@ -33,7 +33,8 @@ fn samples(count: usize, [width, height]: [i32; 2], seed: u64) -> Vec<Sample> {
     pixels
         .into_iter()
         .map(|pixel| {
-            // Magnitudes over sixty powers of two, where sums of floats would depend on their order.
+            // Magnitudes over sixty powers of two, where sums of floats would depend on their
+            // order.
             let magnitude = 2f32.powf(60.0 * random.get_1d() - 30.0);
             let l = SampledSpectrum::new([(); 4].map(|()| magnitude * random.get_1d()));
             Sample { pixel, l, u: random.get_1d(), weight: 2.0 * random.get_1d() - 0.5 }

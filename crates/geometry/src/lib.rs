@@ -1,12 +1,14 @@
 //! Rays against shapes: meshes, quadrics, patches and curves, the tree over them, and instances.
 //!
-//! A [`World`] holds everything that a ray can hit. It is asked in two stages: [`World::intersect`] gives a
-//! [`Hit`] (where along the ray, on which primitive), and [`World::surface`] makes of it a [`SurfacePoint`]
-//! (position with error bounds, normals, partial derivatives). The other half of the crate is [`Shape`]: one thing that has bounds, can be hit, and can be sampled by area or by the solid angle in which a point sees it.
+//! A [`World`] holds everything that a ray can hit. It is asked in two stages: [`World::intersect`]
+//! gives a [`Hit`] (where along the ray, on which primitive), and [`World::surface`] makes of it a
+//! [`SurfacePoint`] (position with error bounds, normals, partial derivatives). The other half of
+//! the crate is [`Shape`]: one thing that has bounds, can be hit, and can be sampled by area or by
+//! the solid angle in which a point sees it.
 //!
-//! Points, normals and hits are in render space unless a name says otherwise. A point knows how far it may be
-//! from the surface it stands for; a ray that leaves by [`math::Ray::spawn`] therefore neither meets its own
-//! surface again nor passes through it.
+//! Points, normals and hits are in render space unless a name says otherwise. A point knows how far
+//! it may be from the surface it stands for; a ray that leaves by [`math::Ray::spawn`] therefore
+//! neither meets its own surface again nor passes through it.
 
 mod bvh;
 mod curve;

@@ -6,7 +6,8 @@ use math::{Bounds3, Normal3, Point3, Transform, Vec2, Vector3};
 use std::fmt;
 use std::sync::Arc;
 
-/// What vertices may carry beside a position, one value per vertex. Normals and tangents are in object space.
+/// What vertices may carry beside a position, one value per vertex. Normals and tangents are in
+/// object space.
 #[derive(Clone, Debug, Default)]
 pub struct MeshAttributes {
     /// Shading normals, of any length.
@@ -36,8 +37,8 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: usize,
     },
-    /// An edge that leads twice from one vertex to the same other, or to itself: three triangles meet there,
-    /// or two that are turned differently.
+    /// An edge that leads twice from one vertex to the same other, or to itself: three triangles
+    /// meet there, or two that are turned differently.
     Edge([u32; 2]),
     /// A vertex at which parts meet that share no edge.
     Vertex(u32),
@@ -80,8 +81,8 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Brings an object's triangles into render space. Arrays that the transform leaves alone are shared, not
-    /// copied.
+    /// Brings an object's triangles into render space. Arrays that the transform leaves alone are
+    /// shared, not copied.
     ///
     /// Given normals point to the outside; with `reverse_orientation`, to the inside.
     pub fn new(
@@ -135,8 +136,9 @@ impl TriangleMesh {
         })
     }
 
-    /// The same triangles with their vertices elsewhere, and with other shading normals (of any length, towards the
-    /// outside), all in render space. Texture coordinates stay; tangents, which would have to turn, do not.
+    /// The same triangles with their vertices elsewhere, and with other shading normals (of any
+    /// length, towards the outside), all in render space. Texture coordinates stay; tangents, which
+    /// would have to turn, do not.
     pub fn moved(
         &self,
         positions: Arc<[Point3]>,

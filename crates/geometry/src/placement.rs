@@ -1,8 +1,9 @@
-//! A transform and its inverse in double precision, with what rounding does to the points that pass through.
+//! A transform and its inverse in double precision, with what rounding does to the points that pass
+//! through.
 //!
-//! The matrix is the one of the scene, in floats; its inverse is taken again in doubles, so that the two undo
-//! each other to a few parts in 10¹⁶. Going out and coming back then costs only the rounding to floats, |x|·ε
-//! per coordinate, whatever the matrix is.
+//! The matrix is the one of the scene, in floats; its inverse is taken again in doubles, so that
+//! the two undo each other to a few parts in 10¹⁶. Going out and coming back then costs only the
+//! rounding to floats, |x|·ε per coordinate, whatever the matrix is.
 
 use math::{DMat3, DMat4, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec3};
 
@@ -103,8 +104,8 @@ impl Placement {
         self.normal(n).normalize_or_zero().as_vec3()
     }
 
-    /// By what factor an area at right angles to the unit normal `n` grows when it is brought out: |det
-    /// M|·|M⁻ᵀn|.
+    /// By what factor an area at right angles to the unit normal `n` grows when it is brought out:
+    /// |det M|·|M⁻ᵀn|.
     pub fn area_factor(&self, n: DVec3) -> f64 {
         self.forward.determinant().abs() * self.normal(n).length()
     }
@@ -127,8 +128,9 @@ impl Placement {
     }
 }
 
-/// A point known to within `error`, rounded to floats. A test of the surface mixes the axes, so that its rounding along one may
-/// come from coordinates along another: none is known better than the largest lets it be, not even a zero.
+/// A point known to within `error`, rounded to floats. A test of the surface mixes the axes, so
+/// that its rounding along one may come from coordinates along another: none is known better than
+/// the largest lets it be, not even a zero.
 #[inline]
 pub(crate) fn rounded(p: DVec3, error: DVec3) -> Point3Error {
     let q = p.as_vec3();

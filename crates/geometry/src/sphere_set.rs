@@ -1,8 +1,9 @@
 //! Many whole spheres, as arrays of centres and radii.
 //!
-//! They stand in render space, so that a similarity is the only transform that leaves them spheres. Rays meet sphere i where
-//! |o + t·d − cᵢ| = rᵢ, solved in doubles. One sphere as a [`Sphere`] has the very centre and radius that the set has, and its
-//! poles on the object's z axis.
+//! They stand in render space, so that a similarity is the only transform that leaves them spheres.
+//! Rays meet sphere i where the distance |o + t·d − cᵢ| = rᵢ, solved in doubles. One sphere as a
+//! [`Sphere`] has the very centre and radius that the set has, and its poles on the object's z
+//! axis.
 
 use crate::placement::Placement;
 use crate::shape::{Sphere, first_root};
@@ -68,8 +69,8 @@ pub struct SphereSet {
 }
 
 impl SphereSet {
-    /// Brings an object's spheres into render space. `radii` has one radius for all or one for each. Arrays that the transform
-    /// leaves alone are shared, not copied.
+    /// Brings an object's spheres into render space. `radii` has one radius for all or one for
+    /// each. Arrays that the transform leaves alone are shared, not copied.
     ///
     /// Normals point outwards; with `reverse_orientation`, inwards.
     pub fn new(
@@ -156,7 +157,8 @@ impl SphereSet {
     }
 }
 
-/// Scale and turn of a similarity, the turn orthonormal to the last bits of doubles; `None` for other transforms.
+/// Scale and turn of a similarity, the turn orthonormal to the last bits of doubles; `None` for
+/// other transforms.
 fn similarity(transform: &Transform) -> Option<(f64, DMat3)> {
     let scale = Placement::new(transform).uniform_scale()?;
     let m = transform.matrix().as_dmat4();

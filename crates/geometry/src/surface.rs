@@ -1,15 +1,17 @@
 //! What is known of a surface at one point.
 //!
-//! Conventions are those of [Pharr 2023 §3.11, §6.5]: `n` is the geometric normal, dpdu × dpdv normalised,
-//! turned round when the shape's orientation is reversed or its transform swaps handedness, but not both.
-//! Interpolated shading normals have the last word on the side: `n` is turned to theirs.
+//! Conventions are those of [Pharr 2023 §3.11, §6.5]: `n` is the geometric normal, dpdu × dpdv
+//! normalised, turned round when the shape's orientation is reversed or its transform swaps
+//! handedness, but not both. Interpolated shading normals have the last word on the side: `n` is
+//! turned to theirs.
 
 use crate::placement::Placement;
 use math::{
     DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, coordinate_system, face_forward,
 };
 
-/// The geometry that shading sees, where interpolated normals or tangents make it differ from the true one.
+/// The geometry that shading sees, where interpolated normals or tangents make it differ from the
+/// true one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shading {
     /// Unit normal.
@@ -75,8 +77,8 @@ impl SurfacePoint {
         Ray::spawn(self.p, self.n, d, self.time)
     }
 
-    /// The same point seen from outside of what is placed. The error grows by what a ray loses that is
-    /// spawned out there and brought back in again.
+    /// The same point seen from outside of what is placed. The error grows by what a ray loses that
+    /// is spawned out there and brought back in again.
     pub(crate) fn placed(&self, placement: &Placement, ray: &Ray) -> Self {
         let vector = |v: Vector3| placement.vector(v.as_dvec3());
         let change = |n: Normal3, dn: Normal3| placement.normal_change(n.as_dvec3(), dn.as_dvec3());

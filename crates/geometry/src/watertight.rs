@@ -1,15 +1,15 @@
 //! Ray against triangle, without gaps between triangles that share an edge.
 //!
-//! The triangle is moved and sheared so that the ray becomes the +z axis from the origin. Its edge functions
-//! there, e₀ = x₁y₂ − y₁x₂ and so on, are twice the areas that the origin makes with each edge; the ray
-//! passes inside when none differs in sign from another. Two triangles compute the function of a shared edge
-//! from the same numbers and get opposite signs, so that no ray slips between ([Woop et al. 2013]; [Pharr
-//! 2023 §6.5.3]).
+//! The triangle is moved and sheared so that the ray becomes the +z axis from the origin. Its edge
+//! functions there, e₀ = x₁y₂ − y₁x₂ and so on, are twice the areas that the origin makes with each
+//! edge; the ray passes inside when none differs in sign from another. Two triangles compute the
+//! function of a shared edge from the same numbers and get opposite signs, so that no ray slips
+//! between ([Woop et al. 2013]; [Pharr 2023 §6.5.3]).
 //!
-//! Several triangles are tested at once, a lane for each. What floats cannot tell is decided in doubles, lane
-//! by lane: on which side of an edge the ray passes when an edge function vanishes, and whether a hit nearer
-//! than the rounding error of its distance lies before or behind the origin. A hit is thus lost neither on
-//! edges nor in corners.
+//! Several triangles are tested at once, a lane for each. What floats cannot tell is decided in
+//! doubles, lane by lane: on which side of an edge the ray passes when an edge function vanishes,
+//! and whether a hit nearer than the rounding error of its distance lies before or behind the
+//! origin. A hit is thus lost neither on edges nor in corners.
 
 #![allow(unsafe_code)]
 
@@ -40,8 +40,8 @@ pub(crate) struct ShearedLanes<V> {
     o: [V; 3],
 }
 
-/// What the lanes found: which are hit, and which of these are in doubt and have yet to be decided by
-/// [`Sheared::decide`]. The other arrays tell of the hits without doubt.
+/// What the lanes found: which are hit, and which of these are in doubt and have yet to be decided
+/// by [`Sheared::decide`]. The other arrays tell of the hits without doubt.
 pub(crate) struct LaneHits<const N: usize> {
     pub hits: u32,
     pub doubts: u32,
@@ -95,8 +95,8 @@ impl Sheared {
         ShearedLanes { axes, shear: load(&shear), o: load(&o) }
     }
 
-    /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
-    /// and 2.
+    /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of
+    /// corners 1 and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
         // SAFETY: every processor has single floats.
@@ -197,8 +197,8 @@ impl<const N: usize> LaneHits<N> {
         }
         let clear = vanishing.le(lowest) | highest.le(zero.sub(vanishing));
         let unsure = !clear | is_tiny;
-        // The error of the sum, not below what `distance_error` says: one size for x and y, and no edge function is greater
-        // than all three together.
+        // The error of the sum, not below what `distance_error` says: one size for x and y, and no
+        // edge function is greater than all three together.
         let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
         let (xy, z) = (largest(0).max(largest(1)), largest(2));
         // SAFETY: who has vectors has the instructions.

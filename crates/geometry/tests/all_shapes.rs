@@ -1,5 +1,5 @@
-//! What every shape promises: samples have their density, densities integrate to one, hits lie on the
-//! surface, and partial derivatives are those of the surface.
+//! What every shape promises: samples have their density, densities integrate to one, hits lie on
+//! the surface, and partial derivatives are those of the surface.
 
 mod common;
 
@@ -42,7 +42,8 @@ fn each(mut f: impl FnMut(String, &Shape, &ShapeSampleContext)) {
     }
 }
 
-/// Below this cosine a density by area turned into one by solid angle grows too steep for a midpoint rule.
+/// Below this cosine a density by area turned into one by solid angle grows too steep for a
+/// midpoint rule.
 const EDGE_ON: f32 = 0.2;
 
 /// What is first met along `w`, unless it is seen edge-on.
@@ -53,15 +54,16 @@ fn met(shape: &Shape, reference: &ShapeSampleContext, w: Vec3) -> Option<(ShapeH
     (surface.n.dot(surface.wo).abs() > EDGE_ON).then_some((hit, surface))
 }
 
-/// The direction of a sampled point, unless something of the shape is before it, or it is seen edge-on.
+/// The direction of a sampled point, unless something of the shape is before it, or it is seen
+/// edge-on.
 fn visible(shape: &Shape, reference: &ShapeSampleContext, sample: &ShapeSample) -> Option<Vec3> {
     let toward = sample.p.p - reference.p.p;
     let (_, surface) = met(shape, reference, toward)?;
     (surface.p.p.distance(sample.p.p) < 2e-3).then(|| toward.normalize())
 }
 
-/// Directions around a shape in equal cells (z, φ) of the cone in which its box is seen, and the density's
-/// integral over each, by a fine midpoint rule.
+/// Directions around a shape in equal cells (z, φ) of the cone in which its box is seen, and the
+/// density's integral over each, by a fine midpoint rule.
 struct Cells {
     frame: Frame,
     z_min: f32,

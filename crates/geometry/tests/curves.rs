@@ -1,4 +1,5 @@
-//! Curves: against what fine sampling of their centre line says, in the tree, and for hostile points.
+//! Curves: against what fine sampling of their centre line says, in the tree, and for hostile
+//! points.
 
 mod common;
 
@@ -31,8 +32,9 @@ fn random_segment(rng: &mut Rng) -> CurveSegment {
     CurveSegment { points, width: [between(rng, 0.01, 0.3), between(rng, 0.01, 0.3)] }
 }
 
-/// A curve that runs along x and is nowhere much thinner than elsewhere. Where a curve turns within its own width as
-/// the ray sees it, whether it is met is a matter of how it is cut; and it is cut by what its largest width asks for.
+/// A curve that runs along x and is nowhere much thinner than elsewhere. Where a curve turns within
+/// its own width as the ray sees it, whether it is met is a matter of how it is cut; and it is cut
+/// by what its largest width asks for.
 fn gentle_segment(rng: &mut Rng) -> CurveSegment {
     let points = [-1.2, -0.4, 0.4, 1.2].map(|x| Vec3::X * x + point_in(rng, 0.3));
     let width = between(rng, 0.01, 0.3);
@@ -67,8 +69,8 @@ fn ray_near(rng: &mut Rng, segment: &CurveSegment) -> Ray {
     Ray::new(o, (target - o) * between(rng, 0.3, 3.0), 0.0)
 }
 
-/// Of points along the centre line: u, by how much the line of a ray misses them in halves of the width (1 is the
-/// edge), and how far along the ray they are.
+/// Of points along the centre line: u, by how much the line of a ray misses them in halves of the
+/// width (1 is the edge), and how far along the ray they are.
 fn misses(segment: &CurveSegment, ribbon: bool, ray: &Ray) -> Vec<(f32, f32, f32)> {
     const STEPS: usize = 2000;
     let d = ray.d.normalize();

@@ -1,4 +1,5 @@
-//! Extents save work and change nothing: without them every ray is put to every primitive, and finds the same.
+//! Extents save work and change nothing: without them every ray is put to every primitive, and
+//! finds the same.
 
 mod common;
 

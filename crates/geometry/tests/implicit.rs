@@ -1,4 +1,5 @@
-//! Surfaces given by formulas: against closed forms, against dense sampling, and where roots are hard to tell.
+//! Surfaces given by formulas: against closed forms, against dense sampling, and where roots are
+//! hard to tell.
 
 mod common;
 
@@ -53,7 +54,8 @@ fn value(formula: &Formula, p: DVec3) -> f64 {
     formula.value(p.to_array())
 }
 
-/// The first hit is where the formula is zero, and at no sample before it has the formula another sign.
+/// The first hit is where the formula is zero, and at no sample before it has the formula another
+/// sign.
 #[test]
 fn no_root_before_the_first_by_dense_sampling() {
     const STEPS: usize = 4000;
@@ -82,7 +84,8 @@ fn no_root_before_the_first_by_dense_sampling() {
             }
             let Some(t) = hit else { continue };
             hits += 1;
-            // Around a float beside a root the formula has both signs, or comes near zero beside how it changes.
+            // Around a float beside a root the formula has both signs, or comes near zero beside
+            // how it changes.
             let t = t as f64;
             let around = [-2e-6, -1e-6, 0.0, 1e-6, 2e-6].map(|h| value(&f, point(t + h)));
             let known: Vec<f64> = around.into_iter().filter(|value| value.is_finite()).collect();

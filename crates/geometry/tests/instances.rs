@@ -1,5 +1,5 @@
-//! Placed groups behave as if their members stood where they are placed, at rest or moving; and meshes keep
-//! the conventions of shading.
+//! Placed groups behave as if their members stood where they are placed, at rest or moving; and
+//! meshes keep the conventions of shading.
 
 mod common;
 
@@ -246,7 +246,8 @@ fn instances_of_instances_stand_where_all_their_transforms_place_them() {
 
 #[test]
 fn one_group_stands_in_many_places_of_many() {
-    // A ball at x = 0, 1; those at y = 0, 3; and those again, with the first pair by itself, at z = 0.
+    // A ball at x = 0, 1; those at y = 0, 3; and those again, with the first pair by itself, at z =
+    // 0.
     let mut builder = World::builder();
     let at = |group, p: Vec3| Instance { group, render_from_instance: Transform::translate(p).into() };
     let one = builder.add_group();

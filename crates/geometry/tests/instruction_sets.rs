@@ -105,8 +105,8 @@ fn on_what_is_hostile() {
     }
 }
 
-/// Rays from one point to neighbouring ones, which a batch takes through the tree together, and some that are not like
-/// their neighbours.
+/// Rays from one point to neighbouring ones, which a batch takes through the tree together, and
+/// some that are not like their neighbours.
 #[test]
 fn on_a_picture() {
     let rng = &mut Rng::new(4, 0);

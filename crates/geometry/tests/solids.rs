@@ -155,7 +155,8 @@ fn the_first_hit_is_the_first_change_of_being_inside() {
                 (surface.n.length() - 1.0).abs() < 1e-5 && surface.uv.is_finite(),
                 "solid {i}: {surface:?}"
             );
-            // Inside below the surface and outside above, but for points at edges and on thin walls.
+            // Inside below the surface and outside above, but for points at edges and on thin
+            // walls.
             let h = 1e-5 * (1.0 + f64::from(hit.t));
             edges += i32::from(contains(p + n * h) || !contains(p - n * h));
         }
@@ -248,7 +249,8 @@ fn rays_inside_do_not_leak() {
             let mut ray = start(rng);
             for step in 0..20_000 {
                 let Some(hit) = nearest(&world, &ray) else {
-                    // Beside an edge sharper than a right angle, a step inside from one face may end outside of the other.
+                    // Beside an edge sharper than a right angle, a step inside from one face may
+                    // end outside of the other.
                     let is_sharp =
                         !matches!(name, "a cylinder" | "a cut ball" | "a box of planes" | "a cross");
                     assert!(is_sharp, "{name} under transform {i} leaks at step {step}: {ray:?}");

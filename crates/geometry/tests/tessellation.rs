@@ -12,7 +12,8 @@ const OCTAHEDRON: [[u32; 3]; 8] =
     [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 const CORNERS: [Vec3; 6] = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
 
-/// A closed mesh whose vertices have three to seven neighbours: an octahedron with pyramids on some of its faces.
+/// A closed mesh whose vertices have three to seven neighbours: an octahedron with pyramids on some
+/// of its faces.
 fn closed(rng: &mut Rng) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut positions: Vec<Vec3> = CORNERS.iter().map(|&p| p + point_in(rng, 0.1)).collect();
     let mut indices = OCTAHEDRON[3..].to_vec();
@@ -24,7 +25,8 @@ fn closed(rng: &mut Rng) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, indices)
 }
 
-/// A fan of `n` triangles around vertex 0, which lies on the border; its other vertices have two or three neighbours.
+/// A fan of `n` triangles around vertex 0, which lies on the border; its other vertices have two or
+/// three neighbours.
 fn fan(n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let spoke = |i: u32| {
         let angle = i as f32 / n as f32 * 2.5;

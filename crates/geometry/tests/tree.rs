@@ -1,5 +1,5 @@
-//! The trees find what testing every primitive finds, whatever they are given, and however many threads build
-//! them.
+//! The trees find what testing every primitive finds, whatever they are given, and however many
+//! threads build them.
 
 mod common;
 

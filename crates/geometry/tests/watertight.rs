@@ -72,7 +72,8 @@ fn rays_through_vertices_and_edges_do_not_leak() {
 
 #[test]
 fn axis_parallel_rays_along_shared_edges_do_not_leak() {
-    // A wall of squares, every one cut in two, hit exactly where four corners meet and along its lines.
+    // A wall of squares, every one cut in two, hit exactly where four corners meet and along its
+    // lines.
     let n = 9u32;
     let positions = (0..n * n).map(|i| Vec3::new((i % n) as f32, (i / n) as f32, 1.0)).collect();
     let quads = (0..n - 1).flat_map(|y| (0..n - 1).map(move |x| x + n * y));
@@ -87,8 +88,8 @@ fn axis_parallel_rays_along_shared_edges_do_not_leak() {
     }
 }
 
-/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside none ever
-/// comes.
+/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside
+/// none ever comes.
 #[test]
 fn walks_inside_do_not_leak() {
     let rng = &mut Rng::new(3, 0);
@@ -130,7 +131,8 @@ fn spawned_rays_do_not_meet_their_own_convex_surface() {
                 let ray = Ray::new(ray.o, (sample.p.p - ray.o) * between(rng, 0.01, 3.0), 0.0);
                 let Some(hit) = nearest(&world, &ray) else { continue };
                 let surface = world.surface(&ray, &hit);
-                // On curved shapes only the outside is free; `n` may point to the inside by orientation.
+                // On curved shapes only the outside is free; `n` may point to the inside by
+                // orientation.
                 let out = if is_flat {
                     surface.n
                 } else {

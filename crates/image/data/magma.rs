@@ -1,4 +1,5 @@
-// The magma colour map by Nathaniel Smith and Stéfan van der Walt (CC0): sRGB codes from dark (0) to bright (255).
+// The magma colour map by Nathaniel Smith and Stéfan van der Walt (CC0): sRGB codes from dark (0)
+// to bright (255).
 [
     [0, 0, 4], [1, 0, 5], [1, 1, 6], [1, 1, 8], [2, 1, 9], [2, 2, 11], [2, 2, 13], [3, 3, 15],
     [3, 3, 18], [4, 4, 20], [5, 4, 22], [6, 5, 24], [6, 5, 26], [7, 6, 28], [8, 7, 30], [9, 7, 32],

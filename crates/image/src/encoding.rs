@@ -1,7 +1,7 @@
 //! How the codes of an integer image stand for linear values.
 //!
-//! sRGB [IEC 61966-2-1]: linear = c / 12.92 for c ≤ 0.04045, else ((c + 0.055) / 1.055)^2.4. Gamma x: linear = c^x.
-//! Codes and linear values both run over [0, 1].
+//! sRGB [IEC 61966-2-1]: linear = c / 12.92 for c ≤ 0.04045, else ((c + 0.055) / 1.055)^2.4. Gamma
+//! x: linear = c^x. Codes and linear values both run over [0, 1].
 
 use std::fmt;
 
@@ -18,7 +18,8 @@ pub enum ColorEncoding {
 }
 
 impl ColorEncoding {
-    /// The encoding of a name as scene files write it: `sRGB`, `linear` or `gamma 2.2`; `None` if it is none of these.
+    /// The encoding of a name as scene files write it: `sRGB`, `linear` or `gamma 2.2`; `None` if
+    /// it is none of these.
     pub fn from_name(name: &str) -> Option<Self> {
         match name.split_whitespace().collect::<Vec<_>>()[..] {
             ["sRGB"] => Some(Self::Srgb),

@@ -1,5 +1,6 @@
-//! Numbers as colours: the magma map from black through purple and orange to pale yellow, whose lightness grows evenly; and for
-//! numbers with a sign a map from blue through black to orange, told apart by all who see colours.
+//! Numbers as colours: the magma map from black through purple and orange to pale yellow, whose
+//! lightness grows evenly; and for numbers with a sign a map from blue through black to orange,
+//! told apart by all who see colours.
 
 use crate::{
     encoding::{ColorEncoding, at_most},
@@ -14,8 +15,8 @@ pub fn magma(value: f32) -> [u8; 3] {
     MAGMA[(at_most(value, 1.0) * 255.0 + 0.5) as usize]
 }
 
-/// The sRGB codes of a value in [−1, 1]: 0 is black, negative values are blue, positive ones orange; others are clamped, NaN is
-/// black.
+/// The sRGB codes of a value in [−1, 1]: 0 is black, negative values are blue, positive ones
+/// orange; others are clamped, NaN is black.
 pub fn diverging(value: f32) -> [u8; 3] {
     const BLUE: [f32; 3] = [110.0, 190.0, 255.0];
     const ORANGE: [f32; 3] = [255.0, 165.0, 70.0];
@@ -28,7 +29,8 @@ pub fn false_color(image: &Image, white: f32) -> Result<Image, ImageError> {
     colored(image, |value| magma(value / white))
 }
 
-/// A picture of an image's first channel, whose values have a sign: those as large as `full` have the full colour.
+/// A picture of an image's first channel, whose values have a sign: those as large as `full` have
+/// the full colour.
 pub fn signed_false_color(image: &Image, full: f32) -> Result<Image, ImageError> {
     colored(image, |value| diverging(value / full))
 }

@@ -13,7 +13,8 @@ use crate::{
     wrap::WrapMode,
 };
 
-/// The stored values of an image: rows from the top, pixels from the left, channels of a pixel side by side.
+/// The stored values of an image: rows from the top, pixels from the left, channels of a pixel side
+/// by side.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
     /// 8-bit codes and what they stand for.
@@ -59,7 +60,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// An image of the given pixels; refused where sizes contradict each other, or a side or the channel list is empty.
+    /// An image of the given pixels; refused where sizes contradict each other, or a side or the
+    /// channel list is empty.
     pub fn new(
         width: u32,
         height: u32,
@@ -86,7 +88,8 @@ impl Image {
         Ok(Self { width, height, channels, pixels, decoded, color, alpha, metadata })
     }
 
-    /// An image of single floats, one pixel after another from a function of (x, y); `N` is the number of channels.
+    /// An image of single floats, one pixel after another from a function of (x, y); `N` is the
+    /// number of channels.
     ///
     /// # Panics
     /// If a side is zero or `channels` is empty.
@@ -204,8 +207,8 @@ impl Image {
         }
     }
 
-    /// The linear colour of pixel (x, y): the R, G and B channels (of the first layer that has them), else Y or the first
-    /// channel three times.
+    /// The linear colour of pixel (x, y): the R, G and B channels (of the first layer that has
+    /// them), else Y or the first channel three times.
     ///
     /// # Panics
     /// If the pixel is not in the image.
@@ -235,7 +238,8 @@ impl Image {
         self.alpha
     }
 
-    /// The bilinearly interpolated value of a channel at `st`, where [0, 1]² covers the image and t runs down.
+    /// The bilinearly interpolated value of a channel at `st`, where [0, 1]² covers the image and t
+    /// runs down.
     pub fn bilerp(&self, st: Point2, c: usize, wrap: WrapMode) -> f32 {
         let [(x, dx), (y, dy)] = self.texel_position(st);
         let at = |x, y| self.channel_wrapped(x, y, c, wrap);
@@ -254,7 +258,8 @@ impl Image {
         })
     }
 
-    /// The texel left of and above `st`, whose centre it is nearest to from below, and the distances from it, by axis.
+    /// The texel left of and above `st`, whose centre it is nearest to from below, and the
+    /// distances from it, by axis.
     fn texel_position(&self, st: Point2) -> [(i32, f32); 2] {
         [(st.x, self.width), (st.y, self.height)].map(|(coordinate, size)| {
             let position = coordinate * size as f32 - 0.5;
@@ -269,7 +274,8 @@ impl Image {
         self.gather(self.width, self.height, &indices, names, |x, y| (x, y)).ok()
     }
 
-    /// The pixels inside `window`, in pixel indices of this image; refused if it is empty or reaches outside.
+    /// The pixels inside `window`, in pixel indices of this image; refused if it is empty or
+    /// reaches outside.
     pub fn crop(&self, window: Window) -> Result<Self, ImageError> {
         let [x0, y0] = window.min;
         let whole = Window::of_size(self.width, self.height);
@@ -329,7 +335,8 @@ impl Image {
         Self { decoded: pixels.decoded(), pixels, channels, metadata, ..*self }
     }
 
-    /// A new image of `indices` of the channels, whose pixel (x, y) is pixel `source(x, y)` of this one.
+    /// A new image of `indices` of the channels, whose pixel (x, y) is pixel `source(x, y)` of this
+    /// one.
     fn gather(
         &self,
         width: u32,
@@ -356,8 +363,8 @@ impl Image {
     }
 }
 
-/// Which channels are red, green and blue: R, G, B by name, else those of the first layer that has them ("layer.R"), else Y,
-/// else the first channel.
+/// Which channels are red, green and blue: R, G, B by name, else those of the first layer that has
+/// them ("layer.R"), else Y, else the first channel.
 fn color_channels(channels: &[String]) -> [usize; 3] {
     let find = |name: &str| channels.iter().position(|channel| channel == name);
     let layers = std::iter::once("")

@@ -56,7 +56,8 @@ pub enum Attribute {
     Float(f32),
     /// Two or three real numbers are written as a vector, others cannot be written.
     Vector(Vec<f32>),
-    /// A transform of column vectors; OpenEXR files hold its transpose, as their convention is row vectors.
+    /// A transform of column vectors; OpenEXR files hold its transpose, as their convention is row
+    /// vectors.
     Matrix(Mat4),
 }
 
@@ -71,7 +72,8 @@ pub struct ImageMetadata {
     pub display_window: Option<Window>,
     /// Width of a pixel over its height.
     pub pixel_aspect: f32,
-    /// Everything else, by name. [`Self::WORLD_TO_CAMERA`] and [`Self::WORLD_TO_NDC`] are the names of the camera's matrices.
+    /// Everything else, by name. [`Self::WORLD_TO_CAMERA`] and [`Self::WORLD_TO_NDC`] are the names
+    /// of the camera's matrices.
     pub attributes: BTreeMap<String, Attribute>,
 }
 

@@ -1,8 +1,9 @@
 //! How far a picture is from a reference, in numbers.
 //!
-//! Over all pixels and colour channels (one channel where neither picture has colour), with values t of the test and r of the
-//! reference: MSE = mean of (t − r)²; relMSE = mean of (t − r)² / (r² + 0.01), which weighs dark and bright parts alike
-//! [Rousselle 2011]; PSNR = 10 log₁₀(1 / MSE) dB. Where a value is not finite in either picture, the pair is left out and counted.
+//! Over all pixels and colour channels (one channel where neither picture has colour), with values
+//! t of the test and r of the reference: MSE = mean of (t − r)²; relMSE = mean of (t − r)² / (r² +
+//! 0.01), which weighs dark and bright parts alike [Rousselle 2011]; PSNR = 10 log₁₀(1 / MSE) dB.
+//! Where a value is not finite in either picture, the pair is left out and counted.
 
 use crate::{
     error::ImageError,
@@ -30,7 +31,8 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Peak signal-to-noise ratio in decibels, for a peak of 1; infinite where pictures are the same.
+    /// Peak signal-to-noise ratio in decibels, for a peak of 1; infinite where pictures are the
+    /// same.
     pub fn psnr(&self) -> f64 {
         -10.0 * self.mse.log10()
     }
@@ -71,8 +73,8 @@ pub fn compare(reference: &Image, test: &Image) -> Result<Difference, ImageError
     })
 }
 
-/// The squared error at each pixel, averaged over colour channels, as channel Y; relative as in [`Difference::rel_mse`] on demand.
-/// Where a value is not finite it is that too.
+/// The squared error at each pixel, averaged over colour channels, as channel Y; relative as in
+/// [`Difference::rel_mse`] on demand. Where a value is not finite it is that too.
 pub fn squared_error_map(reference: &Image, test: &Image, relative: bool) -> Result<Image, ImageError> {
     check_same_size(reference, test)?;
     let mut values = Vec::with_capacity(reference.width() as usize * reference.height() as usize);

@@ -1,15 +1,18 @@
 //! Prefiltered images (mip maps) and filtered lookups in them.
 //!
-//! Level 0 is the image, enlarged to powers of two where its sides are not; each further level is the 2 × 2 box average of the one
-//! before; the last is one texel. A lookup at `st` ∈ [0, 1]² (t runs down) is told two vectors `dst0`, `dst1` by which `st` differs
-//! between neighbouring pixels. With L levels:
+//! Level 0 is the image, enlarged to powers of two where its sides are not; each further level is
+//! the 2 × 2 box average of the one before; the last is one texel. A lookup at `st` ∈ [0, 1]² (t
+//! runs down) is told two vectors `dst0`, `dst1` by which `st` differs between neighbouring pixels.
+//! With L levels:
 //!
-//! - point, bilinear, trilinear: the level is ℓ = L − 1 + log₂(2 max |dst|), taken as ⌊ℓ⌋, or between ⌊ℓ⌋ and ⌊ℓ⌋ + 1;
-//! - EWA: an elliptical Gaussian exp(−2r²) − exp(−2), r < 1, whose axes are the two vectors, the shorter lengthened to at least
-//!   1/`max_anisotropy` of the longer, each side grown by one texel; between the levels about ℓ = L − 1 + log₂(shorter).
+//! - point, bilinear, trilinear: the level is ℓ = L − 1 + log₂(2 max |dst|), taken as ⌊ℓ⌋, or
+//!   between ⌊ℓ⌋ and ⌊ℓ⌋ + 1;
+//! - EWA: an elliptical Gaussian exp(−2r²) − exp(−2), r < 1, whose axes are the two vectors, the
+//!   shorter lengthened to at least 1/`max_anisotropy` of the longer, each side grown by one texel;
+//!   between the levels about ℓ = L − 1 + log₂(shorter).
 //!
-//! Numbers of levels, widths and the quantised weight table are those of pbrt-v4, so that pictures agree.
-//! Sources: [Williams 1983], [Heckbert 1989 §3], [Pharr 2023 §10.4.3].
+//! Numbers of levels, widths and the quantised weight table are those of pbrt-v4, so that pictures
+//! agree. Sources: [Williams 1983], [Heckbert 1989 §3], [Pharr 2023 §10.4.3].
 
 use std::sync::{Arc, LazyLock};
 
@@ -145,7 +148,8 @@ impl Pyramid {
         fine.lerp(self.ewa_at(index + 1, st, longer, shorter), level - index as f32)
     }
 
-    /// The elliptical average in one level: texels with A s² + B s t + C t² < 1, (s, t) from the centre.
+    /// The elliptical average in one level: texels with A s² + B s t + C t² < 1, (s, t) from the
+    /// centre.
     fn ewa_at<T: Texel>(&self, level: usize, st: Vec2, dst0: Vec2, dst1: Vec2) -> T {
         let Some(image) = self.levels.get(level) else {
             return T::at(&self.levels[self.levels.len() - 1], 0, 0, self.wrap);

@@ -1,9 +1,10 @@
 //! Changing the size of an image by a windowed sinc filter.
 //!
-//! A new texel at source position p is Σ w(i + ½ − p) v_i / Σ w(i + ½ − p) along x, then along y, with
-//! w(x) = sinc(x / s) · sinc(x / (2s)) for |x| < 2s, sinc(x) = sin(πx) / (πx), and s = max(1, old size / new size), so that a
-//! smaller image is low-passed. Results are clamped to ≥ 0, as the filter's negative lobes may ring. Enlarging is what pbrt-v4
-//! does to make texture sizes powers of two. Source: [Pharr 2023 §10.4.3].
+//! A new texel at source position p is Σ w(i + ½ − p) v_i / Σ w(i + ½ − p) along x, then along y,
+//! with w(x) = sinc(x / s) · sinc(x / (2s)) for |x| < 2s, sinc(x) = sin(πx) / (πx), and s = max(1,
+//! old size / new size), so that a smaller image is low-passed. Results are clamped to ≥ 0, as the
+//! filter's negative lobes may ring. Enlarging is what pbrt-v4 does to make texture sizes powers of
+//! two. Source: [Pharr 2023 §10.4.3].
 
 use std::f32::consts::PI;
 
@@ -25,7 +26,8 @@ struct Taps {
 }
 
 impl Image {
-    /// The image at another size, stored as single floats; `wrap` tells what the filter sees beyond the edges.
+    /// The image at another size, stored as single floats; `wrap` tells what the filter sees beyond
+    /// the edges.
     pub fn resize(&self, width: u32, height: u32, wrap: WrapMode) -> Result<Self, ImageError> {
         if width == 0 || height == 0 {
             return Err(ImageError::Invalid(format!("cannot resize to {width} × {height} pixels")));

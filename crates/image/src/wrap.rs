@@ -10,8 +10,9 @@ pub enum WrapMode {
     Black,
     /// The nearest edge pixel.
     Clamp,
-    /// The neighbour on the sphere, for square images in the equal-area octahedral mapping [Clarberg 2008]: crossing an edge
-    /// re-enters through the same edge, mirrored about its middle.
+    /// The neighbour on the sphere, for square images in the equal-area octahedral mapping
+    /// [Clarberg 2008]: crossing an edge re-enters through the same edge, mirrored about its
+    /// middle.
     OctahedralSphere,
 }
 
@@ -39,7 +40,8 @@ impl WrapMode {
             Self::Repeat => (x.rem_euclid(w), y.rem_euclid(h)),
             Self::Clamp => (x.clamp(0, w - 1), y.clamp(0, h - 1)),
             Self::OctahedralSphere => {
-                // An even number of edges crossed in one direction is a whole turn; an odd one mirrors both axes.
+                // An even number of edges crossed in one direction is a whole turn; an odd one
+                // mirrors both axes.
                 let (tile_x, tile_y) = (x.div_euclid(w), y.div_euclid(h));
                 let (x, y) = (x.rem_euclid(w), y.rem_euclid(h));
                 if (tile_x + tile_y).rem_euclid(2) == 0 { (x, y) } else { (w - 1 - x, h - 1 - y) }

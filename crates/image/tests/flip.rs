@@ -1,4 +1,5 @@
-//! FLIP against the values that the authors' evaluator (`flip-evaluator`) gives for the same formulas.
+//! FLIP against the values that the authors' evaluator (`flip-evaluator`) gives for the same
+//! formulas.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
 
@@ -10,7 +11,8 @@ use alhazen_image::{
 
 const SIZE: (u32, u32) = (48, 32);
 
-/// sRGB codes of a reference (`damage` false) with waves, a ramp and tiles, and of a test with a dimmed channel, a disk and dots.
+/// sRGB codes of a reference (`damage` false) with waves, a ramp and tiles, and of a test with a
+/// dimmed channel, a disk and dots.
 fn codes(x: u32, y: u32, damage: bool) -> [f32; 3] {
     let (fx, fy) = (x as f32, y as f32);
     let mut red = 0.5 + 0.5 * (0.3 * fx + 0.1 * fy).sin();

@@ -1,4 +1,5 @@
-//! Decoders fed with what is damaged, odd or made to hurt: an image or an error comes, soon and within bounds.
+//! Decoders fed with what is damaged, odd or made to hurt: an image or an error comes, soon and
+//! within bounds.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
 

@@ -80,7 +80,8 @@ pub(crate) fn read_unpacked(assets: &dyn AssetSource, path: &Path) -> io::Result
     Ok(unpacked)
 }
 
-/// The path of a file that another file names: beside that file if it is there, else beside the scene's first file.
+/// The path of a file that another file names: beside that file if it is there, else beside the
+/// scene's first file.
 pub(crate) fn resolve(assets: &dyn AssetSource, name: &str, naming_file: &str, first_file: &str) -> PathBuf {
     let beside = |file: &str| Path::new(file).parent().unwrap_or(Path::new("")).join(name);
     let (near, far) = (beside(naming_file), beside(first_file));

@@ -1,7 +1,8 @@
 //! Scene and mesh files read into a [`SceneDesc`].
 //!
-//! [`import`] always gives a description: the scene as far as it could be understood, the texts that were read, and
-//! everything there is to say about them. Files are reached through an [`AssetSource`] only.
+//! [`import`] always gives a description: the scene as far as it could be understood, the texts
+//! that were read, and everything there is to say about them. Files are reached through an
+//! [`AssetSource`] only.
 
 mod assets;
 mod images;
@@ -37,8 +38,8 @@ impl Imported {
     }
 }
 
-/// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), or a PLY or OBJ file, which
-/// becomes a scene of one object with a camera and light that show it.
+/// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), or a
+/// PLY or OBJ file, which becomes a scene of one object with a camera and light that show it.
 pub fn import(path: impl AsRef<Path>, assets: &dyn AssetSource) -> Imported {
     let path = path.as_ref();
     match mesh::Format::from_path(path) {

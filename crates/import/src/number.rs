@@ -1,8 +1,8 @@
 //! Numbers in text, read fast and exactly.
 //!
-//! Most numbers of scene files have few digits. If the digits fit into 53 bits and the decimal exponent is at most 22,
-//! digits and power of ten are exact as doubles, so that one multiplication or division rounds correctly [Clinger 1990].
-//! All others go to the standard library.
+//! Most numbers of scene files have few digits. If the digits fit into 53 bits and the decimal
+//! exponent is at most 22, digits and power of ten are exact as doubles, so that one multiplication
+//! or division rounds correctly [Clinger 1990]. All others go to the standard library.
 
 /// A double; `None` if the text is not a decimal number.
 #[inline]
@@ -15,7 +15,8 @@ pub(crate) fn double(text: &[u8]) -> Option<f64> {
 pub(crate) fn float(text: &[u8]) -> Option<f32> {
     /// The bits of a double that a float has not.
     const BELOW: u64 = (1 << 29) - 1;
-    /// Where those bits stand half way between two floats. A double rounded to there may have lain on either side.
+    /// Where those bits stand half way between two floats. A double rounded to there may have lain
+    /// on either side.
     const HALFWAY: u64 = 1 << 28;
     if let Some(value) = exact(text)
         && value.to_bits() & BELOW != HALFWAY

@@ -279,7 +279,8 @@ fn every_mistake_has_its_message() {
         );
     }
     for (text, expected) in IN_WORLD {
-        // `WorldBegin` stands behind spaces on a line of its own, so that columns count from the text.
+        // `WorldBegin` stands behind spaces on a line of its own, so that columns count from the
+        // text.
         let found = messages(&format!("WorldBegin\n{text}"));
         let expected = expected.replacen("1:", "2:", 1);
         assert_eq!(found.len(), 1, "{text}\n{found:#?}");

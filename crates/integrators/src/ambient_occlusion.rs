@@ -1,12 +1,13 @@
 //! Ambient occlusion: how much of the sky each point sees.
 //!
-//! A = 1/π ∫ V(p, ω) (n·ω) dω over the hemisphere around the geometric normal n on the camera's side, where the visibility V
-//! is 0 for directions that meet a surface nearer than `max_distance`. A point with a free view is white (A = 1): the result is A
-//! times the illuminant of the film's colour space at unit luminance. Lights and materials do not matter; a camera ray that
-//! meets nothing is black.
+//! A = 1/π ∫ V(p, ω) (n·ω) dω over the hemisphere around the geometric normal n on the camera's
+//! side, where the visibility V is 0 for directions that meet a surface nearer than `max_distance`.
+//! A point with a free view is white (A = 1): the result is A times the illuminant of the film's
+//! colour space at unit luminance. Lights and materials do not matter; a camera ray that meets
+//! nothing is black.
 //!
-//! Settings: `cos_sample`, directions by the cosine (the default, less noise) or uniform; `max_distance` in scene units, default
-//! infinite. Sources: [Zhukov 1998], [Pharr 2023 §13].
+//! Settings: `cos_sample`, directions by the cosine (the default, less noise) or uniform;
+//! `max_distance` in scene units, default infinite. Sources: [Zhukov 1998], [Pharr 2023 §13].
 
 use geometry::RayStats;
 use math::{Frame, RayDifferential};

@@ -25,7 +25,8 @@ pub struct Built {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Makes the integrator of a scene, or tells everything that is wrong with its settings (warnings included).
+/// Makes the integrator of a scene, or tells everything that is wrong with its settings (warnings
+/// included).
 pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     let mut builder = Builder { desc, diagnostics: Vec::new() };
     builder.media();
@@ -96,7 +97,8 @@ impl Builder<'_> {
         }
     }
 
-    /// The sampler of paths that begin at lights, which has nothing in common with that of the camera's.
+    /// The sampler of paths that begin at lights, which has nothing in common with that of the
+    /// camera's.
     fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
         const LIGHTS: u32 = 0x6c69_6768;
         let seed = hash(&[self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32, LIGHTS]) as u32;

@@ -38,7 +38,8 @@ pub struct Control {
     pub progress: Option<ProgressSink>,
     /// Sees the film after each pass but the last.
     pub preview: Option<FilmSink>,
-    /// Rays of the pass in the making, which would be lost with its result where it is cancelled; integrators count them.
+    /// Rays of the pass in the making, which would be lost with its result where it is cancelled;
+    /// integrators count them.
     pub under_way: Mutex<RayStats>,
 }
 

@@ -1,4 +1,5 @@
-//! What the algorithms share at a surface: light that comes straight from lights, and surfaces that are not there to light.
+//! What the algorithms share at a surface: light that comes straight from lights, and surfaces that
+//! are not there to light.
 
 use geometry::RayStats;
 use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
@@ -13,8 +14,8 @@ pub(crate) fn light_context(surface: &SurfaceInteraction, flags: BxdfFlags) -> L
     on_its_side(surface.light_context(), surface.surface.wo, flags)
 }
 
-/// A point seen from `wo` that scatters to one side only is moved to that side by its error, lest a light that passes through it
-/// be sampled from behind.
+/// A point seen from `wo` that scatters to one side only is moved to that side by its error, lest a
+/// light that passes through it be sampled from behind.
 pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
     let side = match (flags.is_reflective(), flags.is_transmissive()) {
         (true, false) => wo,
@@ -24,7 +25,8 @@ pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfF
     LightSampleContext { p: Point3Error::exact(offset_ray_origin(context.p, context.n, side)), ..context }
 }
 
-/// What a surface scatters to `wo` of light that comes straight from a light: f·|cos|·L, before visibility and pdf.
+/// What a surface scatters to `wo` of light that comes straight from a light: f·|cos|·L, before
+/// visibility and pdf.
 pub(crate) fn scattered<B: Scatter>(
     surface: &SurfaceInteraction,
     bsdf: &Bsdf<B>,
@@ -43,7 +45,8 @@ pub(crate) enum Shadows {
     Ignored,
 }
 
-/// What a surface scatters to `wo` of the light that comes straight from the lights, by one sample of each.
+/// What a surface scatters to `wo` of the light that comes straight from the lights, by one sample
+/// of each.
 pub(crate) fn all_lights(
     scene: &Scene,
     surface: &SurfaceInteraction,

@@ -1,22 +1,25 @@
 //! Glints: lamps that the camera sees in mirrors and through smooth glass.
 //!
-//! What comes to the camera by specular surfaces alone is found by camera rays alone, since nothing can be connected to such a surface or
-//! merged at it. The image of a small lamp may be much smaller than a pixel: one ray in thousands meets it, and makes its pixel as
-//! many times too bright. Only more rays help. They cost little beside a sample of all strategies, as they are followed no further than
-//! to the first surface that is not specular.
+//! What comes to the camera by specular surfaces alone is found by camera rays alone, since nothing
+//! can be connected to such a surface or merged at it. The image of a small lamp may be much
+//! smaller than a pixel: one ray in thousands meets it, and makes its pixel as many times too
+//! bright. Only more rays help. They cost little beside a sample of all strategies, as they are
+//! followed no further than to the first surface that is not specular.
 //!
-//! A pixel is looked at again if its own camera ray came to a specular surface first, which costs nothing where there are none, and if there
-//! is any light that rays can meet. Let
-//! S₁ be that event, and g₁ the light that the ray then finds by specular surfaces alone; S_i and g_i those of further rays, which have
-//! nothing to do with the first but its pixel, and w their weights in the filter. Then the pixel's sample is
+//! A pixel is looked at again if its own camera ray came to a specular surface first, which costs
+//! nothing where there are none, and if there is any light that rays can meet. Let S₁ be that
+//! event, and g₁ the light that the ray then finds by specular surfaces alone; S_i and g_i those of
+//! further rays, which have nothing to do with the first but its pixel, and w their weights in the
+//! filter. Then the pixel's sample is
 //!
 //! ```text
 //! (w₁g₁ + Σ w_i·g_i·[S_i]) / (1 + Σ [S_i])   if S₁, else 0
 //! ```
 //!
-//! Further rays of which S_i does not hold are thrown away. Given S₁ and how many others are left, all that are summed have the same
-//! mean E[w·g | S], and so has their average. As S₁ has the probability P(S), the whole has the mean P(S)·E[w·g | S] = E[w·g·[S]], which is that
-//! of a single ray: nothing is biased.
+//! Further rays of which S_i does not hold are thrown away. Given S₁ and how many others are left,
+//! all that are summed have the same mean E[w·g | S], and so has their average. As S₁ has the
+//! probability P(S), the whole has the mean P(S)·E[w·g | S] = E[w·g·[S]], which is that of a single
+//! ray: nothing is biased.
 
 use geometry::RayStats;
 use sampling::sampler::PaddedSobol;
@@ -66,7 +69,8 @@ pub(crate) struct Glints {
 }
 
 impl Glints {
-    /// For as many samples of a pixel, with a seed that has nothing in common with that of other samplers.
+    /// For as many samples of a pixel, with a seed that has nothing in common with that of other
+    /// samplers.
     pub fn new(samples_per_pixel: u32, seed: u32) -> Self {
         let samples = samples_per_pixel.saturating_mul(FURTHER_LOOKS);
         let sampler = Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed));

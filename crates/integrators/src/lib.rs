@@ -1,8 +1,9 @@
 //! The algorithms of light transport and the one loop that runs them.
 //!
-//! An [`Integrator`] fills a film in passes; [`render`] runs the passes, tells of each and stops when asked to. An algorithm that
-//! only has to answer how much light comes along one ray is a [`RayIntegrator`], and [`PixelLoop`] makes an integrator of it.
-//! [`build`] chooses the algorithm that a scene names.
+//! An [`Integrator`] fills a film in passes; [`render`] runs the passes, tells of each and stops
+//! when asked to. An algorithm that only has to answer how much light comes along one ray is a
+//! [`RayIntegrator`], and [`PixelLoop`] makes an integrator of it. [`build`] chooses the algorithm
+//! that a scene names.
 //!
 //! | algorithm | what it follows |
 //! |---|---|
@@ -20,9 +21,9 @@
 //! | [`Vcm`] | paths from both ends, connected and merged |
 //! | [`Radiosity`] | light between diffuse patches, from the brightest first |
 //!
-//! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of light at the end of a path
-//! that reaches the camera, and the depth of a path the number of its scattering events: depth 0 shows lights alone, depth 1
-//! adds direct light.
+//! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of
+//! light at the end of a path that reaches the camera, and the depth of a path the number of its
+//! scattering events: depth 0 shows lights alone, depth 1 adds direct light.
 
 mod ambient_occlusion;
 mod bdpt;

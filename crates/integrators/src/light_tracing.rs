@@ -1,23 +1,26 @@
 //! Light tracing: particles from the lights, as nature has it.
 //!
-//! A light subpath leaves a light, chosen in proportion to power, and goes from surface to surface as the BSDFs say. No ray of it
-//! would ever hit a pinhole, so each of its vertices x is connected to the camera: if nothing stands between them, the pixel of
-//! the film that x is seen in receives
+//! A light subpath leaves a light, chosen in proportion to power, and goes from surface to surface
+//! as the BSDFs say. No ray of it would ever hit a pinhole, so each of its vertices x is connected
+//! to the camera: if nothing stands between them, the pixel of the film that x is seen in receives
 //!
 //! ```text
 //! β·f(x)·|cos θ|·W_e / p_lens
 //! ```
 //!
-//! where β is the flux that arrived over the density of the subpath, W_e the camera's importance and p_lens the density of the
-//! point on the lens. With n subpaths, 1/n of the sum over all is the picture.
+//! where β is the flux that arrived over the density of the subpath, W_e the camera's importance
+//! and p_lens the density of the point on the lens. With n subpaths, 1/n of the sum over all is the
+//! picture.
 //!
-//! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and costs nothing extra. It fails
-//! where the camera looks into a mirror or through glass: no vertex can be connected through a specular surface, so mirrors and
-//! glass stay black, whatever they would show. And it wastes: most rays reach nothing that the camera sees, which is what made
-//! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen along one camera ray for each
-//! pixel, since those far away are nowhere on a subpath.
+//! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and
+//! costs nothing extra. It fails where the camera looks into a mirror or through glass: no vertex
+//! can be connected through a specular surface, so mirrors and glass stay black, whatever they
+//! would show. And it wastes: most rays reach nothing that the camera sees, which is what made
+//! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen
+//! along one camera ray for each pixel, since those far away are nowhere on a subpath.
 //!
-//! Unbiased for what it can see. A plane without end lies in the dark where light from infinity does not come (`endless.rs`). Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+//! Unbiased for what it can see. A plane without end lies in the dark where light from infinity
+//! does not come (`endless.rs`). Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

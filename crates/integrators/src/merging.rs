@@ -1,29 +1,33 @@
-//! What methods that merge have in common: photons shot anew in each pass, and a radius that shrinks from pass to pass.
+//! What methods that merge have in common: photons shot anew in each pass, and a radius that
+//! shrinks from pass to pass.
 //!
-//! The light that a surface at x scatters towards the camera is estimated from the n light subpaths of a pass by all their vertices
-//! within the radius r, as if they had arrived at x itself:
+//! The light that a surface at x scatters towards the camera is estimated from the n light subpaths
+//! of a pass by all their vertices within the radius r, as if they had arrived at x itself:
 //!
 //! ```text
 //! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p/α_p
 //! ```
 //!
-//! where α_p, mostly 1, is the probability with which a ray meets the surface at the photon's place. Of a leaf that a texture cuts out in
-//! part it is the part that remains: as few photons stay there, while x is given and has all the light that comes by.
+//! where α_p, mostly 1, is the probability with which a ray meets the surface at the photon's
+//! place. Of a leaf that a texture cuts out in part it is the part that remains: as few photons
+//! stay there, while x is given and has all the light that comes by.
 //!
-//! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and walls without thickness, through
-//! which light leaks), while noise goes with 1/r²; both vanish if pass i has
-//! the radius of [Knaus 2011]
+//! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and
+//! walls without thickness, through which light leaks), while noise goes with 1/r²; both vanish if
+//! pass i has the radius of [Knaus 2011]
 //!
 //! ```text
 //! r_{i+1}² = r_i² · (i + α)/(i + 1)        so that r_i² ~ i^(α − 1)
 //! ```
 //!
-//! and the picture is the mean of all passes: after N of them its bias is about N^(α − 1), its variance N^(−α) of that of the first.
-//! The radius depends on nothing but the pass's number, so passes can be made in any order, anywhere, and again.
+//! and the picture is the mean of all passes: after N of them its bias is about N^(α − 1), its
+//! variance N^(−α) of that of the first. The radius depends on nothing but the pass's number, so
+//! passes can be made in any order, anywhere, and again.
 //!
-//! Photons can be merged with a path from the camera only if both know of the same wavelengths, at the same time. So all paths
-//! of a pass have one choice of both, spread evenly over the passes: each step goes on by an irrational part of the range. For
-//! wavelengths that is a quarter of the golden ratio, because four of them, a quarter apart, are taken at once.
+//! Photons can be merged with a path from the camera only if both know of the same wavelengths, at
+//! the same time. So all paths of a pass have one choice of both, spread evenly over the passes:
+//! each step goes on by an irrational part of the range. For wavelengths that is a quarter of the
+//! golden ratio, because four of them, a quarter apart, are taken at once.
 //!
 //! Sources: [Knaus 2011]; [Hachisuka 2009].
 
@@ -118,7 +122,8 @@ impl Merging {
         Moment::of_pass(scene, self.seed, pass)
     }
 
-    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `sampler` begins a path's sample.
+    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `sampler` begins
+    /// a path's sample.
     pub fn shoot<V: Send>(
         &self,
         paths: &Bidirectional,
@@ -164,7 +169,8 @@ impl Merging {
         Ok((all, stats))
     }
 
-    /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in which they will be looked for.
+    /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in
+    /// which they will be looked for.
     pub fn sort(&mut self, photons: Vec<LightVertex>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
         let radius = self.radius(pass);
         let grid = PhotonGrid::new(photons, radius);

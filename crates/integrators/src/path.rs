@@ -1,15 +1,17 @@
 //! Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 //!
-//! At each surface one ray goes to a light and one onwards. Light that both ways can find, of densities p_l (choice of the light
-//! times its point) and p_b (BSDF) per solid angle, is counted by both with the weights of the power heuristic,
-//! w_l = p_l²/(p_l² + p_b²) and w_b = 1 − w_l [Veach 1997 §9.2]; what one alone can find (delta lights, specular bounces) counts
-//! fully. Lights may leave directions to the BSDF (`allow_incomplete`): their density is then zero there.
+//! At each surface one ray goes to a light and one onwards. Light that both ways can find, of
+//! densities p_l (choice of the light times its point) and p_b (BSDF) per solid angle, is counted
+//! by both with the weights of the power heuristic, w_l = p_l²/(p_l² + p_b²) and w_b = 1 − w_l
+//! [Veach 1997 §9.2]; what one alone can find (delta lights, specular bounces) counts fully. Lights
+//! may leave directions to the BSDF (`allow_incomplete`): their density is then zero there.
 //!
-//! From the second bounce on a path ends with probability 1 − β_max, where β_max is the largest value of β·η² and η² undoes the
-//! scaling of radiance by refractions on the way, so that what is seen through glass is not cut off early.
+//! From the second bounce on a path ends with probability 1 − β_max, where β_max is the largest
+//! value of β·η² and η² undoes the scaling of radiance by refractions on the way, so that what is
+//! seen through glass is not cut off early.
 //!
-//! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first rough bounce to find
-//! caustics with less noise. Source: [Pharr 2023 §13.4].
+//! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
+//! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
 
 use geometry::RayStats;
 use math::{RayDifferential, Vector3};
@@ -54,7 +56,8 @@ pub struct Path {
     lights: LightSampler,
 }
 
-/// The surface that a ray comes from, as light sampling sees it, and the density of the ray's direction.
+/// The surface that a ray comes from, as light sampling sees it, and the density of the ray's
+/// direction.
 pub(crate) struct Origin {
     /// The surface.
     pub context: LightSampleContext,
@@ -68,7 +71,8 @@ impl Path {
         Self { settings, lights: LightSampler::new(settings.light_sampler, &[]) }
     }
 
-    /// The weight of light from `light` that a ray met along `wi`. Without an `origin` no light sample could find it.
+    /// The weight of light from `light` that a ray met along `wi`. Without an `origin` no light
+    /// sample could find it.
     fn weight(&self, scene: &Scene, origin: Option<&Origin>, light: LightId, wi: Vector3) -> f32 {
         let Some(Origin { context, pdf }) = origin else { return 1.0 };
         let pmf = self.lights.pmf(context, light);

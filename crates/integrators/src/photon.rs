@@ -1,7 +1,7 @@
 //! A photon: light of a light subpath that has arrived at a surface.
 //!
-//! The photons of a pass and all camera rays that look for them have one moment and the same wavelengths, so that light which one carries
-//! is light at the wavelengths of the other.
+//! The photons of a pass and all camera rays that look for them have one moment and the same
+//! wavelengths, so that light which one carries is light at the wavelengths of the other.
 
 use math::{Normal3, Point3, Vector3};
 use spectrum::SampledSpectrum;
@@ -17,7 +17,8 @@ pub(crate) struct Photon {
     pub n: Normal3,
     /// Unit direction to where it came from.
     pub wi: Vector3,
-    /// Power, over the density of the subpath, if the surface is there for every ray; to be divided by the number of subpaths.
+    /// Power, over the density of the subpath, if the surface is there for every ray; to be divided
+    /// by the number of subpaths.
     pub beta: SampledSpectrum,
     /// Scattering events on the subpath, the one here included.
     pub depth: u32,

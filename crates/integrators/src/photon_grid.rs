@@ -1,12 +1,14 @@
 //! Photons, and all of them within a fixed distance of a point.
 //!
-//! Space is cut into cubes a little more than twice as wide as the distance r, so that the photons near a point lie in two of them
-//! along each axis, eight in all. Cubes have no end in any direction; a hash of a cube's place names one of as many buckets as there
-//! are photons. The photons are sorted by bucket, and a table says where each bucket begins: two arrays, without a pointer, and a
-//! query reads a few short pieces of them. Cubes that share a bucket are told apart by distance alone, and a bucket that two of the
-//! eight share is read once.
+//! Space is cut into cubes a little more than twice as wide as the distance r, so that the photons
+//! near a point lie in two of them along each axis, eight in all. Cubes have no end in any
+//! direction; a hash of a cube's place names one of as many buckets as there are photons. The
+//! photons are sorted by bucket, and a table says where each bucket begins: two arrays, without a
+//! pointer, and a query reads a few short pieces of them. Cubes that share a bucket are told apart
+//! by distance alone, and a bucket that two of the eight share is read once.
 //!
-//! Sorting is by bucket and then by the order in which the photons came, so that the sums of a query do not depend on threads.
+//! Sorting is by bucket and then by the order in which the photons came, so that the sums of a
+//! query do not depend on threads.
 
 use math::{Point3, Vector3};
 use rayon::prelude::*;
@@ -14,14 +16,16 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Partial, Vertex};
 
-/// A vertex of a light subpath, as far as merging needs it: a photon that knows its part of the weights.
+/// A vertex of a light subpath, as far as merging needs it: a photon that knows its part of the
+/// weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightVertex {
     /// Position.
     pub p: Point3,
     /// Unit direction to the vertex before.
     pub wo: Vector3,
-    /// Power that arrives along `wo`, over the subpath's density, if the surface is there for every ray.
+    /// Power that arrives along `wo`, over the subpath's density, if the surface is there for every
+    /// ray.
     pub beta: SampledSpectrum,
     /// For the weights.
     pub partial: Partial,

@@ -1,8 +1,9 @@
-//! Camera rays for all pixels: makes an integrator of anything that can tell the radiance along a ray.
+//! Camera rays for all pixels: makes an integrator of anything that can tell the radiance along a
+//! ray.
 //!
-//! Pass i takes sample i of every pixel. The sampler's coordinates are used in a fixed order: the wavelengths (1), the place
-//! in the pixel's filter (2), the moment (1), the place on the lens (2), and then whatever the algorithm asks for.
-//! [Pharr 2023 §1.3.4, §5.4.1]
+//! Pass i takes sample i of every pixel. The sampler's coordinates are used in a fixed order: the
+//! wavelengths (1), the place in the pixel's filter (2), the moment (1), the place on the lens (2),
+//! and then whatever the algorithm asks for. [Pharr 2023 §1.3.4, §5.4.1]
 
 use film::{Film, FilmTile, Filter};
 use geometry::RayStats;
@@ -20,8 +21,8 @@ pub trait RayIntegrator: Send + Sync {
     /// Looks at the scene, once, before the first ray.
     fn prepare(&mut self, _scene: &Scene) {}
 
-    /// An estimate of the radiance that arrives along the ray (whose direction has unit length) at the wavelengths
-    /// `lambda`, of which dispersion may end all but the first.
+    /// An estimate of the radiance that arrives along the ray (whose direction has unit length) at
+    /// the wavelengths `lambda`, of which dispersion may end all but the first.
     #[doc(alias = "Li")]
     fn li(
         &self,
@@ -91,8 +92,9 @@ impl Moment {
         Self { lambda: SampledWavelengths::sample_visible(wavelength), shutter }
     }
 
-    /// That which all paths of a pass share. Over the passes both are spread evenly: each step goes on by an irrational part of the
-    /// range. For wavelengths that is a quarter of the golden ratio, because four of them, a quarter apart, are taken at once.
+    /// That which all paths of a pass share. Over the passes both are spread evenly: each step goes
+    /// on by an irrational part of the range. For wavelengths that is a quarter of the golden
+    /// ratio, because four of them, a quarter apart, are taken at once.
     pub fn of_pass(scene: &Scene, seed: u32, pass: u32) -> Self {
         // Parts of 2³²: a quarter of the golden ratio, and √2 − 1.
         const STEPS: [u32; 2] = [0x678d_de6e, 0x6a09_e667];
@@ -134,8 +136,9 @@ pub(crate) struct PixelSample {
 }
 
 impl PixelSamples<'_> {
-    /// Adds to each pixel of the tiles the light that `radiance` finds there, with the wavelengths as it leaves them. The
-    /// sampler that it is given goes on where the sample's own coordinates end.
+    /// Adds to each pixel of the tiles the light that `radiance` finds there, with the wavelengths
+    /// as it leaves them. The sampler that it is given goes on where the sample's own coordinates
+    /// end.
     pub fn add(
         &self,
         tiles: Vec<FilmTile>,
@@ -195,8 +198,8 @@ impl PixelSamples<'_> {
     }
 }
 
-/// The ray that the camera sees along, with its neighbours where something in the scene asks for them; `None` where it sees
-/// nothing.
+/// The ray that the camera sees along, with its neighbours where something in the scene asks for
+/// them; `None` where it sees nothing.
 pub(crate) fn camera_ray(
     scene: &Scene,
     sample: &CameraSample,

@@ -1,9 +1,10 @@
 //! Ray casting: what the camera's own rays show, and nothing more.
 //!
-//! L = L_e + Σ f(ω_o, ω_i) L_i |cos θ_i| / p(ω_i), one direction ω_i for each light, as if nothing stood between the surface and
-//! the light. Shadows, reflections, refractions and indirect light are missing; smooth metal and glass are black. It shows what a
-//! picture lacks without secondary rays. Light is otherwise right: area lights are sampled over their surfaces.
-//! Source: [Appel 1968], without his shadows.
+//! L = L_e + Σ f(ω_o, ω_i) L_i |cos θ_i| / p(ω_i), one direction ω_i for each light, as if nothing
+//! stood between the surface and the light. Shadows, reflections, refractions and indirect light
+//! are missing; smooth metal and glass are black. It shows what a picture lacks without secondary
+//! rays. Light is otherwise right: area lights are sampled over their surfaces. Source:
+//! [Appel 1968], without his shadows.
 
 use geometry::RayStats;
 use math::RayDifferential;

@@ -23,8 +23,8 @@ pub struct RenderReport {
 
 /// Renders the scene into the film, on the threads of rayon's current pool.
 ///
-/// After `Err` the film is valid all the same: it holds the light of the passes, and tiles, that were done, and the last progress told has
-/// their rays.
+/// After `Err` the film is valid all the same: it holds the light of the passes, and tiles, that
+/// were done, and the last progress told has their rays.
 pub fn render(
     integrator: &mut dyn Integrator,
     scene: &Scene,

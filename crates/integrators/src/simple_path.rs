@@ -1,15 +1,16 @@
 //! Path tracing taken apart: light sampling and BSDF sampling, each of which can be switched off.
 //!
-//! At each surface, direct light comes either from one point on one light (chosen uniformly), divided by its density, or from
-//! the path happening to meet the light: never from both, so that no weights are needed. Only what no light sample can find,
-//! seen directly or after a specular bounce, is always counted when met. The path goes on in a direction of the BSDF's density,
-//! or a uniform one.
+//! At each surface, direct light comes either from one point on one light (chosen uniformly),
+//! divided by its density, or from the path happening to meet the light: never from both, so that
+//! no weights are needed. Only what no light sample can find, seen directly or after a specular
+//! bounce, is always counted when met. The path goes on in a direction of the BSDF's density, or a
+//! uniform one.
 //!
-//! Unbiased up to its depth, with two exceptions: without light sampling, point and distant lights are never met; without BSDF
-//! sampling, smooth metal and glass are black.
+//! Unbiased up to its depth, with two exceptions: without light sampling, point and distant lights
+//! are never met; without BSDF sampling, smooth metal and glass are black.
 //!
-//! Settings: `max_depth`, most scattering events, default 5; `sample_lights` and `sample_bsdf`, default true.
-//! Source: [Pharr 2023 §13.2].
+//! Settings: `max_depth`, most scattering events, default 5; `sample_lights` and `sample_bsdf`,
+//! default true. Source: [Pharr 2023 §13.2].
 
 use geometry::RayStats;
 use math::{RayDifferential, Vector3};

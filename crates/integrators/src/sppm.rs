@@ -1,24 +1,28 @@
-//! Stochastic progressive photon mapping: photons in pass after pass, within ever smaller distances.
+//! Stochastic progressive photon mapping: photons in pass after pass, within ever smaller
+//! distances.
 //!
-//! A pass shoots photons and keeps those that have been scattered at least once before they come to a diffuse surface
-//! ([`merging`](crate::merging)). Then each pixel follows a path from the camera, past mirrors, glass and what is glossy, to the
-//! first diffuse surface. There the path ends: light straight from the lights is found by choosing a point on one, all other light by
-//! merging with the photons within the radius. On the way it looks for lights as path tracing does, by choice and by chance, weighted
-//! by the balance heuristic; at the end by choice alone, so that nothing counts twice. Surfaces with a specular lobe besides a
-//! diffuse one are on the way, too.
+//! A pass shoots photons and keeps those that have been scattered at least once before they come to
+//! a diffuse surface ([`merging`](crate::merging)). Then each pixel follows a path from the camera,
+//! past mirrors, glass and what is glossy, to the first diffuse surface. There the path ends: light
+//! straight from the lights is found by choosing a point on one, all other light by merging with
+//! the photons within the radius. On the way it looks for lights as path tracing does, by choice
+//! and by chance, weighted by the balance heuristic; at the end by choice alone, so that nothing
+//! counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
 //!
-//! It shines where light is focused and then seen through glass or in a mirror, which no path from the eye finds; any number of
-//! pixels share a photon. It is slow where photons are rare: in large scenes of which the camera sees a corner. Caustics on glossy
-//! surfaces are left to chance.
+//! It shines where light is focused and then seen through glass or in a mirror, which no path from
+//! the eye finds; any number of pixels share a photon. It is slow where photons are rare: in large
+//! scenes of which the camera sees a corner. Caustics on glossy surfaces are left to chance.
 //!
-//! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every pixel has a radius of its own, which
-//! shrinks by what the pixel has found so far, as (N + γM)/(N + M) with γ = 2/3. Here all have the radius that [Knaus 2011]
-//! give a pass by its number, with α = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt to where
-//! photons are dense. What is won is that a pass depends on no pass before it: a picture can be interrupted, continued and merged from
-//! shards to the same bits, and neither threads nor order matter. Edges of paths are counted as everywhere: `max_depth` holds
-//! for the sum of both ends.
+//! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every
+//! pixel has a radius of its own, which shrinks by what the pixel has found so far, as (N + γM)/(N
+//! + M) with γ = 2/3. Here all have the radius that [Knaus 2011] give a pass by its number, with α
+//! = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt to
+//! where photons are dense. What is won is that a pass depends on no pass before it: a picture can
+//! be interrupted, continued and merged from shards to the same bits, and neither threads nor order
+//! matter. Edges of paths are counted as everywhere: `max_depth` holds for the sum of both ends.
 //!
-//! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011]; [Pharr 2016 §16.2].
+//! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
+//! [Pharr 2016 §16.2].
 
 use film::Film;
 use geometry::RayStats;
@@ -36,8 +40,9 @@ use crate::{Cancelled, Control, Integrator};
 /// How slowly the radius shrinks.
 const ALPHA: f32 = 2.0 / 3.0;
 
-/// The first radius, if it is not told, over that of the scene times √n for n light subpaths in a pass: the more photons, the nearer they are.
-/// About thirty count for a point of a room, so that few are black.
+/// The first radius, if it is not told, over that of the scene times √n for n light subpaths in a
+/// pass: the more photons, the nearer they are. About thirty count for a point of a room, so that
+/// few are black.
 const SPACING: f32 = 5.0;
 
 /// It is no larger part of the scene's than this.
@@ -50,8 +55,8 @@ pub struct SppmSettings {
     pub max_depth: u32,
     /// Light subpaths in a pass, above 0; by default as many as pixels.
     pub photons_per_iteration: Option<u32>,
-    /// Distance in the scene within which photons count in the first pass, above 0; by default 5/√n of the
-    /// scene's radius for n light subpaths, and no more than 0.05 of it.
+    /// Distance in the scene within which photons count in the first pass, above 0; by default 5/√n
+    /// of the scene's radius for n light subpaths, and no more than 0.05 of it.
     pub radius: Option<f32>,
 }
 
@@ -110,7 +115,8 @@ impl Integrator for Sppm {
         let photon = |vertex: &Vertex, _: &mut Sampler| {
             (vertex.can_merge() && vertex.is_diffuse()).then(|| LightVertex::from(vertex))
         };
-        // Each path takes a sample of one sequence, so that all the photons of a pass are well spread.
+        // Each path takes a sample of one sequence, so that all the photons of a pass are well
+        // spread.
         let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());
         let sampler = |path| {
             let mut sampler = Sampler::PaddedSobol(sampler.clone());

@@ -1,44 +1,52 @@
 //! Vertex connection and merging: bidirectional path tracing and progressive photon mapping as one.
 //!
-//! A pass has two steps. First, light subpaths are made, one for each pixel, and leave their vertices as photons
-//! ([`merging`](crate::merging)). Then every pixel makes a camera subpath and connects it to its light subpath in all ways, as
-//! [`Bdpt`](crate::Bdpt) does; and vertices of the camera subpath are
-//! merged with the photons within the radius. Merging is one more family of strategies: a path whose vertex x is made from both ends
-//! is found if the two ends come within r of each other, so the density of such a path is that of its two subpaths,
-//! times π r² (the chance to meet, if all is smooth), times the number n of photon paths. (Where a texture cuts x out in part, both ends
-//! must meet it, and the part that remains is one more factor of η.) With that, the balance heuristic weighs
-//! merging against connecting as it weighs connections against each other:
+//! A pass has two steps. First, light subpaths are made, one for each pixel, and leave their
+//! vertices as photons ([`merging`](crate::merging)). Then every pixel makes a camera subpath and
+//! connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and vertices of the
+//! camera subpath are merged with the photons within the radius. Merging is one more family of
+//! strategies: a path whose vertex x is made from both ends is found if the two ends come within r
+//! of each other, so the density of such a path is that of its two subpaths, times π r² (the chance
+//! to meet, if all is smooth), times the number n of photon paths. (Where a texture cuts x out in
+//! part, both ends must meet it, and the part that remains is one more factor of η.) With that, the
+//! balance heuristic weighs merging against connecting as it weighs connections against each other:
 //!
 //! ```text
-//! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η,    η = n π r²
+//! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
+//! η   = n π r²
 //! ```
 //!
-//! Merging can do what no connection can: a photon behind glass, seen through glass. Every pixel uses all photons, so it does not
-//! mind how small the lamp is. Where connecting is good it is better, and gets the weight: η shrinks with the radius, and photons with
-//! it. Without merging (r → 0) it is `bdpt`; with nothing but merging it would be photon mapping. Photons that come straight from a
-//! light are not merged: a choice of a point on the light finds the same paths with less noise.
+//! Merging can do what no connection can: a photon behind glass, seen through glass. Every pixel
+//! uses all photons, so it does not mind how small the lamp is. Where connecting is good it is
+//! better, and gets the weight: η shrinks with the radius, and photons with it. Without merging (r
+//! → 0) it is `bdpt`; with nothing but merging it would be photon mapping. Photons that come
+//! straight from a light are not merged: a choice of a point on the light finds the same paths with
+//! less noise.
 //!
-//! Nor is anything merged beyond the first diffuse surface that a camera subpath comes to. From there it goes anywhere, and where it
-//! comes by chance on a bright spot, as the caustic on the far wall, it would bring all the spot's photons at once. They have one
-//! camera subpath in common, but the balance heuristic takes them for thousands of independent samples, gives merging nearly all the
-//! weight, and single pixels are too bright until very many passes are made. [Grittmann 2021] tell it how much subpaths have in
-//! common, by a factor for each merge that depends on the densities of both; here the factor is 1 or 0, which a subpath's
-//! recursion can know. What is left out is found all the same, by photons that the bright spot has sent to the first diffuse surface, and
-//! by connections. In the mirror room, at 300 × 200 pixels, variance is half of what it is with merges everywhere.
+//! Nor is anything merged beyond the first diffuse surface that a camera subpath comes to. From
+//! there it goes anywhere, and where it comes by chance on a bright spot, as the caustic on the far
+//! wall, it would bring all the spot's photons at once. They have one camera subpath in common, but
+//! the balance heuristic takes them for thousands of independent samples, gives merging nearly all
+//! the weight, and single pixels are too bright until very many passes are made. [Grittmann 2021]
+//! tell it how much subpaths have in common, by a factor for each merge that depends on the
+//! densities of both; here the factor is 1 or 0, which a subpath's recursion can know. What is left
+//! out is found all the same, by photons that the bright spot has sent to the first diffuse
+//! surface, and by connections. In the mirror room, at 300 × 200 pixels, variance is half of what
+//! it is with merges everywhere.
 //!
-//! What camera rays alone find, light that comes by specular surfaces all the way, has more of them ([`glints`](crate::glints)). In
-//! the mirror room at 96 × 64 pixels nine tenths of the error were such glints, and five rays instead of one take a third of it or more for a seventh more time.
+//! What camera rays alone find, light that comes by specular surfaces all the way, has more of them
+//! ([`glints`](crate::glints)). In the mirror room at 96 × 64 pixels nine tenths of the error were
+//! such glints, and five rays instead of one take a third of it or more for a seventh more time.
 //!
-//! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a third of the variance; behind a
-//! door, light seeps under it then.
+//! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
+//! third of the variance; behind a door, light seeps under it then.
 //!
-//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 180 bytes for each of at most `max_depth` vertices of a path, and
-//! 60 to 64 for its photon, 56 more while they are sorted. In larger pictures the other pixels make their light subpaths when they
-//! need them.
+//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 180 bytes for each of
+//! at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they are
+//! sorted. In larger pictures the other pixels make their light subpaths when they need them.
 //!
-//! Biased: light that merging finds is blurred over the radius, which shrinks as `merging` says; consistent. Depth of field and
-//! motion are right, because all paths of a pass have one time. Sources: [Georgiev 2012]; [Georgiev 2012b];
-//! [Hachisuka 2012]; [Grittmann 2021].
+//! Biased: light that merging finds is blurred over the radius, which shrinks as `merging` says;
+//! consistent. Depth of field and motion are right, because all paths of a pass have one time.
+//! Sources: [Georgiev 2012]; [Georgiev 2012b]; [Hachisuka 2012]; [Grittmann 2021].
 
 use film::Film;
 use geometry::RayStats;
@@ -53,8 +61,9 @@ use crate::photon_grid::LightVertex;
 use crate::pixel_loop::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
-/// The first radius as a part of that of the scene, as in [Georgiev 2012]. Where photons come through a narrow gap, a larger one lets them
-/// seep far: behind a door 2.4 times this one has 70 times the bias, squared, in 64 passes.
+/// The first radius as a part of that of the scene, as in [Georgiev 2012]. Where photons come
+/// through a narrow gap, a larger one lets them seep far: behind a door 2.4 times this one has 70
+/// times the bias, squared, in 64 passes.
 const SHARE_OF_SCENE: f32 = 0.003;
 
 /// Settings of [`Vcm`].
@@ -62,9 +71,11 @@ const SHARE_OF_SCENE: f32 = 0.003;
 pub struct VcmSettings {
     /// Most scattering events; default 5.
     pub max_depth: u32,
-    /// Distance in the scene within which vertices are merged in the first pass, above 0; by default 0.003 of the scene's radius.
+    /// Distance in the scene within which vertices are merged in the first pass, above 0; by
+    /// default 0.003 of the scene's radius.
     pub radius: Option<f32>,
-    /// How slowly the radius shrinks, in (0, 1]: its square goes with i^(α − 1) over the passes i; default 0.75.
+    /// How slowly the radius shrinks, in (0, 1]: its square goes with i^(α − 1) over the passes i;
+    /// default 0.75.
     pub alpha: f32,
     /// Most light subpaths that leave photons in a pass, above 0; default 2¹⁹.
     pub photon_paths: usize,

@@ -1,10 +1,10 @@
 //! Whitted's ray tracing: shadows, perfect reflection and refraction.
 //!
-//! At each surface, L = L_e + Σ_lights f L_i V |cos θ_i| / p + k_r L(reflected) + k_t L(refracted): a shadow
-//! ray to one point of every light (point lights need no more, area lights show soft shadows as samples
-//! grow), and both directions of a smooth mirror, metal or glass. Rough surfaces scatter light that comes
-//! straight from lights only, so that there is no indirect light and there are no caustics. The tree of rays
-//! grows as 2^depth in glass.
+//! At each surface, L = L_e + Σ_lights f L_i V |cos θ_i| / p + k_r L(reflected) + k_t L(refracted):
+//! a shadow ray to one point of every light (point lights need no more, area lights show soft
+//! shadows as samples grow), and both directions of a smooth mirror, metal or glass. Rough surfaces
+//! scatter light that comes straight from lights only, so that there is no indirect light and there
+//! are no caustics. The tree of rays grows as 2^depth in glass.
 //!
 //! Settings: `max_depth`, most scattering events of a path, default 5: with 1, mirrors are black.
 //! Source: [Whitted 1980].

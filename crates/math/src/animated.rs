@@ -1,8 +1,9 @@
 //! A transform that moves between two keys.
 //!
-//! Each key is decomposed into translation, rotation and a stretch (M = T·R·S, by polar decomposition: the average of a
-//! matrix and its inverse transpose converges to its rotation); translation and stretch are interpolated
-//! linearly, the rotation on the sphere of quaternions ([Shoemake & Duff 1992]; [Pharr 2023 §3.9.3]).
+//! Each key is decomposed into translation, rotation and a stretch (M = T·R·S, by polar
+//! decomposition: the average of a matrix and its inverse transpose converges to its rotation);
+//! translation and stretch are interpolated linearly, the rotation on the sphere of quaternions
+//! ([Shoemake & Duff 1992]; [Pharr 2023 §3.9.3]).
 
 use crate::{Bounds3, DMat4, DVec3, Point3, Transform, Vec3};
 use glam::{DMat3, DQuat};
@@ -30,8 +31,8 @@ impl From<Transform> for AnimatedTransform {
 }
 
 impl AnimatedTransform {
-    /// Moves from `start` at `times[0]` to `end` at `times[1]`, and rests before and after. `None` when a matrix has no
-    /// inverse. Equal keys make a transform at rest.
+    /// Moves from `start` at `times[0]` to `end` at `times[1]`, and rests before and after. `None`
+    /// when a matrix has no inverse. Equal keys make a transform at rest.
     pub fn new(start: DMat4, end: DMat4, times: [f32; 2]) -> Option<Self> {
         let first = Transform::from_f64(start)?;
         if start == end || times[0] >= times[1] {
@@ -96,8 +97,8 @@ impl Motion {
         Transform::from_f64(self.matrix(t))
     }
 
-    /// A box around the path of one point. The path p(t) = T(t) + R(t)·S(t)·p has |p″| ≤ θ²·|Sp| + 2θ·|ΔS·p|, so that a chord
-    /// over a step h strays from it by at most |p″|·h²/8.
+    /// A box around the path of one point. The path p(t) = T(t) + R(t)·S(t)·p has |p″| ≤ θ²·|Sp| +
+    /// 2θ·|ΔS·p|, so that a chord over a step h strays from it by at most |p″|·h²/8.
     fn point_bounds(&self, p: Point3) -> Bounds3 {
         const STEPS: usize = 32;
         let p = p.as_dvec3();

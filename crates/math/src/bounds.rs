@@ -119,14 +119,16 @@ impl Bounds3 {
         (c, c.distance(self.max))
     }
 
-    /// The part [t0, t1] of `[0, t_max]` that the ray spends inside, widened by the rounding error of the slab test.
+    /// The part [t0, t1] of `[0, t_max]` that the ray spends inside, widened by the rounding error
+    /// of the slab test.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, f32)> {
         let inverse = ray.d.recip();
         let backwards = inverse.cmplt(Vec3::ZERO);
         let near = (Vec3::select(backwards, self.max, self.min) - ray.o) * inverse;
         let far = (Vec3::select(backwards, self.min, self.max) - ray.o) * inverse * (1.0 + 2.0 * gamma(3));
-        // `f32::max` drops the NaN of 0 · ∞, which arises when the origin lies on a slab that the ray runs along.
+        // `f32::max` drops the NaN of 0 · ∞, which arises when the origin lies on a slab that the
+        // ray runs along.
         let t0 = near.x.max(near.y).max(near.z).max(0.0);
         let t1 = far.x.min(far.y).min(far.z).min(t_max);
         (t0 <= t1).then_some((t0, t1))

@@ -1,8 +1,8 @@
 //! Points that know how wrong they may be, and rays that start clear of the surface they leave.
 //!
-//! A hit point is computed in floats, so it lies a little off its surface. Instead of a tuned epsilon, its
-//! per-axis error bound travels with it; a spawned ray starts outside of the box of that error, on the side it leaves to
-//! ([Pharr 2023 §6.8.6]).
+//! A hit point is computed in floats, so it lies a little off its surface. Instead of a tuned
+//! epsilon, its per-axis error bound travels with it; a spawned ray starts outside of the box of
+//! that error, on the side it leaves to ([Pharr 2023 §6.8.6]).
 
 use crate::{Normal3, Point3, Vec3, Vector3};
 
@@ -29,7 +29,8 @@ impl Point3Error {
     }
 }
 
-/// Where a ray in direction `w` may start so that it cannot meet the surface with geometric normal `n` at `p` again.
+/// Where a ray in direction `w` may start so that it cannot meet the surface with geometric normal
+/// `n` at `p` again.
 #[inline]
 pub fn offset_ray_origin(p: Point3Error, n: Normal3, w: Vector3) -> Point3 {
     let distance = n.abs().dot(p.error);

@@ -2,7 +2,8 @@
 //!
 //! Sources: [Higham 2002 §3.1] for γ(n); [Kahan 2004] for the difference of products.
 
-/// Half of the distance from 1 to the next float: the largest relative rounding error of one operation.
+/// Half of the distance from 1 to the next float: the largest relative rounding error of one
+/// operation.
 pub const MACHINE_EPSILON: f32 = f32::EPSILON * 0.5;
 /// The largest float below 1.
 pub const ONE_MINUS_EPSILON: f32 = 1.0 - MACHINE_EPSILON;
@@ -85,8 +86,8 @@ pub fn evaluate_polynomial(x: f32, coefficients: &[f32]) -> f32 {
     coefficients.iter().rev().fold(0.0, |sum, &c| sum.mul_add(x, c))
 }
 
-/// The index i of the last of `size` ascending values for which `predicate(i)` holds, kept in [0, size − 2],
-/// so that i and i + 1 are both valid.
+/// The index i of the last of `size` ascending values for which `predicate(i)` holds, kept in
+/// [0, size − 2], so that i and i + 1 are both valid.
 #[inline]
 pub fn find_interval(size: usize, predicate: impl Fn(usize) -> bool) -> usize {
     let (mut first, mut count) = (1usize, size.saturating_sub(2));

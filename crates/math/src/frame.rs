@@ -2,7 +2,8 @@
 
 use crate::{Vec3, Vector3};
 
-/// Three orthonormal axes; local +z is the axis that matters (the normal of a surface, the heading of a beam).
+/// Three orthonormal axes; local +z is the axis that matters (the normal of a surface, the heading
+/// of a beam).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Local +x in outer coordinates.
@@ -28,7 +29,8 @@ impl Frame {
         let across = |x: Vector3| x - z * z.dot(x);
         match across(x).try_normalize() {
             Some(x) => {
-                // Where x was almost along z, little more than rounding errors was left of it: once more takes those along z out.
+                // Where x was almost along z, little more than rounding errors was left of it: once
+                // more takes those along z out.
                 let x = across(x).normalize();
                 Self { x, y: z.cross(x), z }
             }
@@ -49,7 +51,8 @@ impl Frame {
     }
 }
 
-/// Two unit vectors that make a right-handed frame with the unit vector `z`, without a branch ([Duff et al. 2017]).
+/// Two unit vectors that make a right-handed frame with the unit vector `z`, without a branch
+/// ([Duff et al. 2017]).
 #[inline]
 pub fn coordinate_system(z: Vector3) -> (Vector3, Vector3) {
     let sign = 1f32.copysign(z.z);

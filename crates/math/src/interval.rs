@@ -1,7 +1,7 @@
 //! A range of floats that surely holds the exact result of what was computed.
 //!
-//! Every operation rounds its lower end down and its upper end up, so that `exact ∈ [low, high]` survives any chain of
-//! operations ([Moore 1966]; [Pharr 2023 §6.8.1]).
+//! Every operation rounds its lower end down and its upper end up, so that `exact ∈ [low, high]`
+//! survives any chain of operations ([Moore 1966]; [Pharr 2023 §6.8.1]).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

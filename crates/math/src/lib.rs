@@ -1,7 +1,7 @@
 //! Points, vectors, bounds, transforms, rays, frames and float-error intervals.
 //!
-//! Points, vectors and normals are one type, [`Vec3`]; the alias in a signature says how the value transforms
-//! ([`Transform::point`], [`Transform::vector`], [`Transform::normal`]).
+//! Points, vectors and normals are one type, [`Vec3`]; the alias in a signature says how the value
+//! transforms ([`Transform::point`], [`Transform::vector`], [`Transform::normal`]).
 
 mod animated;
 mod bounds;

@@ -1,8 +1,8 @@
 //! The equal-area map between the unit square and the sphere.
 //!
-//! The square is cut along its diagonals into the diamond |u| + |v| ≤ 1, which holds the upper hemisphere, and four
-//! corners, which fold down to the lower one; within each quadrant areas are preserved. Environment images are stored
-//! this way ([Clarberg 2008]; [Pharr 2023 §3.8.3]).
+//! The square is cut along its diagonals into the diamond |u| + |v| ≤ 1, which holds the upper
+//! hemisphere, and four corners, which fold down to the lower one; within each quadrant areas are
+//! preserved. Environment images are stored this way ([Clarberg 2008]; [Pharr 2023 §3.8.3]).
 
 use crate::{Vec2, Vec3, Vector3, safe_sqrt};
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_4};

@@ -14,7 +14,8 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// How far towards a target a shadow ray goes, in units of the distance: just short of the target's own surface.
+    /// How far towards a target a shadow ray goes, in units of the distance: just short of the
+    /// target's own surface.
     pub const SHADOW_END: f32 = 1.0 - 1e-4;
 
     /// A ray from `o` along `d`.
@@ -35,8 +36,9 @@ impl Ray {
         Self::new(offset_ray_origin(p, n, d), d, time)
     }
 
-    /// The ray from one surface to another, on which t = 1 is the (offset) target; pass [`Ray::SHADOW_END`] as its end.
-    /// An end without a surface (a point light, a camera) has the normal zero.
+    /// The ray from one surface to another, on which t = 1 is the (offset) target; pass
+    /// [`Ray::SHADOW_END`] as its end. An end without a surface (a point light, a camera) has the
+    /// normal zero.
     #[inline]
     pub fn between(from: Point3Error, from_n: Normal3, to: Point3Error, to_n: Normal3, time: f32) -> Self {
         let o = offset_ray_origin(from, from_n, to.p - from.p);
@@ -58,7 +60,8 @@ pub struct Differentials {
     pub ry_direction: Vector3,
 }
 
-/// A ray that may know its neighbours, so that a texture can be filtered over the footprint of a pixel ([Igehy 1999]).
+/// A ray that may know its neighbours, so that a texture can be filtered over the footprint of a
+/// pixel ([Igehy 1999]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayDifferential {
     /// The ray itself.

@@ -1,4 +1,5 @@
-//! Directions as angles: θ from +z, φ from +x towards +y; and the trigonometry of a local shading frame.
+//! Directions as angles: θ from +z, φ from +x towards +y; and the trigonometry of a local shading
+//! frame.
 
 use crate::{Vec3, Vector3, safe_acos, safe_sqrt};
 use std::f32::consts::TAU;

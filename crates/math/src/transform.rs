@@ -22,7 +22,8 @@ impl Transform {
     /// The map that changes nothing.
     pub const IDENTITY: Self = Self { m: Mat4::IDENTITY, inverse: Mat4::IDENTITY };
 
-    /// From a double-precision matrix, whose inverse is taken in double precision. `None` when there is no inverse.
+    /// From a double-precision matrix, whose inverse is taken in double precision. `None` when
+    /// there is no inverse.
     pub fn from_f64(m: DMat4) -> Option<Self> {
         let inverse = m.inverse();
         (inverse.is_finite() && m.is_finite()).then(|| Self { m: m.as_mat4(), inverse: inverse.as_mat4() })
@@ -97,7 +98,8 @@ impl Transform {
         Vec3::new(i.x_axis.truncate().dot(n), i.y_axis.truncate().dot(n), i.z_axis.truncate().dot(n))
     }
 
-    /// Maps a point by an affine map and bounds the error: that of the product, and that the point brought along.
+    /// Maps a point by an affine map and bounds the error: that of the product, and that the point
+    /// brought along.
     #[inline]
     pub fn point_with_error(&self, p: Point3Error) -> Point3Error {
         let (x, y, z, t) = (

@@ -1,6 +1,8 @@
-//! Choosing one of many things in constant time, by Walker's alias method, its table built by Vose [Vose 1991].
+//! Choosing one of many things in constant time, by Walker's alias method, its table built by Vose
+//! [Vose 1991].
 //!
-//! Each of n equally likely bins is shared by at most two outcomes: its own, up to a threshold, and an alias beyond it.
+//! Each of n equally likely bins is shared by at most two outcomes: its own, up to a threshold, and
+//! an alias beyond it.
 
 use crate::DiscreteSample;
 use math::ONE_MINUS_EPSILON;
@@ -21,8 +23,8 @@ pub struct AliasTable {
 }
 
 impl AliasTable {
-    /// The table of probabilities proportional to the weights; `None` unless all are finite and at least 0, with a finite
-    /// sum above 0.
+    /// The table of probabilities proportional to the weights; `None` unless all are finite and at
+    /// least 0, with a finite sum above 0.
     pub fn new(weights: &[f32]) -> Option<AliasTable> {
         let total: f64 = weights.iter().map(|&w| w as f64).sum();
         if !total.is_finite() || total <= 0.0 || weights.iter().any(|&w| w < 0.0) {

@@ -1,4 +1,5 @@
-//! Choosing one of a few things with chances proportional to given weights, by running through them.
+//! Choosing one of a few things with chances proportional to given weights, by running through
+//! them.
 
 use math::ONE_MINUS_EPSILON;
 
@@ -13,7 +14,8 @@ pub struct DiscreteSample {
     pub u_remapped: f32,
 }
 
-/// Draws an index with probability proportional to its weight (at least 0); `None` if no weight is above 0.
+/// Draws an index with probability proportional to its weight (at least 0); `None` if no weight is
+/// above 0.
 pub fn sample_discrete(weights: &[f32], u: f32) -> Option<DiscreteSample> {
     let total: f32 = weights.iter().sum();
     let target = u * total;

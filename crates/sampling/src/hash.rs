@@ -1,8 +1,8 @@
 //! Hashing: bits without visible relation to the words they come from.
 //!
-//! [`mix_bits`] is one of Stafford's variants of MurmurHash3's finaliser, [`hash`] is Appleby's MurmurHash64A, and
-//! [`permutation_element`] evaluates one element of a pseudo-random permutation in constant memory by cycle walking
-//! [Kensler 2013].
+//! [`mix_bits`] is one of Stafford's variants of MurmurHash3's finaliser, [`hash`] is Appleby's
+//! MurmurHash64A, and [`permutation_element`] evaluates one element of a pseudo-random permutation
+//! in constant memory by cycle walking [Kensler 2013].
 
 /// A bijection of 64-bit words under which each input bit changes about half of the output bits.
 #[inline]
@@ -12,7 +12,8 @@ pub fn mix_bits(v: u64) -> u64 {
     v ^ (v >> 33)
 }
 
-/// The hash of a sequence of words. Floats go in by their bits, 64-bit words as two halves, the lower one first.
+/// The hash of a sequence of words. Floats go in by their bits, 64-bit words as two halves, the
+/// lower one first.
 #[inline]
 pub fn hash(words: &[u32]) -> u64 {
     const M: u64 = 0xc6a4_a793_5bd1_e995;
@@ -36,7 +37,8 @@ pub fn hash_float(words: &[u32]) -> f32 {
     crate::unit_interval(hash(words) as u32)
 }
 
-/// Where a pseudo-random permutation of 0..`length`, chosen by `seed`, sends `index`, which must be below `length`.
+/// Where a pseudo-random permutation of 0..`length`, chosen by `seed`, sends `index`, which must be
+/// below `length`.
 #[inline]
 pub fn permutation_element(index: u32, length: u32, seed: u32) -> u32 {
     debug_assert!(index < length, "{index} is not an index below {length}");

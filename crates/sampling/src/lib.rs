@@ -1,7 +1,9 @@
-//! Random numbers, warps with their densities and inverses, distributions, and low-discrepancy samplers.
+//! Random numbers, warps with their densities and inverses, distributions, and low-discrepancy
+//! samplers.
 //!
-//! A [`Sampler`] gives the coordinates of a point in [0, 1)ⁿ, a [`warp`] or a distribution carries such coordinates to
-//! where they are wanted. What is drawn depends on seeds that the caller passes, never on time or order.
+//! A [`Sampler`] gives the coordinates of a point in [0, 1)ⁿ, a [`warp`] or a distribution carries
+//! such coordinates to where they are wanted. What is drawn depends on seeds that the caller
+//! passes, never on time or order.
 
 mod alias_table;
 mod discrete;

@@ -1,8 +1,9 @@
-//! Densities that are constant on equal cells of an interval or a rectangle, sampled by inverting their cumulative sums
-//! [Pharr 2023 §A.4.7, §A.5.6].
+//! Densities that are constant on equal cells of an interval or a rectangle, sampled by inverting
+//! their cumulative sums [Pharr 2023 §A.4.7, §A.5.6].
 //!
-//! Values count by their magnitude; values that are not finite count as 0. If none is above 0 the density is uniform, so
-//! that sampling and density still agree; [`PiecewiseConstant1d::integral`] then is 0.
+//! Values count by their magnitude; values that are not finite count as 0. If none is above 0 the
+//! density is uniform, so that sampling and density still agree; [`PiecewiseConstant1d::integral`]
+//! then is 0.
 
 use math::{Bounds2, ONE_MINUS_EPSILON, Vec2};
 
@@ -12,7 +13,8 @@ pub struct PiecewiseConstant1d {
     values: Box<[f32]>,
     /// The cumulative distribution at the cells' edges, from 0 to 1.
     cdf: Box<[f32]>,
-    /// For each of as many equal parts of [0, 1) as there are cells, the first cell that may be found from there on.
+    /// For each of as many equal parts of [0, 1) as there are cells, the first cell that may be
+    /// found from there on.
     guide: Box<[u32]>,
     min: f32,
     max: f32,
@@ -105,8 +107,8 @@ fn part(u: f32, parts: usize) -> usize {
     ((u * parts as f32) as usize).min(parts - 1)
 }
 
-/// The guide table of a cumulative distribution: from its entry on, the right cell is two steps away in the mean, whatever the
-/// distribution [Chen 1974].
+/// The guide table of a cumulative distribution: from its entry on, the right cell is two steps
+/// away in the mean, whatever the distribution [Chen 1974].
 fn guide(cdf: &[f32]) -> Box<[u32]> {
     let parts = cdf.len() - 1;
     let mut cell = 0;
@@ -129,7 +131,8 @@ pub struct PiecewiseConstant2d {
 }
 
 impl PiecewiseConstant2d {
-    /// The density proportional to `values`, `columns` to a row and the row of least y first, on equal cells of `domain`.
+    /// The density proportional to `values`, `columns` to a row and the row of least y first, on
+    /// equal cells of `domain`.
     ///
     /// # Panics
     /// If `values` are not whole rows, or none, or the domain has no area.

@@ -1,5 +1,5 @@
-//! Keeping one of a stream of weighted samples, with probability proportional to its weight, without storing the stream
-//! [Chao 1982], [Pharr 2023 §A.2].
+//! Keeping one of a stream of weighted samples, with probability proportional to its weight,
+//! without storing the stream [Chao 1982], [Pharr 2023 §A.2].
 
 use crate::Rng;
 
@@ -17,7 +17,8 @@ impl<T> WeightedReservoir<T> {
         WeightedReservoir { rng: Rng::from_sequence(seed), weight_sum: 0.0, kept: None }
     }
 
-    /// Offers a sample; one without positive weight is never kept. Returns whether it was kept for now.
+    /// Offers a sample; one without positive weight is never kept. Returns whether it was kept for
+    /// now.
     pub fn add(&mut self, sample: T, weight: f32) -> bool {
         self.add_with(weight, || sample)
     }

@@ -1,4 +1,5 @@
-//! Pseudo-random numbers: O'Neill's PCG32 (XSH-RR), with a 64-bit state and 2⁶³ sequences [O'Neill 2014].
+//! Pseudo-random numbers: O'Neill's PCG32 (XSH-RR), with a 64-bit state and 2⁶³ sequences
+//! [O'Neill 2014].
 
 use crate::{mix_bits, unit_interval};
 
@@ -43,7 +44,8 @@ impl Rng {
         unit_interval(self.uniform_u32())
     }
 
-    /// Skips `count` words, in time proportional to the logarithm of `count`; a wrapped negative number steps back.
+    /// Skips `count` words, in time proportional to the logarithm of `count`; a wrapped negative
+    /// number steps back.
     pub fn advance(&mut self, count: u64) {
         let (mut multiplier, mut increment) = (MULTIPLIER, self.increment);
         let (mut total_multiplier, mut total_increment) = (1u64, 0u64);

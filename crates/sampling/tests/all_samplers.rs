@@ -1,4 +1,5 @@
-//! What every sampler promises: values in [0, 1), replay, right means, better than chance, independent dimensions.
+//! What every sampler promises: values in [0, 1), replay, right means, better than chance,
+//! independent dimensions.
 
 use alhazen_sampling::Sampler;
 use alhazen_sampling::sampler::*;
@@ -182,7 +183,8 @@ fn further_rounds_go_on_improving() {
 fn dimensions_are_independent() {
     let makers = makers();
     for (name, make) in &makers {
-        // Pairs across calls, each from another seed, so that the points are independent of one another.
+        // Pairs across calls, each from another seed, so that the points are independent of one
+        // another.
         let mut pairs = Vec::new();
         for seed in 0..6000 {
             let mut sampler = make(SPP, seed);

@@ -6,8 +6,8 @@ use spectrum::SampledSpectrum;
 
 /// All scattering at a point of a surface.
 ///
-/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) names the member once around a
-/// whole shading step, inside which `Bsdf { bxdf, frame }` is then dispatched no more.
+/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) names the member once
+/// around a whole shading step, inside which `Bsdf { bxdf, frame }` is then dispatched no more.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf<B = Bxdf> {
     /// What scatters, in the local frame.
@@ -51,7 +51,8 @@ impl<B: Scatter> Bsdf<B> {
         self.bxdf.f(wo, wi, mode)
     }
 
-    /// [`Scatter::sample_f`]; `None` too if `wo` or the sample lies on the horizon, or the sample carries no light.
+    /// [`Scatter::sample_f`]; `None` too if `wo` or the sample lies on the horizon, or the sample
+    /// carries no light.
     #[inline]
     #[doc(alias = "Sample_f")]
     pub fn sample_f(

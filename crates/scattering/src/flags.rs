@@ -2,7 +2,8 @@
 
 use std::ops::{BitAnd, BitOr, BitOrAssign, Not};
 
-/// A set of kinds of scattering: where to (reflection, transmission) and how widely (diffuse, glossy, specular).
+/// A set of kinds of scattering: where to (reflection, transmission) and how widely (diffuse,
+/// glossy, specular).
 ///
 /// The set of a sample names one lobe; that of a BxDF names all of its lobes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -134,8 +135,8 @@ impl Directions {
         self.reflection() && flags.is_reflective() || self.transmission() && flags.is_transmissive()
     }
 
-    /// The probability of reflection where reflection weighs `r` and transmission `t`, and what is not asked
-    /// for weighs nothing; `None` if nothing is left to choose from.
+    /// The probability of reflection where reflection weighs `r` and transmission `t`, and what is
+    /// not asked for weighs nothing; `None` if nothing is left to choose from.
     #[inline]
     pub fn probability_of_reflection(self, r: f32, t: f32) -> Option<f32> {
         let r = if self.reflection() { r } else { 0.0 };
@@ -146,9 +147,8 @@ impl Directions {
 
 /// What travels along the path that a BxDF continues.
 ///
-/// Radiance is scaled by (η_i/η_t)² where it is refracted, because the solid angle that holds it changes;
-/// importance is not.
-/// [Veach 1997 §5.2], [Pharr 2023 §9.5.2]
+/// Radiance is scaled by (η_i/η_t)² where it is refracted, because the solid angle that holds it
+/// changes; importance is not. [Veach 1997 §5.2], [Pharr 2023 §9.5.2]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TransportMode {
     /// The path starts at the camera and looks for radiance.

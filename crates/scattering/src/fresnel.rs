@@ -1,17 +1,19 @@
 //! Mirror and refracted directions, and the share of light that a smooth interface reflects.
 //!
-//! With c = cos θ_i and s = sin θ_i, Snell's law η_i sin θ_i = η_t sin θ_t and the relative index η = η_t/η_i,
-//! unpolarised light is reflected by
+//! With c = cos θ_i and s = sin θ_i, Snell's law η_i sin θ_i = η_t sin θ_t and the relative index η
+//! = η_t/η_i, unpolarised light is reflected by
 //!
 //! ```text
-//! F = (r_∥² + r_⊥²)/2     r_∥ = (η c − cos θ_t)/(η c + cos θ_t)     r_⊥ = (c − η cos θ_t)/(c + η cos θ_t)
+//! F   = (r_∥² + r_⊥²)/2
+//! r_∥ = (η c − cos θ_t)/(η c + cos θ_t)     r_⊥ = (c − η cos θ_t)/(c + η cos θ_t)
 //! ```
 //!
-//! For a conductor η becomes η + i k, and each square a squared modulus. Where a + i b is the root of
-//! (η + i k)² − s²,
+//! For a conductor η becomes η + i k, and each square a squared modulus. Where a + i b is the root
+//! of (η + i k)² − s²,
 //!
 //! ```text
-//! |r_⊥|² = ((a − c)² + b²)/((a + c)² + b²)     |r_∥|² = |r_⊥|² ((a − s²/c)² + b²)/((a + s²/c)² + b²)
+//! |r_⊥|² = ((a − c)² + b²)/((a + c)² + b²)
+//! |r_∥|² = |r_⊥|² ((a − s²/c)² + b²)/((a + s²/c)² + b²)
 //! ```
 //!
 //! Sources: [Pharr 2023 §9.3.5, §9.3.6], [Born 1999 §1.5.2, §14.2].
@@ -25,8 +27,9 @@ pub fn reflect(wo: Vector3, n: Normal3) -> Vector3 {
     2.0 * wo.dot(n) * n - wo
 }
 
-/// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i that it met:
-/// `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is reflected inside.
+/// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i
+/// that it met: `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is
+/// reflected inside.
 #[inline]
 pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
     let cos = n.dot(wi);
@@ -39,8 +42,8 @@ pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
     Some((n * (cos_i / eta - cos_t) - wi / eta, eta))
 }
 
-/// The reflectance of an interface between dielectrics; `eta` is the relative index met by light with
-/// `cos_theta_i` > 0.
+/// The reflectance of an interface between dielectrics; `eta` is the relative index met by light
+/// with `cos_theta_i` > 0.
 #[inline]
 #[doc(alias = "FrDielectric")]
 pub fn fr_dielectric(cos_theta_i: f32, eta: f32) -> f32 {
@@ -56,8 +59,8 @@ pub fn fr_dielectric(cos_theta_i: f32, eta: f32) -> f32 {
     0.5 * (sqr(parallel) + sqr(perpendicular))
 }
 
-/// The reflectance of an interface to a medium of complex index `eta` + i `k`, relative to the medium of the light;
-/// `cos_theta_i` in [0, 1].
+/// The reflectance of an interface to a medium of complex index `eta` + i `k`, relative to the
+/// medium of the light; `cos_theta_i` in [0, 1].
 #[inline]
 #[doc(alias = "FrComplex")]
 pub fn fr_complex(cos_theta_i: f32, eta: f32, k: f32) -> f32 {
@@ -68,7 +71,8 @@ pub fn fr_complex(cos_theta_i: f32, eta: f32, k: f32) -> f32 {
     let real = (eta - 1.0) * (eta + 1.0) - sqr(k) + cos2;
     let imaginary = 2.0 * eta * k;
     let modulus = (sqr(real) + sqr(imaginary)).sqrt();
-    // The larger part of a root comes from the half-angle formula, the smaller from the larger: no cancellation.
+    // The larger part of a root comes from the half-angle formula, the smaller from the larger: no
+    // cancellation.
     let larger = (0.5 * (modulus + real.abs())).sqrt();
     let a = if real >= 0.0 || larger == 0.0 { larger } else { 0.5 * imaginary / larger };
     let (sum, cross) = (modulus + cos2, 2.0 * cos * a);
@@ -131,7 +135,8 @@ mod tests {
         let index = (eta, k);
         let square = mul(index, index);
         let s = 1.0 - cos * cos;
-        // cos θ_t · index = root of index² − sin², so that both ratios need no division of complex numbers but one.
+        // cos θ_t · index = root of index² − sin², so that both ratios need no division of complex
+        // numbers but one.
         let (re, im) = (square.0 - s, square.1);
         let modulus = re.hypot(im);
         let root = (((modulus + re) / 2.0).max(0.0).sqrt(), ((modulus - re) / 2.0).max(0.0).sqrt());

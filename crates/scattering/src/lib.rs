@@ -1,13 +1,13 @@
 //! Light meeting matter in a local frame: BxDFs, Fresnel equations, microfacets.
 //!
-//! A material at a point becomes a [`Bxdf`], by value; with the shading frame of the point it is a [`Bsdf`], which
-//! answers for directions of render space.
+//! A material at a point becomes a [`Bxdf`], by value; with the shading frame of the point it is a
+//! [`Bsdf`], which answers for directions of render space.
 //!
-//! Conventions, here and in every member: directions are unit vectors that point away from the surface; in the local
-//! frame the shading normal is +z, so that `w.z` is a cosine and its sign the side of the surface. `f` excludes the
-//! cosine of the incident direction. Densities are per solid angle. `eta` is the index of refraction of the
-//! side below (z < 0) over that of the side above. Random numbers lie in [0, 1): `uc` chooses among lobes, `u`
-//! a direction.
+//! Conventions, here and in every member: directions are unit vectors that point away from the
+//! surface; in the local frame the shading normal is +z, so that `w.z` is a cosine and its sign the
+//! side of the surface. `f` excludes the cosine of the incident direction. Densities are per solid
+//! angle. `eta` is the index of refraction of the side below (z < 0) over that of the side above.
+//! Random numbers lie in [0, 1): `uc` chooses among lobes, `u` a direction.
 
 mod bsdf;
 mod bxdf;

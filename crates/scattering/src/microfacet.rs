@@ -1,16 +1,18 @@
-//! The Trowbridge–Reitz (GGX) distribution of microfacet normals, with Smith's masking and shadowing.
+//! The Trowbridge–Reitz (GGX) distribution of microfacet normals, with Smith's masking and
+//! shadowing.
 //!
 //! ```text
 //! D(m)        = 1 / (π α_x α_y (x²/α_x² + y²/α_y² + z²)²)                  m = (x, y, z)
-//! Λ(w)        = (√(1 + α² tan²θ) − 1)/2                                    α² = α_x² cos²φ + α_y² sin²φ
+//! Λ(w)        = (√(1 + α² tan²θ) − 1)/2                    α² = α_x² cos²φ + α_y² sin²φ
 //! G₁(w)       = 1/(1 + Λ(w))          G(wo, wi) = 1/(1 + Λ(wo) + Λ(wi))    height-correlated
 //! D_w(m)      = G₁(w) |w·m| D(m) / |cos θ|                                 the normals that w sees
 //! ```
 //!
-//! D_w is sampled exactly: stretched by α, the surface is a hemisphere, whose projection towards w is a disk
-//! next to half an ellipse.
+//! D_w is sampled exactly: stretched by α, the surface is a hemisphere, whose projection towards w
+//! is a disk next to half an ellipse.
 //!
-//! Sources: [Trowbridge 1975], [Walter 2007], [Heitz 2014], [Heitz 2018] for the sampling, [Pharr 2023 §9.6].
+//! Sources: [Trowbridge 1975], [Walter 2007], [Heitz 2014], [Heitz 2018] for the sampling,
+//! [Pharr 2023 §9.6].
 
 use math::{Vec2, Vec3, Vector3, lerp, safe_sqrt, sqr};
 use sampling::warp::sample_uniform_disk_polar;
@@ -24,8 +26,8 @@ pub struct TrowbridgeReitz {
 }
 
 impl TrowbridgeReitz {
-    /// The roughnesses α along x and y of the local frame, each ≥ 0. Unless both are so small that the surface
-    /// counts as [smooth](Self::effectively_smooth), neither is let below 0.0001.
+    /// The roughnesses α along x and y of the local frame, each ≥ 0. Unless both are so small that
+    /// the surface counts as [smooth](Self::effectively_smooth), neither is let below 0.0001.
     #[inline]
     pub fn new(alpha_x: f32, alpha_y: f32) -> Self {
         let distribution = Self { alpha_x, alpha_y };
@@ -73,7 +75,8 @@ impl TrowbridgeReitz {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
     }
 
-    /// D_w: the density per solid angle of the normal `wm` among those that `w`, off the horizon, sees.
+    /// D_w: the density per solid angle of the normal `wm` among those that `w`, off the horizon,
+    /// sees.
     #[inline]
     pub fn d_visible(&self, w: Vector3, wm: Vector3) -> f32 {
         self.g1(w) / w.z.abs() * self.d(wm) * w.dot(wm).abs()
@@ -100,8 +103,8 @@ impl TrowbridgeReitz {
         self.d_visible(w, wm)
     }
 
-    /// Makes a nearly smooth surface rougher, so that paths that only luck would find are found: α below 0.3
-    /// is doubled, but to 0.1 at least and 0.3 at most.
+    /// Makes a nearly smooth surface rougher, so that paths that only luck would find are found: α
+    /// below 0.3 is doubled, but to 0.1 at least and 0.3 at most.
     #[inline]
     pub fn regularize(&mut self) {
         for alpha in [&mut self.alpha_x, &mut self.alpha_y] {

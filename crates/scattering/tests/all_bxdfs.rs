@@ -140,8 +140,8 @@ fn samples_have_their_density() {
     }
 }
 
-/// The sphere in three strips of θ, each one unit high: rough glass has an edge where its facets stand
-/// upright, and every surface one at the horizon; quadrature wants both between cells.
+/// The sphere in three strips of θ, each one unit high: rough glass has an edge where its facets
+/// stand upright, and every surface one at the horizon; quadrature wants both between cells.
 struct Strips([f32; 4]);
 
 impl Strips {
@@ -266,7 +266,8 @@ fn light_and_importance_travel_alike_in_opposite_directions() {
     }
 }
 
-/// Refracted radiance returns to where it came from with the same share, times η² for the solid angle.
+/// Refracted radiance returns to where it came from with the same share, times η² for the solid
+/// angle.
 #[test]
 fn specular_refraction_reverses() {
     for bxdf in [dielectric(1.5, 0.0, 0.0), dielectric(1.0 / 1.5, 0.0, 0.0), thin_dielectric(1.5)] {

@@ -1,4 +1,5 @@
-//! The distribution of microfacet normals: what its integrals must be, and that its samples have its density.
+//! The distribution of microfacet normals: what its integrals must be, and that its samples have
+//! its density.
 
 use alhazen_scattering::TrowbridgeReitz;
 use math::{Vector3, spherical_direction};

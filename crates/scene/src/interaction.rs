@@ -1,8 +1,10 @@
-//! A hit as shading sees it: the point on the surface, what the surface is made of, and how large a pixel is there.
+//! A hit as shading sees it: the point on the surface, what the surface is made of, and how large a
+//! pixel is there.
 //!
-//! The footprint of a pixel on the surface comes from ray differentials where the ray still has them — the neighbouring rays meet the
-//! tangent plane at p + ∂p/∂x — and from the camera's mean otherwise; ∂(u,v)/∂(x,y) then follow by least squares from
-//! ∂p/∂(u,v). Reflections and refractions off smooth surfaces carry the differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
+//! The footprint of a pixel on the surface comes from ray differentials where the ray still has
+//! them — the neighbouring rays meet the tangent plane at p + ∂p/∂x — and from the camera's mean
+//! otherwise; ∂(u,v)/∂(x,y) then follow by least squares from ∂p/∂(u,v). Reflections and
+//! refractions off smooth surfaces carry the differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
 
 use crate::camera::{Camera, differential_scale};
 use crate::light::{LightId, LightSampleContext};
@@ -113,7 +115,8 @@ impl SurfaceInteraction {
         self.surface.spawn_ray(d)
     }
 
-    /// The ray that leaves along a BSDF sample; off a smooth surface with differentials, if `from` has them.
+    /// The ray that leaves along a BSDF sample; off a smooth surface with differentials, if `from`
+    /// has them.
     pub fn spawn_scattered(&self, from: &RayDifferential, sample: &BsdfSample) -> RayDifferential {
         let ray = self.spawn_ray(sample.wi);
         let differentials = from

@@ -1,7 +1,7 @@
 //! The compiled world: textures, materials, lights, cameras and the scene they make.
 //!
-//! [`compile`] turns what an author said into a [`Scene`], once; from then on nothing changes. Everything stands in tables
-//! and is referred to by small ids.
+//! [`compile`] turns what an author said into a [`Scene`], once; from then on nothing changes.
+//! Everything stands in tables and is referred to by small ids.
 
 pub mod camera;
 mod compile;

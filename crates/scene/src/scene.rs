@@ -36,7 +36,8 @@ pub struct SceneOptions {
     pub force_diffuse: bool,
 }
 
-/// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass them.
+/// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass
+/// them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
     /// They stop them.
@@ -47,8 +48,9 @@ pub enum Interfaces {
 }
 
 impl Interfaces {
-    /// What they do to the light of `light` where media are not known. The path tracer of the pbrt-v4 format, which draws them as
-    /// surfaces that a path goes through, finds lights behind them by chance alone: so delta lights throw their shadow, and others do not.
+    /// What they do to the light of `light` where media are not known. The path tracer of the
+    /// pbrt-v4 format, which draws them as surfaces that a path goes through, finds lights behind
+    /// them by chance alone: so delta lights throw their shadow, and others do not.
     pub fn before(light: &Light) -> Self {
         if light.is_delta() { Self::Stop } else { Self::Pass }
     }
@@ -91,7 +93,8 @@ impl Scene {
         self.options
     }
 
-    /// Whether anything depends on the size of a pixel on a surface, so that ray differentials are of use.
+    /// Whether anything depends on the size of a pixel on a surface, so that ray differentials are
+    /// of use.
     pub fn has_footprints(&self) -> bool {
         self.has_footprints
     }
@@ -205,8 +208,8 @@ impl Scene {
         }
     }
 
-    /// Whether a surface is there, where its alpha makes it come and go: it is with the probability alpha, decided by a hash
-    /// of the ray and the place.
+    /// Whether a surface is there, where its alpha makes it come and go: it is with the probability
+    /// alpha, decided by a hash of the ray and the place.
     fn is_there(&self, hit: &Hit, ray: &Ray) -> bool {
         let Some(texture) = self.entries[hit.geometry.0 as usize].alpha else { return true };
         let alpha = self.alpha(texture, &self.world.surface(ray, hit));
@@ -259,8 +262,8 @@ impl Scene {
         self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
     }
 
-    /// [`Light::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere around all that has an end; what has
-    /// none may keep it from there: `None` if it does.
+    /// [`Light::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere
+    /// around all that has an end; what has none may keep it from there: `None` if it does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -281,8 +284,8 @@ impl Scene {
         Some(sample)
     }
 
-    /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the shading normal on the way.
-    /// `None`: nothing is there but a change of medium; the ray goes on.
+    /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the
+    /// shading normal on the way. `None`: nothing is there but a change of medium; the ray goes on.
     pub fn bsdf(
         &self,
         interaction: &mut SurfaceInteraction,

@@ -1,4 +1,5 @@
-//! What every light must do, on one list of configured lights: samples, densities and radiance agree.
+//! What every light must do, on one list of configured lights: samples, densities and radiance
+//! agree.
 
 mod common;
 
@@ -11,8 +12,9 @@ use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Moments, Random, welch_test};
 
-/// Holds samples against a density with edges, which is measured by the midpoint rule on cells of equal solid angle. Cells
-/// that are mostly dark count as one with the samples that fail, as their share is not measured well.
+/// Holds samples against a density with edges, which is measured by the midpoint rule on cells of
+/// equal solid angle. Cells that are mostly dark count as one with the samples that fail, as their
+/// share is not measured well.
 fn check_directions(
     sample: impl Fn([f32; 2]) -> Option<[f32; 3]>,
     density: impl Fn([f32; 3]) -> f64,

@@ -378,7 +378,8 @@ fn strands_become_one_geometry() {
         desc.shapes.push(shape(CurveDesc { split_depth: 0, ..ribbon() }));
     });
     let scene = compile(&desc).unwrap().scene;
-    // The four points are one segment of degree 3, or one of degree 2 and a point that is left over.
+    // The four points are one segment of degree 3, or one of degree 2 and a point that is left
+    // over.
     let parts: Vec<_> = (0..6).map(|id| scene.world().geometry(GeometryId(id)).len()).collect();
     assert_eq!(parts, [24, 8, 8, 16, 16, 1]);
 }
@@ -426,7 +427,8 @@ fn displacement_is_checked_and_bounded() {
 
 #[test]
 fn displaced_meshes_move_by_their_texture() {
-    // The square is wound to face +z, and moves that way by a quarter; the option doubles the edges.
+    // The square is wound to face +z, and moves that way by a quarter; the option doubles the
+    // edges.
     for (scale, triangles) in [(1.0, 16), (2.0, 4)] {
         let mut desc = with(|desc| desc.shapes.push(displaced(square(), 0.7).into()));
         desc.options.displacement_edge_scale = scale;
@@ -517,7 +519,8 @@ fn moving_shapes_are_where_they_should_be() {
 
 #[test]
 fn instances_are_where_they_should_be() {
-    // A ball off the object's origin; an instance turned and scaled, one that moves, and a camera that is elsewhere.
+    // A ball off the object's origin; an instance turned and scaled, one that moves, and a camera
+    // that is elsewhere.
     let desc = with(|desc| {
         let mut object = ObjectDesc::default();
         let in_object = TransformDesc::translation(1.0, 0.0, 0.0);

@@ -1,4 +1,5 @@
-//! What every light must do as a source of rays: densities, power, and the same light as a point finds that looks for it.
+//! What every light must do as a source of rays: densities, power, and the same light as a point
+//! finds that looks for it.
 
 mod common;
 
@@ -115,9 +116,9 @@ fn directions_of_spots_have_their_density() {
     }
 }
 
-/// Seen in parallel along some direction, a density per area p is p/|cos θ| per area of the view, summed over all that lies
-/// one behind the other. Where that grows without bound, at the outline of what is round, cells are not held against it
-/// one by one.
+/// Seen in parallel along some direction, a density per area p is p/|cos θ| per area of the view,
+/// summed over all that lies one behind the other. Where that grows without bound, at the outline
+/// of what is round, cells are not held against it one by one.
 #[test]
 fn positions_have_their_density() {
     let cases = area_lights();

@@ -45,8 +45,8 @@ fn a_shape_that_moves_in_an_object_moves_in_its_instances() {
 
 #[test]
 fn an_instance_turns_about_the_origin_of_render_space() {
-    // A quarter turn about z, of which the half is about the camera: the translations that belong to the keys, (0, 0) and
-    // (−4, 4) for the second eye, meet in the middle.
+    // A quarter turn about z, of which the half is about the camera: the translations that belong
+    // to the keys, (0, 0) and (−4, 4) for the second eye, meet in the middle.
     let shape = ball(TransformDesc::translation(1.0, 0.0, 0.0));
     let turn = moving(DMat4::IDENTITY, DMat4::from_rotation_z(FRAC_PI_2));
     let c = FRAC_1_SQRT_2 as f32;
@@ -60,7 +60,8 @@ fn an_instance_turns_about_the_origin_of_render_space() {
 
 #[test]
 fn objects_within_objects_stand_and_move_where_all_transforms_say() {
-    // A ball at x = 1 of its object, which stands at y = 2 of another, which moves along x; the camera is elsewhere.
+    // A ball at x = 1 of its object, which stands at y = 2 of another, which moves along x; the
+    // camera is elsewhere.
     let mut desc = SceneDesc::default();
     desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_translation(DVec3::new(-3.0, 1.0, 0.0)));
     let mut inner = ObjectDesc::default();

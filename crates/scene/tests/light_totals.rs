@@ -1,4 +1,5 @@
-//! How much light there is: power, irradiance in closed form, falloff, and the totals that an author asks for.
+//! How much light there is: power, irradiance in closed form, falloff, and the totals that an
+//! author asks for.
 
 mod common;
 

@@ -313,7 +313,8 @@ fn footprints_without_differentials_are_the_cameras() {
     assert!(ratio > 0.5 && ratio < 1.05, "{ratio}");
 }
 
-/// Follows a ray over one smooth surface to the next; returns the footprint there and the true distances.
+/// Follows a ray over one smooth surface to the next; returns the footprint there and the true
+/// distances.
 fn after_scattering(
     scene: &Scene,
     film: [f32; 2],

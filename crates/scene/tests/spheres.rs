@@ -1,4 +1,5 @@
-//! Sets of spheres in a scene: each sphere can emit, and under any transform each stands where it would stand alone.
+//! Sets of spheres in a scene: each sphere can emit, and under any transform each stands where it
+//! would stand alone.
 
 mod common;
 

@@ -1,6 +1,7 @@
 //! The radiance of a body that absorbs all light, by Planck's law.
 //!
-//! L(λ, T) = 2hc² / (λ⁵ (e^{hc / (λ k T)} − 1)), in W / (m² sr m) with λ in metres [Pharr 2023 §4.4.1].
+//! L(λ, T) = 2hc² / (λ⁵ (e^{hc / (λ k T)} − 1)), in W / (m² sr m) with λ in metres
+//! [Pharr 2023 §4.4.1].
 
 /// Speed of light in vacuum, m/s.
 const C: f64 = 299_792_458.0;
@@ -11,8 +12,8 @@ const K_B: f64 = 1.380_648_8e-23;
 /// Wien's displacement constant, m K.
 const WIEN: f64 = 2.897_772_1e-3;
 
-/// Radiance of a blackbody of `temperature` kelvin at `lambda` nanometres, per metre of wavelength; zero for no
-/// temperature.
+/// Radiance of a blackbody of `temperature` kelvin at `lambda` nanometres, per metre of wavelength;
+/// zero for no temperature.
 pub fn blackbody(lambda: f32, temperature: f32) -> f32 {
     if temperature <= 0.0 {
         return 0.0;

@@ -1,8 +1,8 @@
 //! The CIE 1931 standard observer: from light to what an eye sees of it.
 //!
-//! X = ∫ L(λ) x̄(λ) dλ / ∫ ȳ(λ) dλ, likewise Y and Z, with the integral taken as the sum over whole nanometres from 360
-//! to 830. For light known at sampled wavelengths the same is estimated by 1/N Σ L(λᵢ) x̄(λᵢ) / p(λᵢ)
-//! [Pharr 2023 §4.6.1].
+//! X = ∫ L(λ) x̄(λ) dλ / ∫ ȳ(λ) dλ, likewise Y and Z, with the integral taken as the sum over whole
+//! nanometres from 360 to 830. For light known at sampled wavelengths the same is estimated by 1/N
+//! Σ L(λᵢ) x̄(λᵢ) / p(λᵢ) [Pharr 2023 §4.6.1].
 
 use std::sync::LazyLock;
 

@@ -1,8 +1,8 @@
 //! RGB colour spaces: three primaries and a white, and what follows from them.
 //!
-//! The matrix that takes RGB to XYZ has the primaries as columns, each scaled so that RGB (1, 1, 1) is the white: the
-//! colour of the space's illuminant at unit luminance [Pharr 2023 §4.6.3]. A space also has the table that turns its
-//! RGB values into spectra; see [`crate::uplift`].
+//! The matrix that takes RGB to XYZ has the primaries as columns, each scaled so that RGB (1, 1, 1)
+//! is the white: the colour of the space's illuminant at unit luminance [Pharr 2023 §4.6.3]. A
+//! space also has the table that turns its RGB values into spectra; see [`crate::uplift`].
 //!
 //! White balance scales in the Bradford cone space: M⁻¹ diag(LMS_target / LMS_source) M [Lam 1985].
 
@@ -100,7 +100,8 @@ impl RgbColorSpace {
         [Self::srgb(), Self::dci_p3(), Self::rec2020(), Self::aces2065_1()]
     }
 
-    /// The colour space with this name: `srgb`, `dci-p3`, `rec2020` or `aces2065-1`, in letters of any case.
+    /// The colour space with this name: `srgb`, `dci-p3`, `rec2020` or `aces2065-1`, in letters of
+    /// any case.
     pub fn named(name: &str) -> Option<&'static Self> {
         Self::all().into_iter().find(|space| space.name.eq_ignore_ascii_case(name))
     }
@@ -170,8 +171,8 @@ impl RgbColorSpace {
         if self == target { Matrix3::IDENTITY } else { target.rgb_from_xyz * self.xyz_from_rgb }
     }
 
-    /// The smooth reflectance that looks like `rgb` under this space's illuminant; components outside [0, 1] are
-    /// clamped.
+    /// The smooth reflectance that looks like `rgb` under this space's illuminant; components
+    /// outside [0, 1] are clamped.
     pub fn to_rgb_coeffs(&self, rgb: Rgb) -> RgbSigmoidPolynomial {
         self.table.get_or_init(|| RgbToSpectrumTable::decode(self.table_data)).polynomial(rgb)
     }

@@ -1,7 +1,7 @@
 //! Daylight of a correlated colour temperature: the CIE D series.
 //!
-//! S(λ) = S₀(λ) + M₁ S₁(λ) + M₂ S₂(λ), where M₁ and M₂ follow from the chromaticity (x, y) on the daylight locus
-//! y = −3x² + 2.87x − 0.275, and x from the temperature [CIE 015:2018 §4.1.2].
+//! S(λ) = S₀(λ) + M₁ S₁(λ) + M₂ S₂(λ), where M₁ and M₂ follow from the chromaticity (x, y) on the
+//! daylight locus y = −3x² + 2.87x − 0.275, and x from the temperature [CIE 015:2018 §4.1.2].
 
 use crate::blackbody::blackbody;
 use crate::cie::CIE_Y_INTEGRAL;
@@ -11,8 +11,8 @@ use crate::spectrum::Spectrum;
 
 /// Daylight of `temperature` kelvin, with about 1 at 560 nm.
 ///
-/// The temperature is that of the scale of 1968 (D65 is 6500 K), corrected by 1.4388 / 1.4380. Below 4000 K, where
-/// there is no daylight, it is a blackbody of unit luminance.
+/// The temperature is that of the scale of 1968 (D65 is 6500 K), corrected by 1.4388 / 1.4380.
+/// Below 4000 K, where there is no daylight, it is a blackbody of unit luminance.
 pub fn daylight(temperature: f32) -> Spectrum {
     let cct = temperature * 1.4388 / 1.4380;
     if cct < 4000.0 {

@@ -1,8 +1,10 @@
-//! Light over wavelength: spectra, sampled wavelengths, colour spaces, RGB uplifting, measured data.
+//! Light over wavelength: spectra, sampled wavelengths, colour spaces, RGB uplifting, measured
+//! data.
 //!
-//! Wavelengths are in nanometres, from [`LAMBDA_MIN`] to [`LAMBDA_MAX`]. A path carries [`N`] of them
-//! ([`SampledWavelengths`]) and its quantities are [`SampledSpectrum`]s at them; a scene's quantities are functions of
-//! wavelength, [`Spectrum`]s. Lights are scaled so that a colour space's illuminant has luminance 1.
+//! Wavelengths are in nanometres, from [`LAMBDA_MIN`] to [`LAMBDA_MAX`]. A path carries [`N`] of
+//! them ([`SampledWavelengths`]) and its quantities are [`SampledSpectrum`]s at them; a scene's
+//! quantities are functions of wavelength, [`Spectrum`]s. Lights are scaled so that a colour
+//! space's illuminant has luminance 1.
 
 pub mod blackbody;
 pub mod cie;

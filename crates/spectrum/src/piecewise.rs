@@ -1,7 +1,8 @@
-//! Spectra given by values at some wavelengths, linear between them and zero outside, and the text form of them.
+//! Spectra given by values at some wavelengths, linear between them and zero outside, and the text
+//! form of them.
 //!
-//! Text: numbers divided by white space, wavelength and value in turn, wavelengths in nanometres and strictly
-//! increasing; `#` begins a comment that ends with the line.
+//! Text: numbers divided by white space, wavelength and value in turn, wavelengths in nanometres
+//! and strictly increasing; `#` begins a comment that ends with the line.
 
 use std::fmt;
 

@@ -1,4 +1,5 @@
-//! Colours of three numbers: [`Xyz`] tristimulus values and [`Rgb`] values of some colour space, both linear.
+//! Colours of three numbers: [`Xyz`] tristimulus values and [`Rgb`] values of some colour space,
+//! both linear.
 
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 

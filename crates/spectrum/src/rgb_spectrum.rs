@@ -1,8 +1,8 @@
 //! Spectra made from RGB values: reflectances, unbounded quantities and emitted light.
 //!
-//! A reflectance is the sigmoid polynomial itself. Values beyond [0, 1] are scaled first by m = 2·max(r, g, b), so
-//! that the polynomial stays in its smooth middle; light is further multiplied by the colour space's illuminant, so that
-//! RGB (1, 1, 1) is its white [Pharr 2023 §4.6.6].
+//! A reflectance is the sigmoid polynomial itself. Values beyond [0, 1] are scaled first by m =
+//! 2·max(r, g, b), so that the polynomial stays in its smooth middle; light is further multiplied
+//! by the colour space's illuminant, so that RGB (1, 1, 1) is its white [Pharr 2023 §4.6.6].
 
 use std::sync::Arc;
 

@@ -1,11 +1,12 @@
 //! Values of light at the few wavelengths that a path carries, and the choice of those wavelengths.
 //!
-//! A path carries [`N`] wavelengths λ₁…λ_N with densities p(λᵢ) per nanometre. An integral over wavelength,
-//! ∫ f(λ) dλ, is estimated by 1/N Σ f(λᵢ)/p(λᵢ). Each wavelength alone has the density p; the N of them are one
-//! uniform number rotated by 1/N ("hero wavelengths"), so that they always spread over the range.
+//! A path carries [`N`] wavelengths λ₁…λ_N with densities p(λᵢ) per nanometre. An integral over
+//! wavelength, ∫ f(λ) dλ, is estimated by 1/N Σ f(λᵢ)/p(λᵢ). Each wavelength alone has the density
+//! p; the N of them are one uniform number rotated by 1/N ("hero wavelengths"), so that they always
+//! spread over the range.
 //!
-//! Sources: [Wilkie 2014], [Pharr 2023 §4.5.4]; the density proportional to sech² that follows the eye's response is
-//! from [Radziszewski 2009].
+//! Sources: [Wilkie 2014], [Pharr 2023 §4.5.4]; the density proportional to sech² that follows the
+//! eye's response is from [Radziszewski 2009].
 
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -20,7 +21,8 @@ pub const LAMBDA_MAX: f32 = 830.0;
 
 /// A function of wavelength known at the [`N`] wavelengths of a [`SampledWavelengths`].
 ///
-/// Arithmetic is per wavelength. The values mean nothing without the wavelengths that they were taken at.
+/// Arithmetic is per wavelength. The values mean nothing without the wavelengths that they were
+/// taken at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SampledSpectrum(pub [f32; N]);
 
@@ -190,7 +192,8 @@ impl std::iter::Product for SampledSpectrum {
     }
 }
 
-/// Implements one operator between spectra, between a spectrum and a number, and its assigning form.
+/// Implements one operator between spectra, between a spectrum and a number, and its assigning
+/// form.
 macro_rules! operator {
     ($trait:ident $method:ident $assign_trait:ident $assign_method:ident $op:tt) => {
         impl $trait for SampledSpectrum {
@@ -241,7 +244,8 @@ operator!(Sub sub SubAssign sub_assign -);
 operator!(Mul mul MulAssign mul_assign *);
 operator!(Div div DivAssign div_assign /);
 
-/// The wavelengths of a path, in nanometres, and the density that each was chosen with, per nanometre.
+/// The wavelengths of a path, in nanometres, and the density that each was chosen with, per
+/// nanometre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledWavelengths {
     lambda: [f32; N],
@@ -272,13 +276,15 @@ impl SampledWavelengths {
         &self.lambda
     }
 
-    /// The density of each wavelength, per nanometre; zero for secondary wavelengths that were terminated.
+    /// The density of each wavelength, per nanometre; zero for secondary wavelengths that were
+    /// terminated.
     #[inline]
     pub fn pdf(&self) -> SampledSpectrum {
         SampledSpectrum(self.pdf)
     }
 
-    /// Keeps the first wavelength alone, as dispersion demands; its density accounts for the others' share.
+    /// Keeps the first wavelength alone, as dispersion demands; its density accounts for the
+    /// others' share.
     pub fn terminate_secondary(&mut self) {
         if !self.secondary_terminated() {
             let hero = self.pdf[0] / N as f32;

@@ -114,8 +114,8 @@ impl Spectrum {
         Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
     }
 
-    /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB the illuminant alone
-    /// counts, so that its RGB values remain factors.
+    /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB
+    /// the illuminant alone counts, so that its RGB values remain factors.
     pub fn to_photometric(&self) -> f32 {
         let y_bar = &cie::matching_functions().y;
         match self {

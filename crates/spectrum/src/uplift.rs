@@ -1,13 +1,15 @@
 //! Smooth spectra from RGB values.
 //!
-//! An RGB reflectance becomes s(c₀t² + c₁t + c₂) with t = (λ − 540) / 100 and the sigmoid s(x) = ½ + x / (2√(1 + x²)),
-//! which lies in [0, 1] whatever the coefficients. The coefficients come from a table over the RGB cube, made by
-//! `cargo xtask rgb-table`: for each position i of the largest component, over its value z and the ratios x, y of
-//! the two next components to it. Between nodes the coefficients are trilinear in x, y and (z − ½) / √(z (1 − z)), in which
-//! those of grey are linear, so that dark and bright colours come out right.
+//! An RGB reflectance becomes s(c₀t² + c₁t + c₂) with t = (λ − 540) / 100 and the sigmoid s(x) = ½
+//! + x / (2√(1 + x²)), which lies in [0, 1] whatever the coefficients. The coefficients come from a
+//! table over the RGB cube, made by `cargo xtask rgb-table`: for each position i of the largest
+//! component, over its value z and the ratios x, y of the two next components to it. Between nodes
+//! the coefficients are trilinear in x, y and (z − ½) / √(z (1 − z)), in which those of grey are
+//! linear, so that dark and bright colours come out right.
 //!
-//! In the file a node is three 16-bit numbers, asinh of the polynomial at 440, 540 and 640 nm over ±10: what the eye
-//! sees of a spectrum depends on the polynomial there, and asinh makes the steps fine where the sigmoid is steep.
+//! In the file a node is three 16-bit numbers, asinh of the polynomial at 440, 540 and 640 nm over
+//! ±10: what the eye sees of a spectrum depends on the polynomial there, and asinh makes the steps
+//! fine where the sigmoid is steep.
 //!
 //! Sources: [Jakob 2019], [Pharr 2023 §4.6.6].
 
@@ -64,7 +66,8 @@ pub const NODES: usize = 3 * VALUES * RATIOS * RATIOS;
 /// Half the range of asinh that the file can express.
 const ASINH_RANGE: f64 = 10.0;
 
-/// The largest component at node `i` of [`VALUES`]: dense towards 0 and 1, where coefficients change fast.
+/// The largest component at node `i` of [`VALUES`]: dense towards 0 and 1, where coefficients
+/// change fast.
 pub fn node_value(i: usize) -> f64 {
     let t = (0.015 + 0.985 * i as f64 / (VALUES - 1) as f64).powf(1.25);
     t * t * (3.0 - 2.0 * t)
@@ -81,13 +84,14 @@ fn ratio_position(ratio: f32) -> f32 {
     ((0.36 + 1.6 * ratio).sqrt() - 0.6) / 0.8
 }
 
-/// What coefficients are about linear in over the largest component z: (z − ½) / √(z (1 − z)), kept finite at z = 1.
+/// What coefficients are about linear in over the largest component z: (z − ½) / √(z (1 − z)), kept
+/// finite at z = 1.
 fn value_coordinate(z: f32) -> f32 {
     (z - 0.5) / (z * (1.05 - z)).sqrt()
 }
 
-/// Index of the node for largest component `largest`, its value node and the ratio nodes of the two components after
-/// it.
+/// Index of the node for largest component `largest`, its value node and the ratio nodes of the two
+/// components after it.
 pub fn node_index(largest: usize, value: usize, ratios: [usize; 2]) -> usize {
     ((largest * VALUES + value) * RATIOS + ratios[1]) * RATIOS + ratios[0]
 }
@@ -168,7 +172,8 @@ impl RgbToSpectrumTable {
             }
         }
         if largest_value < darkest {
-            // All wavelengths get darker together; scaling the whole polynomial would lighten where it is positive.
+            // All wavelengths get darker together; scaling the whole polynomial would lighten where
+            // it is positive.
             coefficients[2] *= (darkest / largest_value).sqrt();
         }
         RgbSigmoidPolynomial { coefficients }

@@ -1,17 +1,18 @@
 //! Pearson's χ² test of a sampling routine against its density.
 //!
-//! The domain is cut into cells. For each, the density's integral times the number of samples, E, is held against the
-//! number O that fell in: χ² = Σ (O − E)² / E. Cells with E below [`Chi2::min_expected`] are pooled. A routine that gives
-//! no sample (`None`) falls in a cell of its own, which expects what the density lacks to one. The idea is that of
-//! [Jakob 2010] (Nori) and [Pharr 2023 §9.8].
+//! The domain is cut into cells. For each, the density's integral times the number of samples, E,
+//! is held against the number O that fell in: χ² = Σ (O − E)² / E. Cells with E below
+//! [`Chi2::min_expected`] are pooled. A routine that gives no sample (`None`) falls in a cell of
+//! its own, which expects what the density lacks to one. The idea is that of [Jakob 2010] (Nori)
+//! and [Pharr 2023 §9.8].
 
 use crate::quadrature::{integrate, search};
 use crate::{Random, SIGNIFICANCE, chi2_cdf, sidak};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-/// A χ² test: its grid and size. Every method returns `Err` with a table of the worst cells when the samples do not have
-/// the given density.
+/// A χ² test: its grid and size. Every method returns `Err` with a table of the worst cells when
+/// the samples do not have the given density.
 ///
 /// ```
 /// use alhazen_testkit::Chi2;
@@ -50,7 +51,8 @@ struct Cell {
 }
 
 impl Chi2 {
-    /// Directions: `sample` makes a unit vector (or none) of a point of the unit square; `pdf` is per solid angle.
+    /// Directions: `sample` makes a unit vector (or none) of a point of the unit square; `pdf` is
+    /// per solid angle.
     pub fn sphere(
         &self,
         mut sample: impl FnMut([f32; 2]) -> Option<[f32; 3]>,
@@ -101,7 +103,8 @@ impl Chi2 {
         line.run(bounds, |u| sample(u[0]).map(|x| [x as f64, 0.5]), |x, _| pdf(x as f32))
     }
 
-    /// Counts that were made elsewhere against the counts expected. `bins`, `samples` and `seed` play no part.
+    /// Counts that were made elsewhere against the counts expected. `bins`, `samples` and `seed`
+    /// play no part.
     pub fn counts(&self, observed: &[u64], expected: &[f64]) -> Result<(), String> {
         assert_eq!(observed.len(), expected.len(), "each cell has a count and an expectation");
         let cells = observed.iter().zip(expected).enumerate().map(|(i, (&observed, &expected))| Cell {
@@ -150,7 +153,8 @@ impl Chi2 {
         for (i, observed) in observed.into_iter().enumerate() {
             let (column, row) = (i / rows, i % rows);
             let place = [[edge(0, column), edge(0, column + 1)], [edge(1, row), edge(1, row + 1)]];
-            // A hair inside, so that an edge of the density along the cell's border is not looked at from both sides.
+            // A hair inside, so that an edge of the density along the cell's border is not looked
+            // at from both sides.
             let inside = place.map(|[low, high]| {
                 let hair = 1e-5 * (high - low);
                 [low + hair, high - hair]

@@ -1,11 +1,13 @@
 //! Statistical tests on plain numbers: χ², t and z.
 //!
-//! A sampling routine and its density are two claims about one distribution; [`Chi2`] holds them against each other.
-//! An estimator and an exact value are held together by [`t_test`] or [`z_test`], two estimators by [`welch_test`].
-//! Everything here speaks `[f32; 2]`, `[f32; 3]` and `f64`, so that each crate can use it.
+//! A sampling routine and its density are two claims about one distribution; [`Chi2`] holds them
+//! against each other. An estimator and an exact value are held together by [`t_test`] or
+//! [`z_test`], two estimators by [`welch_test`]. Everything here speaks `[f32; 2]`, `[f32; 3]` and
+//! `f64`, so that each crate can use it.
 //!
-//! Every test draws from a generator with a fixed seed ([`Random`]) and divides its significance among the number of
-//! tests that run side by side (Šidák's correction), so it gives the same answer in every run.
+//! Every test draws from a generator with a fixed seed ([`Random`]) and divides its significance
+//! among the number of tests that run side by side (Šidák's correction), so it gives the same
+//! answer in every run.
 
 mod chi2;
 mod means;

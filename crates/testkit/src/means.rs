@@ -53,7 +53,8 @@ pub fn z_test(mean: f64, standard_error: f64, expected: f64, tests: usize) -> Re
     verdict(mean, expected, standard_error * standard_error, tests, normal_cdf)
 }
 
-/// Whether two samples have one mean, whatever their variances (Welch's test), as one of `tests` tests.
+/// Whether two samples have one mean, whatever their variances (Welch's test), as one of `tests`
+/// tests.
 pub fn welch_test(a: &Moments, b: &Moments, tests: usize) -> Result<(), String> {
     let (va, vb) = (a.variance_of_mean(), b.variance_of_mean());
     let freedom = |v: f64, count: usize| v * v / (count.max(2) - 1) as f64;

@@ -1,13 +1,15 @@
 //! Adaptive quadrature over a rectangle.
 //!
-//! A cell is measured by Simpson's rule, once whole and once in quarters; where the two disagree by more than the
-//! tolerance, each quarter is treated alike. As the rule looks at the border of each cell, no straight edge of the density
-//! slips between its points unseen; edges are so followed to a fine width.
+//! A cell is measured by Simpson's rule, once whole and once in quarters; where the two disagree by
+//! more than the tolerance, each quarter is treated alike. As the rule looks at the border of each
+//! cell, no straight edge of the density slips between its points unseen; edges are so followed to
+//! a fine width.
 
 /// How often a cell is quartered at least and at most.
 const MIN_DEPTH: u32 = 2;
 const MAX_DEPTH: u32 = 9;
-/// How often it is quartered at least where all points of the usual grid have missed what the density has there.
+/// How often it is quartered at least where all points of the usual grid have missed what the
+/// density has there.
 const SEARCH_DEPTH: u32 = 6;
 
 /// ∬ `f` over `[x0, x1] × [y0, y1]`, given as `[[x0, x1], [y0, y1]]`, to about `tolerance`.

@@ -1,7 +1,9 @@
-//! Distribution functions: the normal, Student's t and χ² distributions, from the incomplete gamma and beta functions.
+//! Distribution functions: the normal, Student's t and χ² distributions, from the incomplete gamma
+//! and beta functions.
 //!
-//! P(a, x) is summed as a series below its mean and as a continued fraction above it; Iₓ(a, b) is a continued fraction,
-//! used on the side where it converges fast [Press 2007 §6.2, §6.4]. Relative error is near 1e-14.
+//! P(a, x) is summed as a series below its mean and as a continued fraction above it; Iₓ(a, b) is a
+//! continued fraction, used on the side where it converges fast [Press 2007 §6.2, §6.4]. Relative
+//! error is near 1e-14.
 
 use std::f64::consts::PI;
 
@@ -124,8 +126,8 @@ pub fn student_cdf(t: f64, degrees: f64) -> f64 {
     if t < 0.0 { tail } else { 1.0 - tail }
 }
 
-/// The significance of one test such that `tests` of them together refuse a right hypothesis with chance
-/// `significance` [Šidák 1967].
+/// The significance of one test such that `tests` of them together refuse a right hypothesis with
+/// chance `significance` [Šidák 1967].
 pub fn sidak(significance: f64, tests: usize) -> f64 {
     1.0 - (1.0 - significance).powf(1.0 / tests.max(1) as f64)
 }

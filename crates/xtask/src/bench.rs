@@ -1,7 +1,9 @@
-//! `cargo xtask bench rays`: finds or fetches Embree's library, then builds and runs the program that measures.
+//! `cargo xtask bench rays`: finds or fetches Embree's library, then builds and runs the program
+//! that measures.
 //!
-//! The library is the file that the variable `EMBREE_LIB` names; or the one in the Python environment `$PEERS_DIR/venv`; or the one that PyPI's
-//! package `embreex` brings, which is then installed into an environment of its own under `target/`.
+//! The library is the file that the variable `EMBREE_LIB` names; or the one in the Python
+//! environment `$PEERS_DIR/venv`; or the one that PyPI's package `embreex` brings, which is then
+//! installed into an environment of its own under `target/`.
 
 use std::env;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,11 @@
-//! `cargo xtask rgb-table`: fits the tables that turn RGB into spectra and writes them to `crates/spectrum/data`.
+//! `cargo xtask rgb-table`: fits the tables that turn RGB into spectra and writes them to
+//! `crates/spectrum/data`.
 //!
-//! For each node of a table the coefficients c of the sigmoid polynomial s are sought for which the reflectance s(c, λ)
-//! under the colour space's illuminant has the node's colour: least squares of the CIELAB difference by
-//! Gauss–Newton steps with Levenberg's damping, in double precision. Each column of nodes is fitted outwards from its
-//! middle, every fit starting from its neighbour's result. Colours that no reflectance can have get the nearest one.
+//! For each node of a table the coefficients c of the sigmoid polynomial s are sought for which the
+//! reflectance s(c, λ) under the colour space's illuminant has the node's colour: least squares of
+//! the CIELAB difference by Gauss–Newton steps with Levenberg's damping, in double precision. Each
+//! column of nodes is fitted outwards from its middle, every fit starting from its neighbour's
+//! result. Colours that no reflectance can have get the nearest one.
 //!
 //! Source: [Jakob 2019].
 
@@ -93,17 +95,20 @@ impl Observer {
         ([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)], derivatives)
     }
 
-    /// Difference in CIELAB between a reflectance and the colour `target`, and its derivatives by the coefficients.
+    /// Difference in CIELAB between a reflectance and the colour `target`, and its derivatives by
+    /// the coefficients.
     fn difference(&self, coefficients: Coefficients, target: [f64; 3]) -> ([f64; 3], Matrix3) {
         let (xyz, xyz_derivatives) = self.xyz(coefficients);
         let (lab, lab_derivatives) = self.lab(xyz);
         (std::array::from_fn(|i| lab[i] - target[i]), lab_derivatives * xyz_derivatives)
     }
 
-    /// The coefficients c that make the squared difference from `rgb` plus R²·max(rgb)·|c|² least, sought from `start`.
+    /// The coefficients c that make the squared difference from `rgb` plus R²·max(rgb)·|c|² least,
+    /// sought from `start`.
     ///
-    /// The second term changes nothing to speak of where a reflectance has the colour, and keeps the coefficients
-    /// bounded, and so the table smooth, where none has; dark colours need coefficients as 1/√max(rgb).
+    /// The second term changes nothing to speak of where a reflectance has the colour, and keeps
+    /// the coefficients bounded, and so the table smooth, where none has; dark colours need
+    /// coefficients as 1/√max(rgb).
     fn fit(&self, rgb: [f64; 3], start: Coefficients) -> Coefficients {
         const R: f64 = 4e-3;
         const STEPS: usize = 100;
@@ -200,7 +205,8 @@ fn fit_table(observer: &Observer) -> RgbToSpectrumTable {
     RgbToSpectrumTable::new(coefficients.into())
 }
 
-/// The coefficients of a column of nodes: all values of the largest component, with fixed ratios of the others.
+/// The coefficients of a column of nodes: all values of the largest component, with fixed ratios of
+/// the others.
 fn fit_column(observer: &Observer, largest: usize, ratios: [usize; 2]) -> [Coefficients; VALUES] {
     let mut column = [[0.0; 3]; VALUES];
     let mut fit = |value: usize, start| {

@@ -1,4 +1,5 @@
-//! Everything that must hold before a change lands, cheapest first; the first step that fails ends the run.
+//! Everything that must hold before a change lands, cheapest first; the first step that fails ends
+//! the run.
 
 use std::path::Path;
 use std::process::Command;
@@ -13,7 +14,8 @@ struct Step {
     arguments: &'static [&'static str],
 }
 
-/// Lints and documentation share one check of the workspace; tests are built once, optimised and with assertions.
+/// Lints and documentation share one check of the workspace; tests are built once, optimised and
+/// with assertions.
 const STEPS: [Step; 4] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"] },
     Step {

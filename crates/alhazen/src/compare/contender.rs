@@ -8,7 +8,8 @@ use description::{IntegratorDesc, SceneDesc};
 use crate::names::{integrator_called, integrator_name};
 use crate::{OverrideError, Overrides, Setting};
 
-/// An integrator with settings of its own, written `NAME` or `NAME:KEY=VALUE:KEY=VALUE`, as in `path:maxdepth=8`.
+/// An integrator with settings of its own, written `NAME` or `NAME:KEY=VALUE:KEY=VALUE`, as in
+/// `path:maxdepth=8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contender {
     integrator: String,
@@ -16,8 +17,8 @@ pub struct Contender {
 }
 
 impl Contender {
-    /// What this contender changes of the scene: what `shared` says, without settings that its algorithm does not have, and then what its
-    /// own settings say.
+    /// What this contender changes of the scene: what `shared` says, without settings that its
+    /// algorithm does not have, and then what its own settings say.
     pub(super) fn overrides(&self, scene: &SceneDesc, shared: &Overrides) -> Overrides {
         let mut overrides = Overrides { integrator: Some(self.integrator.clone()), ..shared.clone() };
         if let Some(integrator) = integrator_called(&self.integrator, &scene.integrator) {
@@ -28,8 +29,9 @@ impl Contender {
         overrides
     }
 
-    /// The scene as this contender renders it, changed by its [`overrides`](Self::overrides). Its own settings may concern the
-    /// algorithm and its sampler only, as all contenders render one scene onto one kind of film.
+    /// The scene as this contender renders it, changed by its [`overrides`](Self::overrides). Its
+    /// own settings may concern the algorithm and its sampler only, as all contenders render one
+    /// scene onto one kind of film.
     pub(super) fn scene(&self, scene: &SceneDesc, overrides: &Overrides) -> Result<SceneDesc, OverrideError> {
         let wrong = |problem: &dyn fmt::Display| OverrideError::new(format!("{self}: {problem}"));
         let changed = |settings: &[(String, String)]| {

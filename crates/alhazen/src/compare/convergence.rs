@@ -1,11 +1,12 @@
 //! How an error falls with time: the slope of its curve, and when it is as low as asked for.
 
-/// The part of the longest time from which on checkpoints count for the slope: before it, preparation and the
-/// coarseness of passes bend the curve.
+/// The part of the longest time from which on checkpoints count for the slope: before it,
+/// preparation and the coarseness of passes bend the curve.
 const SLOPE_FROM: f64 = 1.0 / 32.0;
 
-/// The exponent k in error ∝ time^k: of independent samples −1, where error is a mean square. Fitted by least squares in logarithms
-/// to `(seconds, error)` with times in order; `None` where fewer than three of them are of use.
+/// The exponent k in error ∝ time^k: of independent samples −1, where error is a mean square.
+/// Fitted by least squares in logarithms to `(seconds, error)` with times in order; `None` where
+/// fewer than three of them are of use.
 pub(super) fn slope(curve: &[(f64, f64)]) -> Option<f64> {
     let end = curve.last()?.0;
     let logs =
@@ -22,8 +23,9 @@ pub(super) fn slope(curve: &[(f64, f64)]) -> Option<f64> {
     (spread > 0.0).then(|| together / spread)
 }
 
-/// When the curve first comes down to `error`, straight lines drawn between its points in logarithms; `None` where it does not.
-/// What is below it from the first point on is there at that point's time.
+/// When the curve first comes down to `error`, straight lines drawn between its points in
+/// logarithms; `None` where it does not. What is below it from the first point on is there at that
+/// point's time.
 pub(super) fn seconds_to(error: f64, curve: &[(f64, f64)]) -> Option<f64> {
     let reached = curve.iter().position(|&(_, found)| found <= error)?;
     let (seconds, found) = curve[reached];

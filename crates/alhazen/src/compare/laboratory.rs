@@ -17,8 +17,8 @@ use crate::{OverrideError, Overrides};
 /// The samples per pixel that samplers are made for where time is the limit.
 const TIMED_SAMPLES: u32 = 1 << 16;
 
-/// How many times a contender's budget a reference gets that is not told otherwise: its noise is then a sixteenth of the variance
-/// of who rendered it.
+/// How many times a contender's budget a reference gets that is not told otherwise: its noise is
+/// then a sixteenth of the variance of who rendered it.
 const REFERENCE_FACTOR: u32 = 16;
 
 /// A plan that makes sense, with its scene compiled.
@@ -56,8 +56,8 @@ enum ReferencePlan {
 }
 
 impl Laboratory {
-    /// Finds all that is wrong with a plan for a scene, or makes everything that it needs; and tells what will be drawn otherwise
-    /// than described.
+    /// Finds all that is wrong with a plan for a scene, or makes everything that it needs; and
+    /// tells what will be drawn otherwise than described.
     pub fn new(scene: &SceneDesc, plan: Plan) -> Result<(Self, Vec<Diagnostic>), PlanError> {
         let entry = |contender: &Contender, budget| entry(scene, &plan.overrides, contender, budget);
         let contenders: Vec<Entry> = plan
@@ -131,18 +131,20 @@ impl Laboratory {
         self.contenders.iter().chain(reference)
     }
 
-    /// Renders the reference, then all contenders in turn, on the threads of rayon's current pool, and measures them. `begin` is
-    /// told what comes next, and gives what controls it; of the passes it hears, one is a pass of both pictures.
+    /// Renders the reference, then all contenders in turn, on the threads of rayon's current pool,
+    /// and measures them. `begin` is told what comes next, and gives what controls it; of the
+    /// passes it hears, one is a pass of both pictures.
     ///
-    /// After a cancellation the comparison is of what has been done. `Err` means that there is nothing to compare: no contender
-    /// has done a pass.
+    /// After a cancellation the comparison is of what has been done. `Err` means that there is
+    /// nothing to compare: no contender has done a pass.
     pub fn compare(self, mut begin: impl FnMut(&str) -> Control) -> Result<Comparison, Cancelled> {
         let Self { setup, scene, contenders, reference, warnings } = self;
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
                 let control = begin(&format!("reference by {}", entry.name));
-                // Seeds of its own: a picture judged by its own samples would look better than it is.
+                // Seeds of its own: a picture judged by its own samples would look better than it
+                // is.
                 render_reference(&entry, half, setup.seed.wrapping_add(2), &scene, &control)?
             }
         };

@@ -1,18 +1,21 @@
 //! Error taken apart into noise and bias.
 //!
-//! Let a and b be two independent pictures of equal length, r the reference, and ⟨·⟩ the mean over pixels and colour channels. Then
+//! Let a and b be two independent pictures of equal length, r the reference, and ⟨·⟩ the mean over
+//! pixels and colour channels. Then
 //!
 //! error = ⟨(a − r)² + (b − r)²⟩ / 2 = ⟨(a − b)²⟩ / 2 + ⟨(a − r)(b − r)⟩,
 //!
-//! exactly. In expectation the first term is the variance of one picture: noise. As a and b are independent, the second is
-//! (E[a] − r)²: the square of the bias, plus the noise of the reference itself, which is taken off where it is known. So a noisy
-//! algorithm without bias is told from a smooth one that is wrong. Estimates scatter: a bias squared may come out below 0, and is
-//! given with its standard deviation, taken from the spread over pixels.
+//! exactly. In expectation the first term is the variance of one picture: noise. As a and b are
+//! independent, the second is (E[a] − r)²: the square of the bias, plus the noise of the reference
+//! itself, which is taken off where it is known. So a noisy algorithm without bias is told from a
+//! smooth one that is wrong. Estimates scatter: a bias squared may come out below 0, and is given
+//! with its standard deviation, taken from the spread over pixels.
 //!
-//! Relative figures have each term divided by r² + 0.01, as relMSE has [Rousselle 2011]. The mean of the error, which a
-//! squared bias cannot have a sign for, says how much too bright the whole picture is; its standard deviation is the larger of two
-//! estimates, one from the pixels' noise, the other from the difference of the two pictures' means, which sees noise
-//! that all pixels share.
+//! Relative figures have each term divided by r² + 0.01, as relMSE has [Rousselle 2011]. The mean
+//! of the error, which a squared bias cannot have a sign for, says how much too bright the whole
+//! picture is; its standard deviation is the larger of two estimates, one from the pixels' noise,
+//! the other from the difference of the two pictures' means, which sees noise that all pixels
+//! share.
 
 use image::Image;
 use image::metrics::RELATIVE_EPSILON;
@@ -26,7 +29,8 @@ pub struct Parts {
     pub variance: f64,
     /// Squared bias, as far as it can be told.
     pub bias_squared: f64,
-    /// The standard deviation of the estimate of the squared bias; infinite for a single pixel, which cannot tell.
+    /// The standard deviation of the estimate of the squared bias; infinite for a single pixel,
+    /// which cannot tell.
     pub bias_squared_deviation: f64,
     /// Variance of the reference, where it is known: the rest of the error.
     pub reference_variance: f64,
@@ -53,8 +57,9 @@ impl Parts {
         if most < 1.0 { Bias::Below(most) } else { Bias::Hidden }
     }
 
-    /// Whether there is more bias than chance explains: three standard deviations, or more than all noise. The latter is for bias in a few
-    /// pixels, such as those of a caustic, which make the spread over pixels large.
+    /// Whether there is more bias than chance explains: three standard deviations, or more than all
+    /// noise. The latter is for bias in a few pixels, such as those of a caustic, which make the
+    /// spread over pixels large.
     pub fn is_biased(&self) -> bool {
         let noise = self.variance + self.reference_variance;
         let is_more_than_noise = self.bias_squared_deviation.is_finite() && self.bias_squared > noise;
@@ -122,8 +127,8 @@ impl Sums {
     }
 }
 
-/// How far two independent pictures of one algorithm are from a reference of the same size. Pixels with a value that is not finite
-/// in any of the three are left out.
+/// How far two independent pictures of one algorithm are from a reference of the same size. Pixels
+/// with a value that is not finite in any of the three are left out.
 pub(super) fn measure([a, b]: &[Image; 2], reference: &Image, noise: Option<ReferenceNoise>) -> Measure {
     let noise = noise.unwrap_or_default();
     let (mut absolute, mut relative) = (Sums::default(), Sums::default());
@@ -175,7 +180,8 @@ mod tests {
 
     const SIDE: u32 = 64;
 
-    /// A picture of value 1 + `bias`, with uniform noise of this variance; of every pixel's channels alike.
+    /// A picture of value 1 + `bias`, with uniform noise of this variance; of every pixel's
+    /// channels alike.
     fn picture(random: &mut Random, bias: f32, variance: f32) -> Image {
         let width = (12.0 * variance).sqrt();
         Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |_, _| [1.0 + bias + width * (random.get_1d() - 0.5); 3])

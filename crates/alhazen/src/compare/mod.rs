@@ -1,17 +1,20 @@
-//! The laboratory: several algorithms over one scene, each for the same time or the same number of samples, and how far from a
-//! reference each is.
+//! The laboratory: several algorithms over one scene, each for the same time or the same number of
+//! samples, and how far from a reference each is.
 //!
-//! A [`Plan`] says what to compare; [`Laboratory::new`] finds everything that is wrong with it before anything long begins and
-//! compiles the scene, once for all; [`Laboratory::compare`] renders; the [`Comparison`] can be had as a page
-//! ([`Comparison::to_html`]) and as JSON ([`Comparison::to_json`]).
+//! A [`Plan`] says what to compare; [`Laboratory::new`] finds everything that is wrong with it
+//! before anything long begins and compiles the scene, once for all; [`Laboratory::compare`]
+//! renders; the [`Comparison`] can be had as a page ([`Comparison::to_html`]) and as JSON
+//! ([`Comparison::to_json`]).
 //!
-//! Each algorithm renders two pictures from different seeds, the time or samples asked for *each*, so that noise and bias can be
-//! told apart ([`Measure`]). Rendering alone is timed, preparation included; measuring at checkpoints is not. Figures are means
-//! over both; the picture shown is the first, which is what a render with the scene's seed gives.
+//! Each algorithm renders two pictures from different seeds, the time or samples asked for *each*,
+//! so that noise and bias can be told apart ([`Measure`]). Rendering alone is timed, preparation
+//! included; measuring at checkpoints is not. Figures are means over both; the picture shown is the
+//! first, which is what a render with the scene's seed gives.
 //!
-//! Where time is the limit, samplers are made for 65,536 samples per pixel, and the render ends there at the latest.
-//! `independent`, `halton`, `sobol` and `zsobol` are as even as ever then; `stratified` and `paddedsobol`, which spread samples over
-//! the number they are made for, are as uneven as random ones.
+//! Where time is the limit, samplers are made for 65,536 samples per pixel, and the render ends
+//! there at the latest. `independent`, `halton`, `sobol` and `zsobol` are as even as ever then;
+//! `stratified` and `paddedsobol`, which spread samples over the number they are made for, are as
+//! uneven as random ones.
 
 mod contender;
 mod convergence;
@@ -75,19 +78,21 @@ impl fmt::Display for Budget {
 /// What the others are held against.
 #[derive(Clone, Debug)]
 pub enum ReferenceSource {
-    /// A picture that is there, of the size of the whole image or of the part to render; nothing is known of its noise.
+    /// A picture that is there, of the size of the whole image or of the part to render; nothing is
+    /// known of its noise.
     Picture {
         /// Where it is from, for the report.
         name: String,
         /// The picture.
         picture: Image,
     },
-    /// A picture to render first, as the mean of two independent halves that tell its noise. Its seeds are not those of the
-    /// pictures that it judges.
+    /// A picture to render first, as the mean of two independent halves that tell its noise. Its
+    /// seeds are not those of the pictures that it judges.
     Render {
         /// By whom; by the first of the contenders if `None`.
         by: Option<Contender>,
-        /// Samples per pixel of both halves together; if `None`, 16 times the contenders' budget in all.
+        /// Samples per pixel of both halves together; if `None`, 16 times the contenders' budget in
+        /// all.
         samples_per_pixel: Option<u32>,
     },
 }
@@ -194,7 +199,8 @@ pub struct Run {
     pub checkpoints: Vec<Checkpoint>,
     /// The two pictures.
     pub pictures: [Image; 2],
-    /// The mean visible difference of the first picture from the reference; `None` where it cannot be told.
+    /// The mean visible difference of the first picture from the reference; `None` where it cannot
+    /// be told.
     pub flip: Option<f64>,
     /// Whether it was stopped before its end.
     pub interrupted: bool,
@@ -244,8 +250,8 @@ impl Comparison {
         !self.missing.is_empty() || self.runs.iter().any(|run| run.interrupted)
     }
 
-    /// The slope of a run's error over time in logarithms: −1 for independent samples. The reference's noise is taken off the
-    /// error first, as it would flatten the curve.
+    /// The slope of a run's error over time in logarithms: −1 for independent samples. The
+    /// reference's noise is taken off the error first, as it would flatten the curve.
     pub fn slope(&self, run: &Run) -> Option<f64> {
         let floor = self.reference.noise.map_or(0.0, |noise| noise.relative);
         let curve: Vec<_> =
@@ -253,7 +259,8 @@ impl Comparison {
         convergence::slope(&curve)
     }
 
-    /// A run's mean error and its standard deviation as shares of the reference's mean; `None` where the reference is black.
+    /// A run's mean error and its standard deviation as shares of the reference's mean; `None`
+    /// where the reference is black.
     pub fn relative_mean_error(&self, run: &Run) -> Option<[f64; 2]> {
         let (mean, measure) = (self.reference.mean(), &run.last().measure);
         (mean > 0.0).then(|| [measure.mean_error, measure.mean_error_deviation].map(|value| value / mean))
@@ -269,7 +276,8 @@ impl Comparison {
         convergence::seconds_to(self.common_error(), &run.curve())
     }
 
-    /// Why the reference is perhaps not what all should tend to: two others or more, or all, find more light than who rendered it.
+    /// Why the reference is perhaps not what all should tend to: two others or more, or all, find
+    /// more light than who rendered it.
     pub fn doubt(&self) -> Option<String> {
         let by = self.reference.by.as_deref()?;
         let others: Vec<&Run> = self.runs.iter().filter(|run| run.name != by).collect();
@@ -290,7 +298,8 @@ impl Comparison {
         ))
     }
 
-    /// Whether the reference's own noise is more than a tenth of a run's error, which then says little.
+    /// Whether the reference's own noise is more than a tenth of a run's error, which then says
+    /// little.
     pub fn is_below_reference_noise(&self, run: &Run) -> bool {
         self.reference.noise.is_some_and(|noise| noise.relative > 0.1 * run.last().measure.relative.error)
     }

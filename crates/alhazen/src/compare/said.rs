@@ -59,7 +59,8 @@ pub(super) fn text(settings: &Settings) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// For programs: an object of numbers, booleans and texts; null for what an algorithm chooses by itself.
+/// For programs: an object of numbers, booleans and texts; null for what an algorithm chooses by
+/// itself.
 pub(super) fn json(settings: &Settings) -> Value {
     let value = |text: &String| serde_json::from_str(text).unwrap_or_else(|_| Value::String(text.clone()));
     let entry = |(name, told): &(&str, Option<String>)| {

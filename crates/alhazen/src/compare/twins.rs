@@ -1,8 +1,9 @@
 //! One algorithm rendered twice, from different seeds, pass by pass in turn.
 //!
-//! Two independent pictures a and b of equal length tell noise and bias apart, which one picture cannot: where they differ there
-//! is noise, and where they agree on something else than the truth there is bias (see [`measure`](super::measure)). The first
-//! picture is what a render with the scene's seed gives.
+//! Two independent pictures a and b of equal length tell noise and bias apart, which one picture
+//! cannot: where they differ there is noise, and where they agree on something else than the truth
+//! there is bias (see [`measure`](super::measure)). The first picture is what a render with the
+//! scene's seed gives.
 
 use std::time::{Duration, Instant};
 
@@ -58,8 +59,9 @@ impl Twins {
         Ok((Self { twins, passes: 0, stats: RayStats::default() }, warnings))
     }
 
-    /// Renders until the budget is used up or the algorithm has done all its passes, and calls `at_checkpoint` at pass counts
-    /// that grow geometrically, and at the end: also where it is cancelled, unless no pass was done by both until then.
+    /// Renders until the budget is used up or the algorithm has done all its passes, and calls
+    /// `at_checkpoint` at pass counts that grow geometrically, and at the end: also where it is
+    /// cancelled, unless no pass was done by both until then.
     pub fn render(
         &mut self,
         scene: &Scene,
@@ -89,7 +91,8 @@ impl Twins {
         outcome
     }
 
-    /// One pass of each. A cancelled one counts for nothing, though the films may have a part of its light.
+    /// One pass of each. A cancelled one counts for nothing, though the films may have a part of
+    /// its light.
     fn pass(&mut self, scene: &Scene, control: &Control) -> Result<(), Cancelled> {
         let mut took = [Duration::ZERO; 2];
         for (twin, took) in self.twins.iter_mut().zip(&mut took) {
@@ -103,7 +106,8 @@ impl Twins {
         Ok(())
     }
 
-    /// Tells the listener how far it is; where time is the limit, it has to guess how many passes there will be.
+    /// Tells the listener how far it is; where time is the limit, it has to guess how many passes
+    /// there will be.
     fn tell(&self, budget: Budget, all: u32, control: &Control) {
         let Some(listener) = &control.progress else { return };
         let passes = match budget {

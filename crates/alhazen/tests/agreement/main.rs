@@ -1,4 +1,5 @@
-//! Algorithms that claim the same light, against each other: pictures of small scenes, part by part and as a whole.
+//! Algorithms that claim the same light, against each other: pictures of small scenes, part by part
+//! and as a whole.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -20,7 +21,8 @@ use scenes::{POINT_LIGHT_IN_GLASS, SCENES, Scene};
 /// Pictures of each algorithm, with a seed each.
 const RUNS: i32 = 16;
 
-/// Side of the squares of pixels that are compared, as single ones are too far from normally distributed.
+/// Side of the squares of pixels that are compared, as single ones are too far from normally
+/// distributed.
 const SIDE: usize = 5;
 
 /// The statistics of pictures: of the mean of each channel, over all and over each square.
@@ -132,7 +134,8 @@ fn light_that_path_tracing_never_meets_is_the_same_for_all_others() {
     assert!(lost.0.iter().all(|moments| moments.mean == 0.0));
 }
 
-/// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance: photons are blurred.
+/// How far the mean of photon mapping's pictures may be from that of path tracing's, beyond chance:
+/// photons are blurred.
 const BLUR: f64 = 0.02;
 
 #[test]
@@ -157,6 +160,7 @@ fn photon_maps_hold_nearly_what_path_tracing_finds() {
 
 #[test]
 fn chains_of_paths_find_what_path_tracing_finds() {
-    // Where few paths carry light, the squares of so few chains are too far from normally distributed.
+    // Where few paths carry light, the squares of so few chains are too far from normally
+    // distributed.
     assert_agrees("mlt", &[], 32, |scene| scene.name != "a door that is almost closed");
 }

@@ -1,8 +1,9 @@
-//! Means of whole pictures, each known to a part in a thousand: the same for all algorithms to three.
+//! Means of whole pictures, each known to a part in a thousand: the same for all algorithms to
+//! three.
 //!
-//! Pictures with one seed after another are made until the mean of each channel is known well enough. The mean does not mind how many
-//! pixels there are, so each algorithm has as many as make it quick. All have the same four wavelengths, as colours would be noise
-//! alone.
+//! Pictures with one seed after another are made until the mean of each channel is known well
+//! enough. The mean does not mind how many pixels there are, so each algorithm has as many as make
+//! it quick. All have the same four wavelengths, as colours would be noise alone.
 
 use alhazen::Overrides;
 use testkit::{Moments, welch_test};
@@ -13,18 +14,20 @@ use crate::scenes::{SCENES, Scene};
 /// How far means may differ.
 const THREE_IN_A_THOUSAND: f64 = 3e-3;
 
-/// In the pool, path tracing knows the mean to a part in a thousand after many minutes. In the prism a path is left with the first of its
-/// wavelengths, which has to be another for each.
+/// In the pool, path tracing knows the mean to a part in a thousand after many minutes. In the
+/// prism a path is left with the first of its wavelengths, which has to be another for each.
 const NOT_COMPARED: [&str; 2] = ["a pool", "a prism"];
 
 /// Where few of all paths carry light: minutes pass until anything knows how much there is.
 const DOOR: &str = "a door that is almost closed";
 const CAUSTIC: &str = "the caustic of a glass ball";
 
-/// Where chains know the mean after a minute or two: they find out how light goes, less so how much there is. That they know from the
-/// independent paths alone among which they choose their starts, a fifth of all that they look at. Elsewhere a part in a thousand would take them
-/// from ten minutes to an hour. What three to five minutes show, all channels: over `path`, mirrors +0.0 ± 0.25 % and door −0.2 to +0.1 ± 0.3 %;
-/// over `bdpt`, caustic −0.2 ± 0.3 %, mirrors −0.5 ± 0.6 % and door −0.2 to +0.1 ± 0.3 to 0.5 %.
+/// Where chains know the mean after a minute or two: they find out how light goes, less so how much
+/// there is. That they know from the independent paths alone among which they choose their starts,
+/// a fifth of all that they look at. Elsewhere a part in a thousand would take them from ten
+/// minutes to an hour. What three to five minutes show, all channels: over `path`, mirrors +0.0 ±
+/// 0.25 % and door −0.2 to +0.1 ± 0.3 %; over `bdpt`, caustic −0.2 ± 0.3 %, mirrors −0.5 ± 0.6 %
+/// and door −0.2 to +0.1 ± 0.3 to 0.5 %.
 const FOR_CHAINS: [&str; 8] = [
     "a diffuse box",
     "a glossy box",
@@ -50,8 +53,9 @@ struct Member {
 
 const EVEN: (&str, &str) = ("sampler", "zsobol");
 
-/// Path tracing first, which the others are held to; last those that are not unbiased but consistent: with radii as small, the blur
-/// is below the noise, save at a door without thickness, through which photons seep.
+/// Path tracing first, which the others are held to; last those that are not unbiased but
+/// consistent: with radii as small, the blur is below the noise, save at a door without thickness,
+/// through which photons seep.
 const MEMBERS: [Member; 7] = [
     Member {
         name: "path",

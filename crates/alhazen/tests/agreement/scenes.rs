@@ -7,7 +7,8 @@ pub struct Scene {
     pub max_depth: u32,
     /// Samples that path tracing needs to be a reference.
     pub path_samples: u32,
-    /// Whether the camera looks into mirrors, through glass, or beyond the scene's bounds, where light paths cannot find it.
+    /// Whether the camera looks into mirrors, through glass, or beyond the scene's bounds, where
+    /// light paths cannot find it.
     pub is_hidden_from_light: bool,
     camera: &'static str,
     world: &'static str,

@@ -1,4 +1,5 @@
-//! What the tests on third-party data share: where the data lie, scenes written as text, and pictures with their noise.
+//! What the tests on third-party data share: where the data lie, scenes written as text, and
+//! pictures with their noise.
 #![allow(dead_code, reason = "each test uses a part")]
 #![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
@@ -115,7 +116,8 @@ impl Estimate {
         Self { width, height, values }
     }
 
-    /// The mean of a channel over a part of the picture, and its standard error: pixels are independent of each other.
+    /// The mean of a channel over a part of the picture, and its standard error: pixels are
+    /// independent of each other.
     fn mean(&self, [columns, rows]: &[Range<usize>; 2], channel: usize) -> (f64, f64) {
         let pixels = rows.clone().flat_map(|y| columns.clone().map(move |x| y * self.width + x));
         let (mut sum, mut variance, mut count) = (0.0, 0.0_f64, 0);
@@ -137,8 +139,8 @@ impl Estimate {
         }
     }
 
-    /// Holds the means of square parts of the picture to those of a reference of the same size, whose own error is at most
-    /// `uncertainty` times its value there.
+    /// Holds the means of square parts of the picture to those of a reference of the same size,
+    /// whose own error is at most `uncertainty` times its value there.
     pub fn assert_parts(&self, reference: &Image, side: usize, uncertainty: f64, tests: usize, name: &str) {
         assert_eq!(
             [reference.width() as usize, reference.height() as usize],

@@ -1,5 +1,5 @@
-//! The Gaussian filter, moved down so that it ends at zero: f(x) = max(0, g(x) − g(r)) along each axis, where
-//! g(x) = exp(−x² / 2σ²) / √(2πσ²) [Pharr 2023 §8.8].
+//! The Gaussian filter, moved down so that it ends at zero: f(x) = max(0, g(x) − g(r)) along each
+//! axis, where g(x) = exp(−x² / 2σ²) / √(2πσ²) [Pharr 2023 §8.8].
 
 use std::f32::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! The piecewise cubics of [Mitchell 1988], scaled so that they end at the radius. They sharpen by negative lobes.
-//! Good values of the two parameters lie on the line B + 2C = 1.
+//! The piecewise cubics of [Mitchell 1988], scaled so that they end at the radius. They sharpen by
+//! negative lobes. Good values of the two parameters lie on the line B + 2C = 1.
 
 use math::Vec2;
 

@@ -1,11 +1,13 @@
 //! Pixel filters: how the light around a pixel's centre is weighed in the pixel.
 //!
-//! A pixel's value is ∫ f(p) L(p) dp / ∫ f(p) dp, p being the position relative to its centre in pixels and f zero beyond
-//! the filter's radius. It is estimated by filter importance sampling [Ernst 2006]: the offset of a sample from the pixel's
-//! centre is drawn in proportion to |f|, the sample has weight f/pdf, and the pixel is Σ weight·L / Σ weight. A sample
-//! thus belongs to one pixel only, and neighbours are independent.
+//! A pixel's value is ∫ f(p) L(p) dp / ∫ f(p) dp, p being the position relative to its centre in
+//! pixels and f zero beyond the filter's radius. It is estimated by filter importance sampling
+//! [Ernst 2006]: the offset of a sample from the pixel's centre is drawn in proportion to |f|, the
+//! sample has weight f/pdf, and the pixel is Σ weight·L / Σ weight. A sample thus belongs to one
+//! pixel only, and neighbours are independent.
 //!
-//! Filters that can be sampled exactly are ([`box_filter`], [`triangle`]); the others are tabulated ([`sampler`]).
+//! Filters that can be sampled exactly are ([`box_filter`], [`triangle`]); the others are tabulated
+//! ([`sampler`]).
 
 pub mod box_filter;
 pub mod gaussian;
@@ -24,7 +26,8 @@ use sampler::FilterSampler;
 use sinc::LanczosSincFilter;
 use triangle::TriangleFilter;
 
-/// The largest radius in pixels: beyond it a filter no longer makes sense, and its table grows without bound.
+/// The largest radius in pixels: beyond it a filter no longer makes sense, and its table grows
+/// without bound.
 pub const MAX_RADIUS: f32 = 64.0;
 
 /// A sample of a filter.
@@ -52,8 +55,9 @@ pub enum Filter {
 }
 
 impl Filter {
-    /// The filter that is described. Refused with the format's name of the parameter and what is wrong with it, where a
-    /// radius is not in (0, [`MAX_RADIUS`]] or another parameter makes no filter.
+    /// The filter that is described. Refused with the format's name of the parameter and what is
+    /// wrong with it, where a radius is not in (0, [`MAX_RADIUS`]] or another parameter makes no
+    /// filter.
     pub fn new(desc: &FilterDesc) -> Result<Self, (&'static str, String)> {
         let radius = |radius: &[f32; 2]| {
             for (name, radius) in ["xradius", "yradius"].into_iter().zip(*radius) {
@@ -141,7 +145,8 @@ impl Filter {
     }
 }
 
-/// ∫ f over the filter's support for f(x, y) = g(x) h(y), which is ∫ f(x, 0) dx · ∫ f(0, y) dy / f(0, 0), by the midpoint rule.
+/// ∫ f over the filter's support for f(x, y) = g(x) h(y), which is ∫ f(x, 0) dx · ∫ f(0, y) dy /
+/// f(0, 0), by the midpoint rule.
 fn separable_integral(radius: Vec2, f: impl Fn(Vec2) -> f32) -> f32 {
     const STEPS: i32 = 4096;
     let along = |axis: Vec2| -> f64 {

@@ -1,6 +1,7 @@
-//! Importance sampling of a filter through a table: the filter's support is cut into 32 cells per pixel of radius along each
-//! axis, the filter is taken to be constant in each, and offsets are drawn in proportion to its magnitude there
-//! [Pharr 2023 §8.8]. As the weight divides the same table by its own density, it is ±∫|f|: samples differ in sign only.
+//! Importance sampling of a filter through a table: the filter's support is cut into 32 cells per
+//! pixel of radius along each axis, the filter is taken to be constant in each, and offsets are
+//! drawn in proportion to its magnitude there [Pharr 2023 §8.8]. As the weight divides the same
+//! table by its own density, it is ±∫|f|: samples differ in sign only.
 
 use math::{Bounds2, Vec2};
 use sampling::PiecewiseConstant2d;

@@ -1,5 +1,6 @@
-//! The windowed sinc of Lanczos: f(x) = sinc(x) · sinc(x/τ) within the radius along each axis, sinc(x) = sin(πx) / πx
-//! [Pharr 2023 §8.8]. The ideal filter of band-limited images, cut off softly; its negative lobes ring at hard edges.
+//! The windowed sinc of Lanczos: f(x) = sinc(x) · sinc(x/τ) within the radius along each axis,
+//! sinc(x) = sin(πx) / πx [Pharr 2023 §8.8]. The ideal filter of band-limited images, cut off
+//! softly; its negative lobes ring at hard edges.
 
 use std::f32::consts::PI;
 

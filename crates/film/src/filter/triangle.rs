@@ -1,4 +1,5 @@
-//! The triangle filter: f(x) = max(0, r − |x|) along each axis. Its samples follow it, their weights are one.
+//! The triangle filter: f(x) = max(0, r − |x|) along each axis. Its samples follow it, their
+//! weights are one.
 
 use math::Vec2;
 use sampling::warp::sample_tent;

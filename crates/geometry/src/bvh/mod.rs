@@ -1,8 +1,8 @@
 //! A tree of boxes over anything that has bounds.
 //!
-//! Four things are kept apart: how to split is [`build`]'s affair, what a node is [`node`]'s, how rays pass
-//! [`traverse`]'s, and what a leaf tests is left to the caller. A leaf is a range of *blocks*, each of a fixed
-//! number of primitives, so that a caller may test a block at once.
+//! Four things are kept apart: how to split is [`build`]'s affair, what a node is [`node`]'s, how
+//! rays pass [`traverse`]'s, and what a leaf tests is left to the caller. A leaf is a range of
+//! *blocks*, each of a fixed number of primitives, so that a caller may test a block at once.
 //!
 //! The tree depends on the primitives alone, never on the number of threads that built it.
 
@@ -18,7 +18,8 @@ pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};
 pub(crate) use traverse::Leaves;
 
-/// The most nodes above each other that a tree may have, for which rays have room to remember where to return.
+/// The most nodes above each other that a tree may have, for which rays have room to remember where
+/// to return.
 const MAX_DEPTH: usize = 96;
 
 /// The tree.
@@ -36,7 +37,8 @@ impl Bvh {
         (Self { bounds: built.bounds, nodes: built.nodes }, built.blocks)
     }
 
-    /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its box.
+    /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its
+    /// box.
     pub fn refit<B: Send>(&mut self, blocks: &mut [B], renew: impl Fn(&mut B) -> Bounds3 + Sync) {
         self.bounds = build::refit(&mut self.nodes, blocks, renew);
     }

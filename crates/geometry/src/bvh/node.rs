@@ -1,12 +1,14 @@
 //! Nodes of sixteen children, whose boxes are tested together.
 //!
-//! The idea is that of [Wald et al. 2008]. What a ray waits for on its way down is one answer after another, each the same
-//! time whether of eight boxes or of sixteen, and with sixteen there are fewer: that pays even where vectors are shorter.
+//! The idea is that of [Wald et al. 2008]. What a ray waits for on its way down is one answer after
+//! another, each the same time whether of eight boxes or of sixteen, and with sixteen there are
+//! fewer: that pays even where vectors are shorter.
 //!
-//! A ray enters a slab at t = p·(1/d) − o/d, which is one fused product; everything but the plane p is known beforehand. Boxes
-//! are widened by what that rounds, and by what the watertight triangle test may err: that test rounds vertices after moving
-//! them to the ray's origin, so that it may meet a triangle that the exact ray misses by γ(8) times the distance; a box that is
-//! not as generous would let such a ray slip through a closed surface.
+//! A ray enters a slab at t = p·(1/d) − o/d, which is one fused product; everything but the plane p
+//! is known beforehand. Boxes are widened by what that rounds, and by what the watertight triangle
+//! test may err: that test rounds vertices after moving them to the ray's origin, so that it may
+//! meet a triangle that the exact ray misses by γ(8) times the distance; a box that is not as
+//! generous would let such a ray slip through a closed surface.
 
 #![allow(unsafe_code)]
 
@@ -62,7 +64,8 @@ impl Child {
     }
 }
 
-/// A node: the six planes of each child's box (low x, y, z, high x, y, z), and where the children are.
+/// A node: the six planes of each child's box (low x, y, z, high x, y, z), and where the children
+/// are.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct WideNode {
@@ -77,8 +80,8 @@ pub(crate) struct Slabs<V> {
     /// Which plane is met first along each axis; the other is met last.
     first: [usize; 3],
     inverse: [V; 3],
-    /// o/d, with the origin moved forth so that boxes seem to begin earlier, and back so that they seem to
-    /// end later.
+    /// o/d, with the origin moved forth so that boxes seem to begin earlier, and back so that they
+    /// seem to end later.
     near: [V; 3],
     far: [V; 3],
 }
@@ -114,8 +117,8 @@ impl<V: Vector<WIDTH>> Slabs<V> {
 pub(crate) struct Beam<V> {
     /// One in each lane.
     rays: Slabs<V>,
-    /// Two, each in all lanes, whose inverse directions have the least and the greatest size along each axis, so that they meet
-    /// each plane before and after all others.
+    /// Two, each in all lanes, whose inverse directions have the least and the greatest size along
+    /// each axis, so that they meet each plane before and after all others.
     least: Slabs<V>,
     greatest: Slabs<V>,
 }
@@ -157,8 +160,8 @@ impl<V: Vector<WIDTH>> Beam<V> {
 /// 1/d, along every axis a number.
 #[inline(always)]
 fn inverse(d: Vec3) -> Vec3 {
-    // A ray along a slab is in it or not for all its length; a direction that is just not along it says
-    // the same within the slack, and has an inverse.
+    // A ray along a slab is in it or not for all its length; a direction that is just not along it
+    // says the same within the slack, and has an inverse.
     let least = Vec3::splat(d.abs().max_element() * 1e-12);
     Vec3::select(d.abs().cmplt(least), least.copysign(d), d).recip()
 }
@@ -247,8 +250,8 @@ impl WideNode {
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = rays.first[axis];
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below [`WIDTH`]; whoever has `rays` has the
-            // instructions.
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below
+            // [`WIDTH`]; whoever has `rays` has the instructions.
             let [enter, leave] = unsafe {
                 let first_plane = V::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
                 let last_plane =
@@ -264,14 +267,16 @@ impl WideNode {
         (near, near.le(far))
     }
 
-    /// Where the first of the rays may enter each box, and a bit for each box that any may enter up to `t_max`.
+    /// Where the first of the rays may enter each box, and a bit for each box that any may enter up
+    /// to `t_max`.
     #[inline(always)]
     pub fn intersect_beam<V: Vector<WIDTH>>(&self, beam: &Beam<V>, t_max: V, zero: V) -> (V, u32) {
         let Beam { least, greatest, .. } = beam;
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = least.first[axis];
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `beam` has the instructions.
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `beam` has
+            // the instructions.
             let [first_plane, last_plane] = unsafe {
                 [
                     V::load(self.planes.get_unchecked(first)),
@@ -299,8 +304,8 @@ impl WideNode {
         let mut far = t_max;
         for axis in 0..3 {
             let first = ray.first[axis];
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `ray` has the
-            // instructions.
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `ray` has
+            // the instructions.
             let [enter, leave] = unsafe {
                 let first_plane = V::load(self.planes.get_unchecked(first));
                 let last_plane = V::load(self.planes.get_unchecked(2 * axis + 3 - first));

@@ -1,10 +1,11 @@
 //! Rays on their way through a tree.
 //!
-//! Towards the nearest hit, children are visited front to back: the nearest at once, the others from a stack,
-//! where each waits with the distance of its box, so that it is passed over when something nearer was hit in
-//! the meantime. Towards any hit, order is only a guess of where one is found soon: near the origin when the ray ends
-//! somewhere, for it was made to end at what it may see; where the builder put leaves with few large primitives when it
-//! does not. What waits is asked for from memory at once.
+//! Towards the nearest hit, children are visited front to back: the nearest at once, the others
+//! from a stack, where each waits with the distance of its box, so that it is passed over when
+//! something nearer was hit in the meantime. Towards any hit, order is only a guess of where one is
+//! found soon: near the origin when the ray ends somewhere, for it was made to end at what it may
+//! see; where the builder put leaves with few large primitives when it does not. What waits is
+//! asked for from memory at once.
 
 #![allow(unsafe_code)]
 
@@ -23,16 +24,17 @@ pub(crate) trait Leaves {
     /// All blocks.
     fn blocks(&self) -> &[Self::Block];
 
-    /// Tests blocks for hits up to `t_max`, and lowers it to the nearest. Whether to look no further.
+    /// Tests blocks for hits up to `t_max`, and lowers it to the nearest. Whether to look no
+    /// further.
     ///
     /// # Safety
-    /// The blocks must be those of a leaf, and the processor must have the instructions that the leaves were
-    /// made ready for.
+    /// The blocks must be those of a leaf, and the processor must have the instructions that the
+    /// leaves were made ready for.
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool;
 }
 
-/// Each node on the way down leaves at most all children but one waiting, the last one perhaps all; and below all lies
-/// [`Waiting::END`].
+/// Each node on the way down leaves at most all children but one waiting, the last one perhaps all;
+/// and below all lies [`Waiting::END`].
 const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 2;
 
 /// A child, and above it the bits of its distance, so that what is nearer is less.
@@ -59,7 +61,8 @@ impl Waiting {
     }
 }
 
-/// What waits for rays that pass together: in the last bits of the distance, a bit for each ray that enters the box.
+/// What waits for rays that pass together: in the last bits of the distance, a bit for each ray
+/// that enters the box.
 #[derive(Clone, Copy)]
 struct Together(Waiting);
 
@@ -92,8 +95,9 @@ impl Together {
 }
 
 impl Bvh {
-    /// Shows `leaves` the blocks that the ray may meet up to `t_max`, the nearest first, or with `ANY` in no
-    /// order of distance. Returns the number of boxes tested, and whether `leaves` broke off. The ray must be finite.
+    /// Shows `leaves` the blocks that the ray may meet up to `t_max`, the nearest first, or with
+    /// `ANY` in no order of distance. Returns the number of boxes tested, and whether `leaves`
+    /// broke off. The ray must be finite.
     ///
     /// # Safety
     /// The processor must have the instructions of the set.
@@ -105,12 +109,14 @@ impl Bvh {
         leaves: &mut impl Leaves,
     ) -> (u64, bool) {
         let mut extents = 0;
-        // Negative and NaN ends leave nothing to be hit; nor has a ray without length anywhere to go.
+        // Negative and NaN ends leave nothing to be hit; nor has a ray without length anywhere to
+        // go.
         if self.nodes.is_empty() || t_max.is_nan() || *t_max < 0.0 {
             return (extents, false);
         }
-        // SAFETY: the caller promises the instructions. Children were made by `Child::node` and `Child::leaf` for nodes and
-        // blocks that there are, and the tree is not deeper than what the stack was measured for: `Bvh::build` saw to both.
+        // SAFETY: the caller promises the instructions. Children were made by `Child::node` and
+        // `Child::leaf` for nodes and blocks that there are, and the tree is not deeper than what
+        // the stack was measured for: `Bvh::build` saw to both.
         unsafe {
             let slabs = Slabs::<S::Sixteen>::new(ray, &self.bounds);
             let nodes = self.nodes.as_ptr();
@@ -137,9 +143,10 @@ impl Bvh {
         }
     }
 
-    /// Takes rays from one point through the tree together. `test` is given blocks, a bit for each ray that enters
-    /// the box around them, and the end of each ray, which it may lower: below zero when the ray is to go no further.
-    /// Returns the number of boxes tested. The rays must be finite and have the same signs.
+    /// Takes rays from one point through the tree together. `test` is given blocks, a bit for each
+    /// ray that enters the box around them, and the end of each ray, which it may lower: below zero
+    /// when the ray is to go no further. Returns the number of boxes tested. The rays must be
+    /// finite and have the same signs.
     ///
     /// # Safety
     /// The processor must have the instructions of the set.
@@ -196,7 +203,8 @@ impl Bvh {
         }
     }
 
-    /// How many lines of a node or block are asked for. What is left of a node comes while these are computed with.
+    /// How many lines of a node or block are asked for. What is left of a node comes while these
+    /// are computed with.
     const AHEAD: usize = 3;
 
     /// Asks for a node or a block.
@@ -220,7 +228,8 @@ unsafe fn descend<S: Simd, const ANY: bool>(
     top: &mut *mut Waiting,
     ahead: impl Fn(Child),
 ) -> Child {
-    // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the tree.
+    // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the
+    // tree.
     unsafe {
         let (near, hits) = node.intersect(slabs, S::Sixteen::splat(t_max), S::Sixteen::splat(0.0));
         if hits == 0 {

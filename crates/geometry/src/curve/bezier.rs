@@ -1,8 +1,8 @@
 //! Cubic Bézier segments: what curves of other bases are turned into, and how they are cut.
 //!
-//! Everything follows from the blossom b(r, s, t), which is symmetric, affine in each argument, and has p(u)
-//! = b(u, u, u): the part of a segment between u₀ and u₁ has the control points b(u₀,u₀,u₀), b(u₀,u₀,u₁),
-//! b(u₀,u₁,u₁), b(u₁,u₁,u₁) ([Ramshaw 1987]; [Pharr 2023 §6.7]).
+//! Everything follows from the blossom b(r, s, t), which is symmetric, affine in each argument, and
+//! has p(u) = b(u, u, u): the part of a segment between u₀ and u₁ has the control points
+//! b(u₀,u₀,u₀), b(u₀,u₀,u₁), b(u₀,u₁,u₁), b(u₁,u₁,u₁) ([Ramshaw 1987]; [Pharr 2023 §6.7]).
 
 use math::{DVec3, Point3};
 
@@ -12,13 +12,15 @@ pub(super) type Cubic = [DVec3; 4];
 /// How control points make a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplineBasis {
-    /// Bézier segments that share their ends: degree + 1 points, then degree more for every further segment.
+    /// Bézier segments that share their ends: degree + 1 points, then degree more for every further
+    /// segment.
     Bezier,
     /// A uniform B-spline: degree + 1 points, then one more for every further segment.
     BSpline,
 }
 
-/// The cubic Bézier segments of a curve of degree 2 or 3; points that do not fill a segment are left out.
+/// The cubic Bézier segments of a curve of degree 2 or 3; points that do not fill a segment are
+/// left out.
 pub fn bezier_segments(points: &[Point3], degree: usize, basis: SplineBasis) -> Vec<[Point3; 4]> {
     let step = match basis {
         SplineBasis::Bezier => degree,
@@ -88,8 +90,8 @@ mod tests {
         evaluate(&p.map(|p| p.as_dvec3()), u).0
     }
 
-    /// The uniform B-spline basis functions, as [Pharr 2023 §6.7] has them by other means: piecewise
-    /// polynomials.
+    /// The uniform B-spline basis functions, as [Pharr 2023 §6.7] has them by other means:
+    /// piecewise polynomials.
     fn b_spline(p: &[Vec3], degree: usize, u: f64) -> DVec3 {
         let weights = match degree {
             2 => vec![0.5 * (1.0 - u) * (1.0 - u), 0.5 + u * (1.0 - u), 0.5 * u * u],

@@ -1,16 +1,17 @@
 //! Curves: hair, fur, grass, ribbons.
 //!
-//! A curve is swept by a line across it whose length, the width, changes linearly from end to end. The line
-//! faces the ray ([`CurveProfile::Flat`]), does so but is shaded as the tube that it stands for
-//! ([`CurveProfile::Cylinder`]), or lies across normals that turn from end to end ([`CurveProfile::Ribbon`]).
-//! u goes along a segment, v across it; both start at 0 and end at 1.
+//! A curve is swept by a line across it whose length, the width, changes linearly from end to end.
+//! The line faces the ray ([`CurveProfile::Flat`]), does so but is shaded as the tube that it
+//! stands for ([`CurveProfile::Cylinder`]), or lies across normals that turn from end to end
+//! ([`CurveProfile::Ribbon`]). u goes along a segment, v across it; both start at 0 and end at 1.
 //!
-//! A ray is met in a frame whose origin is the ray's and whose z axis is its direction. There the curve is
-//! halved, leaving out what the ray's box does not meet, until its parts bend by less than a twentieth of the
-//! width; such a part is met where its point nearest to the origin of (x, y), by the chord, is within half
-//! the width. The depth for that bound follows from the second differences of the control points ([Wang
-//! 1984]). All of this is as in [Pharr 2023 §6.7], so that the surface is known to within the width only:
-//! that is the error of a hit, and rays spawned there start clear of the curve.
+//! A ray is met in a frame whose origin is the ray's and whose z axis is its direction. There the
+//! curve is halved, leaving out what the ray's box does not meet, until its parts bend by less than
+//! a twentieth of the width; such a part is met where its point nearest to the origin of (x, y), by
+//! the chord, is within half the width. The depth for that bound follows from the second
+//! differences of the control points ([Wang 1984]). All of this is as in [Pharr 2023 §6.7], so that
+//! the surface is known to within the width only: that is the error of a hit, and rays spawned
+//! there start clear of the curve.
 //!
 //! Points and widths are in object space, the arithmetic is in doubles.
 
@@ -51,7 +52,8 @@ pub enum CurveProfile {
     Ribbon(Vec<[Normal3; 2]>),
 }
 
-/// Curves that share a profile. Their primitives are parts of segments, which cost no memory of their own.
+/// Curves that share a profile. Their primitives are parts of segments, which cost no memory of
+/// their own.
 #[derive(Clone, Debug)]
 pub struct Curves {
     segments: Vec<CurveSegment>,
@@ -62,8 +64,8 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Curves given in object space. Each segment becomes 2^`split_depth` primitives, for tighter bounds, or
-    /// fewer where those would be too many.
+    /// Curves given in object space. Each segment becomes 2^`split_depth` primitives, for tighter
+    /// bounds, or fewer where those would be too many.
     ///
     /// # Panics
     /// When a ribbon has not one pair of normals per segment.
@@ -224,7 +226,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Whether the ray passes within half the width of the box of the control points; never where there is no width.
+    /// Whether the ray passes within half the width of the box of the control points; never where
+    /// there is no width.
     fn is_near(&self, p: &Cubic, [u0, u1]: [f64; 2]) -> bool {
         let radius = 0.5 * self.segment.width_at(u0).max(self.segment.width_at(u1));
         let (low, high) = (p[0].min(p[1]).min(p[2].min(p[3])), p[0].max(p[1]).max(p[2].max(p[3])));

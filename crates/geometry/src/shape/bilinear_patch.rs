@@ -1,13 +1,14 @@
 //! The bilinear patch p(u, v) = (1−u)(1−v)·p₀₀ + u(1−v)·p₁₀ + (1−u)v·p₀₁ + uv·p₁₁.
 //!
-//! A ray meets the line of constant u when the three vectors between them are coplanar, which is a quadratic
-//! equation in u; v and t follow from the nearest points of ray and line ([Reshetov 2019]; [Pharr 2023
-//! §6.6]). Of a parallelogram, which most patches are, all is linear. It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the patch
-//! whatever t was.
+//! A ray meets the line of constant u when the three vectors between them are coplanar, which is a
+//! quadratic equation in u; v and t follow from the nearest points of ray and line
+//! ([Reshetov 2019]; [Pharr 2023 §6.6]). Of a parallelogram, which most patches are, all is linear.
+//! It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the
+//! patch whatever t was.
 //!
-//! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the corners, or
-//! an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is sampled by solid angle
-//! ([Ureña et al. 2013]) and warped to follow the cosine there.
+//! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the
+//! corners, or an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is
+//! sampled by solid angle ([Ureña et al. 2013]) and warped to follow the cosine there.
 
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
@@ -74,8 +75,9 @@ impl Flat {
 }
 
 impl BilinearPatch {
-    /// A patch given in object space, with shading normals and texture coordinates at the corners where there
-    /// are any. Given normals point to the outside; with `reverse_orientation`, to the inside.
+    /// A patch given in object space, with shading normals and texture coordinates at the corners
+    /// where there are any. Given normals point to the outside; with `reverse_orientation`, to the
+    /// inside.
     pub fn new(
         p: [Point3; 4],
         n: Option<[Normal3; 4]>,
@@ -204,8 +206,8 @@ impl BilinearPatch {
         pdf / self.cross(uv).length() as f32
     }
 
-    /// The parameters of the patch's point `p`, where its normal is `n`: of the two lines of constant u that the
-    /// normal there may meet, the one that passes through `p`.
+    /// The parameters of the patch's point `p`, where its normal is `n`: of the two lines of
+    /// constant u that the normal there may meet, the one that passes through `p`.
     pub(super) fn parameters(&self, p: Point3, n: Normal3) -> Vec2 {
         let kept = |u: f64, v: f64| Vec2::new(u as f32, v as f32).clamp(Vec2::ZERO, Vec2::ONE);
         if let Some(flat) = &self.flat {
@@ -247,8 +249,8 @@ impl BilinearPatch {
         Some(seen.pdf() * warp)
     }
 
-    /// A cone of all normals on the outside: ∂p/∂u × ∂p/∂v is linear in u and v, so that all lie between
-    /// those of the corners.
+    /// A cone of all normals on the outside: ∂p/∂u × ∂p/∂v is linear in u and v, so that all lie
+    /// between those of the corners.
     pub(super) fn normal_bounds(&self) -> DirectionCone {
         let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| self.outside(uv));
         let w = corners.iter().sum::<Vec3>().normalize_or_zero();
@@ -331,8 +333,8 @@ fn d_dv(c: &[DVec3; 4], uv: Vec2) -> DVec3 {
     (c[2] - c[0]).lerp(c[3] - c[1], uv.x as f64)
 }
 
-/// ∂n/∂u and ∂n/∂v of the unit normal n ∝ ∂p/∂u × ∂p/∂v, of whose second derivatives only the mixed one is
-/// not zero.
+/// ∂n/∂u and ∂n/∂v of the unit normal n ∝ ∂p/∂u × ∂p/∂v, of whose second derivatives only the mixed
+/// one is not zero.
 fn normal_derivatives([du, dv]: [DVec3; 2], mixed: DVec3) -> [DVec3; 2] {
     let cross = du.cross(dv);
     let length = cross.length();
@@ -343,8 +345,8 @@ fn normal_derivatives([du, dv]: [DVec3; 2], mixed: DVec3) -> [DVec3; 2] {
     [du.cross(mixed), mixed.cross(dv)].map(|d| (d - n * n.dot(d)) / length)
 }
 
-/// The lines of constant u, of the patch between corners that are given relative to the origin of a line along `d`,
-/// that this line meets.
+/// The lines of constant u, of the patch between corners that are given relative to the origin of a
+/// line along `d`, that this line meets.
 fn lines_met([p00, p10, p01, p11]: &[DVec3; 4], d: DVec3) -> Option<[f64; 2]> {
     let a = (p10 - p00).cross(p01 - p11).dot(d);
     let c = p00.cross(d).dot(p01 - p00);
@@ -365,8 +367,8 @@ fn solve_quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     Some([q / a, if q == 0.0 { 0.0 } else { c / q }])
 }
 
-/// Turns `v` as the shortest turn does that brings one unit vector to another less than a right angle away
-/// (Rodrigues).
+/// Turns `v` as the shortest turn does that brings one unit vector to another less than a right
+/// angle away (Rodrigues).
 fn turn(v: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     let (axis, cos) = (from.cross(to), from.dot(to));
     v * cos + axis.cross(v) + axis * (axis.dot(v) / (1.0 + cos))

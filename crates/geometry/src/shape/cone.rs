@@ -1,8 +1,8 @@
-//! The cone x² + y² = (r/h)²·(h − z)² with 0 ≤ z ≤ h and φ ≤ φ_max: a circle at z = 0 drawn together to a
-//! point at z = h, without a base.
+//! The cone x² + y² = (r/h)²·(h − z)² with 0 ≤ z ≤ h and φ ≤ φ_max: a circle at z = 0 drawn
+//! together to a point at z = h, without a base.
 //!
-//! p(u, v) = ((1 − v)·r cos φ, (1 − v)·r sin φ, v·h), φ = u·φ_max. Sampled by area: what lies above v has
-//! (1 − v)² of it ([Pharr 2016 §3.5]).
+//! p(u, v) = ((1 − v)·r cos φ, (1 − v)·r sin φ, v·h), φ = u·φ_max. Sampled by area: what lies above
+//! v has (1 − v)² of it ([Pharr 2016 §3.5]).
 
 use super::quadric::{Local, Quadric, first_hit, phi, revolved_roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
@@ -20,7 +20,8 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// A cone on the object's xy plane with its point at `height` above it, up to an angle in degrees.
+    /// A cone on the object's xy plane with its point at `height` above it, up to an angle in
+    /// degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,

@@ -1,7 +1,7 @@
 //! The cylinder x² + y² = r² with z_min ≤ z ≤ z_max and φ ≤ φ_max, without ends.
 //!
-//! p(u, v) = (r cos φ, r sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled by area ([Pharr 2023
-//! §6.3]).
+//! p(u, v) = (r cos φ, r sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled by area
+//! ([Pharr 2023 §6.3]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};

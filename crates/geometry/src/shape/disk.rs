@@ -1,5 +1,5 @@
-//! The disk z = h with r_i ≤ √(x² + y²) ≤ r and φ ≤ φ_max; met at t = (h − o_z)/d_z, and not at all when d_z
-//! = 0.
+//! The disk z = h with r_i ≤ √(x² + y²) ≤ r and φ ≤ φ_max; met at t = (h − o_z)/d_z, and not at all
+//! when d_z = 0.
 //!
 //! p(u, v) = (ρ cos φ, ρ sin φ, h), φ = u·φ_max, ρ = r − v·(r − r_i). Sampled by area: a whole disk
 //! concentrically, parts by uniform angle and uniform square of the radius ([Pharr 2023 §6.4]).
@@ -23,8 +23,8 @@ pub struct Disk {
 }
 
 impl Disk {
-    /// A disk at a height along the object's z axis, with a hole of `inner_radius`, up to an angle in
-    /// degrees.
+    /// A disk at a height along the object's z axis, with a hole of `inner_radius`, up to an angle
+    /// in degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,

@@ -1,11 +1,14 @@
-//! The hyperboloid of one sheet that the line from p₁ to p₂ sweeps around the z axis, up to an angle φ_max.
+//! The hyperboloid of one sheet that the line from p₁ to p₂ sweeps around the z axis, up to an
+//! angle φ_max.
 //!
-//! p(u, v) = R(φ)·((1 − v)·p₁ + v·p₂), φ = u·φ_max, with R(φ) the turn around z. With e = p₂ − p₁ and
-//! ē its part in the xy plane, x² + y² = w² + (|ē|/e_z)²·(z − z_w)²: the waist has the radius w and the height
-//! z_w. Lines in a plane with the axis sweep cones and cylinders; e_z must not be zero.
+//! p(u, v) = R(φ)·((1 − v)·p₁ + v·p₂), φ = u·φ_max, with R(φ) the turn around z. With e = p₂ − p₁
+//! and ē its part in the xy plane, x² + y² = w² + (|ē|/e_z)²·(z − z_w)²: the waist has the radius w
+//! and the height z_w. Lines in a plane with the axis sweep cones and cylinders; e_z must not be
+//! zero.
 //!
-//! Sampled by area: its element is √((e_z·w)² + (|e||ē|(v − v_w))²) dv dφ, whose integral has a closed form but
-//! its inverse none; that is found by Newton's method within a shrinking bracket ([Pharr 2016 §3.5]; [Press 2007 §9.4]).
+//! Sampled by area: its element is √((e_z·w)² + (|e||ē|(v − v_w))²) dv dφ, whose integral has a
+//! closed form but its inverse none; that is found by Newton's method within a shrinking bracket
+//! ([Pharr 2016 §3.5]; [Press 2007 §9.4]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
@@ -27,8 +30,8 @@ pub struct Hyperboloid {
 const ACROSS: DVec3 = DVec3::new(1.0, 1.0, 0.0);
 
 impl Hyperboloid {
-    /// The surface that the line between two points of different z sweeps around the object's z axis, up to
-    /// an angle in degrees.
+    /// The surface that the line between two points of different z sweeps around the object's z
+    /// axis, up to an angle in degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,

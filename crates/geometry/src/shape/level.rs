@@ -1,8 +1,9 @@
 //! A point of a surface that is given as F(x, y, z) = 0 in object space.
 //!
-//! The normal is n = ∇F/|∇F|; along a tangent v it changes by (H·v − n·(n·H·v))/|∇F|, with H the second derivatives of F. The
-//! parameters are the spherical angles around a centre, u = φ/2π and v = 1 − θ/π, as on a whole sphere. Their gradients in
-//! space give the tangents: ∂p/∂u is at right angles to n and ∇v, and ∇u·∂p/∂u = 1.
+//! The normal is n = ∇F/|∇F|; along a tangent v it changes by (H·v − n·(n·H·v))/|∇F|, with H the
+//! second derivatives of F. The parameters are the spherical angles around a centre, u = φ/2π and v
+//! = 1 − θ/π, as on a whole sphere. Their gradients in space give the tangents: ∂p/∂u is at right
+//! angles to n and ∇v, and ∇u·∂p/∂u = 1.
 
 use super::quadric::Quadric;
 use crate::surface::{SurfacePoint, any_tangents};
@@ -28,8 +29,8 @@ impl Level {
         Vec2::new((if u < 0.0 { u + 1.0 } else { u }) as f32, v as f32)
     }
 
-    /// Unit normal. Where the gradient vanishes, its direction just before the point, which is that of −H·d; where there is none
-    /// either, back along the ray.
+    /// Unit normal. Where the gradient vanishes, its direction just before the point, which is that
+    /// of −H·d; where there is none either, back along the ray.
     pub fn normal(&self) -> DVec3 {
         let candidates = [self.gradient, -(self.hessian * self.d), -self.d];
         candidates.into_iter().find_map(DVec3::try_normalize).unwrap_or(DVec3::Z)

@@ -1,17 +1,17 @@
 //! Shapes: what a single primitive can do.
 //!
 //! Each shape is met by rays, describes its surface at a hit, and samples itself: by area
-//! ([`Shape::sample`]), or as seen from a point ([`Shape::sample_from`], by solid angle). Every sample has
-//! its density.
+//! ([`Shape::sample`]), or as seen from a point ([`Shape::sample_from`], by solid angle). Every
+//! sample has its density.
 //!
-//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is solved; z is
-//!   their axis.
+//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is
+//!   solved; z is their axis.
 //! - Triangles and patches have their vertices in render space.
-//! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on other shapes;
-//!   a [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which vertices may assign at
-//!   will.
-//! - Where a surface covers a direction twice, the density of the direction is that of its nearest point; the
-//!   other is out of sight.
+//! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on
+//!   other shapes; a [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which
+//!   vertices may assign at will.
+//! - Where a surface covers a direction twice, the density of the direction is that of its nearest
+//!   point; the other is out of sight.
 
 mod bilinear_patch;
 mod cone;
@@ -59,7 +59,8 @@ pub struct ShapeHit {
 pub struct ShapeSample {
     /// Position, and how far it may be from the surface.
     pub p: Point3Error,
-    /// Unit normal, on the side that the shape's orientation (or its shading normals) make the outside.
+    /// Unit normal, on the side that the shape's orientation (or its shading normals) make the
+    /// outside.
     pub n: Normal3,
     /// Texture coordinates.
     pub uv: Vec2,
@@ -94,14 +95,15 @@ impl ShapeSampleContext {
         distance2 * distance2.sqrt() / n.dot(toward).abs()
     }
 
-    /// Turns a sample by area into one by solid angle; `None` when it is seen edge-on or from itself.
+    /// Turns a sample by area into one by solid angle; `None` when it is seen edge-on or from
+    /// itself.
     fn seen(&self, sample: ShapeSample) -> Option<ShapeSample> {
         let pdf = sample.pdf * self.area_per_solid_angle(sample.p.p, sample.n);
         (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
     }
 
-    /// Weights of the corners of the unit square that make samples follow the cosine at this point, given
-    /// directions to the corners; never quite zero.
+    /// Weights of the corners of the unit square that make samples follow the cosine at this point,
+    /// given directions to the corners; never quite zero.
     fn cosine_weights(&self, corners: [Vector3; 4]) -> [f32; 4] {
         corners.map(|w| (w.dot(self.ns) / w.length()).abs().max(0.01))
     }
@@ -196,8 +198,9 @@ impl Shape {
         }
     }
 
-    /// What is known of the surface where a [`ShapeHit`] has these parameters, seen from along its normal; `None` of shapes that
-    /// are not made of points with parameters in a square or triangle: planes, formulas and solids.
+    /// What is known of the surface where a [`ShapeHit`] has these parameters, seen from along its
+    /// normal; `None` of shapes that are not made of points with parameters in a square or
+    /// triangle: planes, formulas and solids.
     pub fn surface_at(&self, uv: Vec2, time: f32) -> Option<SurfacePoint> {
         let ray = match self {
             Self::Sphere(shape) => shape.ray_to(uv, time),
@@ -216,8 +219,8 @@ impl Shape {
         Some(SurfacePoint { wo: surface.n, ..surface })
     }
 
-    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where a quadric's transform is no similarity, and for
-    /// bent patches.
+    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where
+    /// a quadric's transform is no similarity, and for bent patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
     }
@@ -227,7 +230,8 @@ impl Shape {
         each_shape!(self, shape => shape.sample(u)).filter(|s| s.pdf.is_finite() && s.pdf > 0.0)
     }
 
-    /// The density per area with which [`Shape::sample`] chooses its point `p`, where its unit normal is `n`.
+    /// The density per area with which [`Shape::sample`] chooses its point `p`, where its unit
+    /// normal is `n`.
     #[doc(alias = "pdf")]
     pub fn pdf_area(&self, p: Point3, n: Normal3) -> f32 {
         match self {
@@ -243,7 +247,8 @@ impl Shape {
         }
     }
 
-    /// A point with its density per solid angle around `reference`; `None` where no point can be chosen.
+    /// A point with its density per solid angle around `reference`; `None` where no point can be
+    /// chosen.
     pub fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
         let special = match self {
             Self::Sphere(shape) => shape.sample_from(reference, u),
@@ -257,8 +262,8 @@ impl Shape {
         }
     }
 
-    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met along `wi`; 0
-    /// where nothing is.
+    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met
+    /// along `wi`; 0 where nothing is.
     pub fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> f32 {
         let ray = reference.spawn_ray(wi);
         let Some(hit) = self.intersect(&ray, f32::INFINITY) else { return 0.0 };

@@ -1,8 +1,10 @@
-//! A mesh whose vertices move: its shape is given at moments that are evenly spread over a time, and linear in between.
+//! A mesh whose vertices move: its shape is given at moments that are evenly spread over a time,
+//! and linear in between.
 //!
-//! With keys k = 0 … n − 1 over the times t₀ … t₁, let x = (n − 1)·(t − t₀)/(t₁ − t₀), clamped to the keys; a vertex is then
-//! at (1 − f)·p_k + f·p_{k+1}, k = ⌊x⌋, f = x − k. Normals and tangents follow the same way. All triangles at a vertex compute
-//! the same point, so that no ray slips between them. What moves has no one area and is not sampled.
+//! With keys k = 0 … n − 1 over the times t₀ … t₁, let x = (n − 1)·(t − t₀)/(t₁ − t₀), clamped to
+//! the keys; a vertex is then at (1 − f)·p_k + f·p_{k+1}, k = ⌊x⌋, f = x − k. Normals and tangents
+//! follow the same way. All triangles at a vertex compute the same point, so that no ray slips
+//! between them. What moves has no one area and is not sampled.
 
 use super::{ShapeHit, ShapeSample, Triangle};
 use crate::mesh::TriangleMesh;

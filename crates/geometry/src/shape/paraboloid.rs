@@ -1,8 +1,9 @@
-//! The paraboloid x² + y² = s·z, s = r²/z_max, with z_min ≤ z ≤ z_max and φ ≤ φ_max: a bowl that is r wide
-//! at its rim.
+//! The paraboloid x² + y² = s·z, s = r²/z_max, with z_min ≤ z ≤ z_max and φ ≤ φ_max: a bowl that is
+//! r wide at its rim.
 //!
-//! p(u, v) = (√(s·z) cos φ, √(s·z) sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled by area:
-//! its element is √(s·z + s²/4) dz dφ, so that the power 3/2 of z + s/4 is uniform ([Pharr 2016 §3.5]).
+//! p(u, v) = (√(s·z) cos φ, √(s·z) sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled
+//! by area: its element is √(s·z + s²/4) dz dφ, so that the power 3/2 of z + s/4 is uniform
+//! ([Pharr 2016 §3.5]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample};
@@ -22,8 +23,8 @@ pub struct Paraboloid {
 }
 
 impl Paraboloid {
-    /// The part between two heights of the bowl that opens along the object's z axis and is `radius` wide at
-    /// the larger of them (which must be above 0), up to an angle in degrees.
+    /// The part between two heights of the bowl that opens along the object's z axis and is
+    /// `radius` wide at the larger of them (which must be above 0), up to an angle in degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,

@@ -1,8 +1,9 @@
 //! What quadrics share.
 //!
-//! A ray is brought to object space and the equation solved in doubles; the point is then put back on the
-//! surface and rounded to floats in render space. All that is left of errors is that last rounding, which the
-//! point's bounds cover: neither the distance of the ray's origin nor the shape's transform makes them grow.
+//! A ray is brought to object space and the equation solved in doubles; the point is then put back
+//! on the surface and rounded to floats in render space. All that is left of errors is that last
+//! rounding, which the point's bounds cover: neither the distance of the ray's origin nor the
+//! shape's transform makes them grow.
 
 use crate::placement::{Placement, ROUNDING};
 use crate::shape::ShapeSample;
@@ -70,21 +71,23 @@ impl Quadric {
         if self.flips { -n } else { n }
     }
 
-    /// The ray that comes down along the normal on a point, which it meets at t = 1. It begins so near by that no other part of
-    /// the surface lies between.
+    /// The ray that comes down along the normal on a point, which it meets at t = 1. It begins so
+    /// near by that no other part of the surface lies between.
     pub fn ray_to(&self, p: DVec3, n: DVec3, time: f32) -> Ray {
         let (p, n) = (self.point(p).p, self.normal(n));
         let height = (p.abs().max_element() * 1e-4).max(f32::MIN_POSITIVE / MACHINE_EPSILON);
         Ray::new(p + n * height, n * -height, time)
     }
 
-    /// The change of the unit normal in render space, on the shape's outside, from that of the unit normal in object space.
+    /// The change of the unit normal in render space, on the shape's outside, from that of the unit
+    /// normal in object space.
     pub fn normal_change(&self, n: DVec3, dn: DVec3) -> Normal3 {
         let change = self.placement.normal_change(n, dn);
         if self.flips { -change } else { change }
     }
 
-    /// A sample at a point with unit normal `n` that has the density `pdf` per area of object space.
+    /// A sample at a point with unit normal `n` that has the density `pdf` per area of object
+    /// space.
     pub fn sample(&self, p: DVec3, n: DVec3, uv: Vec2, pdf: f64) -> ShapeSample {
         ShapeSample {
             p: self.point(p),
@@ -99,8 +102,8 @@ impl Quadric {
         (pdf / self.placement.area_factor_outside(n.as_dvec3())) as f32
     }
 
-    /// The area in render space of what has `area` in object space, and the unit normal `normal(u, v)` at
-    /// parameters spread evenly over that area.
+    /// The area in render space of what has `area` in object space, and the unit normal
+    /// `normal(u, v)` at parameters spread evenly over that area.
     pub fn area(&self, area: f64, normal: impl Fn(f64, f64) -> DVec3) -> f32 {
         const STEPS: usize = 64;
         let place = |i: usize| (i as f64 + 0.5) / STEPS as f64;
@@ -140,9 +143,9 @@ fn weingarten(local: &Local) -> [DVec3; 2] {
 
 /// The roots of |o + t·d|² = r² in ascending order, without cancellation.
 ///
-/// The discriminant is (r + m)(r − m)/d² with m the least distance from the centre, and of the two roots the
-/// one of larger size is found first; the other is the quotient of their product ([Pharr 2023 §6.8.3]). A ray
-/// that only touches has the root twice.
+/// The discriminant is (r + m)(r − m)/d² with m the least distance from the centre, and of the two
+/// roots the one of larger size is found first; the other is the quotient of their product
+/// ([Pharr 2023 §6.8.3]). A ray that only touches has the root twice.
 pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     let a = d.dot(d);
     let middle = -o.dot(d) / a;
@@ -156,11 +159,12 @@ pub(super) fn roots(o: DVec3, d: DVec3, radius: f64) -> Option<[f64; 2]> {
     Some(if larger < other { [larger, other] } else { [other, larger] })
 }
 
-/// The roots of x² + y² = q₀ + q₁z + q₂z² along o + t·d: where a ray meets a surface of revolution around the z
-/// axis. One of them is infinite where the ray runs along an asymptote.
+/// The roots of x² + y² = q₀ + q₁z + q₂z² along o + t·d: where a ray meets a surface of revolution
+/// around the z axis. One of them is infinite where the ray runs along an asymptote.
 ///
-/// The ray is first moved up to `near`, a point amid the part of the surface that counts: its coefficients then have
-/// the size of the surface, however far the origin is. The root of larger size is found first, as in [`roots`].
+/// The ray is first moved up to `near`, a point amid the part of the surface that counts: its
+/// coefficients then have the size of the surface, however far the origin is. The root of larger
+/// size is found first, as in [`roots`].
 pub(super) fn revolved_roots(q: [f64; 3], o: DVec3, d: DVec3, near: DVec3) -> Option<[f64; 2]> {
     let start = (near - o).dot(d) / d.dot(d);
     let o = o + d * start;

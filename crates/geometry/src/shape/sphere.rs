@@ -1,10 +1,11 @@
 //! The sphere x² + y² + z² = r², or the part of it with z_min ≤ z ≤ z_max and φ ≤ φ_max.
 //!
-//! p(u, v) = r·(sin θ cos φ, sin θ sin φ, cos θ), φ = u·φ_max, θ = θ(z_min) + v·(θ(z_max) − θ(z_min)).
+//! p(u, v) = r·(sin θ cos φ, sin θ sin φ, cos θ), φ = u·φ_max, θ = θ(z_min) + v·(θ(z_max) −
+//! θ(z_min)).
 //!
-//! A whole sphere under a similarity transform is sampled over the cone in which it is seen from outside:
-//! with sin θ_max = r/d, the cosine is uniform in [cos θ_max, 1], so that the density is 1/(2π(1 − cos
-//! θ_max)). All else is sampled by area ([Pharr 2023 §6.2]).
+//! A whole sphere under a similarity transform is sampled over the cone in which it is seen from
+//! outside: with sin θ_max = r/d, the cosine is uniform in [cos θ_max, 1], so that the density is
+//! 1/(2π(1 − cos θ_max)). All else is sampled by area ([Pharr 2023 §6.2]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
@@ -27,8 +28,8 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// A part of the sphere around the object's origin: between two heights along z, up to an angle in
-    /// degrees.
+    /// A part of the sphere around the object's origin: between two heights along z, up to an angle
+    /// in degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,
@@ -127,8 +128,8 @@ impl Sphere {
     pub(super) fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
         let cone = self.cone(reference)?;
         let (center, radius) = self.ball?;
-        // The near point of the sphere in a direction at θ from its centre, by the angle α that it makes
-        // there.
+        // The near point of the sphere in a direction at θ from its centre, by the angle α that it
+        // makes there.
         let below_one = cone.one_minus_cos * u.x as f64;
         let cos = 1.0 - below_one;
         let sin2 = below_one * (1.0 + cos);
@@ -176,7 +177,8 @@ impl Sphere {
         self.phi_max * self.radius * (self.z[1] - self.z[0])
     }
 
-    /// The point at fractions of the height and of the angle, which are uniform over the area (Archimedes).
+    /// The point at fractions of the height and of the angle, which are uniform over the area
+    /// (Archimedes).
     fn place(&self, u: f64, v: f64) -> DVec3 {
         let z = self.z[0] + (self.z[1] - self.z[0]) * u;
         direction(z / self.radius, v * self.phi_max) * self.radius

@@ -1,8 +1,8 @@
 //! The triangle p(b₁, b₂) = p₀ + b₁(p₁ − p₀) + b₂(p₂ − p₀).
 //!
-//! Seen from a point, it is sampled by the solid angle of its projection on the unit sphere ([Arvo 1995]),
-//! warped so that the samples follow the cosine at that point; where that solid angle is too small or too
-//! near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
+//! Seen from a point, it is sampled by the solid angle of its projection on the unit sphere
+//! ([Arvo 1995]), warped so that the samples follow the cosine at that point; where that solid
+//! angle is too small or too near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
 
 use super::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
@@ -111,8 +111,8 @@ impl Triangle {
         SphericalTriangle::new(self.p, reference.p.p).filter(|s| SPHERICAL.contains(&s.solid_angle()))
     }
 
-    /// Weights at the corners of the unit square: u₁ = 0 becomes corner 1, and u₁ = 1 the side from corner 0
-    /// to corner 2.
+    /// Weights at the corners of the unit square: u₁ = 0 becomes corner 1, and u₁ = 1 the side from
+    /// corner 0 to corner 2.
     fn weights(&self, reference: &ShapeSampleContext) -> Option<[f32; 4]> {
         (reference.ns != Vec3::ZERO).then(|| {
             let [w0, w1, w2] = self.p.map(|p| p - reference.p.p);

@@ -42,8 +42,8 @@ pub unsafe fn run<T: Task>(task: T) -> T::Output {
 #[derive(Clone, Copy)]
 pub(crate) struct Four(__m128);
 
-// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
-// from them. Arrays have as many floats as are read or written.
+// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever
+// has a vector got it from them. Arrays have as many floats as are read or written.
 impl Vector<4> for Four {
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {
@@ -117,8 +117,8 @@ impl Vector<4> for Four {
 #[derive(Clone, Copy)]
 pub(crate) struct Eight(__m256);
 
-// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
-// from them. Arrays have as many floats as are read or written.
+// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever
+// has a vector got it from them. Arrays have as many floats as are read or written.
 impl Vector<8> for Eight {
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {

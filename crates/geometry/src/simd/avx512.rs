@@ -1,5 +1,5 @@
-//! Sixteen floats at once, and the vectors of AVX2 with twice the registers. Their comparisons stay vectors: bits from masks take
-//! longer.
+//! Sixteen floats at once, and the vectors of AVX2 with twice the registers. Their comparisons stay
+//! vectors: bits from masks take longer.
 
 use super::avx2::{Avx2, Eight, Four};
 use super::{Simd, Task, Vector};
@@ -37,8 +37,8 @@ pub unsafe fn run<T: Task>(task: T) -> T::Output {
 #[derive(Clone, Copy)]
 pub(crate) struct Sixteen(__m512);
 
-// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
-// from them. Arrays have as many floats as are read or written.
+// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever
+// has a vector got it from them. Arrays have as many floats as are read or written.
 impl Vector<16> for Sixteen {
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {

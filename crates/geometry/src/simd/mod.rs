@@ -1,9 +1,10 @@
 //! Vectors of floats, and the instruction sets that compute with them.
 //!
-//! What is written once for any [`Simd`] runs on each set of instructions; the best one that the processor
-//! has is chosen once, by [`InstructionSet::detect`]. Every operation gives the same bits on every set, fused
-//! multiplication and addition included, so that hits do not depend on the machine. The one exception is
-//! [`Vector::mul_sub_loosely`], for bounds, which are conservative anyway.
+//! What is written once for any [`Simd`] runs on each set of instructions; the best one that the
+//! processor has is chosen once, by [`InstructionSet::detect`]. Every operation gives the same bits
+//! on every set, fused multiplication and addition included, so that hits do not depend on the
+//! machine. The one exception is [`Vector::mul_sub_loosely`], for bounds, which are conservative
+//! anyway.
 //!
 //! Only what makes a vector is unsafe: who has a vector has the instructions that compute with it.
 
@@ -68,7 +69,8 @@ pub(crate) trait Simd: Copy {
     type Eight: Vector<8>;
     type Sixteen: Vector<16>;
 
-    /// Takes four lanes of eight: those that byte `BYTE` of each place names, of which three bits count.
+    /// Takes four lanes of eight: those that byte `BYTE` of each place names, of which three bits
+    /// count.
     #[inline(always)]
     fn pick<const BYTE: usize>(from: Self::Eight, places: &[u32; 4]) -> Self::Four {
         let from = from.store();
@@ -81,7 +83,8 @@ pub(crate) trait Simd: Copy {
     fn prefetch(_: *const u8) {}
 }
 
-/// Asks for the line of the cache where a value begins, soon to be read, with what every processor has.
+/// Asks for the line of the cache where a value begins, soon to be read, with what every processor
+/// has.
 #[inline(always)]
 pub(crate) fn prefetch<T>(value: &T) {
     #[cfg(target_arch = "x86_64")]
@@ -91,7 +94,8 @@ pub(crate) fn prefetch<T>(value: &T) {
     Least::prefetch(std::ptr::from_ref(value).cast());
 }
 
-/// The index of the first key that is the same as the one at an index, with what every processor has.
+/// The index of the first key that is the same as the one at an index, with what every processor
+/// has.
 #[inline(always)]
 pub(crate) fn first_equal(keys: &[u32; 16], to: usize) -> usize {
     #[cfg(target_arch = "x86_64")]

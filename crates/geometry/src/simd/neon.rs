@@ -33,7 +33,8 @@ fn bits(mask: uint32x4_t) -> u32 {
     unsafe { vaddvq_u32(vandq_u32(mask, vld1q_u32(BITS.as_ptr()))) }
 }
 
-// SAFETY, for every block below: every 64-bit Arm processor has NEON. Arrays have as many floats as are read or written.
+// SAFETY, for every block below: every 64-bit Arm processor has NEON. Arrays have as many floats as
+// are read or written.
 impl Vector<4> for Four {
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {

@@ -1,4 +1,5 @@
-//! Four floats at once, which every x86-64 processor can do; products are fused with sums in doubles.
+//! Four floats at once, which every x86-64 processor can do; products are fused with sums in
+//! doubles.
 
 use super::pair::Pair;
 use super::{Simd, Task, Vector};
@@ -43,8 +44,8 @@ pub(super) fn first_equal(keys: &[u32; 16], to: usize) -> usize {
 #[derive(Clone, Copy)]
 pub(crate) struct Four(__m128);
 
-// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever has a vector got it
-// from them. Arrays have as many floats as are read or written.
+// SAFETY, for every block below: the constructors' callers promised the instructions, and whoever
+// has a vector got it from them. Arrays have as many floats as are read or written.
 impl Vector<4> for Four {
     #[inline(always)]
     unsafe fn splat(x: f32) -> Self {
@@ -114,9 +115,9 @@ impl Vector<4> for Four {
     }
 }
 
-/// a·b + c, rounded once. The product of two floats is exact in doubles. The sum is rounded there *to odd*: where it is
-/// not exact, its last bit is made 1, so that rounding it again to a float goes as if from the exact sum
-/// ([Boldo 2008]).
+/// a·b + c, rounded once. The product of two floats is exact in doubles. The sum is rounded there
+/// *to odd*: where it is not exact, its last bit is made 1, so that rounding it again to a float
+/// goes as if from the exact sum ([Boldo 2008]).
 #[inline(always)]
 unsafe fn fused(a: __m128, b: __m128, c: __m128) -> __m128 {
     // SAFETY: every x86-64 processor has SSE2.
@@ -137,8 +138,8 @@ unsafe fn fused_doubles(a: __m128d, b: __m128d, c: __m128d) -> __m128 {
         let c_part = _mm_sub_pd(sum, product);
         let product_part = _mm_sub_pd(sum, c_part);
         let lost = _mm_add_pd(_mm_sub_pd(product, product_part), _mm_sub_pd(c, c_part));
-        // An inexact sum with an even last bit moves one bit towards what it lost. As an integer it grows when both have
-        // one sign, and shrinks otherwise.
+        // An inexact sum with an even last bit moves one bit towards what it lost. As an integer it
+        // grows when both have one sign, and shrinks otherwise.
         let inexact = _mm_castpd_si128(_mm_cmpneq_pd(lost, _mm_setzero_pd()));
         let inexact = _mm_and_si128(inexact, _mm_castpd_si128(_mm_cmpord_pd(lost, lost)));
         let bits = _mm_castpd_si128(sum);

@@ -1,17 +1,19 @@
-//! Displaced surfaces: a mesh is cut until its edges are short, then its vertices move along their normals.
+//! Displaced surfaces: a mesh is cut until its edges are short, then its vertices move along their
+//! normals.
 //!
-//! A triangle with an edge that is too long is cut in two at the middle of its longest edge. Whether an edge
-//! is cut depends on the edge alone, so that the triangles on its two sides agree and no crack opens ([Rivara
-//! 1984]). Normals are then those of the moved surface: at each vertex the mean of its triangles' normals.
+//! A triangle with an edge that is too long is cut in two at the middle of its longest edge.
+//! Whether an edge is cut depends on the edge alone, so that the triangles on its two sides agree
+//! and no crack opens ([Rivara 1984]). Normals are then those of the moved surface: at each vertex
+//! the mean of its triangles' normals.
 
 use super::{MOST_TRIANGLES, MeshArrays};
 use crate::mesh::MeshError;
 use math::{Normal3, Point3, Transform, Vec2};
 use std::collections::HashMap;
 
-/// A mesh with texture coordinates, cut until all edges are shorter than `edge_length` in render space, and
-/// moved by `height` along its normals (those of its triangles, where it has none). The height is asked for
-/// at a vertex: its position, unit normal and texture coordinates.
+/// A mesh with texture coordinates, cut until all edges are shorter than `edge_length` in render
+/// space, and moved by `height` along its normals (those of its triangles, where it has none). The
+/// height is asked for at a vertex: its position, unit normal and texture coordinates.
 pub fn displaced(
     mut mesh: MeshArrays,
     render_from_object: &Transform,

@@ -1,18 +1,19 @@
 //! The limit surface of a triangle mesh under Loop subdivision.
 //!
-//! Each level cuts every triangle into four. A vertex with n neighbours moves to (1 − nβ)·v + β·Σ neighbours,
-//! β = 3/16 for n = 3 and 3/(8n) otherwise; a new vertex on an edge stands at 3/8 of its ends and 1/8 of the
-//! two corners that face the edge. On the border the weights are those of a cubic B-spline: 1/8, 3/4, 1/8 and
-//! 1/2, 1/2. In the end vertices move on to where they would come after endless levels, by the weight
-//! 1/(n + 3/(8β)), and normals are the cross products of the limit's tangents ([Loop 1987]; [Hoppe 1994];
-//! [Pharr 2016 §3.8]).
+//! Each level cuts every triangle into four. A vertex with n neighbours moves to (1 − nβ)·v + β·Σ
+//! neighbours, β = 3/16 for n = 3 and 3/(8n) otherwise; a new vertex on an edge stands at 3/8 of
+//! its ends and 1/8 of the two corners that face the edge. On the border the weights are those of a
+//! cubic B-spline: 1/8, 3/4, 1/8 and 1/2, 1/2. In the end vertices move on to where they would come
+//! after endless levels, by the weight 1/(n + 3/(8β)), and normals are the cross products of the
+//! limit's tangents ([Loop 1987]; [Hoppe 1994]; [Pharr 2016 §3.8]).
 //!
-//! Three things are as the pbrt format has them. Normals stand on the side from which triangles run clockwise,
-//! and keep the length of the cross product. Tangents are taken between neighbours that are at their limit
-//! already. On the border that last move is by 1/5, where the limit of a B-spline would want 1/6.
+//! Three things are as the pbrt format has them. Normals stand on the side from which triangles run
+//! clockwise, and keep the length of the cross product. Tangents are taken between neighbours that
+//! are at their limit already. On the border that last move is by 1/5, where the limit of a
+//! B-spline would want 1/6.
 //!
-//! Connectivity is kept by half-edges: number 3f + k leads from corner k of triangle f to the next; its twin
-//! leads back. Twins of a level follow from those of the level before.
+//! Connectivity is kept by half-edges: number 3f + k leads from corner k of triangle f to the next;
+//! its twin leads back. Twins of a level follow from those of the level before.
 
 use super::{MOST_TRIANGLES, MeshArrays};
 use crate::mesh::MeshError;
@@ -122,7 +123,8 @@ impl Mesh {
         Some(self.twins[edge as usize]).filter(|&twin| twin != NONE)
     }
 
-    /// The half-edges that leave a vertex, counterclockwise; on the border from its one end to the other.
+    /// The half-edges that leave a vertex, counterclockwise; on the border from its one end to the
+    /// other.
     fn around(&self, vertex: u32) -> impl Iterator<Item = u32> {
         let first = self.leaving[vertex as usize];
         std::iter::successors(Some(first), move |&edge| self.twin(previous(edge)).filter(|&e| e != first))
@@ -148,8 +150,8 @@ impl Mesh {
         ends.chain(last.map(|edge| self.point(self.origin(previous(edge))))).collect()
     }
 
-    /// A vertex and its neighbours, weighted: on the border by `border` for the two along it, else by `inner`
-    /// of how many there are.
+    /// A vertex and its neighbours, weighted: on the border by `border` for the two along it, else
+    /// by `inner` of how many there are.
     fn weighted(&self, vertex: u32, inner: impl Fn(f64) -> f64, border: f64) -> DVec3 {
         let (p, ring) = (self.point(vertex), self.ring(vertex));
         if self.is_border(vertex) {
@@ -163,8 +165,8 @@ impl Mesh {
         self.weighted(vertex, |n| 1.0 / (n + 3.0 / (8.0 * beta(n))), 1.0 / 5.0)
     }
 
-    /// The normal at a vertex, by tangents whose weights of the neighbours sum to zero. Both are at their
-    /// limit.
+    /// The normal at a vertex, by tangents whose weights of the neighbours sum to zero. Both are at
+    /// their limit.
     fn normal(&self, vertex: u32) -> DVec3 {
         let ring = self.ring(vertex);
         let n = ring.len();
@@ -189,7 +191,8 @@ impl Mesh {
         (last - first).cross(inward)
     }
 
-    /// The next level. Triangle f becomes 4f, 4f + 1, 4f + 2 at its corners, and 4f + 3 between them.
+    /// The next level. Triangle f becomes 4f, 4f + 1, 4f + 2 at its corners, and 4f + 3 between
+    /// them.
     fn divided(&self) -> Self {
         let edges = self.twins.len() as u32;
         let mut points: Vec<DVec3> = self.vertices().map(|v| self.weighted(v, beta, 1.0 / 8.0)).collect();
@@ -214,7 +217,8 @@ impl Mesh {
         for (f, &[a, b, c]) in self.faces.iter().enumerate() {
             let [ab, bc, ca] = [0, 1, 2].map(|k| middles[3 * f + k]);
             faces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
-            // Half-edge k of the old triangle begins as one of child k, and ends as one of the child after that.
+            // Half-edge k of the old triangle begins as one of child k, and ends as one of the
+            // child after that.
             let beginning = |edge: u32| 12 * (edge / 3) + 4 * (edge % 3);
             let ending = |edge: u32| 12 * (edge / 3) + 3 * (next(edge) % 3) + edge % 3;
             let old = |k: u32| 3 * f as u32 + k;

@@ -1,5 +1,5 @@
-//! Meshes that are made finer before they are drawn: [`loop_subdivision`] for the smooth surface that a
-//! coarse mesh stands for, [`displaced`] for a surface moved along its normals.
+//! Meshes that are made finer before they are drawn: [`loop_subdivision`] for the smooth surface
+//! that a coarse mesh stands for, [`displaced`] for a surface moved along its normals.
 
 mod displacement;
 mod loop_subdivision;

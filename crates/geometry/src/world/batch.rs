@@ -1,10 +1,11 @@
 //! Many rays at once.
 //!
-//! Rays that run side by side from one point, as those of a camera do, pass the tree together: a beam around sixteen of them
-//! finds the boxes that any of them may enter, and these boxes and the triangles in them are tested against all sixteen at once.
+//! Rays that run side by side from one point, as those of a camera do, pass the tree together: a
+//! beam around sixteen of them finds the boxes that any of them may enter, and these boxes and the
+//! triangles in them are tested against all sixteen at once.
 //!
-//! Other rays pass it one by one. Many with scattered origins do so in an order of their own, so that nodes and triangles of
-//! which one has just had need are at hand for the next.
+//! Other rays pass it one by one. Many with scattered origins do so in an order of their own, so
+//! that nodes and triangles of which one has just had need are at hand for the next.
 //!
 //! Each ray finds the very hit that it would find alone.
 
@@ -25,8 +26,9 @@ use std::ops::Range;
 const AHEAD: usize = 16;
 
 impl World {
-    /// What [`World::intersect`] says of each ray and its `t_max`. Rays of a camera are best given by rows or tiles, in any
-    /// number from sixteen on; rays with scattered origins by tens of thousands, for fewer are no faster than alone.
+    /// What [`World::intersect`] says of each ray and its `t_max`. Rays of a camera are best given
+    /// by rows or tiles, in any number from sixteen on; rays with scattered origins by tens of
+    /// thousands, for fewer are no faster than alone.
     ///
     /// # Panics
     /// When there are not as many hits as rays.
@@ -40,7 +42,8 @@ impl World {
         self.trace_batch(rays, |(ray, t_max)| Nearest::new(ray, *t_max, filter), hits, stats);
     }
 
-    /// What [`World::occluded`] says of each ray and its `t_max`. How many are best is as for [`World::intersect_batch`].
+    /// What [`World::occluded`] says of each ray and its `t_max`. How many are best is as for
+    /// [`World::intersect_batch`].
     ///
     /// # Panics
     /// When there are not as many answers as rays.
@@ -130,8 +133,8 @@ fn prefetch<S: Simd, T>(what: &T) {
 /// How far apart the directions of rays side by side may be, in parts of their length.
 const SPREAD: f32 = 0.1;
 
-/// Whether rays are worth being taken together: they come from one point, go about the same way, with the same signs,
-/// and mostly along the same axis.
+/// Whether rays are worth being taken together: they come from one point, go about the same way,
+/// with the same signs, and mostly along the same axis.
 #[inline(always)]
 fn are_side_by_side(rays: &[(Ray, f32); WIDTH]) -> bool {
     let lead = &rays[0].0;

@@ -51,7 +51,8 @@ impl WorldBuilder {
         id
     }
 
-    /// Places a group, other than the top group, in the top group or in one that was added after it.
+    /// Places a group, other than the top group, in the top group or in one that was added after
+    /// it.
     ///
     /// # Panics
     /// When the group was added after the other one.
@@ -71,8 +72,8 @@ impl WorldBuilder {
         self
     }
 
-    /// Whether rays are tested against extents (bounding volumes) before what these hold, as by default, or
-    /// against every primitive, which finds the same hits.
+    /// Whether rays are tested against extents (bounding volumes) before what these hold, as by
+    /// default, or against every primitive, which finds the same hits.
     pub fn extents(mut self, used: bool) -> Self {
         self.extents = used;
         self

@@ -1,5 +1,5 @@
-//! What stands together: triangles and spheres of sets in trees of packets, other shapes and instances in a tree of single
-//! items, and whatever has no bounds in a list.
+//! What stands together: triangles and spheres of sets in trees of packets, other shapes and
+//! instances in a tree of single items, and whatever has no bounds in a list.
 
 #![allow(unsafe_code)]
 
@@ -92,7 +92,8 @@ impl Group {
         Self { triangles, packets, numbers, spheres, items, item_list, unbounded }
     }
 
-    /// Brings triangles and sets of spheres up to date after they have moved, but leaves their trees as they are.
+    /// Brings triangles and sets of spheres up to date after they have moved, but leaves their
+    /// trees as they are.
     pub fn refit_meshes_and_spheres(&mut self, geometries: &[Geometry]) {
         self.spheres.refit(geometries);
         let numbers = &self.numbers;
@@ -206,7 +207,8 @@ impl Group {
     }
 }
 
-/// Whether a ray can hit anything: directions that are not finite, or too short to have an inverse, lead nowhere.
+/// Whether a ray can hit anything: directions that are not finite, or too short to have an inverse,
+/// lead nowhere.
 pub(super) fn goes_somewhere(ray: &Ray) -> bool {
     ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
 }
@@ -339,8 +341,8 @@ impl<Q: Query> Leaves for Items<'_, '_, Q> {
     }
 }
 
-/// Shows `leaves` the blocks of a tree that the ray may meet, or `all` without a look at the tree. Returns the number of
-/// boxes tested, and whether `leaves` broke off.
+/// Shows `leaves` the blocks of a tree that the ray may meet, or `all` without a look at the tree.
+/// Returns the number of boxes tested, and whether `leaves` broke off.
 ///
 /// # Safety
 /// The blocks must be those of the tree, and the processor must have the instructions of the set.

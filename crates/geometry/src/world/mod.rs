@@ -1,8 +1,8 @@
 //! Everything that a ray can hit.
 //!
-//! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an [`Instance`]
-//! places another group in it, or in a group that is placed itself, at rest or moving. A shape that moves is
-//! an instance of a group with that shape alone.
+//! A world is a set of *groups*, each with trees of its own. Group 0 is what rays enter; an
+//! [`Instance`] places another group in it, or in a group that is placed itself, at rest or moving.
+//! A shape that moves is an instance of a group with that shape alone.
 
 mod batch;
 mod builder;
@@ -51,8 +51,8 @@ impl GroupId {
     pub const TOP: Self = Self(0);
 }
 
-/// What one description of an object becomes: one or more primitives that share whatever a scene ties to a
-/// [`GeometryId`].
+/// What one description of an object becomes: one or more primitives that share whatever a scene
+/// ties to a [`GeometryId`].
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// The triangles of a mesh.
@@ -115,7 +115,8 @@ impl Geometry {
         }
     }
 
-    /// One primitive as a shape of its own, as a light wants it; `None` of curves, which do not emit.
+    /// One primitive as a shape of its own, as a light wants it; `None` of curves, which do not
+    /// emit.
     pub fn shape(&self, primitive: u32) -> Option<Shape> {
         match self {
             Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
@@ -140,8 +141,8 @@ pub struct Instance {
 pub struct Hit {
     /// How far along the ray, in lengths of its direction.
     pub t: f32,
-    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, nothing on a sphere
-    /// of a set, the parameters (u, v) on other shapes.
+    /// Where on the primitive: barycentric coordinates of corners 1 and 2 on a triangle, nothing on
+    /// a sphere of a set, the parameters (u, v) on other shapes.
     pub uv: Vec2,
     /// Which geometry.
     pub geometry: GeometryId,
@@ -176,7 +177,8 @@ impl Placed {
     }
 }
 
-/// Everything that a ray can hit. Geometries may move ([`World::refit`]), but there will never be more or fewer of them.
+/// Everything that a ray can hit. Geometries may move ([`World::refit`]), but there will never be
+/// more or fewer of them.
 #[derive(Clone, Debug)]
 pub struct World {
     groups: Vec<Group>,
@@ -221,8 +223,8 @@ impl World {
         &self.instances[id.0 as usize].motion
     }
 
-    /// The nearest hit at 0 < t < `t_max` that `filter` keeps. The filter sees candidates in no promised
-    /// order, and must answer alike for the same candidate.
+    /// The nearest hit at 0 < t < `t_max` that `filter` keeps. The filter sees candidates in no
+    /// promised order, and must answer alike for the same candidate.
     pub fn intersect(
         &self,
         ray: &Ray,

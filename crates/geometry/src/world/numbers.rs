@@ -1,7 +1,8 @@
-//! The triangles of a group's meshes under one number each, which takes half the room of geometry and primitive.
+//! The triangles of a group's meshes under one number each, which takes half the room of geometry
+//! and primitive.
 //!
-//! Numbers run through the meshes in order. What has a number is found from a table of where every 256th number
-//! belongs, and few steps from there.
+//! Numbers run through the meshes in order. What has a number is found from a table of where every
+//! 256th number belongs, and few steps from there.
 
 use super::{Geometry, GeometryId};
 use math::Vec3;

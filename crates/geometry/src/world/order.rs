@@ -1,14 +1,16 @@
-//! In which order to trace many rays, so that those which pass the same nodes follow each other while these are at hand.
+//! In which order to trace many rays, so that those which pass the same nodes follow each other
+//! while these are at hand.
 //!
-//! Rays are sorted along a Z-order curve through their origins [Morton 1966], digit by digit, the last one first. Sorted
-//! by direction first, they would have fewer nodes in common.
+//! Rays are sorted along a Z-order curve through their origins [Morton 1966], digit by digit, the
+//! last one first. Sorted by direction first, they would have fewer nodes in common.
 
 use math::{Bounds3, Ray};
 
 /// Fewer rays have too few nodes in common to make up for the sorting.
 const ENOUGH: usize = 1 << 14;
 
-/// Rays follow each other closely when the mean distance from one origin to the next is below this part of the size of all.
+/// Rays follow each other closely when the mean distance from one origin to the next is below this
+/// part of the size of all.
 const CLOSE: f32 = 1.0 / 32.0;
 
 /// Cells of the curve along each axis, as a power of two.
@@ -18,8 +20,8 @@ const DIGIT: u32 = 11;
 /// Where that place begins in a key; the index of the ray lies below.
 const CURVE: u32 = 64 - 2 * DIGIT;
 
-/// The indices of all rays, those first that come first on the curve; nothing where rays are few, or follow each other
-/// closely as they are.
+/// The indices of all rays, those first that come first on the curve; nothing where rays are few,
+/// or follow each other closely as they are.
 pub(super) fn order(rays: &[(Ray, f32)]) -> Option<Vec<usize>> {
     if rays.len() < ENOUGH {
         return None;

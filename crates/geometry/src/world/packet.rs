@@ -1,7 +1,7 @@
 //! What a leaf tests: four triangles at once.
 //!
-//! Neighbours share vertices, and each is stored, moved and sheared only once. Four triangles that have more than eight
-//! between them are put into two packets.
+//! Neighbours share vertices, and each is stored, moved and sheared only once. Four triangles that
+//! have more than eight between them are put into two packets.
 
 #![allow(unsafe_code)]
 
@@ -48,7 +48,8 @@ impl Packet {
         (self.corners[lane] >> (8 * corner)) as usize % Self::VERTICES
     }
 
-    /// Fetches all vertices again; gives the box around the triangles. Nothing hits those that are not finite.
+    /// Fetches all vertices again; gives the box around the triangles. Nothing hits those that are
+    /// not finite.
     pub fn renew(&mut self, corners: impl Fn(u32) -> Option<[Vec3; 3]>) -> Bounds3 {
         let mut bounds = Bounds3::EMPTY;
         for lane in 0..self.len() {
@@ -109,8 +110,8 @@ impl Packet {
         LaneHits::of([corner(0), corner(1), corner(2)], t_max)
     }
 
-    /// What lane `of` of `found` says of the triangle in `lane`: its hit, unless there is no such triangle or a doubt is
-    /// decided against it.
+    /// What lane `of` of `found` says of the triangle in `lane`: its hit, unless there is no such
+    /// triangle or a doubt is decided against it.
     #[inline(always)]
     pub fn hit<const N: usize>(
         &self,
@@ -242,7 +243,8 @@ impl Primitives for MeshTriangles<'_> {
         }
         packet.numbers[..taken].copy_from_slice(&numbers[..taken]);
         for (lane, corners) in packet.corners.iter_mut().enumerate() {
-            // Lanes that are not in use repeat the first triangle, so that the test ends for them as soon as for that one.
+            // Lanes that are not in use repeat the first triangle, so that the test ends for them
+            // as soon as for that one.
             let triangle = if lane < taken { lane } else { 0 };
             let [a, b, c] = [0, 1, 2].map(|corner| before(firsts[3 * triangle + corner]));
             *corners = a | b << 8 | c << 16;

@@ -1,4 +1,5 @@
-//! The primitives of a world without rays: what there is, how often, and its points by their parameters.
+//! The primitives of a world without rays: what there is, how often, and its points by their
+//! parameters.
 
 use super::{Geometry, GeometryId, GroupId, InstanceId, InstancePath, World};
 use crate::surface::SurfacePoint;
@@ -25,9 +26,9 @@ impl World {
         }
     }
 
-    /// What is known of the surface of a primitive where a [`Hit`](super::Hit) has these parameters (on a sphere of a set: those
-    /// of the surface), seen from along its normal; `None` where primitives have no such parameters: planes,
-    /// formulas, solids and curves.
+    /// What is known of the surface of a primitive where a [`Hit`](super::Hit) has these parameters
+    /// (on a sphere of a set: those of the surface), seen from along its normal; `None` where
+    /// primitives have no such parameters: planes, formulas, solids and curves.
     pub fn surface_at(
         &self,
         geometry: GeometryId,

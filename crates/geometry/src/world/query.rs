@@ -1,7 +1,7 @@
 //! What is asked of a ray: its nearest hit, or whether it hits anything.
 //!
-//! The answer does not depend on the order in which hits are offered: of those at the same distance, the
-//! nearest is the one whose instance, geometry and primitive come first.
+//! The answer does not depend on the order in which hits are offered: of those at the same
+//! distance, the nearest is the one whose instance, geometry and primitive come first.
 
 use super::Hit;
 use math::Ray;

@@ -9,8 +9,8 @@ use std::fmt;
 pub enum RefitError {
     /// The world has no such geometry.
     Unknown(GeometryId),
-    /// One is a mesh and the other is not, they differ in the number of primitives or in the vertices of triangles, or a
-    /// primitive has an end where its successor has none.
+    /// One is a mesh and the other is not, they differ in the number of primitives or in the
+    /// vertices of triangles, or a primitive has an end where its successor has none.
     Different(GeometryId),
 }
 
@@ -27,10 +27,11 @@ impl std::error::Error for RefitError {}
 
 impl World {
     /// Puts geometries in the place of others that have the same primitives elsewhere, as
-    /// [`TriangleMesh::moved`](crate::TriangleMesh::moved) makes them. All trees keep their form, so that this takes
-    /// a fraction of the time of building, and rays find what they would in a new world; but they find it the more
-    /// slowly the further neighbours have moved apart. Primitives that were not finite when the world was built stay
-    /// left out; those that are not finite now are left out until they are.
+    /// [`TriangleMesh::moved`](crate::TriangleMesh::moved) makes them. All trees keep their form,
+    /// so that this takes a fraction of the time of building, and rays find what they would in a
+    /// new world; but they find it the more slowly the further neighbours have moved apart.
+    /// Primitives that were not finite when the world was built stay left out; those that are not
+    /// finite now are left out until they are.
     ///
     /// Where there is an error, nothing is changed.
     pub fn refit(

@@ -1,9 +1,10 @@
 //! The spheres of a group's sets: a tree over packets of eight.
 //!
-//! A packet says in floats which of its spheres the ray may meet; each of those few is then put to the test in doubles, which
-//! has the last word. With m = c − o, unit direction d and b = m·d the ray passes the centre at the distance |m − b·d|. A
-//! sphere is refused only when that exceeds r + E, or when the range b ± (r + E) lies outside of the ray's; E is above twice the
-//! rounding of m, d, b and the distance, each of which is within a few ε·|m|.
+//! A packet says in floats which of its spheres the ray may meet; each of those few is then put to
+//! the test in doubles, which has the last word. With m = c − o, unit direction d and b = m·d the
+//! ray passes the centre at the distance |m − b·d|. A sphere is refused only when that exceeds r +
+//! E, or when the range b ± (r + E) lies outside of the ray's; E is above twice the rounding of m,
+//! d, b and the distance, each of which is within a few ε·|m|.
 
 #![allow(unsafe_code)]
 
@@ -39,8 +40,8 @@ impl Spheres {
         self.tree.bytes() + size_of_val(&*self.packets)
     }
 
-    /// Shows hits to the query; whether it wants no more. Their parameters are zero: only the surface knows
-    /// them.
+    /// Shows hits to the query; whether it wants no more. Their parameters are zero: only the
+    /// surface knows them.
     pub fn trace<Q: Query>(&self, trace: &mut Trace, query: &mut Q) -> bool {
         if self.packets.is_empty() {
             return false;
@@ -196,7 +197,8 @@ impl Packet {
     /// Spheres in a packet.
     const WIDTH: usize = 8;
 
-    /// A packet, and the box around it. Lanes that are not in use have a centre that nothing is near to.
+    /// A packet, and the box around it. Lanes that are not in use have a centre that nothing is
+    /// near to.
     fn new(block: &[Reference], geometries: &[Geometry]) -> (Self, Bounds3) {
         let mut packet = Self {
             center: [[f32::NAN; Self::WIDTH]; 3],
@@ -211,9 +213,11 @@ impl Packet {
         (packet, bounds)
     }
 
-    /// Takes the spheres from their sets again; gives the box around them. Spheres that are not finite are met by nothing.
+    /// Takes the spheres from their sets again; gives the box around them. Spheres that are not
+    /// finite are met by nothing.
     fn renew(&mut self, geometries: &[Geometry]) -> Bounds3 {
-        // Nothing but loads, so that many are under way at once: spheres of a packet lie anywhere in their arrays.
+        // Nothing but loads, so that many are under way at once: spheres of a packet lie anywhere
+        // in their arrays.
         let mut spheres = [(Vec3::NAN, 0.0); Self::WIDTH];
         for (sphere, (geometry, primitive)) in spheres.iter_mut().zip(self.ids).take(self.len as usize) {
             if let Geometry::Spheres(set) = &geometries[geometry as usize] {

@@ -9,7 +9,8 @@ pub struct RayStats {
     pub rays: u64,
     /// Tests of a ray, or of a beam around several, against an extent (a bounding volume).
     pub extents: u64,
-    /// Tests of a ray against a primitive. Triangles are tested by fours, which count as four however many there are.
+    /// Tests of a ray against a primitive. Triangles are tested by fours, which count as four
+    /// however many there are.
     pub primitives: u64,
 }
 

@@ -40,7 +40,8 @@ pub fn cube(transform: &Transform) -> TriangleMesh {
     mesh(positions, indices, transform)
 }
 
-/// A closed, bumpy ball of 2·n·(n − 1) triangles or so: every radius is between 1 − bump and 1 + bump.
+/// A closed, bumpy ball of 2·n·(n − 1) triangles or so: every radius is between 1 − bump and 1 +
+/// bump.
 pub fn ball(n: u32, bump: f32, transform: &Transform) -> TriangleMesh {
     let mut positions = vec![Vec3::Z, -Vec3::Z];
     for i in 1..n {

@@ -1,8 +1,9 @@
-//! OpenEXR, by the block interface of the `exr` crate: every compression that it knows, scan lines and tiles, of mip levels the
-//! largest, of several parts the first with colour. Deep and chroma-subsampled pictures are refused.
+//! OpenEXR, by the block interface of the `exr` crate: every compression that it knows, scan lines
+//! and tiles, of mip levels the largest, of several parts the first with colour. Deep and
+//! chroma-subsampled pictures are refused.
 //!
-//! Blocks are unpacked on the calling thread pool rather than by the crate's own threads, as a panic on those would end the
-//! process. Sources: [OpenEXR file layout].
+//! Blocks are unpacked on the calling thread pool rather than by the crate's own threads, as a
+//! panic on those would end the process. Sources: [OpenEXR file layout].
 
 use std::io::Cursor;
 
@@ -30,7 +31,8 @@ use crate::{
 /// How many blocks are in memory packed and unpacked at a time.
 const BATCH: usize = 64;
 
-/// Pictures of half floats alone stay so; whatever else becomes single floats. Channels come as R, G, B, A, then by name.
+/// Pictures of half floats alone stay so; whatever else becomes single floats. Channels come as R,
+/// G, B, A, then by name.
 pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> {
     let reader = block::read(Cursor::new(bytes), false).map_err(from_library)?;
     let layer = choose_layer(reader.headers())?;
@@ -269,8 +271,8 @@ pub fn encode(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, ImageErr
     Ok(bytes)
 }
 
-/// Puts the attributes of a file's header in the order of their names: the library leaves it to chance, and the same picture is to be the
-/// same bytes. Nothing that follows the header moves.
+/// Puts the attributes of a file's header in the order of their names: the library leaves it to
+/// chance, and the same picture is to be the same bytes. Nothing that follows the header moves.
 fn sort_attributes(file: &mut [u8]) {
     /// The magic number and the version.
     const BEFORE: usize = 8;
@@ -284,8 +286,8 @@ fn sort_attributes(file: &mut [u8]) {
     file[BEFORE..end].copy_from_slice(&attributes.concat());
 }
 
-/// How long the attribute is with which a header begins: name and type, each with a zero after it, the value's length, the value. `None` at
-/// the header's end.
+/// How long the attribute is with which a header begins: name and type, each with a zero after it,
+/// the value's length, the value. `None` at the header's end.
 fn attribute_length(header: &[u8]) -> Option<usize> {
     let name = header.iter().position(|&byte| byte == 0).filter(|&length| length > 0)?;
     let kind = header[name + 1..].iter().position(|&byte| byte == 0)?;

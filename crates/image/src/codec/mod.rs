@@ -1,8 +1,9 @@
 //! File formats: bytes ↔ [`Image`].
 //!
-//! Each member of [`Format`] is known by its first bytes, then by the extension of its name (TGA has no signature).
-//! Decoders are fed with bytes of strangers: a size that a header claims is held against what its bytes could possibly hold
-//! before memory is taken for it, and a panic inside a third-party decoder becomes [`ImageError::Invalid`].
+//! Each member of [`Format`] is known by its first bytes, then by the extension of its name (TGA
+//! has no signature). Decoders are fed with bytes of strangers: a size that a header claims is held
+//! against what its bytes could possibly hold before memory is taken for it, and a panic inside a
+//! third-party decoder becomes [`ImageError::Invalid`].
 
 mod exr;
 mod pfm;
@@ -66,7 +67,8 @@ impl Format {
         Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()))
     }
 
-    /// The format that these first bytes are the signature of; never [`Format::Tga`], which has none.
+    /// The format that these first bytes are the signature of; never [`Format::Tga`], which has
+    /// none.
     pub fn from_content(bytes: &[u8]) -> Option<Self> {
         match bytes {
             [0x76, 0x2f, 0x31, 0x01, ..] => Some(Self::Exr),
@@ -85,7 +87,8 @@ impl Format {
 /// How to read.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
-    /// What integer codes stand for; `None` means sRGB. Floating-point files are linear whatever this says.
+    /// What integer codes stand for; `None` means sRGB. Floating-point files are linear whatever
+    /// this says.
     pub encoding: Option<ColorEncoding>,
     /// The most bytes that a decoded image may take; 16 GiB by default.
     pub max_bytes: u64,
@@ -102,8 +105,9 @@ impl ReadOptions {
         self.encoding.unwrap_or_default()
     }
 
-    /// The most bytes that a decoded image may take, given the length of its file. No format here packs more than some thousand
-    /// bytes into one, so a small file that claims a huge picture is lying.
+    /// The most bytes that a decoded image may take, given the length of its file. No format here
+    /// packs more than some thousand bytes into one, so a small file that claims a huge picture is
+    /// lying.
     fn byte_limit(&self, file_length: usize) -> u64 {
         const GREATEST_RATIO: u64 = 4096;
         const ALWAYS_ALLOWED: u64 = 64 << 20;
@@ -132,8 +136,8 @@ impl ReadOptions {
 /// How values are stored in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SampleDepth {
-    /// What suits the format: in EXR the depth of the image in memory (halves for 8-bit images), in TIFF single floats for
-    /// floating-point images, else 8 bits where the format has integers.
+    /// What suits the format: in EXR the depth of the image in memory (halves for 8-bit images), in
+    /// TIFF single floats for floating-point images, else 8 bits where the format has integers.
     #[default]
     Natural,
     /// 8-bit codes.
@@ -153,7 +157,8 @@ pub struct WriteOptions {
     pub depth: SampleDepth,
 }
 
-/// Decodes the bytes of a file. `name` is used where the content does not tell the format, and may be empty.
+/// Decodes the bytes of a file. `name` is used where the content does not tell the format, and may
+/// be empty.
 pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, ImageError> {
     let Some(format) = Format::from_content(bytes).or_else(|| Format::from_name(name)) else {
         return Err(ImageError::Unsupported("neither content nor name tell a known image format".into()));
@@ -163,12 +168,14 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, Im
         Format::Pfm => pfm::decode(bytes, options),
         _ => raster::decode(bytes, format, options),
     };
-    // The decoders of other crates are not proof against every byte string; a damaged picture must not end a render.
+    // The decoders of other crates are not proof against every byte string; a damaged picture must
+    // not end a render.
     catch_unwind(AssertUnwindSafe(decode))
         .unwrap_or_else(|_| Err(ImageError::Invalid(format!("damaged {format:?} data"))))
 }
 
-/// Encodes an image as the bytes of a file. Integer formats hold sRGB codes of the colour clamped to [0, 1].
+/// Encodes an image as the bytes of a file. Integer formats hold sRGB codes of the colour clamped
+/// to [0, 1].
 pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
     match format {
         Format::Exr => exr::encode(image, options),
@@ -190,7 +197,8 @@ pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> R
     Ok(replace_file(path, &encode(image, format, options)?)?)
 }
 
-/// Writes a file that appears whole or not at all: it is written beside its final place and then moved there.
+/// Writes a file that appears whole or not at all: it is written beside its final place and then
+/// moved there.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
         return fs::write(path, bytes);
@@ -199,7 +207,8 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let written =
         file.write_all(bytes).and_then(|()| file.sync_all()).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
-        // The first error is the one to tell; a leftover that cannot be removed either changes nothing about it.
+        // The first error is the one to tell; a leftover that cannot be removed either changes
+        // nothing about it.
         let _ = fs::remove_file(&temporary);
     }
     written

@@ -1,5 +1,6 @@
-//! Portable float maps: a text header `PF` (RGB) or `Pf` (one channel), width, height and a scale whose sign tells the byte
-//! order (negative: little endian), then rows of single floats from the **bottom** up [Debevec, PFM format].
+//! Portable float maps: a text header `PF` (RGB) or `Pf` (one channel), width, height and a scale
+//! whose sign tells the byte order (negative: little endian), then rows of single floats from the
+//! **bottom** up [Debevec, PFM format].
 
 use super::{ReadOptions, SampleDepth, WriteOptions};
 use crate::{

@@ -59,7 +59,8 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
     Image::new(width, height, channels.iter().copied(), pixels)
 }
 
-/// Refuses a PNG whose pixels name colours that its palette does not have, which the library takes for black.
+/// Refuses a PNG whose pixels name colours that its palette does not have, which the library takes
+/// for black.
 fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
     let damaged = |error: png::DecodingError| ImageError::Invalid(error.to_string());
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(damaged)?;
@@ -83,7 +84,8 @@ fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
     Err(ImageError::Invalid(format!("a PNG pixel names a colour beyond the palette of {color_count}")))
 }
 
-/// Integer formats hold sRGB codes of the colour clamped to [0, 1]; alpha is kept where the format has it.
+/// Integer formats hold sRGB codes of the colour clamped to [0, 1]; alpha is kept where the format
+/// has it.
 pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
     let depth = match (format, options.depth) {
         (Format::Hdr, SampleDepth::Natural) => SampleDepth::F32,

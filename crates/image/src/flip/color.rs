@@ -1,6 +1,8 @@
-//! The colour spaces of FLIP: linear sRGB → XYZ → YCxCz, and → CIE L*a*b* with Hunt-adjusted chroma.
+//! The colour spaces of FLIP: linear sRGB → XYZ → YCxCz, and → CIE L*a*b* with Hunt-adjusted
+//! chroma.
 //!
-//! White is that of the sRGB matrix below (D65). The digits are those of the published evaluator, so that numbers agree.
+//! White is that of the sRGB matrix below (D65). The digits are those of the published evaluator,
+//! so that numbers agree.
 
 use math::Vec3;
 
@@ -35,7 +37,8 @@ pub fn rgb_from_ycxcz(c: Vec3) -> Vec3 {
     rgb_from_xyz(Vec3::new(y + c.y / 500.0, y, y - c.z / 200.0) * WHITE)
 }
 
-/// L*a*b* whose chroma is scaled by lightness, as colours seem more vivid in more light [Hunt 1952].
+/// L*a*b* whose chroma is scaled by lightness, as colours seem more vivid in more light
+/// [Hunt 1952].
 pub fn hunt_lab_from_rgb(rgb: Vec3) -> Vec3 {
     let c = xyz_from_rgb(rgb) / WHITE;
     let [x, y, z] = c.to_array().map(|t| {

@@ -1,16 +1,19 @@
 //! FLIP: how different two pictures look when they are flipped on a screen in turn.
 //!
-//! Both pictures are blurred as the eye blurs them, by contrast sensitivity functions in the opponent space YCxCz, each a
-//! Gaussian (blue-yellow: the sum of two) a √(π/b) exp(−π² x² / b), x in degrees. Then per pixel, with HyAB distance D in
-//! Hunt-adjusted L*a*b* and D_max that of green and blue,
+//! Both pictures are blurred as the eye blurs them, by contrast sensitivity functions in the
+//! opponent space YCxCz, each a Gaussian (blue-yellow: the sum of two) a √(π/b) exp(−π² x² / b), x
+//! in degrees. Then per pixel, with HyAB distance D in Hunt-adjusted L*a*b* and D_max that of green
+//! and blue,
 //!
-//! ΔE_c = D^0.7, mapped linearly so that [0, 0.4 D_max^0.7] becomes [0, 0.95] and the rest [0.95, 1];
-//! ΔE_f = (max(|‖e_r‖ − ‖e_t‖|, |‖p_r‖ − ‖p_t‖|) / √2)^0.5 of edges e and points p: first and second derivatives of the
-//! unblurred lightness under a Gaussian of deviation 0.041 degrees; and ΔE = ΔE_c^(1 − ΔE_f) in [0, 1].
+//! ΔE_c = D^0.7, mapped linearly so that [0, 0.4 D_max^0.7] becomes [0, 0.95] and the rest
+//! [0.95, 1]; ΔE_f = (max(|‖e_r‖ − ‖e_t‖|, |‖p_r‖ − ‖p_t‖|) / √2)^0.5 of edges e and points p:
+//! first and second derivatives of the unblurred lightness under a Gaussian of deviation 0.041
+//! degrees; and ΔE = ΔE_c^(1 − ΔE_f) in [0, 1].
 //!
-//! [`hdr_flip`] takes pictures of any range: it is the largest ΔE over exposures 1 stop apart or less, between the one that brings
-//! the brightest pixel of the reference to 0.85 after the ACES tone curve and the one that brings the median there.
-//! Sources: [Andersson 2020], [Andersson 2021].
+//! [`hdr_flip`] takes pictures of any range: it is the largest ΔE over exposures 1 stop apart or
+//! less, between the one that brings the brightest pixel of the reference to 0.85 after the ACES
+//! tone curve and the one that brings the median there. Sources: [Andersson 2020],
+//! [Andersson 2021].
 
 mod color;
 mod plane;
@@ -44,7 +47,8 @@ pub struct Flip {
     pub map: Image,
 }
 
-/// FLIP of pictures for a screen: linear sRGB, of which only [0, 1] is seen. `pixels_per_degree` is usually [`PIXELS_PER_DEGREE`].
+/// FLIP of pictures for a screen: linear sRGB, of which only [0, 1] is seen. `pixels_per_degree` is
+/// usually [`PIXELS_PER_DEGREE`].
 pub fn ldr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Result<Flip, ImageError> {
     check_same_size(reference, test)?;
     let shown = |c: f32| at_most(c, 1.0);
@@ -88,7 +92,8 @@ fn colors(image: &Image, limit: impl Fn(f32) -> f32) -> Vec<Vec3> {
         .collect()
 }
 
-/// The ACES tone curve of Narkowicz, n(x) / d(x), with 0.6 of exposure folded in: coefficients of x², x, 1.
+/// The ACES tone curve of Narkowicz, n(x) / d(x), with 0.6 of exposure folded in: coefficients of
+/// x², x, 1.
 const TONE_NUMERATOR: [f32; 3] = [0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.0];
 const TONE_DENOMINATOR: [f32; 3] = [0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14];
 
@@ -179,7 +184,8 @@ impl Eye {
         let gaussian = |radius: i32, b: f32| -> Vec<f32> {
             (-radius..=radius).map(|x| (-(PI * x as f32 / pixels_per_degree).powi(2) / b).exp()).collect()
         };
-        // A sum of two separable kernels, normalised as one: the square root of each amplitude goes to each axis.
+        // A sum of two separable kernels, normalised as one: the square root of each amplitude goes
+        // to each axis.
         let amplitudes = [(34.1f32, 0.04f32), (13.5, 0.025)].map(|(a, b)| ((a * (PI / b).sqrt()).sqrt(), b));
         let wide =
             amplitudes.map(|(a, b)| gaussian(radius, b).into_iter().map(|g| a * g).collect::<Vec<_>>());

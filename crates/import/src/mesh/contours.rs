@@ -1,11 +1,14 @@
 //! Plane polygons with holes, cut into triangles.
 //!
-//! Each hole is joined to the outer contour by a *bridge*, an edge that is walked there and back, so that one contour is
-//! left for the ear clipping of [`super::polygon`]. Holes are taken from the right to the left. Of each, the rightmost corner M is
-//! bridged: the ray from M to the right meets the contour first on some edge, whose right end V would be seen from M
-//! if no corner stood in the triangle between them; of the corners that do, the one nearest in angle to the ray is seen ([Eberly 2002]).
+//! Each hole is joined to the outer contour by a *bridge*, an edge that is walked there and back,
+//! so that one contour is left for the ear clipping of [`super::polygon`]. Holes are taken from the
+//! right to the left. Of each, the rightmost corner M is bridged: the ray from M to the right meets
+//! the contour first on some edge, whose right end V would be seen from M if no corner stood in the
+//! triangle between them; of the corners that do, the one nearest in angle to the ray is seen
+//! ([Eberly 2002]).
 //!
-//! Contours that touch or cross, or that do not lie in each other as they should, are refused before.
+//! Contours that touch or cross, or that do not lie in each other as they should, are refused
+//! before.
 
 use std::fmt;
 
@@ -50,8 +53,8 @@ impl fmt::Display for ContourError {
     }
 }
 
-/// Triangles that cover what the first contour encloses and the others do not, all turning as the first does. Each of the
-/// contours takes the next `lengths[i]` of the points.
+/// Triangles that cover what the first contour encloses and the others do not, all turning as the
+/// first does. Each of the contours takes the next `lengths[i]` of the points.
 pub(crate) fn triangulate_contours(
     points: &[Point3],
     lengths: &[usize],
@@ -183,7 +186,8 @@ fn encloses(flat: &[[f64; 2]], contour: &[u32], p: [f64; 2]) -> bool {
     (0..contour.len()).filter(|&i| right_of(p, at(i), at(i + 1)).is_some()).count() % 2 == 1
 }
 
-/// Where the ray from `p` to the right meets an edge. The upper end does not count, so that a corner is met once.
+/// Where the ray from `p` to the right meets an edge. The upper end does not count, so that a
+/// corner is met once.
 fn right_of(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Option<f64> {
     if (a[1] <= p[1]) == (b[1] <= p[1]) {
         return None;
@@ -198,7 +202,8 @@ fn area(flat: &[[f64; 2]], contour: &[u32]) -> f64 {
     (1..contour.len() - 1).map(|i| cross(at(0), at(i), at(i + 1))).sum()
 }
 
-/// The place of the corner of a counter-clockwise contour to which a bridge leads from a point `m` within it.
+/// The place of the corner of a counter-clockwise contour to which a bridge leads from a point `m`
+/// within it.
 fn bridge(flat: &[[f64; 2]], contour: &[u32], m: [f64; 2]) -> usize {
     let n = contour.len();
     let at = |i: usize| flat[contour[i % n] as usize];
@@ -285,7 +290,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(2), failure_persistence: None, ..ProptestConfig::default() })]
 
-        /// A square with a star, any way round, in some of its 5 × 5 fields, seen in a plane in space.
+        /// A square with a star, any way round, in some of its 5 × 5 fields, seen in a plane in
+        /// space.
         #[test]
         fn triangles_cover_what_is_within_the_outer_contour_only(
             stars in prop::collection::vec((any::<bool>(), any::<bool>(), prop::collection::vec(0.05_f64..0.49, 3..9)), 25),

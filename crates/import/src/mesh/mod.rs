@@ -43,8 +43,8 @@ impl Format {
     }
 }
 
-/// Triangles and convex quadrilaterals over shared vertices. All indices are valid; per-vertex arrays are empty or as long
-/// as `positions`.
+/// Triangles and convex quadrilaterals over shared vertices. All indices are valid; per-vertex
+/// arrays are empty or as long as `positions`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertex positions.

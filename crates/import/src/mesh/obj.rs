@@ -1,7 +1,8 @@
 //! Wavefront OBJ meshes and the materials of MTL files.
 //!
-//! Read: `v`, `vt`, `vn`, `f` (corners `v`, `v/t`, `v//n`, `v/t/n`; negative indices count backwards), `usemtl`, `mtllib`,
-//! and lines continued by a backslash. `p` and `l` are checked and not drawn; everything else is skipped.
+//! Read: `v`, `vt`, `vn`, `f` (corners `v`, `v/t`, `v//n`, `v/t/n`; negative indices count
+//! backwards), `usemtl`, `mtllib`, and lines continued by a backslash. `p` and `l` are checked and
+//! not drawn; everything else is skipped.
 
 use std::collections::HashMap;
 
@@ -143,7 +144,8 @@ impl Part {
 
 /// The lines of a file without comments; a backslash at the end of a line joins it to the next.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    // Joined lines are rare, so that they are looked for first: without one, lines are slices of the file.
+    // Joined lines are rare, so that they are looked for first: without one, lines are slices of
+    // the file.
     let mut rest = bytes;
     std::iter::from_fn(move || {
         if rest.is_empty() {
@@ -214,7 +216,8 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
     }
 }
 
-/// Reads an MTL file. What it says wrongly is left out: materials are a matter of taste, and no file is refused for them.
+/// Reads an MTL file. What it says wrongly is left out: materials are a matter of taste, and no
+/// file is refused for them.
 pub(crate) fn read_materials(bytes: &[u8]) -> Vec<ObjMaterial> {
     let mut materials: Vec<ObjMaterial> = Vec::new();
     for line in lines(bytes) {

@@ -1,9 +1,10 @@
-//! The Stanford polygon format PLY: a text header that names elements and their properties, then their values as text or
-//! as binary numbers of either byte order [Turk 1994].
+//! The Stanford polygon format PLY: a text header that names elements and their properties, then
+//! their values as text or as binary numbers of either byte order [Turk 1994].
 //!
-//! Vertices have `x y z`, perhaps `nx ny nz`, and texture coordinates as `u v`, `s t`, `texture_u texture_v` or
-//! `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`, and perhaps a number `face_indices`. Instead of
-//! faces there may be `tristrips`: strips of triangles, with −1 between them. All other properties and elements are skipped.
+//! Vertices have `x y z`, perhaps `nx ny nz`, and texture coordinates as `u v`, `s t`,
+//! `texture_u texture_v` or `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`,
+//! and perhaps a number `face_indices`. Instead of faces there may be `tristrips`: strips of
+//! triangles, with −1 between them. All other properties and elements are skipped.
 
 use math::{Vec2, Vec3};
 

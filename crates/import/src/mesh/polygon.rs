@@ -1,13 +1,15 @@
 //! Cutting polygons into triangles by ear clipping [Meisters 1975].
 //!
-//! A polygon is projected along the largest component of its normal (after Newell: the sum of cross products over its
-//! edges), so that it has positive area in the plane. An ear is a corner whose triangle turns the right way and holds no
-//! other corner; ears are cut off until a triangle is left. Polygons that touch or cross themselves may have no ear: then
-//! the most convex corner is cut, so that n corners always give n − 2 triangles.
+//! A polygon is projected along the largest component of its normal (after Newell: the sum of cross
+//! products over its edges), so that it has positive area in the plane. An ear is a corner whose
+//! triangle turns the right way and holds no other corner; ears are cut off until a triangle is
+//! left. Polygons that touch or cross themselves may have no ear: then the most convex corner is
+//! cut, so that n corners always give n − 2 triangles.
 
 use math::{DVec3, Point3};
 
-/// Polygons with more corners than this are cut as fans: searching ears takes quadratic time, and no modeller makes them.
+/// Polygons with more corners than this are cut as fans: searching ears takes quadratic time, and
+/// no modeller makes them.
 pub(super) const MOST_CORNERS: usize = 4096;
 
 /// Whether a face turns the same way at every corner (seen along its normal).
@@ -79,8 +81,8 @@ pub(super) fn normal(positions: &[Point3], corners: &[u32]) -> DVec3 {
     (0..corners.len()).map(|i| point(i).cross(point(i + 1))).sum()
 }
 
-/// The axes of the coordinate plane in which what has this normal has most area, so ordered that it turns
-/// counter-clockwise.
+/// The axes of the coordinate plane in which what has this normal has most area, so ordered that it
+/// turns counter-clockwise.
 pub(super) fn axes(normal: DVec3) -> [usize; 2] {
     let size = normal.abs();
     let (axes, along) = if size.z >= size.x && size.z >= size.y {

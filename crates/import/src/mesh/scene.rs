@@ -1,4 +1,5 @@
-//! A mesh file as a scene of its own: with its materials, a camera that sees all of it, and light from everywhere.
+//! A mesh file as a scene of its own: with its materials, a camera that sees all of it, and light
+//! from everywhere.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -153,7 +154,8 @@ fn add_material(
     desc.materials.push(MaterialDesc { name: material.name.clone(), ..kind.into() })
 }
 
-/// A camera from the front, a little to the side and from above (y is up), and light: even, and from over the shoulder.
+/// A camera from the front, a little to the side and from above (y is up), and light: even, and
+/// from over the shoulder.
 fn look_at_all(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     const FOV: f64 = 40.0;
     let (center, radius) = ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6));
@@ -162,7 +164,8 @@ fn look_at_all(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     let right = DVec3::Y.cross(direction).normalize();
     let up = direction.cross(right);
     let eye = center - distance * direction;
-    // Camera spaces are left-handed; without the mirror, the picture of a right-handed mesh would be its mirror image.
+    // Camera spaces are left-handed; without the mirror, the picture of a right-handed mesh would
+    // be its mirror image.
     let world_from_camera =
         DMat4::from_cols((-right).extend(0.0), up.extend(0.0), direction.extend(0.0), eye.extend(1.0));
     desc.camera = CameraDesc {

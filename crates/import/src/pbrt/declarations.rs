@@ -1,4 +1,5 @@
-//! Directives that declare something: settings, materials, textures, media, lights, shapes, objects.
+//! Directives that declare something: settings, materials, textures, media, lights, shapes,
+//! objects.
 
 use std::sync::Arc;
 

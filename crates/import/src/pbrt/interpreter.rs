@@ -1,7 +1,8 @@
-//! Runs the directives of a scene and its included files: keeps the graphics state and collects statements.
+//! Runs the directives of a scene and its included files: keeps the graphics state and collects
+//! statements.
 //!
-//! After a mistake inside a statement, reading goes on at the next directive, so that all mistakes of a scene are found
-//! in one run.
+//! After a mistake inside a statement, reading goes on at the next directive, so that all mistakes
+//! of a scene are found in one run.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

@@ -96,7 +96,8 @@ pub(crate) struct RawParameter {
     pub(crate) color_space: ColorSpaceDesc,
 }
 
-/// Reads parameters as long as there are any. Whatever is wrong with one is reported, and the next one is read.
+/// Reads parameters as long as there are any. Whatever is wrong with one is reported, and the next
+/// one is read.
 pub(crate) fn parameters(
     tokens: &mut Tokens,
     color_space: ColorSpaceDesc,
@@ -188,8 +189,8 @@ fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<Paramet
     None
 }
 
-/// Reads the values after a declaration, and where they end; `None` if there are none of the right kind, which is then
-/// reported.
+/// Reads the values after a declaration, and where they end; `None` if there are none of the right
+/// kind, which is then reported.
 pub(crate) fn values(
     tokens: &mut Tokens,
     kind: ParameterType,

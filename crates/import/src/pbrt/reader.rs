@@ -1,5 +1,6 @@
-//! Reads the parameters of one statement, by name and type, and remembers what was asked for: what nobody asked for is a
-//! mistake, and the names that were asked for are what its author may have meant.
+//! Reads the parameters of one statement, by name and type, and remembers what was asked for: what
+//! nobody asked for is a mistake, and the names that were asked for are what its author may have
+//! meant.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -58,7 +59,8 @@ impl<'b, 'a> Reader<'b, 'a> {
         }
     }
 
-    /// Where the statement and its parameters stand, after a report of every parameter that was not asked for.
+    /// Where the statement and its parameters stand, after a report of every parameter that was not
+    /// asked for.
     pub(crate) fn finish(self) -> Origin {
         for Given { parameter, used, default } in &self.given {
             if *used || *default {
@@ -98,7 +100,8 @@ impl<'b, 'a> Reader<'b, 'a> {
         });
     }
 
-    /// The parameter of a name, if it is given and has one of the types; any other type is reported.
+    /// The parameter of a name, if it is given and has one of the types; any other type is
+    /// reported.
     fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
         self.asked.push(name);
         let place = self.given.iter().position(|given| given.parameter.name == name)?;

@@ -1,5 +1,5 @@
-//! What a scene file says, statement by statement, with the graphics state that held at each. Names are not looked up
-//! yet: a file may use a material before it makes it.
+//! What a scene file says, statement by statement, with the graphics state that held at each. Names
+//! are not looked up yet: a file may use a material before it makes it.
 
 use std::sync::Arc;
 
@@ -98,7 +98,8 @@ pub(crate) struct Statements {
     pub(crate) transform_times: Option<[f32; 2]>,
     pub(crate) float_textures: Vec<TextureStatement>,
     pub(crate) spectrum_textures: Vec<TextureStatement>,
-    /// Float and spectrum textures in the order in which they were said: `true` for a spectrum texture.
+    /// Float and spectrum textures in the order in which they were said: `true` for a spectrum
+    /// texture.
     pub(crate) texture_order: Vec<bool>,
     pub(crate) materials: Vec<MaterialStatement>,
     pub(crate) media: Vec<MediumStatement>,

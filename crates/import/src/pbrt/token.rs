@@ -1,8 +1,8 @@
 //! The words of a pbrt file.
 //!
-//! A file is words separated by white space: `[`, `]`, quoted strings, and bare words (directives, numbers, `true`,
-//! `false`). A `#` outside a string begins a comment that ends with its line. The tokenizer works on bytes and takes no
-//! memory: comments may be in any encoding.
+//! A file is words separated by white space: `[`, `]`, quoted strings, and bare words (directives,
+//! numbers, `true`, `false`). A `#` outside a string begins a comment that ends with its line. The
+//! tokenizer works on bytes and takes no memory: comments may be in any encoding.
 
 use description::{FileId, Span};
 

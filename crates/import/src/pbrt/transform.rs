@@ -1,7 +1,8 @@
 //! Directives that change the current transform.
 //!
-//! All but `Transform`, `Identity` and `CoordSysTransform` are applied to what follows: the current transform is
-//! multiplied by theirs from the right. They change the transforms that `ActiveTransform` chose.
+//! All but `Transform`, `Identity` and `CoordSysTransform` are applied to what follows: the current
+//! transform is multiplied by theirs from the right. They change the transforms that
+//! `ActiveTransform` chose.
 
 use description::{Diagnostic, Span};
 use math::{DMat4, DVec3};
@@ -107,8 +108,8 @@ impl Interpreter<'_> {
     }
 }
 
-/// From world space to that of a camera at `eye` with `target` along +z and `up` towards +y; left-handed, as all
-/// camera spaces of the format.
+/// From world space to that of a camera at `eye` with `target` along +z and `up` towards +y;
+/// left-handed, as all camera spaces of the format.
 fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> Option<DMat4> {
     let direction = (target - eye).try_normalize()?;
     let right = up.try_normalize()?.cross(direction).try_normalize()?;

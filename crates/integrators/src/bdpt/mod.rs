@@ -1,20 +1,23 @@
 //! Bidirectional path tracing: paths from both ends, connected in all ways.
 //!
-//! For each sample of a pixel a light subpath and a camera subpath are made. Every vertex of the one is connected to every vertex of
-//! the other; the camera subpath also looks for lights, by chance and by choice, and the light subpath for the camera. A path of
-//! k edges is thus found by up to k + 1 strategies, each of which makes other paths likely: light that is focused by glass, light
-//! that comes around a door, light that a mirror shows. Their estimates are weighted by the balance heuristic, so that each path
-//! counts once, and where a strategy is bad another is good. How the weights are found without a second look is said in
-//! `bidirectional/partial.rs`.
+//! For each sample of a pixel a light subpath and a camera subpath are made. Every vertex of the
+//! one is connected to every vertex of the other; the camera subpath also looks for lights, by
+//! chance and by choice, and the light subpath for the camera. A path of k edges is thus found by
+//! up to k + 1 strategies, each of which makes other paths likely: light that is focused by glass,
+//! light that comes around a door, light that a mirror shows. Their estimates are weighted by the
+//! balance heuristic, so that each path counts once, and where a strategy is bad another is good.
+//! How the weights are found without a second look is said in `bidirectional/partial.rs`.
 //!
-//! What remains hard is light that passes specular surfaces on both sides of the only vertex that could be connected: a caustic seen in a
-//! mirror, the ground under water. Small lights make it noisy, lights at a point make it black; merging helps there
-//! (`vcm`).
+//! What remains hard is light that passes specular surfaces on both sides of the only vertex that
+//! could be connected: a caustic seen in a mirror, the ground under water. Small lights make it
+//! noisy, lights at a point make it black; merging helps there (`vcm`).
 //!
-//! With `techniques` there is a picture for each strategy: what it finds unweighted, and what it contributes. Arranged by the length
-//! of paths they are the pyramid of [Veach 1997 fig. 10.3]. Of paths with more than 8 scattering events there are none.
+//! With `techniques` there is a picture for each strategy: what it finds unweighted, and what it
+//! contributes. Arranged by the length of paths they are the pyramid of [Veach 1997 fig. 10.3]. Of
+//! paths with more than 8 scattering events there are none.
 //!
-//! Unbiased up to `max_depth`, except with `regularize`. Sources: [Veach 1997 ch. 10]; [Lafortune 1993].
+//! Unbiased up to `max_depth`, except with `regularize`. Sources: [Veach 1997 ch. 10];
+//! [Lafortune 1993].
 
 pub(crate) mod techniques;
 

@@ -1,8 +1,10 @@
-//! The strategies of bidirectional path tracing seen apart: a film for each, unweighted, weighted, or both.
+//! The strategies of bidirectional path tracing seen apart: a film for each, unweighted, weighted,
+//! or both.
 //!
-//! All of them are films of splats, on which the light of one path of n counts 1/n; a sample of a pixel, one of as many as there are
-//! pixels, is added to its pixel alone. Each takes 48 bytes for each pixel; 52 of them, weighted and unweighted for paths of up to
-//! 5 scattering events, are 2.4 KiB for each pixel. More than 2 GiB are refused.
+//! All of them are films of splats, on which the light of one path of n counts 1/n; a sample of a
+//! pixel, one of as many as there are pixels, is added to its pixel alone. Each takes 48 bytes for
+//! each pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events, are 2.4
+//! KiB for each pixel. More than 2 GiB are refused.
 
 use film::{Film, SPLAT_BYTES, Splatter};
 use spectrum::SampledSpectrum;
@@ -10,7 +12,8 @@ use spectrum::SampledSpectrum;
 use crate::ByProduct;
 use crate::bidirectional::Found;
 
-/// Paths of more scattering events are not seen apart: the number of strategies grows with the square.
+/// Paths of more scattering events are not seen apart: the number of strategies grows with the
+/// square.
 pub(crate) const MAX_DEPTH: u32 = 8;
 
 /// What the films may take together.
@@ -93,8 +96,8 @@ impl Splatters<'_> {
     }
 }
 
-/// All (s, t) of paths with up to `max_depth` scattering events, the shortest paths first. A path needs a vertex on the camera;
-/// the lights themselves are only met by chance.
+/// All (s, t) of paths with up to `max_depth` scattering events, the shortest paths first. A path
+/// needs a vertex on the camera; the lights themselves are only met by chance.
 fn strategies(max_depth: u32) -> impl Iterator<Item = (u32, u32)> {
     (0..=max_depth).flat_map(|depth| {
         let most = if depth == 0 { 0 } else { depth + 1 };

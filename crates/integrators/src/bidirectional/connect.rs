@@ -154,8 +154,8 @@ impl Bidirectional<'_> {
         Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
     }
 
-    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses, if what arrives there comes within
-    /// the `reach` of the film's pixels.
+    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses,
+    /// if what arrives there comes within the `reach` of the film's pixels.
     pub fn see(&self, vertex: &Vertex, u: Point2, reach: Bounds2, stats: &mut RayStats) -> Option<OnFilm> {
         let camera = self.scene.camera();
         let sample = camera.sample_wi(vertex.p.p, vertex.time, u)?;
@@ -191,7 +191,8 @@ impl Bidirectional<'_> {
     /// The light of [`Self::merge`] alone.
     pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
-        // Power has been through the cosine of the surface, light is scattered by that of the shading.
+        // Power has been through the cosine of the surface, light is scattered by that of the
+        // shading.
         let cos_theta = camera.cos_theta(wi);
         let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
         let f = camera.bsdf.f(camera.wo, wi, camera.mode);
@@ -208,7 +209,8 @@ impl Bidirectional<'_> {
     }
 }
 
-/// The weight of a strategy beside which others have densities with these sums of ratios. Ratios beyond all numbers leave it none.
+/// The weight of a strategy beside which others have densities with these sums of ratios. Ratios
+/// beyond all numbers leave it none.
 fn weight(of_light: f32, of_camera: f32) -> f32 {
     let sum = 1.0 + of_light + of_camera;
     if sum.is_nan() { 0.0 } else { 1.0 / sum }

@@ -1,8 +1,9 @@
 //! The light's end of a path: with which densities the strategies find it.
 //!
-//! A surface that looks for light chooses the point on it with the density `direct`; the light sends a ray from there to the surface
-//! with the density `emission`. The first is per solid angle at the surface, the second per area and solid angle at the light. A
-//! light at a point is chosen with a delta per area, which is d² per solid angle; deltas cancel in all ratios, and count as 1.
+//! A surface that looks for light chooses the point on it with the density `direct`; the light
+//! sends a ray from there to the surface with the density `emission`. The first is per solid angle
+//! at the surface, the second per area and solid angle at the light. A light at a point is chosen
+//! with a delta per area, which is d² per solid angle; deltas cancel in all ratios, and count as 1.
 
 use math::{Normal3, Point3, Ray, Vector3};
 use scene::light::{LightId, LightSampleContext};
@@ -12,7 +13,8 @@ use super::Bidirectional;
 /// Densities at the light's end of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightEnd {
-    /// Density per solid angle with which the surface chooses the point, or direction, on the light.
+    /// Density per solid angle with which the surface chooses the point, or direction, on the
+    /// light.
     pub direct: f32,
     /// Density per area and solid angle with which the light sends the ray.
     pub emission: f32,
@@ -22,11 +24,13 @@ pub(crate) struct LightEnd {
     pub is_delta: bool,
 }
 
-/// A point on a light and its normal there, zero where it has none; `None` if the light is infinitely far away.
+/// A point on a light and its normal there, zero where it has none; `None` if the light is
+/// infinitely far away.
 pub(crate) type Place = Option<(Point3, Normal3)>;
 
 impl Bidirectional<'_> {
-    /// The end at a light that is seen from a surface along the unit direction `wi`, chosen from there with the density `direct`.
+    /// The end at a light that is seen from a surface along the unit direction `wi`, chosen from
+    /// there with the density `direct`.
     pub fn light_end(
         &self,
         light: LightId,

@@ -1,13 +1,16 @@
 //! Weights of strategies without looking at the path twice.
 //!
-//! The balance heuristic gives strategy i of a path the weight w_i = p_i / Σ p_j, the p being the densities with which the
-//! strategies make the path (times the number of paths that each may take) [Veach 1997 §9.2]. Written 1/w_i = 1 + Σ p_j/p_i over
-//! j ≠ i, the sum falls into two: strategies that have more of the path made from the camera, and those that have more made from
-//! the light. Each part is a sum over one subpath's vertices, and goes from vertex to vertex by a recursion; so a subpath carries
-//! three numbers, and a strategy needs only what is known at its two ends ([Georgiev 2012]; [van Antwerpen 2011]).
+//! The balance heuristic gives strategy i of a path the weight w_i = p_i / Σ p_j, the p being the
+//! densities with which the strategies make the path (times the number of paths that each may take)
+//! [Veach 1997 §9.2]. Written 1/w_i = 1 + Σ p_j/p_i over j ≠ i, the sum falls into two: strategies
+//! that have more of the path made from the camera, and those that have more made from the light.
+//! Each part is a sum over one subpath's vertices, and goes from vertex to vertex by a recursion;
+//! so a subpath carries three numbers, and a strategy needs only what is known at its two ends
+//! ([Georgiev 2012]; [van Antwerpen 2011]).
 //!
-//! With p→ the density per area with which the subpath made a vertex from the one before, p← that with which the other subpath
-//! would, g← the factor from solid angle to area in p←, and η = nπr² for n light subpaths merged within the radius r:
+//! With p→ the density per area with which the subpath made a vertex from the one before, p← that
+//! with which the other subpath would, g← the factor from solid angle to area in p←, and η = nπr²
+//! for n light subpaths merged within the radius r:
 //!
 //! ```text
 //! d_vcm = 1 / p→
@@ -15,14 +18,17 @@
 //! d_vm  = g←/p→ · (m'·η + k'·p←'·d_vm')
 //! ```
 //!
-//! where ' marks the vertex before and p←' is per solid angle. d_vc sums what connects, d_vm what merges: m is the α of
-//! a vertex that can be merged, else 0, and k is 1 where merges further back count. α is the probability with which a ray meets the
-//! surface, 1 where no texture cuts it out. All strategies have it once for each vertex, so that it cancels; but merging has it twice for
-//! the merged one, which both subpaths have met. What comes straight from a light is not merged, because
-//! choosing a point on the light finds the same with less noise (m = 0 next to a light). Nor is anything merged that lies beyond a diffuse
-//! surface, seen from the camera ([`vcm`](crate::vcm) says why): behind one a camera subpath has m = 0, and at one a light
-//! subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its d_vcm is 0 and the sums lose those terms. A
-//! [`Partial`] on its way between two vertices lacks the factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
+//! where ' marks the vertex before and p←' is per solid angle. d_vc sums what connects, d_vm what
+//! merges: m is the α of a vertex that can be merged, else 0, and k is 1 where merges further back
+//! count. α is the probability with which a ray meets the surface, 1 where no texture cuts it out.
+//! All strategies have it once for each vertex, so that it cancels; but merging has it twice for
+//! the merged one, which both subpaths have met. What comes straight from a light is not merged,
+//! because choosing a point on the light finds the same with less noise (m = 0 next to a light).
+//! Nor is anything merged that lies beyond a diffuse surface, seen from the camera
+//! ([`vcm`](crate::vcm) says why): behind one a camera subpath has m = 0, and at one a light
+//! subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its d_vcm
+//! is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the
+//! factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
 
@@ -39,7 +45,8 @@ pub(crate) struct Partial {
 /// Where merging is one of a path's strategies, on one side of a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Merges {
-    /// At the vertex there: the probability with which light meets its surface, or 0 without merging.
+    /// At the vertex there: the probability with which light meets its surface, or 0 without
+    /// merging.
     pub here: f32,
     /// At those before it on its subpath that can be merged themselves.
     pub before: bool,
@@ -55,11 +62,13 @@ impl Merges {
 /// How strategies share paths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Balance {
-    /// Light subpaths in a pass, for each sample of a pixel: the number that each may be connected to the camera.
+    /// Light subpaths in a pass, for each sample of a pixel: the number that each may be connected
+    /// to the camera.
     pub light_paths: f32,
     /// η: merging counts so much more than connecting; 0 without merging.
     pub merging: f32,
-    /// 1; 0 if light subpaths are not connected to anything, so that camera subpaths find light by chance or by choice alone.
+    /// 1; 0 if light subpaths are not connected to anything, so that camera subpaths find light by
+    /// chance or by choice alone.
     pub connecting: f32,
 }
 
@@ -75,34 +84,39 @@ impl Balance {
         Self { merging, ..Self::connecting(light_paths as f32) }
     }
 
-    /// For merging within a radius where camera subpaths end, which on their way find light by themselves.
+    /// For merging within a radius where camera subpaths end, which on their way find light by
+    /// themselves.
     pub fn at_the_end(photon_paths: usize, radius: f32) -> Self {
         Self { connecting: 0.0, ..Self::merging(photon_paths, photon_paths, radius) }
     }
 
-    /// What a camera subpath begins with, whose first direction has the density `pdf` on the film (per pixel).
+    /// What a camera subpath begins with, whose first direction has the density `pdf` on the film
+    /// (per pixel).
     pub fn at_camera(&self, pdf: f32) -> Partial {
         Partial { vcm: self.light_paths / pdf, vc: 0.0, vm: 0.0 }
     }
 
-    /// What a light subpath has at its first surface, where it arrives at `cos_theta` to the normal.
+    /// What a light subpath has at its first surface, where it arrives at `cos_theta` to the
+    /// normal.
     pub fn at_light(&self, end: &LightEnd, cos_theta: f32) -> Partial {
         let scale = end.cos_theta / (end.emission * cos_theta);
         let vc = if end.is_delta { 0.0 } else { scale };
         Partial { vcm: end.direct * scale, vc, vm: 0.0 }
     }
 
-    /// The sum over the strategies with s ≥ 2 for a camera subpath that has met a light, along a direction at `cos_theta` to the normal
-    /// of the vertex before; to be multiplied by the density with which the light sends light there. That vertex cannot be merged,
-    /// which was not known when it was left: `merges` is what was counted then.
+    /// The sum over the strategies with s ≥ 2 for a camera subpath that has met a light, along a
+    /// direction at `cos_theta` to the normal of the vertex before; to be multiplied by the density
+    /// with which the light sends light there. That vertex cannot be merged, which was not known
+    /// when it was left: `merges` is what was counted then.
     pub fn connecting_from_light(&self, partial: &Partial, cos_theta: f32, merges: Merges) -> f32 {
         let before = partial.vm - self.merging * merges.here * cos_theta * partial.vcm;
         // Not `max`, which would hide what is no number.
         self.connecting * (partial.vc + if before < 0.0 { 0.0 } else { before })
     }
 
-    /// The sum over the strategies that have more made by the subpath's own kind, at an end from which the other subpath would go
-    /// on with the density `pdf_back`; to be multiplied by the density with which the other subpath makes this end.
+    /// The sum over the strategies that have more made by the subpath's own kind, at an end from
+    /// which the other subpath would go on with the density `pdf_back`; to be multiplied by the
+    /// density with which the other subpath makes this end.
     pub fn connecting_back(&self, partial: &Partial, pdf_back: f32, merges: Merges) -> f32 {
         let merging = self.merging_there(partial, pdf_back, merges);
         self.connecting * (partial.vcm + pdf_back * partial.vc + merging)
@@ -120,8 +134,8 @@ impl Balance {
         if merges.before { here + pdf_back * partial.vm } else { here }
     }
 
-    /// Leaves a vertex along a direction of the density `pdf`, at `cos_theta` to the normal; `pdf_back` is the density of the way
-    /// back.
+    /// Leaves a vertex along a direction of the density `pdf`, at `cos_theta` to the normal;
+    /// `pdf_back` is the density of the way back.
     pub fn leave(
         &self,
         partial: &Partial,
@@ -145,8 +159,8 @@ impl Partial {
         Self { vcm: 0.0, vc: self.vc * cos_theta, vm: self.vm * cos_theta }
     }
 
-    /// Arrives at a surface at `cos_theta` to its normal from a distance whose square is given; from a direction without a place the
-    /// square is 1.
+    /// Arrives at a surface at `cos_theta` to its normal from a distance whose square is given;
+    /// from a direction without a place the square is 1.
     pub fn arrive(&self, distance_squared: f32, cos_theta: f32) -> Self {
         Self {
             vcm: self.vcm * distance_squared / cos_theta,

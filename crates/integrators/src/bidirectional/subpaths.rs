@@ -110,7 +110,8 @@ impl Bidirectional<'_> {
         Some(walk.follow_to(depth, sampler, stats)?.0)
     }
 
-    /// The weighted light of all lights that a camera subpath meets by chance after it has scattered `depth` times, from 1.
+    /// The weighted light of all lights that a camera subpath meets by chance after it has
+    /// scattered `depth` times, from 1.
     pub fn lights_met(
         &self,
         depth: u32,

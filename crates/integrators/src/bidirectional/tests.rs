@@ -21,7 +21,8 @@ use crate::photon_grid::LightVertex;
 
 const LIGHT_PATHS: usize = 37;
 
-/// The inside of a cube whose walls are diffuse or rough metal, some of them there in part, with two lamps.
+/// The inside of a cube whose walls are diffuse or rough metal, some of them there in part, with
+/// two lamps.
 fn room() -> Scene {
     let mut desc = SceneDesc::default();
     let rough = RoughnessDesc::isotropic(0.6);
@@ -97,7 +98,8 @@ impl Path<'_> {
         if index + 1 == self.surfaces.len() { self.camera } else { self.place(index + 1).0 }
     }
 
-    /// The density, per area, with which a light subpath of `s` vertices makes the path's first ones.
+    /// The density, per area, with which a light subpath of `s` vertices makes the path's first
+    /// ones.
     fn light_density(&self, paths: &Bidirectional, s: usize) -> f64 {
         let (light, p, n) = self.light;
         if s == 0 {

@@ -23,7 +23,8 @@ pub(crate) struct Vertex {
     pub bsdf: Bsdf,
     /// The probability with which a ray meets the surface there.
     pub alpha: f32,
-    /// What arrives along `wo`, of importance (from the camera) or power (from a light), over the subpath's density.
+    /// What arrives along `wo`, of importance (from the camera) or power (from a light), over the
+    /// subpath's density.
     pub beta: SampledSpectrum,
     /// Whether only the first wavelength is left.
     pub hero_only: bool,
@@ -51,8 +52,8 @@ impl Vertex {
         self.bsdf.flags().is_non_specular()
     }
 
-    /// Whether a vertex of the other kind could be merged with it: not what comes straight from a light, nor what a diffuse surface has
-    /// sent the camera's subpath to.
+    /// Whether a vertex of the other kind could be merged with it: not what comes straight from a
+    /// light, nor what a diffuse surface has sent the camera's subpath to.
     #[inline]
     pub fn can_merge(&self) -> bool {
         match self.mode {
@@ -61,7 +62,8 @@ impl Vertex {
         }
     }
 
-    /// Whether it scatters to all sides and is no mirror besides: whoever comes from the camera merges no further.
+    /// Whether it scatters to all sides and is no mirror besides: whoever comes from the camera
+    /// merges no further.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
         let flags = self.bsdf.flags();
@@ -75,21 +77,23 @@ impl Vertex {
         Merges { here: if self.can_merge() { self.alpha } else { 0.0 }, before }
     }
 
-    /// What a light subpath leaves as a photon. Of all photons that come to a place only the share `alpha` stays, so each stands for
-    /// those that have passed as well: whoever looks for photons at a vertex of a camera subpath has met the surface already.
+    /// What a light subpath leaves as a photon. Of all photons that come to a place only the share
+    /// `alpha` stays, so each stands for those that have passed as well: whoever looks for photons
+    /// at a vertex of a camera subpath has met the surface already.
     #[inline]
     pub fn photon_beta(&self) -> SampledSpectrum {
         self.beta / self.alpha
     }
 
-    /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to it.
+    /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to
+    /// it.
     #[inline]
     pub fn scattered(&self, wi: Vector3) -> SampledSpectrum {
         self.beta * self.bsdf.f(self.wo, wi, self.mode) * self.cosine(wi)
     }
 
-    /// The cosine that scattering towards `wi` is multiplied by: with the shading normal, and for light with the correction that
-    /// keeps its energy ([Veach 1997 §5.3.2]).
+    /// The cosine that scattering towards `wi` is multiplied by: with the shading normal, and for
+    /// light with the correction that keeps its energy ([Veach 1997 §5.3.2]).
     #[inline]
     pub fn cosine(&self, wi: Vector3) -> f32 {
         let ns = self.bsdf.frame.z;
@@ -108,7 +112,8 @@ impl Vertex {
         self.bsdf.pdf(self.wo, wi, self.mode, scattering::Directions::All)
     }
 
-    /// Density per solid angle with which a subpath of the other kind that comes from `wi` goes on along `wo`.
+    /// Density per solid angle with which a subpath of the other kind that comes from `wi` goes on
+    /// along `wo`.
     #[inline]
     pub fn pdf_back(&self, wi: Vector3) -> f32 {
         self.bsdf.pdf(wi, self.wo, !self.mode, scattering::Directions::All)
@@ -120,7 +125,8 @@ impl Vertex {
         self.n.dot(w).abs()
     }
 
-    /// The ray to another point, with the normal of its surface if there is one; to be followed to [`Ray::SHADOW_END`].
+    /// The ray to another point, with the normal of its surface if there is one; to be followed to
+    /// [`Ray::SHADOW_END`].
     #[inline]
     pub fn ray_to(&self, p: Point3Error, n: Normal3) -> Ray {
         Ray::between(self.p, self.n, p, n, self.time)

@@ -1,10 +1,11 @@
 //! From vertex to vertex, from the camera or from a light.
 //!
-//! A walk follows its ray to a surface ([`Walk::meet`]), which may be a vertex ([`Walk::arrive`]) or let the ray pass, and leaves the
-//! vertex along a direction that its BSDF chooses ([`Walk::leave`]). From the second vertex on it ends with probability 1 − q by
-//! Russian roulette, where q is how much of what began is still carried, at most 1; the weights of strategies do not know of it,
-//! which costs nothing but a little efficiency. Who wants a vertex of a certain depth and no other plays no roulette
-//! ([`Walk::follow_to`]).
+//! A walk follows its ray to a surface ([`Walk::meet`]), which may be a vertex ([`Walk::arrive`])
+//! or let the ray pass, and leaves the vertex along a direction that its BSDF chooses
+//! ([`Walk::leave`]). From the second vertex on it ends with probability 1 − q by Russian roulette,
+//! where q is how much of what began is still carried, at most 1; the weights of strategies do not
+//! know of it, which costs nothing but a little efficiency. Who wants a vertex of a certain depth
+//! and no other plays no roulette ([`Walk::follow_to`]).
 
 use geometry::RayStats;
 use math::RayDifferential;
@@ -174,7 +175,8 @@ impl<'a> Walk<'a> {
         Some(vertex)
     }
 
-    /// Leaves a vertex along a direction of its BSDF; `false` if it ends there, which Russian roulette may decide.
+    /// Leaves a vertex along a direction of its BSDF; `false` if it ends there, which Russian
+    /// roulette may decide.
     pub fn leave(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
         self.scatter(vertex, surface, sampler) && self.survive(sampler)
     }

@@ -1,21 +1,25 @@
-//! One chain of Metropolis: a walk that stays at each point in proportion to a function c, and what its steps are worth.
+//! One chain of Metropolis: a walk that stays at each point in proportion to a function c, and what
+//! its steps are worth.
 //!
-//! From x the walk proposes x', as likely as x from x', and accepts it with the probability a = min(1, c(x')/c(x)). Whatever the
-//! walk had to do with c before, it keeps; so a walk that starts in the distribution c/b, where b = ∫ c, is in it at every step
-//! [Veach 1997 §11.2]. What it finds is to be multiplied by b and divided by c.
+//! From x the walk proposes x', as likely as x from x', and accepts it with the probability a =
+//! min(1, c(x')/c(x)). Whatever the walk had to do with c before, it keeps; so a walk that starts
+//! in the distribution c/b, where b = ∫ c, is in it at every step [Veach 1997 §11.2]. What it finds
+//! is to be multiplied by b and divided by c.
 //!
-//! Nothing that was computed is wasted: x' counts for a of the step and x for 1 − a, which is what the choice between them would
-//! have given on average. And large steps are uniform samples of the cube, good ones where c is small and the walk seldom goes. A
-//! point y can come by both ways, and is weighed by the balance heuristic [Kelemen 2002]: with p the probability of a large step, the
-//! walk is at y with the density c/b and large steps arrive there with the density p, so that y is worth, as a state that counts for
-//! a share q of a step,
+//! Nothing that was computed is wasted: x' counts for a of the step and x for 1 − a, which is what
+//! the choice between them would have given on average. And large steps are uniform samples of the
+//! cube, good ones where c is small and the walk seldom goes. A point y can come by both ways, and
+//! is weighed by the balance heuristic [Kelemen 2002]: with p the probability of a large step, the
+//! walk is at y with the density c/b and large steps arrive there with the density p, so that y is
+//! worth, as a state that counts for a share q of a step,
 //!
 //! ```text
 //! (q·b + [large step]·b₀) / (c(y) + p·b₀)
 //! ```
 //!
-//! The b₀ stands for b in the weights. They sum to one whatever it is, so the result is right if b₀ knows nothing of the walk; the
-//! b outside them is that of the points among which the start was chosen.
+//! The b₀ stands for b in the weights. They sum to one whatever it is, so the result is right if b₀
+//! knows nothing of the walk; the b outside them is that of the points among which the start was
+//! chosen.
 
 use sampling::sampler::PrimarySample;
 use sampling::{Rng, Sampler};
@@ -64,7 +68,8 @@ impl std::ops::AddAssign for Acceptance {
     }
 }
 
-/// The samplers of a path, each a point of primary sample space; all together are the point that a chain moves.
+/// The samplers of a path, each a point of primary sample space; all together are the point that a
+/// chain moves.
 pub(super) type Streams = [Sampler; 3];
 
 fn each_sample(streams: &mut Streams, mut change: impl FnMut(&mut PrimarySample)) {
@@ -84,8 +89,8 @@ pub(super) struct Chain<V> {
 }
 
 impl<V> Chain<V> {
-    /// Starts where the streams have been set to, and goes on with random numbers of a sequence of its own. `evaluate` tells what
-    /// is found at a point and c there.
+    /// Starts where the streams have been set to, and goes on with random numbers of a sequence of
+    /// its own. `evaluate` tells what is found at a point and c there.
     pub fn new(mut streams: Streams, sequence: u64, evaluate: impl FnOnce(&mut Streams) -> (V, f32)) -> Self {
         let (value, c) = evaluate(&mut streams);
         let mut rng = Rng::from_sequence(sequence);
@@ -174,7 +179,8 @@ mod tests {
         }
     }
 
-    /// What a region of the plane is worth by chains that start at one of a few candidates, whatever else is taken for b.
+    /// What a region of the plane is worth by chains that start at one of a few candidates,
+    /// whatever else is taken for b.
     #[test]
     fn what_is_found_on_the_way_is_worth_its_part_of_the_integral() {
         const STEPS: u32 = 6;

@@ -28,13 +28,15 @@ pub(super) struct Chains {
 /// The number of the pass whose starting points tell b₀: no other has it.
 const BEFORE_ALL: u32 = u32::MAX;
 
-/// A share of the time that goes into the choice of starts: with fewer candidates, chains start too often at the same one.
+/// A share of the time that goes into the choice of starts: with fewer candidates, chains start too
+/// often at the same one.
 const MUTATIONS_PER_CANDIDATE: usize = 4;
 
 /// Shorter chains than this leave too little of the place where they start.
 const FEWEST_MUTATIONS: usize = 256;
 
-/// Points that a thread looks at in a row, and steps that it takes, before it asks whether to go on.
+/// Points that a thread looks at in a row, and steps that it takes, before it asks whether to go
+/// on.
 const ROW: usize = 256;
 
 impl Chains {
@@ -184,8 +186,9 @@ fn mean(values: &[f32]) -> f32 {
     (values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len() as f64) as f32
 }
 
-/// Chooses `count` of the candidates in proportion to their weights, and evenly: they lie on a line, each as long as its weight, and
-/// places at equal distances choose, the first of them at `u` of the distance. If no weight is above 0 any will do.
+/// Chooses `count` of the candidates in proportion to their weights, and evenly: they lie on a
+/// line, each as long as its weight, and places at equal distances choose, the first of them at `u`
+/// of the distance. If no weight is above 0 any will do.
 fn resample(weights: &[f32], count: usize, u: f32) -> Vec<u32> {
     let distance = weights.iter().map(|&weight| f64::from(weight)).sum::<f64>() / count as f64;
     let (mut end, mut place) = (0.0, f64::from(u) * distance);

@@ -25,7 +25,8 @@ pub(super) struct Contribution {
 }
 
 impl Contribution {
-    /// Importance: the mean of the three numbers that an eye makes of the light, so that no colour counts for nothing.
+    /// Importance: the mean of the three numbers that an eye makes of the light, so that no colour
+    /// counts for nothing.
     pub fn c(&self) -> f32 {
         let xyz = xyz_from(&self.l, &self.lambda);
         let c = (xyz.x + xyz.y + xyz.z) / 3.0;
@@ -63,8 +64,8 @@ impl<'a> View<'a> {
         Self { scene, film: splatter.reach(), samples_per_pixel }
     }
 
-    /// The area of all positions, in pixels: what light of a path from the camera is worth, since positions have one over it for
-    /// density.
+    /// The area of all positions, in pixels: what light of a path from the camera is worth, since
+    /// positions have one over it for density.
     pub fn area(&self) -> f32 {
         self.film.area()
     }
@@ -110,9 +111,10 @@ impl Target for CameraPaths<'_> {
 
 /// Bidirectional path tracing: one path, made by one strategy.
 ///
-/// The first coordinates choose the number of scattering events ([`Depths`]), and then one of the strategies, all as likely; what is
-/// found counts over the probability of both. Camera subpath, light subpath and what connects them have samplers of their own, lest
-/// a longer subpath of one kind move the coordinates of the other.
+/// The first coordinates choose the number of scattering events ([`Depths`]), and then one of the
+/// strategies, all as likely; what is found counts over the probability of both. Camera subpath,
+/// light subpath and what connects them have samplers of their own, lest a longer subpath of one
+/// kind move the coordinates of the other.
 pub(super) struct ConnectedPaths<'a> {
     pub view: View<'a>,
     pub paths: Bidirectional<'a>,
@@ -178,15 +180,16 @@ fn choose(u: f32, count: u32) -> u32 {
 
 /// How many scattering events a path has, from 1 to the greatest number d_max.
 ///
-/// Light that is scattered often is faint, so paths are the less likely the longer they are. That there are d or more events has, if
-/// there may be any number of them, the probability
+/// Light that is scattered often is faint, so paths are the less likely the longer they are. That
+/// there are d or more events has, if there may be any number of them, the probability
 ///
 /// ```text
 /// T(d) = (8/(7 + d))²        and so, up to d_max,   p(d) = (T(d) − T(d + 1)) / (1 − T(d_max + 1))
 /// ```
 ///
-/// The first few numbers are nearly as likely as each other. Because p falls as d⁻³, slower than light does in any room, what is
-/// found over p does not grow without bound; and yet a path has a length on average, of 8.5 events, whatever d_max is.
+/// The first few numbers are nearly as likely as each other. Because p falls as d⁻³, slower than
+/// light does in any room, what is found over p does not grow without bound; and yet a path has a
+/// length on average, of 8.5 events, whatever d_max is.
 #[derive(Clone, Copy, Debug)]
 struct Depths {
     /// d_max, above 0.

@@ -1,14 +1,14 @@
 //! A balanced kd-tree of points, for the nearest ones to a place.
 //!
-//! The tree has no pointers: its points are one array, and the node of a range of it is the range's middle.
-//! All points before it lie on one side of it along the node's axis, all behind it on the other; both halves
-//! are ranges again, down to short ones that are looked through in order. Each range is cut across the
-//! longest side of its bounds. Halves are built in parallel; ties are broken by the points' order, so that
-//! the tree depends on the points alone.
+//! The tree has no pointers: its points are one array, and the node of a range of it is the range's
+//! middle. All points before it lie on one side of it along the node's axis, all behind it on the
+//! other; both halves are ranges again, down to short ones that are looked through in order. Each
+//! range is cut across the longest side of its bounds. Halves are built in parallel; ties are
+//! broken by the points' order, so that the tree depends on the points alone.
 //!
-//! The search goes to the nearer half first, and to the other one if its cell is not beyond the farthest of
-//! the neighbours that are kept, whose distance the heap has at its top. A cell's distance is known from the
-//! planes that were crossed to get there. [Bentley 1975], [Arya 1993]
+//! The search goes to the nearer half first, and to the other one if its cell is not beyond the
+//! farthest of the neighbours that are kept, whose distance the heap has at its top. A cell's
+//! distance is known from the planes that were crossed to get there. [Bentley 1975], [Arya 1993]
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -74,8 +74,8 @@ impl KdTree {
         size_of_val(&*self.points) + size_of_val(&*self.axes)
     }
 
-    /// The nearest points to `p` that are no farther than `radius` and that `accept` takes, at most `count`,
-    /// in no order.
+    /// The nearest points to `p` that are no farther than `radius` and that `accept` takes, at most
+    /// `count`, in no order.
     pub fn nearest(
         &self,
         p: Point3,

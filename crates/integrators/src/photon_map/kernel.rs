@@ -7,8 +7,9 @@
 //! Epanechnikov  K(d) = 2/π · (1 − d²)
 //! ```
 //!
-//! both with the integral 1; K(d/r)/r² has it on the disk of radius r. Of all kernels Epanechnikov's makes the least mean square error
-//! of a density; the cone is sharper in the middle. [Silverman 1986 §3.3], [Jensen 2001a §7.2]
+//! both with the integral 1; K(d/r)/r² has it on the disk of radius r. Of all kernels
+//! Epanechnikov's makes the least mean square error of a density; the cone is sharper in the
+//! middle. [Silverman 1986 §3.3], [Jensen 2001a §7.2]
 
 /// How photons are weighed by their distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,21 +1,22 @@
 //! Photons where they have arrived, and how densely they lie around a point.
 //!
-//! What n subpaths have left on a surface estimates the flux that arrives there: the density of flux at a
-//! point is
+//! What n subpaths have left on a surface estimates the flux that arrives there: the density of
+//! flux at a point is
 //!
 //! ```text
 //! 1/n Σ K(dᵢ/r)/r² · βᵢ
 //! ```
 //!
-//! over the photons i at the distances dᵢ < r, K being a [`Kernel`]. The radius r is the distance of the
-//! photon that comes after the `nearest` nearest, so that where photons lie densely little is blurred; but at
-//! most `radius`.
+//! over the photons i at the distances dᵢ < r, K being a [`Kernel`]. The radius r is the distance
+//! of the photon that comes after the `nearest` nearest, so that where photons lie densely little
+//! is blurred; but at most `radius`.
 //!
-//! A given radius has a bias, that of the blur: on a plane inside which the density is linear there is none,
-//! elsewhere it falls with r². At edges of surfaces the disk hangs over and finds too little; corners are
-//! darkened within r of them. Neighbours that count do not include the one that makes the radius: on an even
-//! density of photons that fell independently (k − 1)/πr² with the k-th photon's distance has the right mean,
-//! where k/πr² has too much by 1/(k − 1), and the largest radius changes nothing about that.
+//! A given radius has a bias, that of the blur: on a plane inside which the density is linear there
+//! is none, elsewhere it falls with r². At edges of surfaces the disk hangs over and finds too
+//! little; corners are darkened within r of them. Neighbours that count do not include the one that
+//! makes the radius: on an even density of photons that fell independently (k − 1)/πr² with the
+//! k-th photon's distance has the right mean, where k/πr² has too much by 1/(k − 1), and the
+//! largest radius changes nothing about that.
 //!
 //! Sources: [Jensen 2001a ch. 6, 7]; [Silverman 1986 §5.2].
 
@@ -72,8 +73,8 @@ impl PhotonMap {
         self.tree.memory() + size_of_val(&*self.photons)
     }
 
-    /// The density at `p` of what `weigh` makes of the photons that `accept` takes, and the radius within
-    /// which they were; `None` where there are none, or all of them lie in one point.
+    /// The density at `p` of what `weigh` makes of the photons that `accept` takes, and the radius
+    /// within which they were; `None` where there are none, or all of them lie in one point.
     pub fn density(
         &self,
         p: Point3,
@@ -104,8 +105,8 @@ mod tests {
     use math::Vec3;
     use testkit::{Moments, Random, t_test};
 
-    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, so many or those of them that
-    /// `stays`.
+    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, so many or those of
+    /// them that `stays`.
     fn photons(count: usize, seed: u64, stays: impl Fn(Point3, f32) -> bool) -> PhotonMap {
         let mut random = Random::new(seed);
         let photons = (0..count).filter_map(|_| {

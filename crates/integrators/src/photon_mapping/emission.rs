@@ -1,8 +1,9 @@
 //! Photons leave the lights.
 //!
-//! Light subpaths start at lights in proportion to their power and go on as the BSDFs say, so that all photons carry about the same
-//! power and lie where there is light. The first surface of a subpath that is not purely specular tells what its photons are: direct light
-//! if nothing lies between, a caustic if only specular surfaces do, and indirect light from there on.
+//! Light subpaths start at lights in proportion to their power and go on as the BSDFs say, so that
+//! all photons carry about the same power and lie where there is light. The first surface of a
+//! subpath that is not purely specular tells what its photons are: direct light if nothing lies
+//! between, a caustic if only specular surfaces do, and indirect light from there on.
 
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -64,7 +65,8 @@ impl Emission<'_> {
         control: &Control,
         keep: impl Fn(&Vertex, &mut Sampler, &mut RayStats) -> T + Sync,
     ) -> Result<(Vec<T>, RayStats), Cancelled> {
-        // Arranged for all subpaths of the generation at once, which makes their order in one coordinate no hint at the next.
+        // Arranged for all subpaths of the generation at once, which makes their order in one
+        // coordinate no hint at the next.
         let sampler = Sampler::PaddedSobol(PaddedSobol::new(paths, Randomize::FastOwen, self.seed));
         let chunks: Vec<_> = (0..paths.div_ceil(CHUNK))
             .into_par_iter()
@@ -166,7 +168,8 @@ mod tests {
         emission.emit(kind, PATHS, &Control::default(), keep).expect("nobody cancels it").0
     }
 
-    /// What each subpath has left of `photons`, of which it has left one at most, over the power of the lights.
+    /// What each subpath has left of `photons`, of which it has left one at most, over the power of
+    /// the lights.
     fn shares<'a>(scene: &Scene, photons: impl Iterator<Item = &'a Photon>) -> Moments {
         let power = scene.lights()[0].phi(&SampledWavelengths::sample_visible(0.3))[0];
         let mut shares: Vec<f64> = photons.map(|photon| f64::from(photon.beta[0] / power)).collect();

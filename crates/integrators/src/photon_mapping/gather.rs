@@ -8,12 +8,14 @@
 //! | from a light through specular surfaces alone | in the caustic map |
 //! | from other surfaces that are not purely specular | in the global map if there is a diffuse lobe; else by the ray that goes on |
 //!
-//! A ray goes on in any case, along a direction of the BSDF. What it may bring follows from the table: after a diffuse surface only a
-//! light that it meets at once; after a glossy one all but lights behind specular surfaces; after a specular one whatever was still
-//! to be found before. So each path of light is counted once.
+//! A ray goes on in any case, along a direction of the BSDF. What it may bring follows from the
+//! table: after a diffuse surface only a light that it meets at once; after a glossy one all but
+//! lights behind specular surfaces; after a specular one whatever was still to be found before. So
+//! each path of light is counted once.
 //!
-//! With a final gather, the global map holds photons of all kinds and is looked at one surface later: rays leave the diffuse surface
-//! along directions of its BSDF, and where each meets a surface that is not purely specular the map tells all that it reflects.
+//! With a final gather, the global map holds photons of all kinds and is looked at one surface
+//! later: rays leave the diffuse surface along directions of its BSDF, and where each meets a
+//! surface that is not purely specular the map tells all that it reflects.
 
 use geometry::RayStats;
 use math::{RayDifferential, Vec2};
@@ -88,7 +90,8 @@ impl Gather<'_> {
         let (mut l, mut beta) = (SampledSpectrum::ZERO, SampledSpectrum::ONE);
         let mut eta_scale = 1.0;
         let mut origin: Option<Origin> = None;
-        // Whether a caustic map has already told of lights that the ray meets, unless it does so at once.
+        // Whether a caustic map has already told of lights that the ray meets, unless it does so at
+        // once.
         let mut lamps_are_known = quest == Quest::Reflected;
         loop {
             let shows_lamps = !lamps_are_known || origin.is_some();
@@ -214,7 +217,8 @@ impl Gather<'_> {
         };
         let terminated = lambda.secondary_terminated();
         let weigh = |photon: &Photon| {
-            // Power has been through the cosine of the surface, light is scattered by that of the shading.
+            // Power has been through the cosine of the surface, light is scattered by that of the
+            // shading.
             let cosines = (photon.wi.dot(s.shading.n) / photon.wi.dot(s.n)).abs();
             let l = bsdf.f(s.wo, photon.wi, TransportMode::Radiance) * photon.beta * cosines;
             if terminated || photon.hero_only { hero_only(l) } else { l }
@@ -235,7 +239,8 @@ fn throughput(surface: &SurfaceInteraction, sample: &BsdfSample) -> SampledSpect
     sample.f * (sample.wi.dot(surface.surface.shading.n).abs() / sample.pdf)
 }
 
-/// Light as it is at all wavelengths that the ray began with, of which dispersion may have left the first.
+/// Light as it is at all wavelengths that the ray began with, of which dispersion may have left the
+/// first.
 fn known(l: SampledSpectrum, lambda: &SampledWavelengths) -> SampledSpectrum {
     if lambda.secondary_terminated() { hero_only(l) } else { l }
 }

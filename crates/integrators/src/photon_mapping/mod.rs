@@ -1,30 +1,33 @@
-//! Photon mapping: light is shot into the scene, stays where it falls, and is picked up by the camera's rays.
+//! Photon mapping: light is shot into the scene, stays where it falls, and is picked up by the
+//! camera's rays.
 //!
-//! Photons leave the lights and are scattered by surfaces as the BSDFs say. At each surface that is not
-//! purely specular they leave their power Φ, direction and place in a *photon map*. The radiance that such a
-//! surface at x reflects is then, over the photons near x,
+//! Photons leave the lights and are scattered by surfaces as the BSDFs say. At each surface that is
+//! not purely specular they leave their power Φ, direction and place in a *photon map*. The
+//! radiance that such a surface at x reflects is then, over the photons near x,
 //!
 //! ```text
 //! L(x, ωₒ) = ∫ f(x, ωₒ, ωᵢ) L(x, ωᵢ) |cos θᵢ| dωᵢ = ∫ f d²Φ/dA ≈ Σ f(x, ωₒ, ω_p) Φ_p · K(d_p/r)/r²
 //! ```
 //!
-//! Two maps are kept. The *caustic map* has light that came through mirrors and glass alone; the *global map*
-//! that which other surfaces have scattered. Direct light is found by shadow rays, since the eye sees its
-//! edges best. `gather.rs` says how all light is found once. With `gather` rays of a final gather the global
-//! map is not seen itself but through the reflection of a diffuse surface, which evens its blotches out.
+//! Two maps are kept. The *caustic map* has light that came through mirrors and glass alone; the
+//! *global map* that which other surfaces have scattered. Direct light is found by shadow rays,
+//! since the eye sees its edges best. `gather.rs` says how all light is found once. With `gather`
+//! rays of a final gather the global map is not seen itself but through the reflection of a diffuse
+//! surface, which evens its blotches out.
 //!
-//! It is at its best on caustics, also those seen in a mirror, and those of lights at a point, which no path
-//! from the camera finds. It is *biased*: photons are spread over the radius r of the nearest ones. The rims
-//! of caustics are soft; corners are a little dark, as the disk reaches beyond the surface; light seeps under
-//! doors and around things thinner than r, and on what bends within r a little is lost below the horizon.
-//! Each pass emits photons of its own, so noise falls with the number of passes as in path tracing, while the
-//! bias stays. It goes with r² in the middle of surfaces and with r in the mean over a room with corners, r²
-//! with 1/`photons`: the Cornell box is too dark by 0.8 % with 50 000 of them, by 0.4 % with 200 000 and by
-//! 0.2 % with 800 000, where the radius has no other bound. Narrow glossy surfaces are noisy in light that
+//! It is at its best on caustics, also those seen in a mirror, and those of lights at a point,
+//! which no path from the camera finds. It is *biased*: photons are spread over the radius r of the
+//! nearest ones. The rims of caustics are soft; corners are a little dark, as the disk reaches
+//! beyond the surface; light seeps under doors and around things thinner than r, and on what bends
+//! within r a little is lost below the horizon. Each pass emits photons of its own, so noise falls
+//! with the number of passes as in path tracing, while the bias stays. It goes with r² in the
+//! middle of surfaces and with r in the mean over a room with corners, r² with 1/`photons`: the
+//! Cornell box is too dark by 0.8 % with 50 000 of them, by 0.4 % with 200 000 and by 0.2 % with
+//! 800 000, where the radius has no other bound. Narrow glossy surfaces are noisy in light that
 //! comes through glass.
 //!
-//! Memory is taken for the photons of one pass: no more than the subpaths asked for times their mean length,
-//! 73 bytes each, and again as much while the tree is built.
+//! Memory is taken for the photons of one pass: no more than the subpaths asked for times their
+//! mean length, 73 bytes each, and again as much while the tree is built.
 //!
 //! Sources: [Jensen 1996]; [Jensen 2001a].
 
@@ -60,8 +63,8 @@ pub struct PhotonMappingSettings {
     pub caustic_photons: u32,
     /// How many of the nearest photons make an estimate; default 50.
     pub nearest: u32,
-    /// The farthest that they may be away, in scene units; by default 3 % of the radius of the sphere around
-    /// the scene.
+    /// The farthest that they may be away, in scene units; by default 3 % of the radius of the
+    /// sphere around the scene.
     pub radius: Option<f32>,
     /// How they are weighed.
     pub kernel: Kernel,

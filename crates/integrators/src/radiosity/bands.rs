@@ -1,14 +1,15 @@
 //! Light at fixed wavelengths.
 //!
-//! A radiosity solution is made once and looked at by every pixel, so that it has wavelengths of its own:
-//! [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which paths draw their
-//! wavelengths ([`SampledWavelengths::sample_visible`]). The sensor's integral ∫ L(λ) c̄(λ) dλ becomes the
-//! rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS, which is good because the
-//! integrand vanishes at both ends. With 32 bands, what is left is mostly the steps of the sensor's tables,
-//! of a nanometre each, and depends on where the bands fall: 0.2 to 0.6 % for s = ½, a quarter of a per cent
-//! at most in X, Y and Z of daylight, of coloured daylight and of the lamp of the measured Cornell box for
-//! s = 0.65. With 16 bands it is 1 %, with 64 it is 0.2 %. Colours are then right in every single sample,
-//! without the noise of random wavelengths.
+//! A radiosity solution is made once and looked at by every pixel, so that it has wavelengths of
+//! its own: [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which
+//! paths draw their wavelengths ([`SampledWavelengths::sample_visible`]). The sensor's integral ∫
+//! L(λ) c̄(λ) dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) /
+//! BANDS, which is good because the integrand vanishes at both ends. With 32 bands, what is left is
+//! mostly the steps of the sensor's tables, of a nanometre each, and depends on where the bands
+//! fall: 0.2 to 0.6 % for s = ½, a quarter of a per cent at most in X, Y and Z of daylight, of
+//! coloured daylight and of the lamp of the measured Cornell box for s = 0.65. With 16 bands it is
+//! 1 %, with 64 it is 0.2 %. Colours are then right in every single sample, without the noise of
+//! random wavelengths.
 
 use spectrum::{N, SampledSpectrum, SampledWavelengths, xyz_from};
 use std::ops::{Add, AddAssign, Mul};
@@ -59,7 +60,8 @@ impl Bands {
         self.zip(other, SampledSpectrum::max)
     }
 
-    /// What part of the whole it is at each wavelength, from 0 to 1; none where the whole is nothing.
+    /// What part of the whole it is at each wavelength, from 0 to 1; none where the whole is
+    /// nothing.
     pub fn part_of(self, whole: Self) -> Self {
         self.zip(whole, SampledSpectrum::safe_div).max(Self::ZERO).min(Self::splat(1.0))
     }

@@ -71,8 +71,8 @@ impl Domain {
         }
     }
 
-    /// The weights of four values, one in the middle of each quarter, that make the value at a point of the
-    /// linear function that they determine best.
+    /// The weights of four values, one in the middle of each quarter, that make the value at a
+    /// point of the linear function that they determine best.
     pub fn weights(&self, uv: Vec2) -> [f32; 4] {
         match self {
             Self::Triangle([a, b, c]) => {

@@ -1,9 +1,9 @@
 //! What carries light: elements that receive it, patches that send it on.
 //!
-//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb it sends
-//! on from its whole area evenly. An *element* is a leaf of the mesh within a patch; it remembers how much
-//! light fell on each of its two sides. Elements may be much finer than patches: light is sent on coarsely
-//! and received finely [Cohen 1986].
+//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb
+//! it sends on from its whole area evenly. An *element* is a leaf of the mesh within a patch; it
+//! remembers how much light fell on each of its two sides. Elements may be much finer than patches:
+//! light is sent on coarsely and received finely [Cohen 1986].
 
 use geometry::{Hit, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, RayDifferential, Vec2};
@@ -34,8 +34,9 @@ impl Albedo {
         Self { reflectance: self.reflectance * factor, transmittance: self.transmittance * factor }
     }
 
-    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all directions.
-    /// Bends the shading normal on the way. `None`: nothing is there but a change of medium.
+    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all
+    /// directions. Bends the shading normal on the way. `None`: nothing is there but a change of
+    /// medium.
     pub fn at(
         scene: &Scene,
         interaction: &mut SurfaceInteraction,
@@ -147,8 +148,8 @@ impl Element {
         weighted(&self.quarters, self.points.each_ref().map(|point| point.weight))
     }
 
-    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of the
-    /// quarters the change goes on as far as it does in any direction, no further.
+    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of
+    /// the quarters the change goes on as far as it does in any direction, no further.
     pub fn irradiance_at(&self, domain: &Domain, uv: Vec2) -> [Bands; 2] {
         let at = weighted(&self.quarters, domain.weights(uv));
         [0, 1].map(|i| {
@@ -177,8 +178,8 @@ impl Element {
         (self.quarters, self.last) = ([[Bands::ZERO; 2]; 4], [Bands::ZERO; 2]);
     }
 
-    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in each of its
-    /// own.
+    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in
+    /// each of its own.
     pub fn spread(&self, brightness: f32, arrived: [f32; 4]) -> [f32; 4] {
         if self.level > 0 {
             return std::array::from_fn(|quarter| if quarter == self.quarter { brightness } else { 0.0 });
@@ -206,8 +207,8 @@ fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
     [0, 1].map(|i| quarters.iter().zip(weights).map(|(sides, weight)| sides[i] * weight).sum())
 }
 
-/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a change of
-/// medium.
+/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a
+/// change of medium.
 pub(crate) fn albedo_at(
     scene: &Scene,
     primitive: &Hit,
@@ -227,8 +228,8 @@ pub(crate) struct Patch {
     pub area: f32,
     /// What leaves its two sides of its own accord, per area.
     pub emitted: [Bands; 2],
-    /// Light that has arrived and been scattered but not been sent on, as power from either side, by how
-    /// often it was scattered, as far as there is any.
+    /// Light that has arrived and been scattered but not been sent on, as power from either side,
+    /// by how often it was scattered, as far as there is any.
     pub unshot: Vec<[Bands; 2]>,
     /// How the brightness of that light is spread over the quarters.
     pub spread: [[f32; 2]; 4],
@@ -239,8 +240,8 @@ pub(crate) struct Patch {
 }
 
 impl Patch {
-    /// A patch that has not sent out its own light yet; it sends light that was scattered less than `depth`
-    /// times.
+    /// A patch that has not sent out its own light yet; it sends light that was scattered less than
+    /// `depth` times.
     pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: u32) -> Self {
         let area = {
             let leaf = mesh.cell(cell);

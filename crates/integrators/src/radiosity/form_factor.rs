@@ -1,27 +1,29 @@
 //! Form factors: how much of what leaves one surface reaches another.
 //!
-//! F_ij = (1/A_i) ∫∫ cosθ_i cosθ_j / (π r²) · V dA_j dA_i is the share of the light that leaves surface i, of
-//! area A_i, evenly that arrives at surface j, where V is 1 or 0 as the two points see each other.
-//! Reciprocity: A_i F_ij = A_j F_ji.
+//! F_ij = (1/A_i) ∫∫ cosθ_i cosθ_j / (π r²) · V dA_j dA_i is the share of the light that leaves
+//! surface i, of area A_i, evenly that arrives at surface j, where V is 1 or 0 as the two points
+//! see each other. Reciprocity: A_i F_ij = A_j F_ji.
 //!
-//! **Unoccluded**, the inner integral over a polygon has a closed form (Lambert, 1760): from a point x with
-//! normal n,
+//! **Unoccluded**, the inner integral over a polygon has a closed form (Lambert, 1760): from a
+//! point x with normal n,
 //!
 //! F_xj = 1/2π Σ_k Γ_k · n,
 //!
-//! where Γ_k is perpendicular to the plane through x and the polygon's k-th side, and as long as the angle in
-//! which x sees that side. What lies below the horizon of x is cut off before. The outer integral is the mean
-//! over four points of the receiver, the middles of its quarters. Because one polygon's factor is exact at
-//! each point, the factors of all that is seen from there sum to one exactly.
+//! where Γ_k is perpendicular to the plane through x and the polygon's k-th side, and as long as
+//! the angle in which x sees that side. What lies below the horizon of x is cut off before. The
+//! outer integral is the mean over four points of the receiver, the middles of its quarters.
+//! Because one polygon's factor is exact at each point, the factors of all that is seen from there
+//! sum to one exactly.
 //!
-//! **Occluded**, the closed form is multiplied by the share of light that gets through, Σ G V / Σ G over rays
-//! to points of the emitter, with G = cosθ_i cosθ_j / r². One ray for each of the four points tells whether
-//! anything is in the way; where they differ, there are four for each, one to each quarter of the emitter.
-//! Where quarters shine unevenly, as on a floor half below a block, G counts by the light of its quarter.
+//! **Occluded**, the closed form is multiplied by the share of light that gets through, Σ G V / Σ G
+//! over rays to points of the emitter, with G = cosθ_i cosθ_j / r². One ray for each of the four
+//! points tells whether anything is in the way; where they differ, there are four for each, one to
+//! each quarter of the emitter. Where quarters shine unevenly, as on a floor half below a block, G
+//! counts by the light of its quarter.
 //!
-//! Where a shot brings next to nothing, a single ray decides, each time to another point. A bent cell emits
-//! as the flat polygon of its corners, with the light of its whole area, and not to itself. Sources:
-//! [Baum 1989], [Cohen 1993].
+//! Where a shot brings next to nothing, a single ray decides, each time to another point. A bent
+//! cell emits as the flat polygon of its corners, with the light of its whole area, and not to
+//! itself. Sources: [Baum 1989], [Cohen 1993].
 
 use geometry::{RayStats, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, Ray, Vector3};
@@ -32,9 +34,9 @@ use super::domain::Domain;
 use super::element::{Element, Patch, SamplePoint};
 use super::mesh::Mesh;
 
-/// The form factor from a point with unit normal `n` at the origin to a polygon that turns counter-clockwise
-/// about its emitting side, nothing between. The polygon lies anywhere; what is below the horizon does not
-/// count.
+/// The form factor from a point with unit normal `n` at the origin to a polygon that turns
+/// counter-clockwise about its emitting side, nothing between. The polygon lies anywhere; what is
+/// below the horizon does not count.
 pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
     // Cutting adds one corner at most, and polygons have four.
     let mut above = [Vector3::ZERO; 8];
@@ -84,7 +86,8 @@ pub(crate) struct Emitter {
     light: [f32; 4],
     /// Its area, in parts of that of the flat polygon.
     bulge: f32,
-    /// Where no more than this arrives, one ray decides, to the point of the receiver whose turn it is.
+    /// Where no more than this arrives, one ray decides, to the point of the receiver whose turn it
+    /// is.
     faint: f32,
     turn: usize,
 }
@@ -130,13 +133,14 @@ impl Emitter {
         Self { corners, center, n, points, light: patch.evenness(side), bulge, faint: 0.0, turn: 0 }
     }
 
-    /// Where no more than the irradiance `faint` arrives of unit radiosity, one ray decides instead of four
-    /// or more; which one changes with `turn`.
+    /// Where no more than the irradiance `faint` arrives of unit radiosity, one ray decides instead
+    /// of four or more; which one changes with `turn`.
     pub fn hastily(self, faint: f32, turn: u32) -> Self {
         Self { faint, turn: turn as usize % 4, ..self }
     }
 
-    /// The form factors from the two sides of a point with unit normal `n` to the emitter, nothing between.
+    /// The form factors from the two sides of a point with unit normal `n` to the emitter, nothing
+    /// between.
     fn seen_from(&self, p: Point3, n: Normal3) -> [f32; 2] {
         let mut polygon = [Vector3::ZERO; 4];
         let polygon = &mut polygon[..self.corners.len()];
@@ -152,8 +156,8 @@ impl Emitter {
         self.n.dot(p - self.center) > 0.0
     }
 
-    /// cosθ cosθ / r² between a point and the `i`th point of a quarter, the side of the receiver on which
-    /// that is, and the ray between them; `None` where nothing passes between the two.
+    /// cosθ cosθ / r² between a point and the `i`th point of a quarter, the side of the receiver on
+    /// which that is, and the ray between them; `None` where nothing passes between the two.
     fn ray(&self, from: &SamplePoint, quarter: usize, i: usize, time: f32) -> Option<(f32, usize, Ray)> {
         let (to, to_n) = self.points[quarter][i];
         let way = to.p - from.p.p;
@@ -295,7 +299,8 @@ mod tests {
             .map(|i| -TAU * i as f32 / SIDES as f32)
             .map(|angle| v(2.0 * angle.cos(), 2.0 * angle.sin(), 1.0))
             .collect();
-        // Rings of equal area; a polygon of many corners is one of many triangles around its centre.
+        // Rings of equal area; a polygon of many corners is one of many triangles around its
+        // centre.
         let ring = |i: usize| {
             let p = v(((i as f32 + 0.5) / 64.0).sqrt(), 0.0, 0.0);
             let triangle = |k: usize| [v(0.0, 0.0, 1.0) - p, disk[k] - p, disk[(k + 1) % SIDES] - p];

@@ -1,18 +1,20 @@
 //! The hemicube: all form factors of a patch at once, from its middle.
 //!
-//! Around the middle of a patch stands half a cube of 2 × 2 × 1 with its faces cut into pixels. Through each
-//! pixel a ray looks for the element that is seen there; the element's form factor is the sum over its pixels
-//! of
+//! Around the middle of a patch stands half a cube of 2 × 2 × 1 with its faces cut into pixels.
+//! Through each pixel a ray looks for the element that is seen there; the element's form factor is
+//! the sum over its pixels of
 //!
-//! ΔF = ΔA / (π (x² + y² + 1)²) on the face above, ΔF = z ΔA / (π (y² + z² + 1)²) on the faces at the sides,
+//! ΔF = ΔA / (π (x² + y² + 1)²) on the face above, ΔF = z ΔA / (π (y² + z² + 1)²) on the faces at
+//! the sides,
 //!
-//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the errors of
-//! different shots differ. All that leaves the patch arrives somewhere: where nothing is open, the factors
-//! sum to one, and energy is conserved without more ado.
+//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the
+//! errors of different shots differ. All that leaves the patch arrives somewhere: where nothing is
+//! open, the factors sum to one, and energy is conserved without more ado.
 //!
-//! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all, and near by,
-//! where the patch is no point, its middle is not the whole. Here the pixels are filled by rays instead of by
-//! a z-buffer; the factors are those of the original. Source: [Cohen 1985].
+//! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all,
+//! and near by, where the patch is no point, its middle is not the whole. Here the pixels are
+//! filled by rays instead of by a z-buffer; the factors are those of the original. Source:
+//! [Cohen 1985].
 
 use geometry::RayStats;
 use math::{Frame, Vec2, Vector3};
@@ -57,8 +59,9 @@ impl Hemicube {
         Self { resolution: resolution.max(2).next_multiple_of(2), angle: TAU * hash_float(&[shot]) }
     }
 
-    /// The directions of a row of pixels in a frame with the normal along +z, and their shares. Rows of the
-    /// face above come first, then those of the four at the sides, which have half as many.
+    /// The directions of a row of pixels in a frame with the normal along +z, and their shares.
+    /// Rows of the face above come first, then those of the four at the sides, which have half as
+    /// many.
     fn row(&self, row: u32) -> impl Iterator<Item = (Vector3, f32)> {
         let n = self.resolution;
         let step = 2.0 / n as f32;

@@ -1,16 +1,17 @@
 //! Surfaces cut into cells.
 //!
-//! A cell is a part of one primitive of the scene: a triangle or rectangle of the primitive's own parameters,
-//! with corners on the true surface. Its first cell is the whole primitive, and cutting halves a cell across
-//! its longer side, so that the cells of a primitive are a binary tree and the leaf under a ray's hit is
-//! found by walking down it.
+//! A cell is a part of one primitive of the scene: a triangle or rectangle of the primitive's own
+//! parameters, with corners on the true surface. Its first cell is the whole primitive, and cutting
+//! halves a cell across its longer side, so that the cells of a primitive are a binary tree and the
+//! leaf under a ray's hit is found by walking down it.
 //!
-//! Vertices are shared: two corners that stand at one place with nearly one normal are one vertex, whichever
-//! primitives they belong to. Where a cell's neighbour is cut more finely, a vertex stands in the middle of
-//! the cell's side: a T-vertex. If the cell were drawn from its corners alone, light would jump across that
-//! side. So T-vertices are *anchored*: [`Mesh::outline`] gives the corners and all the vertices that
-//! neighbours have put on the sides between them, and whatever is interpolated over the fan of triangles
-//! between that outline and the cell's centre is continuous ([Cohen 1986]; [Baum 1991] for anchors).
+//! Vertices are shared: two corners that stand at one place with nearly one normal are one vertex,
+//! whichever primitives they belong to. Where a cell's neighbour is cut more finely, a vertex
+//! stands in the middle of the cell's side: a T-vertex. If the cell were drawn from its corners
+//! alone, light would jump across that side. So T-vertices are *anchored*: [`Mesh::outline`] gives
+//! the corners and all the vertices that neighbours have put on the sides between them, and
+//! whatever is interpolated over the fan of triangles between that outline and the cell's centre is
+//! continuous ([Cohen 1986]; [Baum 1991] for anchors).
 
 use std::collections::{HashMap, HashSet};
 
@@ -129,8 +130,8 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// One cell for each primitive of the scene that can be cut and is more than a change of medium. Where
-    /// there are more than `most`, for lights first and then for the largest.
+    /// One cell for each primitive of the scene that can be cut and is more than a change of
+    /// medium. Where there are more than `most`, for lights first and then for the largest.
     pub fn new(scene: &Scene, time: f32, most: usize, control: &Control) -> Result<Self, Cancelled> {
         let sphere = scene.sphere();
         let size = sphere.center.abs().max_element() + sphere.radius;
@@ -226,8 +227,8 @@ impl Mesh {
         quarters.map(|(cell, part)| f64::from(self.area(world, cell, &part))).sum()
     }
 
-    /// How long a cell is along its first side and, if it has four, along its second; through the middle
-    /// where that is another way.
+    /// How long a cell is along its first side and, if it has four, along its second; through the
+    /// middle where that is another way.
     fn lengths(&self, world: &World, cell: &Cell) -> [f32; 2] {
         let p = |uv| self.position(world, cell, uv);
         match cell.domain() {
@@ -309,8 +310,8 @@ impl Mesh {
         Some((self.leaf_in(root, uv), uv))
     }
 
-    /// The first cell of the primitive that a ray has hit, and where on the primitive; `None` on what has no
-    /// cells.
+    /// The first cell of the primitive that a ray has hit, and where on the primitive; `None` on
+    /// what has no cells.
     pub fn place(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(u32, Vec2)> {
         let root = self.roots.get(&(hit.geometry, hit.instance, hit.primitive))?;
         let is_sphere = matches!(world.geometry(hit.geometry), Geometry::Spheres(_));
@@ -341,7 +342,8 @@ impl Mesh {
         outline
     }
 
-    /// Whether the neighbour at a side of a leaf is cut more than once more: more than one vertex then stands between its corners.
+    /// Whether the neighbour at a side of a leaf is cut more than once more: more than one vertex
+    /// then stands between its corners.
     pub fn is_beside_finer(&self, world: &World, leaf: &Cell) -> bool {
         sides(leaf.corners()).any(|side| {
             let mut between = Vec::new();

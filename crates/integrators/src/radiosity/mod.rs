@@ -1,26 +1,29 @@
 //! Radiosity: the light between diffuse surfaces as a balance of energy, found once for all views.
 //!
-//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j F_ij B_j:
-//! its own light, and its share of what comes from all others, F_ij being the [form factor](form_factor) from
-//! i to j. [Progressive shooting](shooting) solves this without ever holding the matrix: the brightest patch
-//! sends its light to all others, again and again. Each of the first `steps` passes sends light until a
-//! smaller share of it is left, the last one until `tolerance` is reached, and draws the picture anew, with
-//! an ambient term for what is missing. The passes after these, as many as there are samples a pixel, draw
-//! the finished solution.
+//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j
+//! F_ij B_j: its own light, and its share of what comes from all others, F_ij being the
+//! [form factor](form_factor) from i to j. [Progressive shooting](shooting) solves this without
+//! ever holding the matrix: the brightest patch sends its light to all others, again and again.
+//! Each of the first `steps` passes sends light until a smaller share of it is left, the last one
+//! until `tolerance` is reached, and draws the picture anew, with an ambient term for what is
+//! missing. The passes after these, as many as there are samples a pixel, draw the finished
+//! solution.
 //!
-//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by interpolation between
-//! vertices, or by a final gather. Light is carried at fixed [wavelengths](bands).
+//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by
+//! interpolation between vertices, or by a final gather. Light is carried at fixed
+//! [wavelengths](bands).
 //!
-//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white, grey or
-//! coloured plaster; glass becomes a sheet that passes light diffusely. Surfaces reflect on both sides.
-//! Shading normals count in the final gather alone. Things that move are where they are in the middle of the
-//! shutter's time.
+//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white,
+//! grey or coloured plaster; glass becomes a sheet that passes light diffusely. Surfaces reflect on
+//! both sides. Shading normals count in the final gather alone. Things that move are where they are
+//! in the middle of the shutter's time.
 //!
-//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a patch that
-//! sends it and of an element that receives it, and visibility is known from a few rays. In the Cornell box
-//! the mean of a gathered picture is right to 0.5 %, and single places in the shadow of the blocks to 2 %, with
-//! the settings' defaults; interpolated, shadows are as blurred as their elements are large.
-//! `max_depth` counts as in all algorithms: light that was scattered more often is missing.
+//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a
+//! patch that sends it and of an element that receives it, and visibility is known from a few rays.
+//! In the Cornell box the mean of a gathered picture is right to 0.5 %, and single places in the
+//! shadow of the blocks to 2 %, with the settings' defaults; interpolated, shadows are as blurred
+//! as their elements are large. `max_depth` counts as in all algorithms: light that was scattered
+//! more often is missing.
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
@@ -36,11 +39,11 @@
 //! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
 //! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
 //!
-//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering event more,
-//! and again 2 kB if it is cut. Where there are more primitives than half of `max_patches`,
-//! [lights and the largest](primitives) are cut; the rest is lit, as what has no patches is, but passes no
-//! light on. The time of a shot grows with the number of elements, and the number of shots with that of
-//! patches. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
+//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering
+//! event more, and again 2 kB if it is cut. Where there are more primitives than half of
+//! `max_patches`, [lights and the largest](primitives) are cut; the rest is lit, as what has no
+//! patches is, but passes no light on. The time of a shot grows with the number of elements, and
+//! the number of shots with that of patches. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
 
 mod bands;
 mod described;
@@ -98,7 +101,8 @@ pub struct RadiositySettings {
     pub patch_size: Option<f32>,
     /// How often an element may be quartered.
     pub subdivision: u32,
-    /// The change of light across an element, in parts of what is there, above which it is quartered.
+    /// The change of light across an element, in parts of what is there, above which it is
+    /// quartered.
     pub gradient: f32,
     /// Most elements.
     pub max_patches: u32,
@@ -159,8 +163,8 @@ impl State {
         Ok(Self { solution, lights, sent: 0, view, shown: None, mesh: Vec::new() })
     }
 
-    /// Sends light as a pass asks for. Steps that earlier passes have not done are done now, one by one, so
-    /// that the solution depends on the pass alone.
+    /// Sends light as a pass asks for. Steps that earlier passes have not done are done now, one by
+    /// one, so that the solution depends on the pass alone.
     fn advance(
         &mut self,
         pass: u32,
@@ -248,7 +252,8 @@ impl Integrator for Radiosity {
             }
             Ok(stats)
         };
-        // A better solution makes a new picture, which takes the place of the old one when it is whole.
+        // A better solution makes a new picture, which takes the place of the old one when it is
+        // whole.
         let mut better = (pass <= steps).then(|| film.blank());
         let tiles = better.as_mut().unwrap_or(film).tiles_mut();
         let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;

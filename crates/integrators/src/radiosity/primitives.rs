@@ -1,8 +1,8 @@
 //! Which primitives are cut into patches.
 //!
-//! Every patch takes memory, and light goes from every patch to every other. A scene of a million small
-//! triangles therefore gives patches to those that matter most: to what shines, and to what is large. The
-//! rest is lit, but passes no light on.
+//! Every patch takes memory, and light goes from every patch to every other. A scene of a million
+//! small triangles therefore gives patches to those that matter most: to what shines, and to what
+//! is large. The rest is lit, but passes no light on.
 
 use std::cmp::Reverse;
 
@@ -26,8 +26,8 @@ struct Candidate {
 /// How many primitives are looked at between two looks at the control.
 const BLOCK: u32 = 1 << 14;
 
-/// The primitives that can be cut and are more than a change of medium, as hits without places, and how many
-/// are left out because there are more than `most`: lights come first, then what is large.
+/// The primitives that can be cut and are more than a change of medium, as hits without places, and
+/// how many are left out because there are more than `most`: lights come first, then what is large.
 pub(crate) fn choose(
     scene: &Scene,
     time: f32,

@@ -1,30 +1,32 @@
 //! Progressive shooting: light leaves the brightest patch first.
 //!
-//! Of diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is what leaves an area, the
-//! exitance E what leaves it of its own accord. Instead of solving the system at once, the patch l that has
-//! most to send sends it: every other one receives
+//! Of diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is what leaves an area,
+//! the exitance E what leaves it of its own accord. Instead of solving the system at once, the
+//! patch l that has most to send sends it: every other one receives
 //!
 //! ΔB_i = ρ_i B_l F_li A_l / A_i,
 //!
-//! keeps it, and has that much more to send itself. After each shot there is a picture, and each is better
-//! than the last: what is missing is the light that has not been sent yet. Until then an *ambient* term
-//! stands for it: the irradiance that unshot power would make if it were spread evenly and reflected with the
-//! mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It is shown, never sent, and goes to zero.
+//! keeps it, and has that much more to send itself. After each shot there is a picture, and each is
+//! better than the last: what is missing is the light that has not been sent yet. Until then an
+//! *ambient* term stands for it: the irradiance that unshot power would make if it were spread
+//! evenly and reflected with the mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It is shown, never
+//! sent, and goes to zero.
 //!
-//! Unshot light is kept apart by how often it was scattered, so that `max_depth` counts the edges of a path
-//! as everywhere: a patch sends what was scattered less than `max_depth` times. One form factor serves for
-//! all of it. Lights that are not surfaces (points, distant ones, the environment) shine on every element
-//! once, before the first shot, by samples of the light.
+//! Unshot light is kept apart by how often it was scattered, so that `max_depth` counts the edges
+//! of a path as everywhere: a patch sends what was scattered less than `max_depth` times. One form
+//! factor serves for all of it. Lights that are not surfaces (points, distant ones, the
+//! environment) shine on every element once, before the first shot, by samples of the light.
 //!
-//! Where what a shot brings changes by more than a share of the light that is there, elements are cut and the
-//! shot is received again: elements get fine at the edges of shadows, as those shots make them that cast the
-//! shadows. An edge may pass between the few points of a coarse element, though, and be missed. So where a
-//! shot has cut elements, those beside them are cut too, until neighbours differ by one cut at most, and each
-//! new element is asked again: edges that were found are followed to where they were missed ([Baum 1991]).
+//! Where what a shot brings changes by more than a share of the light that is there, elements are
+//! cut and the shot is received again: elements get fine at the edges of shadows, as those shots
+//! make them that cast the shadows. An edge may pass between the few points of a coarse element,
+//! though, and be missed. So where a shot has cut elements, those beside them are cut too, until
+//! neighbours differ by one cut at most, and each new element is asked again: edges that were found
+//! are followed to where they were missed ([Baum 1991]).
 //!
-//! Most shots are faint, though, and most patches are far from them: what would bring much less to a
-//! patch than the change that is worth a cut, even if nothing were between, is received by the patch as a
-//! whole, as if it had not been cut, and handed to its elements later.
+//! Most shots are faint, though, and most patches are far from them: what would bring much less to
+//! a patch than the change that is worth a cut, even if nothing were between, is received by the
+//! patch as a whole, as if it had not been cut, and handed to its elements later.
 //!
 //! Sources: [Cohen 1988], [Cohen 1986] for elements.
 
@@ -47,8 +49,8 @@ use crate::{Cancelled, Control};
 /// The part of all light, spread evenly, below which an irradiance is next to nothing.
 const FAINT: f32 = 1e-3;
 
-/// The part of the change of light that is worth a cut, below which light comes to patches as if they were
-/// not cut.
+/// The part of the change of light that is worth a cut, below which light comes to patches as if
+/// they were not cut.
 const UNCUT: f32 = 0.04;
 
 /// The state of a solution.
@@ -81,8 +83,8 @@ impl Solution {
         self.cut.patches.iter().map(|patch| patch.brightness(0) + patch.brightness(1)).sum()
     }
 
-    /// The share of all light that is still to be sent: all of it, as long as it is not known how much there
-    /// is.
+    /// The share of all light that is still to be sent: all of it, as long as it is not known how
+    /// much there is.
     pub fn unshot_share(&self) -> f32 {
         match self.total > 0.0 {
             true => self.unshot_brightness() / self.total,
@@ -162,8 +164,8 @@ impl Solution {
                 wholes = each(&self.cut.patches, control, stats, on_whole)?;
                 self.receive(scene, brightness, &wholes, |cut, ids| {
                     each_element(cut, ids, control, stats, |element, stats| match element.patch == source {
-                        // What is bent stands off its chord, and would see it: from behind, as if it filled
-                        // the sky.
+                        // What is bent stands off its chord, and would see it: from behind, as if
+                        // it filled the sky.
                         true => Received::default(),
                         false => hasty.shine(scene, element, time, stats),
                     })
@@ -262,8 +264,8 @@ impl Solution {
         Ok(())
     }
 
-    /// Asks all elements what they receive of light of this brightness, and those again that are cut because
-    /// of it; but not those of patches that receive it as `wholes`.
+    /// Asks all elements what they receive of light of this brightness, and those again that are
+    /// cut because of it; but not those of patches that receive it as `wholes`.
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
@@ -318,8 +320,8 @@ impl Solution {
         }
         let rho = reflecting * area.recip();
         let mut ambient = Bands::ZERO;
-        // Light that was scattered last counts once; what was scattered less often, as often as it may be
-        // scattered yet.
+        // Light that was scattered last counts once; what was scattered less often, as often as it
+        // may be scattered yet.
         let mut series = Bands::splat(1.0);
         for layer in (0..self.settings.max_depth as usize).rev() {
             let of_layer = patches.iter().filter_map(|patch| patch.unshot.get(layer));
@@ -352,8 +354,8 @@ struct Shot<'a> {
 }
 
 impl Shot<'_> {
-    /// Lets light arrive at an element of a patch, which has more to send then, and adds what is scattered of
-    /// light of unit radiosity.
+    /// Lets light arrive at an element of a patch, which has more to send then, and adds what is
+    /// scattered of light of unit radiosity.
     fn arrive(&self, element: &mut Element, received: &Received, patch: &mut Patch, sent: &mut [Bands; 2]) {
         let sides = received.sides(element);
         if sides == [0.0; 2] {

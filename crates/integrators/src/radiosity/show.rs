@@ -1,18 +1,18 @@
 //! From a solution to a picture.
 //!
-//! *Interpolated*: every vertex has the mean of the irradiances that the elements around it have there, as
-//! their quarters tell, and light changes linearly over the fan of triangles between an element's centre,
-//! which has the element's own irradiance, and its outline. What is seen is L = L_e + (ρ E + τ E′)/π with the
-//! albedo of the very point, so that textures are sharp, E being the irradiance of the side that is seen and
-//! E′ that of the other.
+//! *Interpolated*: every vertex has the mean of the irradiances that the elements around it have
+//! there, as their quarters tell, and light changes linearly over the fan of triangles between an
+//! element's centre, which has the element's own irradiance, and its outline. What is seen is L =
+//! L_e + (ρ E + τ E′)/π with the albedo of the very point, so that textures are sharp, E being the
+//! irradiance of the side that is seen and E′ that of the other.
 //!
-//! *Gathered*: direct light is sampled as by paths, one light a sample, and indirect light is what rays in
-//! random directions of the cosine's density find on the elements. Shadows are then as sharp as they are, and
-//! errors of the solution count only after one more diffuse reflection ([Lischinski 1993]; [Cohen 1993]).
-//! Surfaces that have no elements (planes without end, formulas, solids, curves, and the smallest where there
-//! are too many primitives) are always shown so; they take light but pass none on. What is gathered is
-//! scattered once more than what the elements show, so that of their light that part is left out which was
-//! scattered as often as it may be.
+//! *Gathered*: direct light is sampled as by paths, one light a sample, and indirect light is what
+//! rays in random directions of the cosine's density find on the elements. Shadows are then as
+//! sharp as they are, and errors of the solution count only after one more diffuse reflection
+//! ([Lischinski 1993]; [Cohen 1993]). Surfaces that have no elements (planes without end, formulas,
+//! solids, curves, and the smallest where there are too many primitives) are always shown so; they
+//! take light but pass none on. What is gathered is scattered once more than what the elements
+//! show, so that of their light that part is left out which was scattered as often as it may be.
 
 use geometry::{Hit, RayStats, SurfacePoint};
 use math::{Frame, Ray, RayDifferential, Vec2};
@@ -83,7 +83,8 @@ impl View {
             let whole = (a - center).perp_dot(b - center);
             let (wa, wb) =
                 ((uv - center).perp_dot(b - center) / whole, (a - center).perp_dot(uv - center) / whole);
-            // The one that holds the point, or nearly does: of its two outer weights none is negative.
+            // The one that holds the point, or nearly does: of its two outer weights none is
+            // negative.
             let least = wa.min(wb);
             if least > best.0 {
                 best = (least, [1.0 - wa - wb, wa, wb], side);
@@ -186,7 +187,8 @@ impl Look<'_> {
         Ok(sum * (samples as f32).recip())
     }
 
-    /// What a surface scatters of the light that comes straight from the lights, by one sample of one.
+    /// What a surface scatters of the light that comes straight from the lights, by one sample of
+    /// one.
     fn direct(
         &self,
         interaction: &SurfaceInteraction,

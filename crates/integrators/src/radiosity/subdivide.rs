@@ -1,5 +1,5 @@
-//! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller and smaller
-//! elements.
+//! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller
+//! and smaller elements.
 
 use rayon::prelude::*;
 use scene::Scene;
@@ -21,9 +21,9 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more than
-    /// `max_patches`, they are twice as long, and so on. No more than half of `max_patches` primitives are
-    /// cut at all, so that large ones always can be.
+    /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more
+    /// than `max_patches`, they are twice as long, and so on. No more than half of `max_patches`
+    /// primitives are cut at all, so that large ones always can be.
     pub fn new(
         scene: &Scene,
         settings: &RadiositySettings,
@@ -59,8 +59,8 @@ impl Cut {
     }
 }
 
-/// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some could be
-/// longer.
+/// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some
+/// could be longer.
 fn cut(
     scene: &Scene,
     mut mesh: Mesh,
@@ -106,8 +106,9 @@ impl Cut {
         patches.iter_mut().filter_map(|patch| patch.whole.as_mut()).for_each(|whole| whole.darken());
     }
 
-    /// Elements of these patches that have a side at which others are cut more than once more. What made those fine, such as the edge of
-    /// a shadow, may go on here and be missed by the few points of a coarse element.
+    /// Elements of these patches that have a side at which others are cut more than once more. What
+    /// made those fine, such as the edge of a shadow, may go on here and be missed by the few
+    /// points of a coarse element.
     pub fn lagging(
         &self,
         scene: &Scene,
@@ -123,8 +124,8 @@ impl Cut {
         (0..self.elements.len() as u32).into_par_iter().filter(lags).collect()
     }
 
-    /// Halves elements twice, as long as there is room for more of them. The parts inherit the light of the
-    /// whole. Returns those that are new or have become smaller.
+    /// Halves elements twice, as long as there is room for more of them. The parts inherit the
+    /// light of the whole. Returns those that are new or have become smaller.
     pub fn split(
         &mut self,
         scene: &Scene,

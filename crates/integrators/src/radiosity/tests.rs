@@ -1,4 +1,5 @@
-//! A solution from within: the matrix that nobody sees, the energy on its way, and the seams of the picture.
+//! A solution from within: the matrix that nobody sees, the energy on its way, and the seams of the
+//! picture.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

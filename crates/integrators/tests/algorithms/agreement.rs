@@ -10,7 +10,8 @@ use crate::support::{
     walls, white_sky,
 };
 
-/// A box of grey walls of different brightness with a lamp below its ceiling and a block on its floor.
+/// A box of grey walls of different brightness with a lamp below its ceiling and a block on its
+/// floor.
 pub fn room() -> SceneDesc {
     let mut desc = SceneDesc::default();
     for (wall, rho) in walls(1.0).into_iter().zip([0.7, 0.3, 0.5, 0.8, 0.2, 0.6]) {

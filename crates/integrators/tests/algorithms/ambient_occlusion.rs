@@ -45,7 +45,8 @@ fn brightness(scene: &Scene, cos_sample: bool, max_distance: f32) -> Moments {
 fn the_share_of_the_sky_that_is_seen() {
     let free = on_a_floor([]);
     let beside_a_wall = on_a_floor([quad(v(1e-3, -1e3, 1e-4), v(0.0, 2e3, 0.0), v(0.0, 0.0, 1e3))]);
-    // A ceiling at height 1 hides the directions with cos θ > 1/D from a point that looks as far as D.
+    // A ceiling at height 1 hides the directions with cos θ > 1/D from a point that looks as far as
+    // D.
     let under_a_ceiling = on_a_floor([quad(v(-50.0, -50.0, 1.0), v(100.0, 0.0, 0.0), v(0.0, 100.0, 0.0))]);
     let views = [
         ("free", &free, f32::INFINITY, 1.0),

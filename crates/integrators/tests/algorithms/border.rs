@@ -1,4 +1,5 @@
-//! Beyond the border of a film that shows all directions the picture goes on, also for light that comes from the other side.
+//! Beyond the border of a film that shows all directions the picture goes on, also for light that
+//! comes from the other side.
 
 use alhazen_integrators::{Control, build, render};
 use description::{

@@ -1,4 +1,5 @@
-//! Methods that merge photons, against closed forms of what they should find, and of how wrong they should be.
+//! Methods that merge photons, against closed forms of what they should find, and of how wrong they
+//! should be.
 
 use std::f64::consts::PI;
 use std::sync::atomic::Ordering;
@@ -77,9 +78,10 @@ fn furnace(rho: f32) -> SceneDesc {
     desc
 }
 
-/// A lamp throws light at a mirror above it, which throws it on the floor as from a point at the height `HEIGHT`. The camera sees the
-/// foot of that point in a second mirror: light that neither chance nor choice nor connections find. The floor is a chequerboard of these
-/// alphas, the first of them at the foot.
+/// A lamp throws light at a mirror above it, which throws it on the floor as from a point at the
+/// height `HEIGHT`. The camera sees the foot of that point in a second mirror: light that neither
+/// chance nor choice nor connections find. The floor is a chequerboard of these alphas, the first
+/// of them at the foot.
 fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
     let mut desc = on_film([8, 8]);
     let (from, to) = (v(0.0, 0.0, 0.2), v(0.0, 0.0, 1.0));
@@ -112,7 +114,8 @@ fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
 
 const HEIGHT: f64 = 0.8;
 
-/// What is seen there when blurred over the radius r: ρ/π times the mean of h/(h² + x²)^{3/2} over |x| < r.
+/// What is seen there when blurred over the radius r: ρ/π times the mean of h/(h² + x²)^{3/2} over
+/// |x| < r.
 fn blurred(r: f64) -> f64 {
     0.5 / PI * 2.0 / (r * r) * (1.0 - HEIGHT / (HEIGHT * HEIGHT + r * r).sqrt())
 }

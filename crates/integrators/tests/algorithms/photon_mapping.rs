@@ -1,4 +1,5 @@
-//! Photon mapping against closed forms, against algorithms without bias, and as a picture of its photons.
+//! Photon mapping against closed forms, against algorithms without bias, and as a picture of its
+//! photons.
 
 use alhazen_integrators::{Control, build};
 use description::{
@@ -90,8 +91,8 @@ fn what_a_wall_lacks_is_the_part_of_the_disk_beyond_its_edges() {
             ..small(&PhotonMappingDesc::default())
         };
         let found = brightness(&desc, &integrator, 24);
-        // Of a disk that is moved by (x, y) against a square of side 2, (1 − |x|/2)(1 − |y|/2) remain in the mean; and the kernel has
-        // the means E|x| = 16r/15π and E|xy| = r²/3π.
+        // Of a disk that is moved by (x, y) against a square of side 2, (1 − |x|/2)(1 − |y|/2)
+        // remain in the mean; and the kernel has the means E|x| = 16r/15π and E|xy| = r²/3π.
         let (r, pi) = (f64::from(radius), std::f64::consts::PI);
         let inside = 1.0 - 16.0 * r / (15.0 * pi) + r * r / (12.0 * pi);
         t_test(&found, 1.5 + 0.5 * inside, radii.len())
@@ -149,7 +150,8 @@ fn a_final_gather_sees_less_of_edges() {
     assert!(1.0 - found[1] < 0.6 * (1.0 - found[0]), "{found:?}");
 }
 
-/// A ball of glass over a floor that is there with the probability alpha, in the beam of a lamp at a point.
+/// A ball of glass over a floor that is there with the probability alpha, in the beam of a lamp at
+/// a point.
 fn ball_in_a_beam(alpha: f32) -> SceneDesc {
     let mut desc = SceneDesc::default();
     from_above(&mut desc, 2.0, 32);
@@ -199,7 +201,8 @@ fn a_caustic_holds_the_light_that_light_tracing_finds() {
     }
 }
 
-/// Looks up at a ceiling that has its light from a floor, there with the probability alpha, in the beam of a lamp.
+/// Looks up at a ceiling that has its light from a floor, there with the probability alpha, in the
+/// beam of a lamp.
 fn ceiling_over_a_beam(alpha: f32) -> SceneDesc {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [8, 8];

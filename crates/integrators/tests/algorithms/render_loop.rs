@@ -1,4 +1,5 @@
-//! The promises of the loop: the same bits on any number of threads, valid pictures when stopped, fixed samples.
+//! The promises of the loop: the same bits on any number of threads, valid pictures when stopped,
+//! fixed samples.
 
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};

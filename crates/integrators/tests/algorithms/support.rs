@@ -1,4 +1,5 @@
-//! Scenes made by hand, and means of radiance along a ray. Everything is grey, and radiance counts in units of a light of scale 1.
+//! Scenes made by hand, and means of radiance along a ray. Everything is grey, and radiance counts
+//! in units of a light of scale 1.
 
 use std::sync::Arc;
 
@@ -104,7 +105,8 @@ pub fn radiance(
     samples.collect()
 }
 
-/// That a mean is what it should be, as one of `tests` tests; beyond chance, single precision may be off by 3e-5.
+/// That a mean is what it should be, as one of `tests` tests; beyond chance, single precision may
+/// be off by 3e-5.
 #[track_caller]
 pub fn assert_mean(found: &Moments, expected: f64, tests: usize, what: &str) {
     if (found.mean - expected).abs() > 3e-5 * expected {
@@ -115,7 +117,8 @@ pub fn assert_mean(found: &Moments, expected: f64, tests: usize, what: &str) {
 pub const LIGHT_SAMPLERS: [LightSamplerKind; 3] =
     [LightSamplerKind::Uniform, LightSamplerKind::Power, LightSamplerKind::Bvh];
 
-/// The algorithms that find all light between rough surfaces, and settings of theirs that find the same light.
+/// The algorithms that find all light between rough surfaces, and settings of theirs that find the
+/// same light.
 pub enum Unbiased {
     Path(Path),
     SimplePath(SimplePath),

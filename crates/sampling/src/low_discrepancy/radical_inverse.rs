@@ -1,8 +1,9 @@
-//! The radical inverse: the digits of an index mirrored at the radix point, Φ_b(Σ dᵢ bⁱ) = Σ dᵢ b^(−i−1), plain or with
-//! its digits permuted at random.
+//! The radical inverse: the digits of an index mirrored at the radix point, Φ_b(Σ dᵢ bⁱ) = Σ dᵢ
+//! b^(−i−1), plain or with its digits permuted at random.
 //!
-//! Digits are permuted alike wherever they stand in the sequence ([`DigitPermutations`], [Faure 1982]), or by the
-//! digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]). See [Pharr 2023 §8.6].
+//! Digits are permuted alike wherever they stand in the sequence ([`DigitPermutations`],
+//! [Faure 1982]), or by the digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]).
+//! See [Pharr 2023 §8.6].
 
 use crate::{hash, mix_bits, permutation_element};
 use math::ONE_MINUS_EPSILON;
@@ -41,7 +42,8 @@ pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
     mirror(base, a, |a, _| a > 0, |_, digit| digit)
 }
 
-/// The number below baseⁿ whose radical inverse in `base` has the integer `inverse` as its n digits.
+/// The number below baseⁿ whose radical inverse in `base` has the integer `inverse` as its n
+/// digits.
 #[inline]
 pub fn inverse_radical_inverse(mut inverse: u64, base: u64, digits: u32) -> u64 {
     let mut index = 0;
@@ -52,7 +54,8 @@ pub fn inverse_radical_inverse(mut inverse: u64, base: u64, digits: u32) -> u64 
     index
 }
 
-/// A random permutation of the digits of one base for each place of a number, as far down as a digit still shows.
+/// A random permutation of the digits of one base for each place of a number, as far down as a
+/// digit still shows.
 #[derive(Clone, Debug)]
 pub struct DigitPermutations {
     base: u32,
@@ -89,7 +92,8 @@ impl DigitPermutations {
     }
 }
 
-/// As [`radical_inverse`], with Owen's scrambling: each digit permuted by those before it and `hash`.
+/// As [`radical_inverse`], with Owen's scrambling: each digit permuted by those before it and
+/// `hash`.
 #[inline]
 pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> f32 {
     let base = prime(prime_index);

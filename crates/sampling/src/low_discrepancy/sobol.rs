@@ -1,8 +1,10 @@
-//! Sobol' points: in each dimension, the exclusive or of the columns of a binary matrix that the bits of the index pick.
+//! Sobol' points: in each dimension, the exclusive or of the columns of a binary matrix that the
+//! bits of the index pick.
 //!
-//! The columns are direction numbers v_k, begun with those of [Joe 2008] (`data/sobol-joe-kuo.txt`) and continued by the
-//! recurrence of a primitive polynomial of degree s with coefficients a: v_k = a₁v_{k−1} ⊕ … ⊕ a_{s−1}v_{k−s+1} ⊕ v_{k−s}
-//! ⊕ (v_{k−s} ≫ s). Scrambling follows [Owen 1995]; the fast form is a hash of [Laine 2011] with constants of [Vegdahl 2021].
+//! The columns are direction numbers v_k, begun with those of [Joe 2008] (`data/sobol-joe-kuo.txt`)
+//! and continued by the recurrence of a primitive polynomial of degree s with coefficients a: v_k =
+//! a₁v_{k−1} ⊕ … ⊕ a_{s−1}v_{k−s+1} ⊕ v_{k−s} ⊕ (v_{k−s} ≫ s). Scrambling follows [Owen 1995]; the
+//! fast form is a hash of [Laine 2011] with constants of [Vegdahl 2021].
 
 use crate::mix_bits;
 use std::sync::LazyLock;
@@ -40,7 +42,8 @@ fn matrix(line: &str) -> [u32; COLUMNS] {
     v.map(|v| (v >> 32) as u32)
 }
 
-/// The coordinate of point `index` in a dimension below [`SOBOL_DIMENSIONS`], as a binary fraction of 32 bits.
+/// The coordinate of point `index` in a dimension below [`SOBOL_DIMENSIONS`], as a binary fraction
+/// of 32 bits.
 #[inline]
 pub fn sobol_bits(mut index: u64, dimension: usize) -> u32 {
     if dimension == 0 {
@@ -55,7 +58,8 @@ pub fn sobol_bits(mut index: u64, dimension: usize) -> u32 {
     bits
 }
 
-/// Owen's scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above it and `seed`.
+/// Owen's scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above
+/// it and `seed`.
 #[inline]
 pub fn owen_scramble(mut v: u32, seed: u32) -> u32 {
     if seed & 1 == 1 {
@@ -70,7 +74,8 @@ pub fn owen_scramble(mut v: u32, seed: u32) -> u32 {
     v
 }
 
-/// A scrambling of the same form as [`owen_scramble`], by a hash in which bits act only on lower ones.
+/// A scrambling of the same form as [`owen_scramble`], by a hash in which bits act only on lower
+/// ones.
 #[inline]
 pub fn fast_owen_scramble(v: u32, seed: u32) -> u32 {
     let mut v = v.reverse_bits();

@@ -1,9 +1,11 @@
-//! Halton's sequence: dimension d is the radical inverse in the base of prime number d, one sequence over a tile of the
-//! picture whose first two dimensions are the place on the film [Pharr 2023 §8.6].
+//! Halton's sequence: dimension d is the radical inverse in the base of prime number d, one
+//! sequence over a tile of the picture whose first two dimensions are the place on the film
+//! [Pharr 2023 §8.6].
 //!
-//! On a tile of 2^j × 3^k pixels every 2^j·3^k successive points have one in each pixel; which one follows from the Chinese
-//! remainder theorem. Tiles of 128 pixels repeat over larger pictures. Any number of samples is as good as any other, and
-//! beyond it the sequence goes on. [`Randomize::FastOwen`] is taken for [`Randomize::Owen`], as the short cut is for base 2.
+//! On a tile of 2^j × 3^k pixels every 2^j·3^k successive points have one in each pixel; which one
+//! follows from the Chinese remainder theorem. Tiles of 128 pixels repeat over larger pictures. Any
+//! number of samples is as good as any other, and beyond it the sequence goes on.
+//! [`Randomize::FastOwen`] is taken for [`Randomize::Owen`], as the short cut is for base 2.
 
 use super::Randomize;
 use crate::low_discrepancy::{
@@ -16,8 +18,8 @@ use std::sync::{Arc, OnceLock};
 /// The largest side of the tile that the first two dimensions cover.
 const MAX_TILE: i32 = 128;
 
-/// Radical inverses in prime bases, one sequence over the picture. Any number of samples is as good as any other, and
-/// beyond it the sequence goes on.
+/// Radical inverses in prime bases, one sequence over the picture. Any number of samples is as good
+/// as any other, and beyond it the sequence goes on.
 #[derive(Clone, Debug)]
 pub struct Halton {
     samples_per_pixel: u32,
@@ -28,14 +30,16 @@ pub struct Halton {
     /// 2^j and 3^k, the sides of the tile, and the exponents.
     scales: [u64; 2],
     exponents: [u32; 2],
-    /// For each axis, the index (modulo both sides) that is 1 modulo its own side and 0 modulo the other.
+    /// For each axis, the index (modulo both sides) that is 1 modulo its own side and 0 modulo the
+    /// other.
     units: [u64; 2],
     index: u64,
     dimension: usize,
 }
 
 impl Halton {
-    /// A sampler for a picture of the given resolution. [`Randomize::FastOwen`] is taken for [`Randomize::Owen`].
+    /// A sampler for a picture of the given resolution. [`Randomize::FastOwen`] is taken for
+    /// [`Randomize::Owen`].
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Halton {
         let mut scales = [1u64; 2];
         let mut exponents = [0; 2];

@@ -1,13 +1,15 @@
 //! Samplers: the coordinates of each sample of each pixel.
 //!
-//! A [`Sampler`] is set to a sample by [`Sampler::start_pixel_sample`] and then asked for one or two coordinates after
-//! another; each call moves on to further dimensions. Values lie in [0, 1) and depend on the sampler's settings, pixel,
-//! sample index, dimension and seed alone, so that any sample can be replayed, from any clone, in any order.
+//! A [`Sampler`] is set to a sample by [`Sampler::start_pixel_sample`] and then asked for one or
+//! two coordinates after another; each call moves on to further dimensions. Values lie in [0, 1)
+//! and depend on the sampler's settings, pixel, sample index, dimension and seed alone, so that any
+//! sample can be replayed, from any clone, in any order.
 //!
-//! [`Sampler::samples_per_pixel`] is the count for which a sampler is arranged; some round up what was asked for. Indices
-//! beyond it are valid: the sequence goes on, or a further arrangement, randomised anew, is begun. The mean over pixels and
-//! seeds is right at any count, save that nothing is random with [`Randomize::None`] in [`PaddedSobol`], [`Sobol`] and
-//! [`ZSobol`], which is there to look at.
+//! [`Sampler::samples_per_pixel`] is the count for which a sampler is arranged; some round up what
+//! was asked for. Indices beyond it are valid: the sequence goes on, or a further arrangement,
+//! randomised anew, is begun. The mean over pixels and seeds is right at any count, save that
+//! nothing is random with [`Randomize::None`] in [`PaddedSobol`], [`Sobol`] and [`ZSobol`], which
+//! is there to look at.
 
 mod halton;
 mod independent;
@@ -70,7 +72,8 @@ pub enum Sampler {
     PaddedSobol(PaddedSobol),
     /// Sobol' points of all dimensions, one sequence over the picture.
     Sobol(Sobol),
-    /// Two-dimensional Sobol' points, spread over the picture along a curve: error becomes blue noise.
+    /// Two-dimensional Sobol' points, spread over the picture along a curve: error becomes blue
+    /// noise.
     ZSobol(ZSobol),
     /// Uniform random numbers that can be changed step by step.
     PrimarySample(PrimarySample),
@@ -96,8 +99,8 @@ impl Sampler {
         each_sampler!(self, sampler => sampler.samples_per_pixel())
     }
 
-    /// Goes to sample `index` of a pixel, at the coordinate `dimension`. A sample begins with dimension 0, and
-    /// [`get_pixel_2d`](Self::get_pixel_2d) is to be its first coordinates.
+    /// Goes to sample `index` of a pixel, at the coordinate `dimension`. A sample begins with
+    /// dimension 0, and [`get_pixel_2d`](Self::get_pixel_2d) is to be its first coordinates.
     #[inline]
     pub fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
         each_sampler!(self, sampler => sampler.start_pixel_sample(pixel, index, dimension));
@@ -128,8 +131,8 @@ fn pixel_hash(pixel: [i32; 2], dimension: u32, seed: u32) -> u64 {
     hash(&[pixel[0] as u32, pixel[1] as u32, dimension, seed])
 }
 
-/// A place in a shuffled arrangement of `count` samples, and which arrangement it is that `index` falls in.
-/// The first is shuffled by `seed` itself, each further one by a seed of its own.
+/// A place in a shuffled arrangement of `count` samples, and which arrangement it is that `index`
+/// falls in. The first is shuffled by `seed` itself, each further one by a seed of its own.
 #[inline]
 fn shuffled(index: u32, count: u32, seed: u32) -> (u32, u32) {
     let (round, index) = (index / count, index % count);

@@ -1,16 +1,20 @@
-//! A point of primary sample space that moves: the coordinates of one path, changed a little or altogether.
+//! A point of primary sample space that moves: the coordinates of one path, changed a little or
+//! altogether.
 //!
-//! A path is decided by the numbers that its algorithm asks the sampler for: a point x of the unit cube of as many dimensions. Metropolis
-//! methods walk through this *primary sample space* [Kelemen 2002]. They propose a point x' near x or anywhere, let the algorithm
-//! make the path that belongs to it, and accept x' or stay at x:
+//! A path is decided by the numbers that its algorithm asks the sampler for: a point x of the unit
+//! cube of as many dimensions. Metropolis methods walk through this *primary sample space*
+//! [Kelemen 2002]. They propose a point x' near x or anywhere, let the algorithm make the path that
+//! belongs to it, and accept x' or stay at x:
 //!
-//! - a *small step* adds to each coordinate a normal deviate of the standard deviation σ and wraps around the ends of [0, 1);
+//! - a *small step* adds to each coordinate a normal deviate of the standard deviation σ and wraps
+//!   around the ends of [0, 1);
 //! - a *large step* draws every coordinate anew.
 //!
-//! Both are as likely from x' to x as from x to x'. Nobody knows beforehand how many coordinates a path will ask for, so they are
-//! made as they are asked for. Those beyond all that the current path has used are drawn anew: nothing has depended on them. Those
-//! of the current path that the proposed path has no use for must make the step all the same, if it is accepted; after a large step
-//! they may be forgotten, for to draw them anew is what a large step does.
+//! Both are as likely from x' to x as from x to x'. Nobody knows beforehand how many coordinates a
+//! path will ask for, so they are made as they are asked for. Those beyond all that the current
+//! path has used are drawn anew: nothing has depended on them. Those of the current path that the
+//! proposed path has no use for must make the step all the same, if it is accepted; after a large
+//! step they may be forgotten, for to draw them anew is what a large step does.
 
 use super::independent::pixel_rng;
 use crate::Rng;
@@ -19,8 +23,9 @@ use math::{ONE_MINUS_EPSILON, Vec2};
 
 /// A point of primary sample space.
 ///
-/// After [`Sampler::start_pixel_sample`](super::Sampler::start_pixel_sample) it is a uniform random one, as that of
-/// [`Independent`](super::Independent), and counts as proposed: to be accepted before the first step from it.
+/// After [`Sampler::start_pixel_sample`](super::Sampler::start_pixel_sample) it is a uniform random
+/// one, as that of [`Independent`](super::Independent), and counts as proposed: to be accepted
+/// before the first step from it.
 #[derive(Clone, Debug)]
 pub struct PrimarySample {
     samples_per_pixel: u32,
@@ -55,8 +60,8 @@ impl PrimarySample {
         self.spare = None;
     }
 
-    /// Proposes a step from the current point, and forgets the step proposed before. The coordinates asked for from now on are those of
-    /// the proposed point.
+    /// Proposes a step from the current point, and forgets the step proposed before. The
+    /// coordinates asked for from now on are those of the proposed point.
     pub fn propose(&mut self, large: bool) {
         self.is_large = large;
         self.proposed.clear();

@@ -1,9 +1,10 @@
-//! Sobol' points of all dimensions: one sequence over a square of pixels, whose first two dimensions are the place on the
-//! film [Pharr 2023 §8.7.1].
+//! Sobol' points of all dimensions: one sequence over a square of pixels, whose first two
+//! dimensions are the place on the film [Pharr 2023 §8.7.1].
 //!
-//! On a square with side 2^m, every 2^(2m) successive points have one in each pixel. Which index that is follows from the
-//! first 2m rows of the two matrices: a linear system over the binary field, inverted here once. The number of samples is
-//! rounded up to a power of two; beyond it the sequence goes on.
+//! On a square with side 2^m, every 2^(2m) successive points have one in each pixel. Which index
+//! that is follows from the first 2m rows of the two matrices: a linear system over the binary
+//! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
+//! sequence goes on.
 
 use super::Randomize;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_bits};
@@ -11,8 +12,8 @@ use crate::{hash, unit_interval};
 use math::Vec2;
 use std::sync::Arc;
 
-/// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded up to a power of two;
-/// beyond it the sequence goes on.
+/// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded
+/// up to a power of two; beyond it the sequence goes on.
 #[derive(Clone, Debug)]
 pub struct Sobol {
     samples_per_pixel: u32,
@@ -27,7 +28,8 @@ pub struct Sobol {
 }
 
 impl Sobol {
-    /// A sampler for a picture of the given resolution, at most 2¹⁵ pixels on a side (beyond, places repeat).
+    /// A sampler for a picture of the given resolution, at most 2¹⁵ pixels on a side (beyond,
+    /// places repeat).
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Sobol {
         let side = resolution[0].max(resolution[1]).clamp(1, 1 << 15) as u32;
         let log2_side = side.next_power_of_two().ilog2();
@@ -97,8 +99,8 @@ fn pixel_of(index: u64, m: u32) -> u64 {
     x << m | y
 }
 
-/// Inverts [`pixel_of`] on the indices below 2^(2m): its matrix is brought to the identity by operations on columns, which
-/// bring the identity to the inverse.
+/// Inverts [`pixel_of`] on the indices below 2^(2m): its matrix is brought to the identity by
+/// operations on columns, which bring the identity to the inverse.
 fn index_from_pixel(m: u32) -> Arc<[u64]> {
     let size = 2 * m as usize;
     let mut columns: Vec<(u64, u64)> = (0..size).map(|bit| (pixel_of(1 << bit, m), 1 << bit)).collect();

@@ -1,17 +1,18 @@
-//! Two-dimensional Sobol' points spread over the picture along Morton's curve, with the base-4 digits of the place on the
-//! curve permuted at random: neighbouring pixels take complementary points, and error looks like blue noise
-//! [Ahmed 2020], [Pharr 2023 §8.7.3].
+//! Two-dimensional Sobol' points spread over the picture along Morton's curve, with the base-4
+//! digits of the place on the curve permuted at random: neighbouring pixels take complementary
+//! points, and error looks like blue noise [Ahmed 2020], [Pharr 2023 §8.7.3].
 //!
-//! Another seed permutes digits and scrambles points otherwise: with scrambles alone, which all pixels share, the errors of two seeds
-//! would have much in common. A number of samples that is no power of two is rounded up to one. Beyond it, each further round has scrambles and
-//! permutations of its own.
+//! Another seed permutes digits and scrambles points otherwise: with scrambles alone, which all
+//! pixels share, the errors of two seeds would have much in common. A number of samples that is no
+//! power of two is rounded up to one. Beyond it, each further round has scrambles and permutations
+//! of its own.
 
 use super::Randomize;
 use crate::{hash, mix_bits};
 use math::Vec2;
 
-/// Two-dimensional Sobol' points spread over the picture along a curve. The number of samples is rounded up to a power of
-/// two; beyond it each round has scrambles of its own.
+/// Two-dimensional Sobol' points spread over the picture along a curve. The number of samples is
+/// rounded up to a power of two; beyond it each round has scrambles of its own.
 #[derive(Clone, Debug)]
 pub struct ZSobol {
     log2_samples: u32,
@@ -79,8 +80,8 @@ impl ZSobol {
         (index, hash(&[self.dimension, self.seed ^ self.round]))
     }
 
-    /// The Morton index with each base-4 digit permuted by the digits above it; below them there is one binary digit if
-    /// the number of samples is not a power of four.
+    /// The Morton index with each base-4 digit permuted by the digits above it; below them there is
+    /// one binary digit if the number of samples is not a power of four.
     fn permuted_index(&self) -> u64 {
         let key = 0x5555_5555u32.wrapping_mul(self.dimension) ^ self.round ^ self.seed_key;
         let choose = |above: u64| mix_bits(above ^ key as u64);

@@ -1,5 +1,5 @@
-//! The unit disk, sampled uniformly in polar form and by the concentric map, which keeps neighbours together
-//! [Shirley 1997].
+//! The unit disk, sampled uniformly in polar form and by the concentric map, which keeps neighbours
+//! together [Shirley 1997].
 
 use math::Vec2;
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};

@@ -1,4 +1,5 @@
-//! Densities of one variable: linear, tent, smooth step, exponential; and pairs of normal variables.
+//! Densities of one variable: linear, tent, smooth step, exponential; and pairs of normal
+//! variables.
 //!
 //! Sources: [Pharr 2023 §2.4, §A.4]; [Box 1958] for the normal pair.
 
@@ -64,8 +65,8 @@ pub fn invert_tent(x: f32, r: f32) -> f32 {
 
 /// A number in [a, b], for a < b, with density proportional to the smooth step from a to b.
 ///
-/// With t = (x − a)/(b − a) its distribution is F(t) = 2t³ − t⁴. As t³ ≤ F ≤ 2t³ and F is convex, Newton's iteration falls from
-/// ∛u to the root without passing it.
+/// With t = (x − a)/(b − a) its distribution is F(t) = 2t³ − t⁴. As t³ ≤ F ≤ 2t³ and F is convex,
+/// Newton's iteration falls from ∛u to the root without passing it.
 #[inline]
 pub fn sample_smooth_step(u: f32, a: f32, b: f32) -> f32 {
     let mut t = u.cbrt();

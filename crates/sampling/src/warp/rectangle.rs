@@ -1,13 +1,15 @@
-//! A rectangle as seen from a point, sampled uniformly by solid angle [Ureña 2013], [Pharr 2023 §A.5.4].
+//! A rectangle as seen from a point, sampled uniformly by solid angle [Ureña 2013],
+//! [Pharr 2023 §A.5.4].
 //!
-//! In a frame along the sides with the rectangle at z < 0 and d = |(x, y, z)|, the solid angle between the planes through the
-//! point and the lines at 0 and x is
+//! In a frame along the sides with the rectangle at z < 0 and d = |(x, y, z)|, the solid angle
+//! between the planes through the point and the lines at 0 and x is
 //!
 //! ```text
 //! φ(x) = atan(x·y₁ / (−z·d₁)) − atan(x·y₀ / (−z·d₀))
 //! ```
 //!
-//! so that φ is uniform in u₀ between φ(x₀) and φ(x₁); given x, the height on the sphere is uniform in u₁.
+//! so that φ is uniform in u₀ between φ(x₀) and φ(x₁); given x, the height on the sphere is uniform
+//! in u₁.
 
 use math::{DVec3, Point3, Vec2, Vector3};
 
@@ -24,7 +26,8 @@ pub struct SphericalRectangle {
 }
 
 impl SphericalRectangle {
-    /// The rectangle with a corner and two sides at right angles, seen from `p`; `None` if it has no solid angle there.
+    /// The rectangle with a corner and two sides at right angles, seen from `p`; `None` if it has
+    /// no solid angle there.
     pub fn new(p: Point3, corner: Point3, side_x: Vector3, side_y: Vector3) -> Option<SphericalRectangle> {
         let (side_x, side_y) = (side_x.as_dvec3(), side_y.as_dvec3());
         let (length_x, length_y) = (side_x.length(), side_y.length());

@@ -1,7 +1,8 @@
 //! Directions: the whole sphere, the upper hemisphere and a cone around +z.
 //!
-//! Uniform warps follow Archimedes: z is uniform, the angle around it too. A cosine-weighted direction is a uniform point
-//! of the disk lifted to the hemisphere [Malley 1988]. Densities are per solid angle.
+//! Uniform warps follow Archimedes: z is uniform, the angle around it too. A cosine-weighted
+//! direction is a uniform point of the disk lifted to the hemisphere [Malley 1988]. Densities are
+//! per solid angle.
 
 use super::disk::turn;
 use super::{invert_uniform_disk_concentric, sample_uniform_disk_concentric};

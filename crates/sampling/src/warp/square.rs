@@ -1,9 +1,11 @@
-//! The bilinear density over the unit square [Pharr 2023 §A.5.5]: the marginal of y is linear, and so is x given y.
+//! The bilinear density over the unit square [Pharr 2023 §A.5.5]: the marginal of y is linear, and
+//! so is x given y.
 
 use super::{invert_linear, linear_pdf, sample_linear};
 use math::{Vec2, lerp};
 
-/// A point of [0, 1]² with density proportional to the bilinear interpolation of weights ≥ 0 at (0,0), (1,0), (0,1), (1,1).
+/// A point of [0, 1]² with density proportional to the bilinear interpolation of weights ≥ 0 at
+/// (0,0), (1,0), (0,1), (1,1).
 #[inline]
 pub fn sample_bilinear(u: Vec2, w: [f32; 4]) -> Vec2 {
     let y = sample_linear(u.y, w[0] + w[1], w[2] + w[3]);

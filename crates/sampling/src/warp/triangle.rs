@@ -1,9 +1,10 @@
 //! Triangles: in the plane, uniformly by area; as seen from a point, uniformly by solid angle.
 //!
-//! The plane warp folds the square along its diagonal without a square root [Heitz 2019]. The spherical one cuts off a
-//! part of the triangle with u₀ of its solid angle by an arc through b, then walks u₁ along that arc [Arvo 1995],
-//! [Pharr 2023 §6.5.4]. Solid angles are those of [Van Oosterom 1983]; arithmetic is in double precision, so that small and
-//! thin triangles need no special case.
+//! The plane warp folds the square along its diagonal without a square root [Heitz 2019]. The
+//! spherical one cuts off a part of the triangle with u₀ of its solid angle by an arc through b,
+//! then walks u₁ along that arc [Arvo 1995], [Pharr 2023 §6.5.4]. Solid angles are those of
+//! [Van Oosterom 1983]; arithmetic is in double precision, so that small and thin triangles need no
+//! special case.
 
 use math::{DVec3, Point3, Vec2, Vector3};
 
@@ -73,11 +74,12 @@ impl SphericalTriangle {
         (1.0 / self.solid_angle) as f32
     }
 
-    /// A direction from the point to the triangle and the barycentric coordinates of where it meets the triangle.
+    /// A direction from the point to the triangle and the barycentric coordinates of where it meets
+    /// the triangle.
     pub fn sample(&self, u: Vec2) -> (Vector3, [f32; 3]) {
         let Self { a, b, c, cos_alpha, sin_alpha, .. } = *self;
-        // The vertex c' on the arc from a to c for which the triangle a b c' has u₀ of the solid angle; φ is that solid
-        // angle less α, and cos_b the cosine of the arc from a to c'.
+        // The vertex c' on the arc from a to c for which the triangle a b c' has u₀ of the solid
+        // angle; φ is that solid angle less α, and cos_b the cosine of the arc from a to c'.
         let (sin_area, cos_area) = (u.x as f64 * self.solid_angle).sin_cos();
         let sin_phi = sin_area * cos_alpha - cos_area * sin_alpha;
         let cos_phi = cos_area * cos_alpha + sin_area * sin_alpha;
@@ -96,7 +98,8 @@ impl SphericalTriangle {
         (w.as_vec3(), self.barycentric(w))
     }
 
-    /// The `u` that [`sample`](Self::sample) sends to the direction `w`, which must meet the triangle.
+    /// The `u` that [`sample`](Self::sample) sends to the direction `w`, which must meet the
+    /// triangle.
     pub fn invert(&self, w: Vector3) -> Vec2 {
         let Self { a, b, c, .. } = *self;
         let w = w.as_dvec3();
@@ -120,7 +123,8 @@ impl SphericalTriangle {
     }
 }
 
-/// The unit vector orthogonal to the unit vector `axis` on the side of `v`; 0 if `v` lies along the axis.
+/// The unit vector orthogonal to the unit vector `axis` on the side of `v`; 0 if `v` lies along the
+/// axis.
 fn perpendicular(v: DVec3, axis: DVec3) -> DVec3 {
     (v - v.dot(axis) * axis).normalize_or_zero()
 }
@@ -130,7 +134,8 @@ fn one_minus_dot(a: DVec3, b: DVec3) -> f64 {
     0.5 * (a - b).length_squared()
 }
 
-/// The solid angle of a spherical triangle of unit vectors: tan(Ω/2) = |a·(b×c)| / (1 + a·b + b·c + c·a).
+/// The solid angle of a spherical triangle of unit vectors: tan(Ω/2) = |a·(b×c)| / (1 + a·b + b·c +
+/// c·a).
 fn solid_angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     // The triple product of edges keeps the digits of small triangles.
     let volume = a.dot((b - a).cross(c - a)).abs();

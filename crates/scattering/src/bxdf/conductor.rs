@@ -1,13 +1,14 @@
-//! Metal: all light that is not absorbed is reflected, by a mirror or by microfacets that are mirrors.
+//! Metal: all light that is not absorbed is reflected, by a mirror or by microfacets that are
+//! mirrors.
 //!
 //! ```text
 //! f = D(wm) G(wo, wi) F(wo·wm) / (4 cos θ_i cos θ_o)        wm = (wo + wi)/|wo + wi|
 //! p = D_wo(wm) / (4 |wo·wm|)
 //! ```
 //!
-//! A smooth one has f = F(cos θ_o) δ(wi − mirrored wo)/|cos θ_i|. Light that bounces between microfacets is
-//! lost: rough metals come out a little dark. Sources: [Torrance 1967], [Walter 2007], [Pharr 2023 §9.4,
-//! §9.7].
+//! A smooth one has f = F(cos θ_o) δ(wi − mirrored wo)/|cos θ_i|. Light that bounces between
+//! microfacets is lost: rough metals come out a little dark. Sources: [Torrance 1967],
+//! [Walter 2007], [Pharr 2023 §9.4, §9.7].
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_conductor, reflect};
@@ -26,8 +27,8 @@ pub struct Conductor {
 }
 
 impl Conductor {
-    /// The value where microfacets of normal `wm` turn `wo` into `wi`, on one side of the surface and off the
-    /// horizon.
+    /// The value where microfacets of normal `wm` turn `wo` into `wi`, on one side of the surface
+    /// and off the horizon.
     #[inline]
     fn f_microfacet(&self, wo: Vector3, wi: Vector3, wm: Vector3) -> SampledSpectrum {
         let fresnel = fr_conductor(wo.dot(wm).abs(), self.eta, self.k);

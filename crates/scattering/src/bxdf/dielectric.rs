@@ -1,17 +1,21 @@
-//! Glass, water and other dielectrics: light is reflected and refracted, by a smooth surface or by microfacets
-//! that are.
+//! Glass, water and other dielectrics: light is reflected and refracted, by a smooth surface or by
+//! microfacets that are.
 //!
-//! With F the Fresnel reflectance at the microfacet and η' the relative index that light from `wo` meets,
+//! With F the Fresnel reflectance at the microfacet and η' the relative index that light from `wo`
+//! meets,
 //!
 //! ```text
-//! reflection     f = D(wm) G F / |4 cos θ_i cos θ_o|                                  wm ∝ wo + wi
+//! reflection     wm ∝ wo + wi
+//!                f = D(wm) G F / |4 cos θ_i cos θ_o|
 //!                p = F · D_wo(wm) / (4 |wo·wm|)
-//! transmission   f = D(wm) G (1 − F) |wi·wm wo·wm / (cos θ_i cos θ_o (wi·wm + wo·wm/η')²)|   wm ∝ wo + η' wi
+//! transmission   wm ∝ wo + η' wi
+//!                f = D(wm) G (1 − F) |wi·wm wo·wm / (cos θ_i cos θ_o (wi·wm + wo·wm/η')²)|
 //!                p = (1 − F) · D_wo(wm) |wi·wm| / (wi·wm + wo·wm/η')²
 //! ```
 //!
-//! and transmitted radiance is divided by η'². An index of 1 is no interface at all, whatever the roughness.
-//! Light that bounces between microfacets is lost. Sources: [Walter 2007], [Pharr 2023 §9.5, §9.7].
+//! and transmitted radiance is divided by η'². An index of 1 is no interface at all, whatever the
+//! roughness. Light that bounces between microfacets is lost. Sources: [Walter 2007],
+//! [Pharr 2023 §9.5, §9.7].
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_dielectric, reflect, refract};

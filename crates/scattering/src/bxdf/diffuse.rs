@@ -1,6 +1,7 @@
 //! Lambertian reflection: f = R/π on the side of `wo`, whichever side that is.
 //!
-//! Sampled by the cosine of `wi`, p = |cos θ_i|/π, so that every sample weighs R. Source: [Pharr 2023 §9.2].
+//! Sampled by the cosine of `wi`, p = |cos θ_i|/π, so that every sample weighs R. Source:
+//! [Pharr 2023 §9.2].
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode};

@@ -1,7 +1,8 @@
-//! Diffuse reflection and transmission, as by paper or a leaf: f = R/π on the side of `wo`, T/π on the other.
+//! Diffuse reflection and transmission, as by paper or a leaf: f = R/π on the side of `wo`, T/π on
+//! the other.
 //!
-//! A side is chosen in proportion to its largest value over wavelength, a direction there by its cosine.
-//! Source: [Pharr 2023 §9.2].
+//! A side is chosen in proportion to its largest value over wavelength, a direction there by its
+//! cosine. Source: [Pharr 2023 §9.2].
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode};
@@ -10,7 +11,8 @@ use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
 
-/// Reflects and transmits light evenly. Energy is conserved where the sum of both shares is at most 1.
+/// Reflects and transmits light evenly. Energy is conserved where the sum of both shares is at most
+/// 1.
 #[derive(Clone, Copy, Debug)]
 pub struct DiffuseTransmission {
     /// Share of light that is reflected, in [0, 1].

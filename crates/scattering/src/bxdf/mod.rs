@@ -1,7 +1,7 @@
 //! The BxDFs: what each does with light in the local frame, and the choice among them.
 //!
-//! Every member is [`Scatter`]; the conventions are those at the head of the crate. A member that is added
-//! gets a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
+//! Every member is [`Scatter`]; the conventions are those at the head of the crate. A member that
+//! is added gets a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
 
 mod conductor;
 mod dielectric;
@@ -29,14 +29,15 @@ pub struct BsdfSample {
     pub f: SampledSpectrum,
     /// Where light comes from, in the frame that was asked in.
     pub wi: Vector3,
-    /// Density per solid angle; of a specular lobe, the coefficient of the Dirac delta that cancels that of `f`.
+    /// Density per solid angle; of a specular lobe, the coefficient of the Dirac delta that cancels
+    /// that of `f`.
     pub pdf: f32,
     /// The one lobe that was sampled.
     pub flags: BxdfFlags,
     /// The relative index of refraction met along `wi`; 1 for reflection.
     pub eta: f32,
-    /// Whether `f` and `pdf` are stochastic and only their ratio is right; [`Scatter::pdf`] must then be asked
-    /// for a density.
+    /// Whether `f` and `pdf` are stochastic and only their ratio is right; [`Scatter::pdf`] must
+    /// then be asked for a density.
     pub pdf_is_proportional: bool,
 }
 
@@ -53,11 +54,13 @@ pub trait Scatter {
     /// What kinds of scattering there are.
     fn flags(&self) -> BxdfFlags;
 
-    /// The BxDF for light that comes from `wi` and leaves to `wo`, per steradian; specular lobes count as zero.
+    /// The BxDF for light that comes from `wi` and leaves to `wo`, per steradian; specular lobes
+    /// count as zero.
     fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum;
 
-    /// A direction `wi`, distributed about as f·|cos|. `uc` chooses a lobe, `u` a direction within it.
-    /// `None` where no light is scattered or the sample goes astray; such a sample counts as zero.
+    /// A direction `wi`, distributed about as f·|cos|. `uc` chooses a lobe, `u` a direction within
+    /// it. `None` where no light is scattered or the sample goes astray; such a sample counts as
+    /// zero.
     #[doc(alias = "Sample_f")]
     fn sample_f(
         &self,
@@ -75,8 +78,8 @@ pub trait Scatter {
     /// Widens narrow lobes, so that light they carry is found at the price of some bias.
     fn regularize(&mut self) {}
 
-    /// The hemispherical-directional reflectance: the share of even light from everywhere that leaves to `wo`,
-    /// estimated by one term for each (uc, u).
+    /// The hemispherical-directional reflectance: the share of even light from everywhere that
+    /// leaves to `wo`, estimated by one term for each (uc, u).
     fn rho_hd(&self, wo: Vector3, samples: impl IntoIterator<Item = (f32, Vec2)>) -> SampledSpectrum {
         if wo.z == 0.0 {
             return SampledSpectrum::ZERO;
@@ -84,8 +87,8 @@ pub trait Scatter {
         mean(samples.into_iter().map(|(uc, u)| scattered(self, wo, uc, u)))
     }
 
-    /// The hemispherical-hemispherical reflectance: the share of even light from everywhere that is scattered
-    /// at all, estimated by one term for each (u for wo, uc, u for wi).
+    /// The hemispherical-hemispherical reflectance: the share of even light from everywhere that is
+    /// scattered at all, estimated by one term for each (u for wo, uc, u for wi).
     fn rho_hh(&self, samples: impl IntoIterator<Item = (Vec2, f32, Vec2)>) -> SampledSpectrum {
         mean(samples.into_iter().map(|(uo, uc, ui)| {
             let wo = sample_uniform_hemisphere(uo);
@@ -123,7 +126,8 @@ pub enum Bxdf {
     ThinDielectric(ThinDielectric),
 }
 
-/// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a name.
+/// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
+/// name.
 ///
 /// ```
 /// use alhazen_scattering::{Bxdf, Scatter, each_bxdf};

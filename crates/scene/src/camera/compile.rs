@@ -6,8 +6,8 @@ use description::{
 };
 use math::Bounds2;
 
-/// The camera of a scene. What is wrong with it is added to `diagnostics`; `None` when some of that is an
-/// error.
+/// The camera of a scene. What is wrong with it is added to `diagnostics`; `None` when some of that
+/// is an error.
 pub fn compile(
     camera: &Stated<CameraDesc>,
     film: &Stated<FilmDesc>,

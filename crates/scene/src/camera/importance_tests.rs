@@ -100,7 +100,8 @@ fn densities_are_those_of_neighbouring_rays() {
                 assert_eq!(direction, 1.0, "{name}");
                 continue;
             }
-            // Near a pole directions turn quickly; across a fold of the octahedron they do not turn evenly.
+            // Near a pole directions turn quickly; across a fold of the octahedron they do not turn
+            // evenly.
             let solid_angle = (x.0.d - x.1.d).cross(y.0.d - y.1.d).length();
             let is_even = !name.starts_with("eq") || (middle.d.y.abs() < 0.9 && !near_a_fold(&from));
             if is_even {
@@ -109,7 +110,8 @@ fn densities_are_those_of_neighbouring_rays() {
             if camera.we(&middle).is_some() && ray(from.film, Vec2::ZERO).o == middle.o {
                 assert_eq!(position, 1.0, "{name}");
             } else {
-                // Within the quarter that is turned the same way, a lens is spread evenly over its square.
+                // Within the quarter that is turned the same way, a lens is spread evenly over its
+                // square.
                 let lens = |u: f32, v: f32| ray(from.film, Vec2::new(u, v)).o;
                 let (right, up) = (lens(0.9, 0.51) - lens(0.9, 0.49), lens(0.91, 0.5) - lens(0.89, 0.5));
                 near(position, 0.02 * 0.02 / right.cross(up).length());
@@ -118,7 +120,8 @@ fn densities_are_those_of_neighbouring_rays() {
     }
 }
 
-/// Whether a film position is near the diamond or the axes along which the equal-area map is folded.
+/// Whether a film position is near the diamond or the axes along which the equal-area map is
+/// folded.
 fn near_a_fold(from: &CameraSample) -> bool {
     let st = from.film / Vec2::from(RESOLUTION.map(|n| n as f32)) * 2.0 - 1.0;
     let edge = (st.x.abs() + st.y.abs() - 1.0).abs();

@@ -1,11 +1,11 @@
 //! The footprint of a pixel where ray differentials are missing.
 //!
-//! After a bounce no neighbouring rays are left to say how densely the film samples a surface. The footprint
-//! is then taken as if the point were seen directly, by the smallest differences in origin and direction
-//! between the rays of neighbouring pixels anywhere on the film: textures may be filtered too little, never
-//! too much ([Pharr 2023 §10.1.1]). The differences are kept in the frame whose z is the ray, and meet the
-//! surface again in the frame of the ray that would see it: with p = (0, 0, distance) and a neighbour from Δo
-//! along (0, 0, 1) + Δd,
+//! After a bounce no neighbouring rays are left to say how densely the film samples a surface. The
+//! footprint is then taken as if the point were seen directly, by the smallest differences in
+//! origin and direction between the rays of neighbouring pixels anywhere on the film: textures may
+//! be filtered too little, never too much ([Pharr 2023 §10.1.1]). The differences are kept in the
+//! frame whose z is the ray, and meet the surface again in the frame of the ray that would see it:
+//! with p = (0, 0, distance) and a neighbour from Δo along (0, 0, 1) + Δd,
 //!
 //! ```text
 //! ∂p/∂x = Δo + t·((0, 0, 1) + Δd) − p        t = n·(p − Δo) / n·((0, 0, 1) + Δd)
@@ -14,8 +14,9 @@
 use super::Projection;
 use math::{Frame, Normal3, Vec2, Vec3, Vector3};
 
-/// How far apart rays of neighbouring pixels are kept to be, one pixel wide: 1/√n for n samples a pixel, but
-/// never below 1/8, as filters blur the picture over a pixel however many samples there are.
+/// How far apart rays of neighbouring pixels are kept to be, one pixel wide: 1/√n for n samples a
+/// pixel, but never below 1/8, as filters blur the picture over a pixel however many samples there
+/// are.
 pub fn differential_scale(samples_per_pixel: u32) -> f32 {
     (samples_per_pixel.max(1) as f32).sqrt().recip().max(0.125)
 }
@@ -58,8 +59,8 @@ impl MinimumDifferentials {
         Self { origin, direction }
     }
 
-    /// ∂p/∂x and ∂p/∂y in camera space, on the plane with normal `n` that the ray along `d` of unit length
-    /// meets after `distance`; zero where that plane is seen edge-on.
+    /// ∂p/∂x and ∂p/∂y in camera space, on the plane with normal `n` that the ray along `d` of unit
+    /// length meets after `distance`; zero where that plane is seen edge-on.
     pub fn dp_dxy(&self, d: Vector3, distance: f32, n: Normal3) -> [Vector3; 2] {
         let frame = Frame::from_z(d);
         let n = frame.to_local(n);

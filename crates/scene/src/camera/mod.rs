@@ -1,15 +1,16 @@
 //! What the observer sees through.
 //!
-//! A [`Camera`] turns a position on the film into a ray of light that arrives there, followed backwards. It
-//! is a [`Projection`], which knows camera space alone, placed in the scene by a [`CameraTransform`] and
-//! opened for a while by a shutter.
+//! A [`Camera`] turns a position on the film into a ray of light that arrives there, followed
+//! backwards. It is a [`Projection`], which knows camera space alone, placed in the scene by a
+//! [`CameraTransform`] and opened for a while by a shutter.
 //!
-//! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in pbrt). Film
-//! positions are in pixels, x to the right and y down, (0, 0) at the top left corner of the picture, so that
-//! the centre of pixel (i, j) is (i + ½, j + ½). Rays are in render space, their directions have unit length,
-//! and their `time` is in the scene's time. For light that comes from the other side, [`Camera::we`] is the importance of a ray
-//! and [`Camera::sample_wi`] the way from a point to the lens: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of
-//! integral 1 over the film in pixels. Differentials are one pixel wide; bring them nearer by
+//! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in
+//! pbrt). Film positions are in pixels, x to the right and y down, (0, 0) at the top left corner of
+//! the picture, so that the centre of pixel (i, j) is (i + ½, j + ½). Rays are in render space,
+//! their directions have unit length, and their `time` is in the scene's time. For light that comes
+//! from the other side, [`Camera::we`] is the importance of a ray and [`Camera::sample_wi`] the way
+//! from a point to the lens: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of integral
+//! 1 over the film in pixels. Differentials are one pixel wide; bring them nearer by
 //! [`differential_scale`] when a pixel takes many samples.
 
 mod compile;
@@ -92,9 +93,9 @@ impl Projection {
         }
     }
 
-    /// The film position of the ray from `o` on the lens along the unit direction `d`, both in camera space, and how much
-    /// film, in square pixels, sees a solid angle there, or of parallel rays an area of the film's plane. `None` for rays
-    /// that do not lead to the front.
+    /// The film position of the ray from `o` on the lens along the unit direction `d`, both in
+    /// camera space, and how much film, in square pixels, sees a solid angle there, or of parallel
+    /// rays an area of the film's plane. `None` for rays that do not lead to the front.
     fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         match self {
             Self::Perspective(p) => p.film(o, d),
@@ -131,8 +132,8 @@ impl Projection {
         }
     }
 
-    /// Unit direction and length of the way from the camera to `p`, in camera space, through the centre of a
-    /// lens.
+    /// Unit direction and length of the way from the camera to `p`, in camera space, through the
+    /// centre of a lens.
     fn way_to(&self, p: Point3) -> (Vector3, f32) {
         match self {
             Self::Orthographic(o) if o.is_parallel() => (Vec3::Z, p.z),
@@ -140,9 +141,9 @@ impl Projection {
         }
     }
 
-    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat film are
-    /// compared with those a whole pixel away, which is exact; on the sphere, where a pixel may span a large
-    /// angle, with near ones.
+    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat
+    /// film are compared with those a whole pixel away, which is exact; on the sphere, where a
+    /// pixel may span a large angle, with near ones.
     fn differential_step(&self) -> f32 {
         match self {
             Self::Perspective(_) | Self::Orthographic(_) => 1.0,
@@ -174,8 +175,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera that takes a picture of `resolution` pixels (width, height) while the shutter is open, from
-    /// `shutter[0]` to `shutter[1]`.
+    /// A camera that takes a picture of `resolution` pixels (width, height) while the shutter is
+    /// open, from `shutter[0]` to `shutter[1]`.
     pub fn new(
         projection: Projection,
         transform: CameraTransform,
@@ -226,8 +227,8 @@ impl Camera {
         Some(CameraRay { ray: Ray { d: ray.d.normalize(), ..ray }, weight: 1.0 })
     }
 
-    /// The ray of a sample with the rays one pixel to the right and one pixel down, through the same point of
-    /// the lens at the same moment.
+    /// The ray of a sample with the rays one pixel to the right and one pixel down, through the
+    /// same point of the lens at the same moment.
     #[doc(alias = "GenerateRayDifferential")]
     pub fn generate_ray_differential(&self, sample: &CameraSample) -> Option<CameraRayDifferential> {
         let time = self.sample_time(sample.time);
@@ -245,9 +246,10 @@ impl Camera {
         Some(CameraRayDifferential { ray, weight: 1.0 })
     }
 
-    /// About how far apart, on the tangent plane of a surface at `p` with normal `n` (render space), the rays
-    /// of neighbouring pixels would be if they came straight from the camera: ∂p/∂x and ∂p/∂y, each times
-    /// `scale` (see [`differential_scale`]). For surfaces that a path reaches without ray differentials.
+    /// About how far apart, on the tangent plane of a surface at `p` with normal `n` (render
+    /// space), the rays of neighbouring pixels would be if they came straight from the camera:
+    /// ∂p/∂x and ∂p/∂y, each times `scale` (see [`differential_scale`]). For surfaces that a path
+    /// reaches without ray differentials.
     #[doc(alias = "Approximate_dp_dxy")]
     pub fn approximate_dp_dxy(&self, p: Point3, n: Normal3, time: f32, scale: f32) -> [Vector3; 2] {
         let render_from_camera = self.transform.render_from_camera(time);

@@ -1,10 +1,10 @@
-//! The orthographic camera: all rays are parallel to the axis of view, so that things look the same size at any
-//! distance.
+//! The orthographic camera: all rays are parallel to the axis of view, so that things look the same
+//! size at any distance.
 //!
-//! The film position at screen point (x, y) sees along the ray (x, y, 0) + t·(0, 0, 1) of camera space. With
-//! a thin lens, all rays leave the lens about the origin towards (x, y, focal distance), as in pbrt-v4: such
-//! a picture is a perspective one, and the screen window lies on the focal plane ([Pharr 2023 §5.2.1,
-//! §5.2.3]).
+//! The film position at screen point (x, y) sees along the ray (x, y, 0) + t·(0, 0, 1) of camera
+//! space. With a thin lens, all rays leave the lens about the origin towards (x, y, focal
+//! distance), as in pbrt-v4: such a picture is a perspective one, and the screen window lies on the
+//! focal plane ([Pharr 2023 §5.2.1, §5.2.3]).
 
 use super::{Screen, ThinLens};
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
@@ -42,8 +42,9 @@ impl Orthographic {
         self.lens
     }
 
-    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a pixel of the area A on the
-    /// focal plane z = f is seen at the angle θ under A·cos³θ/f². Of parallel rays film per area, 1/A.
+    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a
+    /// pixel of the area A on the focal plane z = f is seen at the angle θ under A·cos³θ/f². Of
+    /// parallel rays film per area, 1/A.
     #[inline]
     pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         let per_area = 1.0 / self.screen.pixel_area();

@@ -1,8 +1,10 @@
-//! The perspective camera: every ray passes through one point, the eye (or through a thin lens around it).
+//! The perspective camera: every ray passes through one point, the eye (or through a thin lens
+//! around it).
 //!
-//! The observer. An eye at Eye looks along w, with u to its right and v upwards, all three of unit length and
-//! at right angles. At the near distance N along w stands the film: n_c × n_r pixels that fill the rectangle
-//! −W ≤ u ≤ W, −H ≤ v ≤ H, where the vertical angle θ of the view and the aspect give
+//! The observer. An eye at Eye looks along w, with u to its right and v upwards, all three of unit
+//! length and at right angles. At the near distance N along w stands the film: n_c × n_r pixels
+//! that fill the rectangle −W ≤ u ≤ W, −H ≤ v ≤ H, where the vertical angle θ of the view and the
+//! aspect give
 //!
 //! ```text
 //! H = N·tan(θ/2)        W = H·aspect
@@ -14,17 +16,18 @@
 //! u_c = −W + W·2c/n_c        v_r = −H + H·2r/n_r        Dir = N·w + u_c·u + v_r·v
 //! ```
 //!
-//! and is seen along the ray Eye + t·Dir: points with t < 0 lie behind the observer, those with 0 < t < 1 in
-//! front of the near plane, and t = 1 is on it.
+//! and is seen along the ray Eye + t·Dir: points with t < 0 lie behind the observer, those with 0 <
+//! t < 1 in front of the near plane, and t = 1 is on it.
 //!
-//! What differs here: (u, v, w) are the axes (x, y, z) of camera space, which pbrt makes left-handed. Film
-//! rows are counted downwards, so that the corner above is the film position (c, n_r − r). Dir is normalized,
-//! so that t measures distance and N cancels. The field of view is given over the shorter side: it is θ where
-//! the picture is at least as wide as high, and tan(θ/2) = tan(fov/2)/aspect where it is not. A screen window
-//! other than the default cuts a part out of the same plane.
+//! What differs here: (u, v, w) are the axes (x, y, z) of camera space, which pbrt makes
+//! left-handed. Film rows are counted downwards, so that the corner above is the film position (c,
+//! n_r − r). Dir is normalized, so that t measures distance and N cancels. The field of view is
+//! given over the shorter side: it is θ where the picture is at least as wide as high, and tan(θ/2)
+//! = tan(fov/2)/aspect where it is not. A screen window other than the default cuts a part out of
+//! the same plane.
 //!
-//! Sources: [Hill & Kelley 2007 ch. 12] for the observer; [Pharr 2023 §5.2.2] for field of view and screen
-//! window.
+//! Sources: [Hill & Kelley 2007 ch. 12] for the observer; [Pharr 2023 §5.2.2] for field of view and
+//! screen window.
 
 use super::{Screen, ThinLens};
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
@@ -38,7 +41,8 @@ pub struct Perspective {
 }
 
 impl Perspective {
-    /// A view of `fov` degrees over [−1, 1] of the screen, of which `window` is shown on `resolution` pixels.
+    /// A view of `fov` degrees over [−1, 1] of the screen, of which `window` is shown on
+    /// `resolution` pixels.
     pub fn new(fov: f32, window: Bounds2, lens: ThinLens, resolution: [u32; 2]) -> Self {
         let tan_half = (f64::from(fov).to_radians() * 0.5).tan() as f32;
         let window = Bounds2 { min: window.min * tan_half, max: window.max * tan_half };
@@ -60,8 +64,8 @@ impl Perspective {
         self.lens
     }
 
-    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a pixel of the area A at z = 1
-    /// is seen at the angle θ under A·cos³θ.
+    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a
+    /// pixel of the area A at z = 1 is seen at the angle θ under A·cos³θ.
     #[inline]
     pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         (d.z > 0.0).then(|| {
@@ -111,8 +115,8 @@ mod tests {
                 let ray = camera.generate_ray(&sample).unwrap().ray;
                 assert!((ray.o.as_dvec3() - eye).length() < 1e-6);
                 assert!((ray.d.as_dvec3() - dir.normalize()).length() < 1e-6, "{resolution:?} ({c}, {r})");
-                // t = 1 of the unnormalized ray is on the near plane, 0 < t < 1 in front of it, t < 0 behind
-                // the eye.
+                // t = 1 of the unnormalized ray is on the near plane, 0 < t < 1 in front of it, t <
+                // 0 behind the eye.
                 let t = dir.length();
                 for (t, depth) in [(t, near), (0.5 * t, 0.5 * near), (-t, -near)] {
                     let ahead = (ray.at(t as f32).as_dvec3() - eye).dot(w);

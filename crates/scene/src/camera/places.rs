@@ -1,9 +1,10 @@
 //! All places of the film that see the same.
 //!
-//! A film that shows all directions has no border: beyond it, where reconstruction filters reach, the picture goes on with what lies
-//! at another place of it. A ray that enters the camera is thus seen at many film positions, one on the film and others around it,
-//! and light that comes along it reaches the pixels near each of them. These are the ways in which the plane of film positions covers
-//! the sphere again and again, for a film of W × H pixels:
+//! A film that shows all directions has no border: beyond it, where reconstruction filters reach,
+//! the picture goes on with what lies at another place of it. A ray that enters the camera is thus
+//! seen at many film positions, one on the film and others around it, and light that comes along it
+//! reaches the pixels near each of them. These are the ways in which the plane of film positions
+//! covers the sphere again and again, for a film of W × H pixels:
 //!
 //! | mapping | (x, y) is seen at | repeated every |
 //! |---|---|---|

@@ -1,10 +1,10 @@
 //! The flat screen and the thin lens that perspective and orthographic cameras share.
 //!
 //! The screen is a rectangle of the plane z = 1 (perspective, scaled by the field of view) or z = 0
-//! (orthographic), seen as [−1, 1] over its shorter side unless a window is given. A thin lens of radius r at
-//! the origin sends every ray that a pinhole would send through p_focus, its point on the plane z = focal
-//! distance, through that same point from another point of the lens: what lies on the plane is sharp ([Pharr
-//! 2023 §5.2.3]).
+//! (orthographic), seen as [−1, 1] over its shorter side unless a window is given. A thin lens of
+//! radius r at the origin sends every ray that a pinhole would send through p_focus, its point on
+//! the plane z = focal distance, through that same point from another point of the lens: what lies
+//! on the plane is sharp ([Pharr 2023 §5.2.3]).
 
 use description::{LensDesc, ScreenDesc};
 use math::{Bounds2, Point2, Point3, Vec2, Vector3};
@@ -78,8 +78,8 @@ impl From<LensDesc> for ThinLens {
 }
 
 impl ThinLens {
-    /// Bends the pinhole ray (`o`, `d`) as if it passed through the point of the lens that `u` in [0, 1)²
-    /// names.
+    /// Bends the pinhole ray (`o`, `d`) as if it passed through the point of the lens that `u` in
+    /// [0, 1)² names.
     #[inline]
     pub fn refract(&self, o: Point3, d: Vector3, u: Vec2) -> (Point3, Vector3) {
         if self.radius <= 0.0 {

@@ -1,9 +1,11 @@
-//! The spherical camera: one point that looks in every direction, as is needed to record an environment map.
+//! The spherical camera: one point that looks in every direction, as is needed to record an
+//! environment map.
 //!
-//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt from +y and
-//! φ = 2πs from +x towards +z; the equal-area mapping unfolds the sphere into an octahedron ([Clarberg
-//! 2008]), so that all pixels see the same solid angle, 4π/n for n pixels. Film positions beyond the border,
-//! where wide reconstruction filters reach, continue on the sphere ([Pharr 2023 §5.3]).
+//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt
+//! from +y and φ = 2πs from +x towards +z; the equal-area mapping unfolds the sphere into an
+//! octahedron ([Clarberg 2008]), so that all pixels see the same solid angle, 4π/n for n pixels.
+//! Film positions beyond the border, where wide reconstruction filters reach, continue on the
+//! sphere ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
 use math::{
@@ -53,8 +55,9 @@ impl Spherical {
         (Vec3::ZERO, Vec3::new(z_up.x, z_up.z, z_up.y))
     }
 
-    /// The inverse of [`Self::ray`] on the film itself, and film per solid angle: dω is 2π²·sin θ ds dt, or 4π ds dt where areas
-    /// are kept. `None` at the poles of the first mapping, which a whole row of film sees.
+    /// The inverse of [`Self::ray`] on the film itself, and film per solid angle: dω is 2π²·sin θ
+    /// ds dt, or 4π ds dt where areas are kept. `None` at the poles of the first mapping, which a
+    /// whole row of film sees.
     #[inline]
     pub(super) fn film(&self, d: Vector3) -> Option<(Point2, f32)> {
         let z_up = Vec3::new(d.x, d.z, d.y);

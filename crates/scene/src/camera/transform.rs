@@ -1,13 +1,15 @@
 //! Where the camera stands, and the space in which rays are traced.
 //!
-//! Single precision is finest near zero, so render space is usually the world moved, without turning, so that
-//! the camera stands at the origin at the middle of its motion ([Pharr 2023 §5.1.1]). Matrices are joined in
-//! double precision before they are rounded; the choice of space changes the picture by rounding alone.
+//! Single precision is finest near zero, so render space is usually the world moved, without
+//! turning, so that the camera stands at the origin at the middle of its motion
+//! ([Pharr 2023 §5.1.1]). Matrices are joined in double precision before they are rounded; the
+//! choice of space changes the picture by rounding alone.
 
 use description::{RenderSpace, TransformDesc};
 use math::{AnimatedTransform, DMat4, DVec3, Transform};
 
-/// How camera, render and world space lie to each other. Only the camera moves against render space.
+/// How camera, render and world space lie to each other. Only the camera moves against render
+/// space.
 #[derive(Clone, Debug)]
 pub struct CameraTransform {
     render_from_camera: AnimatedTransform,

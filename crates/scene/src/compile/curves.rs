@@ -1,5 +1,6 @@
-//! Curves of any basis become cubic Bézier segments. Scenes of hair state each by itself; those that follow each other and
-//! differ in nothing but their points and widths become one geometry, which costs no more than its segments.
+//! Curves of any basis become cubic Bézier segments. Scenes of hair state each by itself; those
+//! that follow each other and differ in nothing but their points and widths become one geometry,
+//! which costs no more than its segments.
 
 use super::Compiler;
 use description::{CurveBasis, CurveDesc, CurveProfile, ShapeDesc, ShapeKind, Stated};

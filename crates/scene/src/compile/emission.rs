@@ -1,7 +1,8 @@
 //! How brightly lights shine: the format's photometric scale.
 //!
-//! A spectrum is divided by its photometric integral, so that a scale of 1 means a luminance (for points, a luminous intensity)
-//! of 1; `power` and `illuminance` then set the scale so that the light's total is met.
+//! A spectrum is divided by its photometric integral, so that a scale of 1 means a luminance (for
+//! points, a luminous intensity) of 1; `power` and `illuminance` then set the scale so that the
+//! light's total is met.
 
 use super::Compiler;
 use crate::light::{Emission, EmissionImage};
@@ -56,8 +57,9 @@ fn image_color_space(image: &Image) -> &'static RgbColorSpace {
         .unwrap_or(RgbColorSpace::srgb())
 }
 
-/// Illuminance of an equal-area octahedral sky on a surface that faces +z, as the pbrt-v4 format counts it: with 2π/n for the
-/// solid angle of a pixel, half of what it is. Scenes made for the format rely on that.
+/// Illuminance of an equal-area octahedral sky on a surface that faces +z, as the pbrt-v4 format
+/// counts it: with 2π/n for the solid angle of a pixel, half of what it is. Scenes made for the
+/// format rely on that.
 pub(super) fn upward_illuminance(image: &EmissionImage) -> f32 {
     let (width, height) = (image.image.width(), image.image.height());
     let weights = image.color_space.luminance_weights();

@@ -1,7 +1,7 @@
 //! From what the author said to what the renderer sees: the only place that assembles a [`Scene`].
 //!
-//! All mistakes come out at once, with the spans of what is to blame; what can be described but not yet drawn is a warning that says
-//! what is drawn instead.
+//! All mistakes come out at once, with the spans of what is to blame; what can be described but not
+//! yet drawn is a warning that says what is drawn instead.
 
 mod curves;
 mod emission;

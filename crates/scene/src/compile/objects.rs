@@ -1,7 +1,8 @@
 //! Objects, and instances of them: in the world, and within each other.
 //!
-//! An object is a group of the world. Its resting shapes stand there in render space; a shape that moves is an instance
-//! within it, and so is another object. Motions at several levels are found each for itself and then combined.
+//! An object is a group of the world. Its resting shapes stand there in render space; a shape that
+//! moves is an instance within it, and so is another object. Motions at several levels are found
+//! each for itself and then combined.
 
 use super::Compiler;
 use super::curves::are_strands;
@@ -64,8 +65,9 @@ impl Compiler<'_> {
         Some((Instance { group, render_from_instance }, levels + 1))
     }
 
-    /// How an instance moves whose shapes already stand in render space. Its transform is brought there before the moments
-    /// between start and end are found: of a turn they depend on the place of the origin, and this is that of the format.
+    /// How an instance moves whose shapes already stand in render space. Its transform is brought
+    /// there before the moments between start and end are found: of a turn they depend on the place
+    /// of the origin, and this is that of the format.
     fn instance_motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
         let world_from_render = self.render_from_world.inverse();
         let moved = |world_from_object| self.render_from_world * world_from_object * world_from_render;

@@ -54,7 +54,8 @@ impl Compiler<'_> {
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
     }
 
-    /// A shape of the world (or strands): in render space where it rests, in a group of its own where it moves.
+    /// A shape of the world (or strands): in render space where it rests, in a group of its own
+    /// where it moves.
     fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
         let shape = run[0];
         if !shape.world_from_object.is_animated() {

@@ -73,7 +73,8 @@ impl Compiler<'_> {
     }
 }
 
-/// The triangles of a mesh file, among them both halves of its quadrilaterals. The two share vertices.
+/// The triangles of a mesh file, among them both halves of its quadrilaterals. The two share
+/// vertices.
 fn joined(triangles: &MeshDesc, patches: &PatchMeshDesc) -> MeshArrays {
     let halves = patches.indices.iter().flat_map(|&[a, b, c, d]| [[a, b, d], [a, d, c]]);
     MeshArrays {

@@ -1,9 +1,11 @@
-//! A surface that emits the same radiance in all directions: of one colour, or of an image over its (u, v).
+//! A surface that emits the same radiance in all directions: of one colour, or of an image over its
+//! (u, v).
 //!
-//! Each triangle or patch of a mesh is a light of its own. Power: Φ = π·A·L, twice that when both sides shine.
-//! Where the surface is cut out by an alpha texture, it does not emit; a surface with the constant alpha 0 is an invisible
-//! light, which rays never meet but points still sample. Rays leave evenly from its area (patches may follow an image) and by
-//! the cosine, to both sides alike if it has two. Sources: [Pharr 2023 §12.4].
+//! Each triangle or patch of a mesh is a light of its own. Power: Φ = π·A·L, twice that when both
+//! sides shine. Where the surface is cut out by an alpha texture, it does not emit; a surface with
+//! the constant alpha 0 is an invisible light, which rays never meet but points still sample. Rays
+//! leave evenly from its area (patches may follow an image) and by the cosine, to both sides alike
+//! if it has two. Sources: [Pharr 2023 §12.4].
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
@@ -130,7 +132,8 @@ impl AreaLight {
         (!l.is_black()).then_some(LightLiSample { l, wi, pdf: s.pdf, p: Some(s.p), n: s.n })
     }
 
-    /// Whether a point of the surface is there, decided by a hash where its alpha makes it come and go.
+    /// Whether a point of the surface is there, decided by a hash where its alpha makes it come and
+    /// go.
     fn is_there(&self, s: &ShapeSample, textures: &Textures) -> bool {
         let Some(alpha) = self.emission.alpha.filter(|_| !self.emission.invisible) else { return true };
         let there =

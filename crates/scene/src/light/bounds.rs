@@ -1,9 +1,10 @@
-//! What is known of a light, or of many, without asking them one by one: a box, a cone of emission, a power; and from that
-//! how much they may matter to a point.
+//! What is known of a light, or of many, without asking them one by one: a box, a cone of emission,
+//! a power; and from that how much they may matter to a point.
 //!
-//! Emission leaves within θ_e of normals that lie within θ_o of the axis w. The importance of a cluster to a point at
-//! distance d is Φ·cos θ′ / d², where θ′ is the smallest possible angle between an emission direction and the point, given that
-//! the box subtends θ_b ([Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3]).
+//! Emission leaves within θ_e of normals that lie within θ_o of the axis w. The importance of a
+//! cluster to a point at distance d is Φ·cos θ′ / d², where θ′ is the smallest possible angle
+//! between an emission direction and the point, given that the box subtends θ_b
+//! ([Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3]).
 
 use math::{Bounds3, DirectionCone, Normal3, Point3, Vec3, Vector3, safe_sqrt};
 
@@ -65,7 +66,8 @@ impl LightBounds {
         }
     }
 
-    /// An estimate ≥ 0 of how much arrives at `p`; a surface with normal `n` (zero: none) counts the angle of incidence.
+    /// An estimate ≥ 0 of how much arrives at `p`; a surface with normal `n` (zero: none) counts
+    /// the angle of incidence.
     pub fn importance(&self, p: Point3, n: Normal3) -> f32 {
         let to = p - self.bounds.centroid();
         let distance2 = to.length_squared();

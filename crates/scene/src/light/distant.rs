@@ -1,7 +1,8 @@
 //! Light from one direction, as from the sun without its disk; the same everywhere in the scene.
 //!
-//! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Rays start evenly on that disk. What lies outside of the
-//! scene's sphere, as parts of endless planes do, they miss. Sources: [Pharr 2023 §12.3].
+//! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Rays start evenly on that
+//! disk. What lies outside of the scene's sphere, as parts of endless planes do, they miss.
+//! Sources: [Pharr 2023 §12.3].
 
 use super::{Emission, LightLeSample, LightLiSample, SceneSphere};
 use math::{Point2, Vec3, Vector3};

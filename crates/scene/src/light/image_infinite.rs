@@ -1,9 +1,11 @@
-//! A sky given by an image in the equal-area octahedral mapping, sampled in proportion to its brightness.
+//! A sky given by an image in the equal-area octahedral mapping, sampled in proportion to its
+//! brightness.
 //!
-//! Because the mapping keeps areas, the density per solid angle is that of the square over 4π. With incomplete sampling
-//! allowed, the *compensated* distribution max(0, f − mean) is used: multiple importance sampling leaves the dim parts to
-//! the BSDF, and light samples go where they matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the
-//! plain distribution, and start evenly on the disk that faces them and covers the scene.
+//! Because the mapping keeps areas, the density per solid angle is that of the square over 4π. With
+//! incomplete sampling allowed, the *compensated* distribution max(0, f − mean) is used: multiple
+//! importance sampling leaves the dim parts to the BSDF, and light samples go where they matter
+//! ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the plain distribution, and
+//! start evenly on the disk that faces them and covers the scene.
 
 use super::{LightLeSample, LightLiSample, SceneSphere};
 use image::{Image, WrapMode};

@@ -1,23 +1,25 @@
 //! Lights: what emits into the scene, and how a point finds it.
 //!
-//! A light answers two questions. *How much comes from there?* — [`Light::radiance`] for emitting surfaces, [`Light::le`] for
-//! rays that leave the scene. *Where should I look?* — [`Light::sample_li`] draws a direction from a point towards the
-//! light, [`Light::pdf_li`] is its density per solid angle. Lights at a point or in one direction (delta lights) can only
-//! be sampled, never hit: their pdf is 0.
+//! A light answers two questions. *How much comes from there?* — [`Light::radiance`] for emitting
+//! surfaces, [`Light::le`] for rays that leave the scene. *Where should I look?* —
+//! [`Light::sample_li`] draws a direction from a point towards the light, [`Light::pdf_li`] is its
+//! density per solid angle. Lights at a point or in one direction (delta lights) can only be
+//! sampled, never hit: their pdf is 0.
 //!
-//! To follow light on its way there is a third question, *which rays leave?* — [`Light::sample_le`] draws a ray with two
-//! densities. That of its position is per area of the surface; of lights infinitely far away, which have none, per area of the
-//! disk of the scene's radius R that faces them, 1/(πR²). That of its direction is per solid angle. Where one of the two is
-//! fixed, its delta has the coefficient 1. What the ray carries on average is the light's power,
+//! To follow light on its way there is a third question, *which rays leave?* — [`Light::sample_le`]
+//! draws a ray with two densities. That of its position is per area of the surface; of lights
+//! infinitely far away, which have none, per area of the disk of the scene's radius R that faces
+//! them, 1/(πR²). That of its direction is per solid angle. Where one of the two is fixed, its
+//! delta has the coefficient 1. What the ray carries on average is the light's power,
 //!
 //! ```text
 //! β = L·|cos θ| / (p_position·p_direction)        E[β] = Φ
 //! ```
 //!
-//! with θ at the light's surface (|cos θ| = 1 where there is none) and for L radiance, of lights at a point radiant
-//! intensity. [`Light::pdf_le`] and [`Light::pdf_le_infinite`] are the densities of a given ray, 0 for a delta: whoever has
-//! come to the light from the other side weighs with them how likely light would have come that way
-//! ([Pharr 2016 §16.1.2]).
+//! with θ at the light's surface (|cos θ| = 1 where there is none) and for L radiance, of lights at
+//! a point radiant intensity. [`Light::pdf_le`] and [`Light::pdf_le_infinite`] are the densities of
+//! a given ray, 0 for a delta: whoever has come to the light from the other side weighs with them
+//! how likely light would have come that way ([Pharr 2016 §16.1.2]).
 //!
 //! Radiometric scale follows the pbrt-v4 format: a light's spectrum is first
 //! divided by its photometric integral, so that a scale of 1 is a luminance of 1.
@@ -139,7 +141,8 @@ impl Light {
         matches!(self, Self::UniformInfinite(_) | Self::ImageInfinite(_))
     }
 
-    /// Whether it is infinitely far away, so that its light comes from a direction but from no place.
+    /// Whether it is infinitely far away, so that its light comes from a direction but from no
+    /// place.
     #[inline]
     pub fn is_distant(&self) -> bool {
         matches!(self, Self::Distant(_)) || self.is_infinite()
@@ -153,8 +156,8 @@ impl Light {
 
     /// A direction from `context` to the light, chosen by `u`, or `None` where nothing comes from.
     ///
-    /// With `allow_incomplete` the light may leave out directions that BSDF sampling covers well, as long as the caller
-    /// combines both with the pdf of the same flag.
+    /// With `allow_incomplete` the light may leave out directions that BSDF sampling covers well,
+    /// as long as the caller combines both with the pdf of the same flag.
     #[doc(alias = "SampleLi")]
     pub fn sample_li(
         &self,
@@ -185,8 +188,8 @@ impl Light {
         }
     }
 
-    /// A ray of light that leaves at `time`, its position chosen by `u_position` and its direction by `u_direction`; `None`
-    /// where no light does.
+    /// A ray of light that leaves at `time`, its position chosen by `u_position` and its direction
+    /// by `u_direction`; `None` where no light does.
     #[doc(alias = "SampleLe")]
     pub fn sample_le(
         &self,
@@ -206,9 +209,9 @@ impl Light {
         }
     }
 
-    /// Densities of position and direction with which [`Light::sample_le`] chooses the ray that leaves the light's point `p`,
-    /// where its normal is `n` (zero at a light without a surface), along the unit direction `w`. Both are 0 for lights
-    /// infinitely far away.
+    /// Densities of position and direction with which [`Light::sample_le`] chooses the ray that
+    /// leaves the light's point `p`, where its normal is `n` (zero at a light without a surface),
+    /// along the unit direction `w`. Both are 0 for lights infinitely far away.
     #[doc(alias = "PDF_Le")]
     pub fn pdf_le(&self, p: Point3, n: Normal3, w: Vector3) -> (f32, f32) {
         match self {
@@ -219,9 +222,10 @@ impl Light {
         }
     }
 
-    /// Densities of position and direction with which [`Light::sample_le`] of a light infinitely far away chooses the ray that
-    /// arrives along `ray`, a ray of unit direction that leaves the scene towards the light. Both are 0 for other lights, and
-    /// where no chosen ray passes: beside the scene's sphere, and above the disk where they start.
+    /// Densities of position and direction with which [`Light::sample_le`] of a light infinitely
+    /// far away chooses the ray that arrives along `ray`, a ray of unit direction that leaves the
+    /// scene towards the light. Both are 0 for other lights, and where no chosen ray passes: beside
+    /// the scene's sphere, and above the disk where they start.
     #[doc(alias = "PDF_Le")]
     pub fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
         match self {
@@ -242,7 +246,8 @@ impl Light {
         }
     }
 
-    /// Radiance that an emitting surface sends along `w` from a point with normal `n` and coordinates `uv`.
+    /// Radiance that an emitting surface sends along `w` from a point with normal `n` and
+    /// coordinates `uv`.
     #[doc(alias = "L")]
     pub fn radiance(
         &self,
@@ -257,7 +262,8 @@ impl Light {
         }
     }
 
-    /// Where it is and whereto it emits, for choosing among many; `None` for what is infinitely far away.
+    /// Where it is and whereto it emits, for choosing among many; `None` for what is infinitely far
+    /// away.
     pub fn bounds(&self) -> Option<LightBounds> {
         match self {
             Self::Point(light) => light.bounds(),
@@ -268,8 +274,9 @@ impl Light {
     }
 }
 
-/// The sphere around everything that has an end: how big the scene looks to lights that are infinitely far away. What has no end goes
-/// on beyond it, and may keep their light from it: see [`Scene::sample_emission`](crate::Scene::sample_emission).
+/// The sphere around everything that has an end: how big the scene looks to lights that are
+/// infinitely far away. What has no end goes on beyond it, and may keep their light from it: see
+/// [`Scene::sample_emission`](crate::Scene::sample_emission).
 #[derive(Clone, Copy, Debug)]
 pub struct SceneSphere {
     /// Centre in render space.
@@ -279,14 +286,15 @@ pub struct SceneSphere {
 }
 
 impl SceneSphere {
-    /// The sphere around a box. Where nothing has an end, lights still need an extent to have a power: that is 1.
+    /// The sphere around a box. Where nothing has an end, lights still need an extent to have a
+    /// power: that is 1.
     pub fn around(bounds: &Bounds3) -> Self {
         let (center, radius) = bounds.bounding_sphere();
         Self { center, radius: if bounds.is_empty() { 1.0 } else { radius } }
     }
 
-    /// The ray from an even choice of points of the disk that faces the direction `w` and touches the sphere from there, against
-    /// `w`: how light from far away falls on all of the sphere.
+    /// The ray from an even choice of points of the disk that faces the direction `w` and touches
+    /// the sphere from there, against `w`: how light from far away falls on all of the sphere.
     fn ray_from(&self, w: Vector3, u: Point2, time: f32) -> Ray {
         let disk = warp::sample_uniform_disk_concentric(u);
         let o = self.center + Frame::from_z(w).from_local(disk.extend(1.0)) * self.radius;

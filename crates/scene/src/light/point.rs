@@ -1,6 +1,7 @@
 //! A light at a point that shines alike into all directions: L = I / r².
 //!
-//! Parameters: radiant intensity I; power 4π·I. Rays leave evenly in all directions. Sources: [Pharr 2023 §12.2].
+//! Parameters: radiant intensity I; power 4π·I. Rays leave evenly in all directions. Sources:
+//! [Pharr 2023 §12.2].
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
 use math::{Bounds3, Point2, Point3, Point3Error, Ray, Vec3};

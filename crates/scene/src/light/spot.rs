@@ -1,9 +1,9 @@
-//! A light at a point that shines into a cone, with a soft edge: L = I · s(cos θ) / r², where the smooth step s falls from 1 at
-//! the start of the falloff to 0 at the cone's end.
+//! A light at a point that shines into a cone, with a soft edge: L = I · s(cos θ) / r², where the
+//! smooth step s falls from 1 at the start of the falloff to 0 at the cone's end.
 //!
-//! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Rays leave with the density of the intensity itself, p_direction
-//! = s(cos θ)·I/Φ: evenly within the start of the falloff, around it with cos θ by the smooth step; each carries all of Φ.
-//! Sources: [Pharr 2023 §12.2.1].
+//! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Rays leave with the density of the
+//! intensity itself, p_direction = s(cos θ)·I/Φ: evenly within the start of the falloff, around it
+//! with cos θ by the smooth step; each carries all of Φ. Sources: [Pharr 2023 §12.2.1].
 
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
 use math::{
@@ -106,7 +106,8 @@ impl SpotLight {
             w: self.axis,
             phi: 4.0 * PI * self.intensity.max_value(),
             cos_theta_o: self.cos_falloff_start,
-            // Room for rounding, so that points just inside of the edge keep some importance, be it soft or hard.
+            // Room for rounding, so that points just inside of the edge keep some importance, be it
+            // soft or hard.
             cos_theta_e: edge.cos().min(0.999),
             two_sided: false,
         })

@@ -1,8 +1,9 @@
 //! A sky of one radiance in all directions.
 //!
-//! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling allowed it is left wholly to
-//! BSDF sampling, which covers a constant sky better than uniform directions do. Rays come evenly from all directions, and start
-//! evenly on the disk that faces them and covers the scene. Sources: [Pharr 2023 §12.5.1].
+//! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling
+//! allowed it is left wholly to BSDF sampling, which covers a constant sky better than uniform
+//! directions do. Rays come evenly from all directions, and start evenly on the disk that faces
+//! them and covers the scene. Sources: [Pharr 2023 §12.5.1].
 
 use super::{Emission, LightLeSample, LightLiSample, SceneSphere};
 use math::{Point2, Vec3};

@@ -1,12 +1,14 @@
 //! Lights by what they may contribute to the point at hand: a walk down a tree of clusters.
 //!
-//! Each node bounds its lights' positions, directions and power ([`LightBounds`]); at each step the two children's
-//! importances decide with one random number, rescaled on the way. To find the probability of a given light again, the way
-//! to it is stored as a trail of bits. Lights infinitely far away have no bounds; they are chosen among themselves alike, and
-//! together count as much each as the whole tree.
+//! Each node bounds its lights' positions, directions and power ([`LightBounds`]); at each step the
+//! two children's importances decide with one random number, rescaled on the way. To find the
+//! probability of a given light again, the way to it is stored as a trail of bits. Lights
+//! infinitely far away have no bounds; they are chosen among themselves alike, and together count
+//! as much each as the whole tree.
 //!
-//! The tree is built top-down over 12 buckets per axis by the cost Φ·M_Ω·K_r·A: M_Ω measures the solid angle of emission, K_r
-//! punishes long thin boxes, A is the area of the box. Sources: [Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3].
+//! The tree is built top-down over 12 buckets per axis by the cost Φ·M_Ω·K_r·A: M_Ω measures the
+//! solid angle of emission, K_r punishes long thin boxes, A is the area of the box. Sources:
+//! [Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3].
 
 use crate::light::{Light, LightBounds, LightId, LightSampleContext};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
@@ -192,8 +194,8 @@ fn split(lights: &mut [(LightId, LightBounds)], depth: u32) -> usize {
     middle
 }
 
-/// The axis and the first bucket of the upper side that cost least; `None` where no split has a cost, as between
-/// points on one line.
+/// The axis and the first bucket of the upper side that cost least; `None` where no split has a
+/// cost, as between points on one line.
 fn best_split(
     lights: &[(LightId, LightBounds)],
     bounds: &Bounds3,

@@ -1,7 +1,8 @@
 //! Choosing one light among many, in proportion to what it may contribute.
 //!
-//! [`LightSampler::sample`] returns a light with the probability of its choice; [`LightSampler::pmf`] is that probability for a
-//! given light, which multiple importance sampling needs when a BSDF sample happens to meet it.
+//! [`LightSampler::sample`] returns a light with the probability of its choice;
+//! [`LightSampler::pmf`] is that probability for a given light, which multiple importance sampling
+//! needs when a BSDF sample happens to meet it.
 
 mod bvh;
 mod power;

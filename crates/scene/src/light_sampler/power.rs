@@ -1,5 +1,5 @@
-//! Lights in proportion to their power, wherever the point is; so that it also chooses where paths of light start, which have
-//! no point to look from.
+//! Lights in proportion to their power, wherever the point is; so that it also chooses where paths
+//! of light start, which have no point to look from.
 
 use crate::light::{Light, LightId};
 use sampling::AliasTable;

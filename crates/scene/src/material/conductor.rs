@@ -1,7 +1,8 @@
 //! Metals, smooth or rough.
 //!
-//! Parameters: the complex index of refraction η + ik over wavelength, default copper; or the reflectance r at normal incidence,
-//! which is taken as η = 1, k = 2·√r/√(1 − r). Roughness, default 0.
+//! Parameters: the complex index of refraction η + ik over wavelength, default copper; or the
+//! reflectance r at normal incidence, which is taken as η = 1, k = 2·√r/√(1 − r). Roughness,
+//! default 0.
 
 use super::Roughness;
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};

@@ -1,7 +1,7 @@
 //! Glass, water, plastics' clear surface: reflection and refraction, smooth or rough.
 //!
-//! Parameters: index of refraction over wavelength, default 1.5; roughness, default 0. An index that varies with wavelength
-//! disperses: from here on the path goes on with one wavelength.
+//! Parameters: index of refraction over wavelength, default 1.5; roughness, default 0. An index
+//! that varies with wavelength disperses: from here on the path goes on with one wavelength.
 
 use super::{Roughness, dispersed_index};
 use crate::texture::{TextureContext, Textures};

@@ -1,6 +1,7 @@
 //! Lambertian reflection and transmission: leaves, paper, lampshades.
 //!
-//! Parameters: reflectance and transmittance in [0, 1], default 0.25 each; a scale on both, default 1.
+//! Parameters: reflectance and transmittance in [0, 1], default 0.25 each; a scale on both, default
+//! 1.
 
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
 use scattering::DiffuseTransmission;

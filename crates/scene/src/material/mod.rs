@@ -1,7 +1,9 @@
-//! Materials: what a surface is made of becomes, at one point and four wavelengths, a BxDF by value.
+//! Materials: what a surface is made of becomes, at one point and four wavelengths, a BxDF by
+//! value.
 //!
-//! A material holds textures and spectra; [`Material::bxdf`] evaluates them at a point. `Mix` chooses one of two materials at
-//! each point by a hash, so it is resolved before ([`Materials::resolve`]); `Interface` has no BxDF at all: rays pass.
+//! A material holds textures and spectra; [`Material::bxdf`] evaluates them at a point. `Mix`
+//! chooses one of two materials at each point by a hash, so it is resolved before
+//! ([`Materials::resolve`]); `Interface` has no BxDF at all: rays pass.
 
 mod conductor;
 mod dielectric;
@@ -50,8 +52,8 @@ pub enum Material {
 }
 
 impl Material {
-    /// The BxDF at a point. Dispersive materials end all wavelengths but the first. `None`: rays pass as if nothing
-    /// were there.
+    /// The BxDF at a point. Dispersive materials end all wavelengths but the first. `None`: rays
+    /// pass as if nothing were there.
     #[inline]
     pub fn bxdf(
         &self,
@@ -108,7 +110,8 @@ impl Materials {
     }
 }
 
-/// An index of refraction at the first wavelength; where it varies, the other wavelengths end, for they would part here.
+/// An index of refraction at the first wavelength; where it varies, the other wavelengths end, for
+/// they would part here.
 fn dispersed_index(eta: &Spectrum, lambda: &mut SampledWavelengths) -> f32 {
     let index = eta.at(lambda.lambda()[0]);
     if !matches!(eta, Spectrum::Constant(_)) {

@@ -1,6 +1,7 @@
 //! Normals from an image in tangent space: red, green and blue in [0, 1] are x, y and z in [−1, 1].
 //!
-//! The shading frame is turned to the new normal; its tangents keep their lengths. Sources: [Pharr 2023 §10.5.2].
+//! The shading frame is turned to the new normal; its tangents keep their lengths. Sources:
+//! [Pharr 2023 §10.5.2].
 
 use geometry::{Shading, SurfacePoint};
 use image::{Image, WrapMode};

@@ -1,4 +1,5 @@
-//! Four corner values, interpolated over the unit square: (1 − s)(1 − t)·v₀₀ + (1 − s)t·v₀₁ + s(1 − t)·v₁₀ + st·v₁₁.
+//! Four corner values, interpolated over the unit square: (1 − s)(1 − t)·v₀₀ + (1 − s)t·v₀₁ + s(1 −
+//! t)·v₁₀ + st·v₁₁.
 //!
 //! Beyond the square the same formula goes on. Source: [Pharr 2023 §10.3.2].
 

@@ -1,17 +1,17 @@
 //! Two textures in alternation, on squares of the plane or cubes of space with unit sides.
 //!
-//! In one dimension the pattern is the square wave c(x), +1 where ⌊x⌋ is even and −1 where it is odd; in
-//! several it is the product of one wave for each axis, and the first texture is seen where that is +1. A
-//! wave is averaged over the pixel with a triangle of radius r, 1.5 times the distance to the next pixel's
-//! coordinate:
+//! In one dimension the pattern is the square wave c(x), +1 where ⌊x⌋ is even and −1 where it is
+//! odd; in several it is the product of one wave for each axis, and the first texture is seen where
+//! that is +1. A wave is averaged over the pixel with a triangle of radius r, 1.5 times the
+//! distance to the next pixel's coordinate:
 //!
 //! ```text
 //! c̄(x, r) = ∫ c(x + e)·(1 − |e|/r)/r de = (C(x + r) − 2C(x) + C(x − r))/r²        C″ = c
 //! ```
 //!
-//! For r ≤ ½ the triangle reaches one edge of the wave at most, and with a = |distance to the edge|/r ≤ 1 the
-//! integral is ±(1 − (1 − a)²), which has none of the cancellation of the second difference. The amount of
-//! the second texture is ½ − ½·∏ c̄.
+//! For r ≤ ½ the triangle reaches one edge of the wave at most, and with a = |distance to the
+//! edge|/r ≤ 1 the integral is ±(1 − (1 − a)²), which has none of the cancellation of the second
+//! difference. The amount of the second texture is ½ − ½·∏ c̄.
 //!
 //! Source: [Pharr 2023 §10.3.3], with the box filter replaced as pbrt-v4 does.
 

@@ -1,8 +1,9 @@
 //! From what the author said of textures to the tables.
 //!
-//! The author's textures come first in the tables and in the author's order, so that a handle is an id. A
-//! texture of spectra comes once for each [`SpectrumType`], as only its use decides what its colours stand
-//! for. A texture that is wrong, or not drawn yet, is reported and replaced by a stand-in.
+//! The author's textures come first in the tables and in the author's order, so that a handle is an
+//! id. A texture of spectra comes once for each [`SpectrumType`], as only its use decides what its
+//! colours stand for. A texture that is wrong, or not drawn yet, is reported and replaced by a
+//! stand-in.
 
 use super::{
     Bilerp, Checkerboard, FloatImage, FloatTexture, FloatTextureId, ImageLookup, Mapping2d, Mapping3d,
@@ -65,8 +66,9 @@ impl Textures {
         }
     }
 
-    /// The texture of a parameter of the scene that these textures were compiled from, given at `span`, whose
-    /// colours stand for a `spectrum_type`. What makes no sense is added to `diagnostics`.
+    /// The texture of a parameter of the scene that these textures were compiled from, given at
+    /// `span`, whose colours stand for a `spectrum_type`. What makes no sense is added to
+    /// `diagnostics`.
     pub fn spectrum_parameter(
         &mut self,
         parameter: &SpectrumParameter,
@@ -166,8 +168,8 @@ impl Value for SpectrumDesc {
     }
 }
 
-/// How many textures `texture` depends on in a row, from the depths of the textures before it. `None`, with a
-/// report, if it refers to itself or a later one, or too deeply.
+/// How many textures `texture` depends on in a row, from the depths of the textures before it.
+/// `None`, with a report, if it refers to itself or a later one, or too deeply.
 fn depth<V>(
     texture: &Stated<TextureDesc<V>>,
     same: &[u32],

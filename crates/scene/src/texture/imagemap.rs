@@ -1,8 +1,9 @@
 //! Images as textures.
 //!
-//! Texture coordinates have (0, 0) at the lower left of the image and t upwards, pixels are counted from the
-//! top: a lookup is at (s, 1 − t). The pyramid averages over the footprint; what it finds is multiplied by
-//! `scale` and, where `invert` is set, taken from one; negative results become zero.
+//! Texture coordinates have (0, 0) at the lower left of the image and t upwards, pixels are counted
+//! from the top: a lookup is at (s, 1 − t). The pyramid averages over the footprint; what it finds
+//! is multiplied by `scale` and, where `invert` is set, taken from one; negative results become
+//! zero.
 //!
 //! Source: [Pharr 2023 §10.4].
 

@@ -13,9 +13,9 @@
 //!               t = p·v₂ + delta_v            ∇t = v₂
 //! ```
 //!
-//! On the axis of the spherical and cylindrical mappings derivatives are infinite or undefined; lookups take
-//! that as a very wide footprint. The spherical mapping exchanges the derivatives of s and t against pbrt-v4,
-//! where ∂s belongs to the formula of t.
+//! On the axis of the spherical and cylindrical mappings derivatives are infinite or undefined;
+//! lookups take that as a very wide footprint. The spherical mapping exchanges the derivatives of s
+//! and t against pbrt-v4, where ∂s belongs to the formula of t.
 //!
 //! Source: [Pharr 2023 §10.2].
 

@@ -1,8 +1,8 @@
 //! Values that vary over surfaces.
 //!
-//! A texture gives a number or a spectrum at a point of a surface. All of a scene's textures stand in the two
-//! tables of [`Textures`] and refer to each other by id. Numbers and spectra have the same kinds of texture,
-//! so that one generic [`Texture`] serves both:
+//! A texture gives a number or a spectrum at a point of a surface. All of a scene's textures stand
+//! in the two tables of [`Textures`] and refer to each other by id. Numbers and spectra have the
+//! same kinds of texture, so that one generic [`Texture`] serves both:
 //!
 //! ```text
 //! constant       c
@@ -13,9 +13,9 @@
 //! image          pixels, averaged over the footprint of the pixel
 //! ```
 //!
-//! Footprints come as derivatives by film position, x and y counted in pixels: ∂p/∂x, ∂u/∂x and so on. Zero
-//! derivatives ask for the value at the point. A spectrum from RGB depends on what it stands for, its
-//! [`SpectrumType`].
+//! Footprints come as derivatives by film position, x and y counted in pixels: ∂p/∂x, ∂u/∂x and so
+//! on. Zero derivatives ask for the value at the point. A spectrum from RGB depends on what it
+//! stands for, its [`SpectrumType`].
 //!
 //! Source: [Pharr 2023 ch. 10].
 

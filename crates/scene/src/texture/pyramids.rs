@@ -4,13 +4,16 @@ use description::{Arena, ImageDesc, ImageTextureDesc, TextureFilter};
 use image::{Image, ImageError, Pixels, Pyramid, WrapMode};
 use std::sync::Arc;
 
-/// What a pyramid depends on: the image, what lies beyond it and, for one of numbers, what they are.
+/// What a pyramid depends on: the image, what lies beyond it and, for one of numbers, what they
+/// are.
 type Key = (usize, description::WrapMode, Option<Numbers>);
 
-/// Which numbers stand for an image of several channels. The pbrt-v4 format takes one or the other with the filter.
+/// Which numbers stand for an image of several channels. The pbrt-v4 format takes one or the other
+/// with the filter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Numbers {
-    /// Opacity where that is not one everywhere, else the mean of red, green and blue: for filters that interpolate.
+    /// Opacity where that is not one everywhere, else the mean of red, green and blue: for filters
+    /// that interpolate.
     OpacityOrMean,
     /// The first channel: for filters that take single texels.
     First,

@@ -13,7 +13,8 @@ use spectrum::SampledWavelengths;
 use std::sync::Arc;
 use testkit::Random;
 
-/// Compiles a scene in which nothing is wrong. World space is render space, as the camera stands at the origin.
+/// Compiles a scene in which nothing is wrong. World space is render space, as the camera stands at
+/// the origin.
 pub fn scene(desc: &SceneDesc) -> Scene {
     let compiled = alhazen_scene::compile(desc).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
     assert!(compiled.warnings.is_empty(), "{:?}", compiled.warnings);

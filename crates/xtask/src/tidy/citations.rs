@@ -1,7 +1,9 @@
-//! Sources: every `[Key year]` in code and documents stands in `docs/references.md`, and all that stands there is cited.
+//! Sources: every `[Key year]` in code and documents stands in `docs/references.md`, and all that
+//! stands there is cited.
 //!
-//! A citation is `[Surname year]`, with other authors (`& Duff`, `et al.`) and a place (`§9.7`, `ch. 12`) if wanted; several
-//! are parted by semicolons. Its key is the first author's surname and the year. An entry begins `- **Surname year**`.
+//! A citation is `[Surname year]`, with other authors (`& Duff`, `et al.`) and a place (`§9.7`,
+//! `ch. 12`) if wanted; several are parted by semicolons. Its key is the first author's surname and
+//! the year. An entry begins `- **Surname year**`.
 
 use std::collections::BTreeSet;
 

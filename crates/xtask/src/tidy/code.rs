@@ -1,5 +1,5 @@
-//! Rules of Rust code: libraries neither print nor exit, only those that must touch files do, unsafe code stays where it
-//! pays, and nothing is unfinished or global and mutable.
+//! Rules of Rust code: libraries neither print nor exit, only those that must touch files do,
+//! unsafe code stays where it pays, and nothing is unfinished or global and mutable.
 
 use super::tree::Tree;
 use super::{Finding, rust};
@@ -19,7 +19,8 @@ const NOWHERE: [(&str, &str); 5] = [
     ("static mut ", "there is no mutable global state"),
 ];
 
-/// Where unsafe code may stand: vectors and what rays do with them, and what loads another library to compare with.
+/// Where unsafe code may stand: vectors and what rays do with them, and what loads another library
+/// to compare with.
 const UNSAFE: [&str; 5] = [
     "crates/geometry/src/simd/",
     "crates/geometry/src/bvh/",

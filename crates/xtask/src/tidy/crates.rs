@@ -3,8 +3,8 @@
 use super::Finding;
 use super::tree::Tree;
 
-/// Every crate and the crates it may use, lower layers first: a crate uses only what stands above it here. Tests may use any
-/// crate of an earlier line.
+/// Every crate and the crates it may use, lower layers first: a crate uses only what stands above
+/// it here. Tests may use any crate of an earlier line.
 const EDGES: [(&str, &[&str]); 16] = [
     ("math", &[]),
     ("testkit", &[]),

@@ -1,5 +1,5 @@
-//! Rules of documents: their links lead somewhere, the licences are there, and README tells every option and algorithm that
-//! the program has and no others.
+//! Rules of documents: their links lead somewhere, the licences are there, and README tells every
+//! option and algorithm that the program has and no others.
 
 use std::collections::BTreeSet;
 
@@ -84,7 +84,8 @@ fn resolve(document: &str, target: &str) -> String {
     folders.join("/")
 }
 
-/// The long options that clap is told of: the fields under `#[arg(… long …)]`, or the names in `long = "…"`.
+/// The long options that clap is told of: the fields under `#[arg(… long …)]`, or the names in
+/// `long = "…"`.
 fn defined_options(source: &str) -> BTreeSet<String> {
     let mut options = BTreeSet::new();
     for (at, opening) in source.match_indices("#[arg(") {

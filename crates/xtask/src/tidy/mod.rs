@@ -1,5 +1,5 @@
-//! The house rules that no compiler knows. Each check reads the texts of the tree and returns what it found, with file and
-//! line; `cargo xtask tidy` prints all of it at once.
+//! The house rules that no compiler knows. Each check reads the texts of the tree and returns what
+//! it found, with file and line; `cargo xtask tidy` prints all of it at once.
 
 mod citations;
 mod code;

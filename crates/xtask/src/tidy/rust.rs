@@ -1,5 +1,6 @@
-//! Rust source taken apart just so far that a check can tell code from words: comments and the insides of strings are
-//! blanked out of the code, and everything but comments out of the words. Lines and columns stay where they were.
+//! Rust source taken apart just so far that a check can tell code from words: comments and the
+//! insides of strings are blanked out of the code, and everything but comments out of the words.
+//! Lines and columns stay where they were.
 
 /// A source in two layers of the same shape.
 #[derive(Debug, PartialEq, Eq)]

@@ -1,10 +1,14 @@
-//! Rules of all texts: their whitespace, the length of source files, nothing left unfinished, nothing of one machine.
+//! Rules of all texts: their whitespace, the length of source files, nothing left unfinished,
+//! nothing of one machine.
 
 use super::tree::Tree;
 use super::{Finding, rust};
 
 /// Most lines of a source file; long tables live in `data/`.
 const MAX_LINES: usize = 600;
+
+/// Most characters of a comment's line, its indentation included; rows of tables cannot be broken.
+const MAX_COMMENT_WIDTH: usize = 100;
 
 /// Words that mark what somebody meant to do later.
 const MARKERS: [&str; 4] = ["TODO", "FIXME", "XXX", "HACK"];
@@ -31,6 +35,9 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
             if line.contains('\t') {
                 find(number, "a tab; indent with spaces".into());
             }
+            if source && is_wide_comment(line) {
+                find(number, format!("a comment wider than {MAX_COMMENT_WIDTH} characters"));
+            }
             if let Some(folder) = MACHINE_FOLDERS.iter().find(|folder| names_folder(line, folder)) {
                 find(number, format!("a path of one machine: /{folder}/"));
             }
@@ -43,6 +50,13 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// Whether a line is a comment, and no row of a table, that is too wide.
+fn is_wide_comment(line: &str) -> bool {
+    let Some(text) = line.trim_start().strip_prefix("//") else { return false };
+    let text = text.trim_start_matches(['/', '!']).trim_start();
+    line.chars().count() > MAX_COMMENT_WIDTH && !text.starts_with('|')
 }
 
 /// Whether a line has an absolute path into `/folder/`.
@@ -84,6 +98,15 @@ mod tests {
         assert_eq!(messages("a.rs", &"\n".repeat(600)).len(), 0);
         assert_eq!(messages("a.rs", &"\n".repeat(601)), ["a.rs: 601 lines; 600 are the most"]);
         assert_eq!(messages("crates/a/data/b.rs", &"\n".repeat(601)).len(), 0);
+    }
+
+    #[test]
+    fn wide_comments_are_found() {
+        let comment = |width: usize| format!("    /// {}\n", "é".repeat(width - 8));
+        assert!(messages("a.rs", &comment(100)).is_empty());
+        assert_eq!(messages("a.rs", &comment(101)), ["a.rs:1: a comment wider than 100 characters"]);
+        assert!(messages("a.rs", &format!("//! | {} |\n", "a".repeat(100))).is_empty());
+        assert!(messages("a.md", &comment(101)).is_empty());
     }
 
     #[test]

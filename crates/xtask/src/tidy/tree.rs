@@ -21,7 +21,8 @@ const ROOTS: [&str; 12] = [
     "scenes",
 ];
 
-/// Files by their paths from the root, with `/` between folders. Those that are not UTF-8 have no text.
+/// Files by their paths from the root, with `/` between folders. Those that are not UTF-8 have no
+/// text.
 #[derive(Debug, Default)]
 pub struct Tree {
     files: BTreeMap<String, Option<String>>,

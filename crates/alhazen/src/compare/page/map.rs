@@ -48,7 +48,8 @@ impl Maps {
     }
 }
 
-/// The mean error of some pictures at each pixel as a share of the reference: the mean over channels of (x − r) / √(r² + 0.01).
+/// The mean error of some pictures at each pixel as a share of the reference: the mean over
+/// channels of (x − r) / √(r² + 0.01).
 fn error_map(reference: &Image, pictures: &[Image]) -> Image {
     Image::from_fn(reference.width(), reference.height(), ["Y"], |x, y| {
         let r = reference.rgb(x, y);
@@ -72,8 +73,8 @@ fn block_means(map: &Image) -> Image {
     Image::from_fn(map.width(), map.height(), ["Y"], |x, y| [means.channel(x / BLOCK, y / BLOCK, 0)])
 }
 
-/// The error that has the full colour, a round number: 1, 2 or 5 times a power of ten. Nearly all values of a usual map are below it;
-/// one map that is worse than the others does not darken them.
+/// The error that has the full colour, a round number: 1, 2 or 5 times a power of ten. Nearly all
+/// values of a usual map are below it; one map that is worse than the others does not darken them.
 fn scale(maps: &[Image]) -> f32 {
     let mut sizes: Vec<f32> = maps.iter().map(usual_limit).collect();
     sizes.sort_by(f32::total_cmp);

@@ -1,5 +1,5 @@
-//! A comparison as one HTML page that needs nothing else: styles, script, charts and pictures are all inside it, and everything
-//! but the slider works without the script.
+//! A comparison as one HTML page that needs nothing else: styles, script, charts and pictures are
+//! all inside it, and everything but the slider works without the script.
 
 mod chart;
 mod figure;

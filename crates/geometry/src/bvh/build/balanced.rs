@@ -20,8 +20,8 @@ pub(super) fn plant(mut references: Vec<Reference>, blocks: Blocks) -> Planted {
     Planted { references, inner, root: tree.root, size }
 }
 
-/// Brings the references into order and fills in `inner`, which is as long. `first` is the index of the first
-/// reference.
+/// Brings the references into order and fills in `inner`, which is as long. `first` is the index of
+/// the first reference.
 fn grow(
     references: &mut [Reference],
     inner: &mut [Inner],

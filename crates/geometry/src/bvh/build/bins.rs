@@ -1,9 +1,10 @@
 //! The surface-area heuristic over bins.
 //!
-//! A ray that meets a box meets a box inside of it with the probability of their ratio of surfaces. Splitting
-//! a set into L and R is therefore expected to cost   A(L)·blocks(L) + A(R)·blocks(R).   Centroids are
-//! sorted into bins along all three axes, and every border between bins is tried ([Wald 2007]; [Pharr 2023
-//! §7.3]). Minimum, maximum and count do not depend on order, so that any number of threads may fill bins.
+//! A ray that meets a box meets a box inside of it with the probability of their ratio of surfaces.
+//! Splitting a set into L and R is therefore expected to cost A(L)·blocks(L) + A(R)·blocks(R).
+//! Centroids are sorted into bins along all three axes, and every border between bins is tried
+//! ([Wald 2007]; [Pharr 2023 §7.3]). Minimum, maximum and count do not depend on order, so that any
+//! number of threads may fill bins.
 
 use super::reference::{Extent, Reference, in_parts};
 use super::tree::Blocks;
@@ -26,7 +27,8 @@ impl Grid {
         let scale = (bins - 1) as f32 / (centroids.high() - centroids.low());
         // Where all centroids are the same, all go into one bin.
         let scale = Vec4::select(scale.is_finite_mask(), scale, Vec4::ZERO);
-        // Ids in the lanes w are mostly denormal as numbers, which make a product slow; these make them −1.
+        // Ids in the lanes w are mostly denormal as numbers, which make a product slow; these make
+        // them −1.
         let mut min = centroids.low();
         min.w = 1.0;
         Self { min, scale, mask: bins as u32 - 1 }

@@ -1,10 +1,11 @@
 //! By Morton codes: a tree in a fraction of the time, which costs more to trace.
 //!
-//! The bits of a centroid's quantised coordinates, interleaved, are its place on a curve that visits space
-//! octant by octant. Primitives are sorted along the curve, and a range of them is divided where the highest
-//! bit changes that does so in it: between the halves of an octree's cell ([Lauterbach 2009]). The smallest
-//! ranges are cut into full blocks. These are made before there is a tree, which then grows over blocks, so
-//! that primitives are looked up three times: for the range of their centroids, their codes and their blocks.
+//! The bits of a centroid's quantised coordinates, interleaved, are its place on a curve that
+//! visits space octant by octant. Primitives are sorted along the curve, and a range of them is
+//! divided where the highest bit changes that does so in it: between the halves of an octree's cell
+//! ([Lauterbach 2009]). The smallest ranges are cut into full blocks. These are made before there
+//! is a tree, which then grows over blocks, so that primitives are looked up three times: for the
+//! range of their centroids, their codes and their blocks.
 
 use super::balanced::PARALLEL;
 use super::overflow::Overflow;
@@ -70,7 +71,8 @@ fn code(key: u64) -> u32 {
     key as u32 & ((1 << BITS) - 1)
 }
 
-/// All primitives in the order of their codes: the code in the low bits, the number of the primitive above.
+/// All primitives in the order of their codes: the code in the low bits, the number of the
+/// primitive above.
 fn sorted_keys(primitives: &impl Primitives, numbering: &Numbering) -> Vec<u64> {
     const NOTHING: u64 = u64::MAX;
     let coder = Coder::new(&numbering.centroids(primitives));
@@ -187,8 +189,8 @@ fn middle<T: Copy>(range: &[T], code: impl Fn(T) -> u32) -> usize {
     range.partition_point(|&key| code(key) >> highest == first >> highest)
 }
 
-/// Grows a tree over blocks, whose first primitives have `codes`, and fills in `inner`. `first` is the index of the first
-/// block.
+/// Grows a tree over blocks, whose first primitives have `codes`, and fills in `inner`. `first` is
+/// the index of the first block.
 fn grow(codes: &[u32], blocks: &[Reference], inner: &mut [Inner], first: usize, single: Blocks) -> Grown {
     let n = blocks.len();
     if n <= LEAF_BLOCKS {

@@ -1,10 +1,11 @@
-//! Top-down like [`super::balanced`], but space may be split as well: a primitive across the border is then
-//! referred to from both sides, each time with a box around only its part on that side. Long, slanted
-//! triangles, whose boxes are mostly empty, gain most ([Stich 2009]).
+//! Top-down like [`super::balanced`], but space may be split as well: a primitive across the border
+//! is then referred to from both sides, each time with a box around only its part on that side.
+//! Long, slanted triangles, whose boxes are mostly empty, gain most ([Stich 2009]).
 //!
-//! A spatial split is tried where the boxes of the best object split overlap by more than [`OVERLAP`] of the
-//! whole, and as long as there is room for more references, of which there are at most twice as many as primitives.
-//! Room that a set does not need goes to its halves in proportion to their numbers.
+//! A spatial split is tried where the boxes of the best object split overlap by more than
+//! [`OVERLAP`] of the whole, and as long as there is room for more references, of which there are
+//! at most twice as many as primitives. Room that a set does not need goes to its halves in
+//! proportion to their numbers.
 
 use super::balanced::{DEEPEST, PARALLEL, halve};
 use super::bins::Border;
@@ -102,8 +103,9 @@ impl<C: Corners> Builder<'_, C> {
         share_room(references, [middle, count - middle], border.halves)
     }
 
-    /// Brings what is on the left of a plane to the front and what is on the right behind it. What is on both
-    /// sides goes to one of them alone where that is cheaper, or where there is no room left.
+    /// Brings what is on the left of a plane to the front and what is on the right behind it. What
+    /// is on both sides goes to one of them alone where that is cheaper, or where there is no room
+    /// left.
     fn split_space(
         &self,
         references: &mut [Reference],

@@ -1,11 +1,11 @@
 //! How primitives are divided.
 //!
-//! Every builder brings references to primitives into an order and grows a binary tree over them ([`tree`]);
-//! what becomes a wide node is then decided for all of them alike ([`widen`]).
+//! Every builder brings references to primitives into an order and grows a binary tree over them
+//! ([`tree`]); what becomes a wide node is then decided for all of them alike ([`widen`]).
 //!
-//! Memory for n primitives, beyond what is kept: 32 n bytes of references and 24 n of binary nodes, given back
-//! when the blocks are made; `high` takes twice as much. `fast` has a reference and a binary node for each block alone,
-//! and takes 16 n bytes to sort.
+//! Memory for n primitives, beyond what is kept: 32 n bytes of references and 24 n of binary nodes,
+//! given back when the blocks are made; `high` takes twice as much. `fast` has a reference and a
+//! binary node for each block alone, and takes 16 n bytes to sort.
 
 mod balanced;
 mod bins;
@@ -38,14 +38,14 @@ pub(super) use refit::refit;
 /// How much time a tree is worth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BuildQuality {
-    /// By Morton codes: for what is built anew for each picture. Takes a third of the time of `Balanced`, and rays
-    /// take up to twice as many tests.
+    /// By Morton codes: for what is built anew for each picture. Takes a third of the time of
+    /// `Balanced`, and rays take up to twice as many tests.
     Fast,
     /// By the surface-area heuristic over bins: for nearly everything.
     #[default]
     Balanced,
-    /// With spatial splits: for long, thin, slanted triangles and pictures that take long. Takes six times as
-    /// long as `Balanced`, and up to twice the memory.
+    /// With spatial splits: for long, thin, slanted triangles and pictures that take long. Takes
+    /// six times as long as `Balanced`, and up to twice the memory.
     High,
 }
 
@@ -59,7 +59,8 @@ pub(crate) struct Built<B> {
     pub blocks: Vec<B>,
 }
 
-/// Memory is asked for what is in a block so many blocks before that is made, and twice as many for what leads there.
+/// Memory is asked for what is in a block so many blocks before that is made, and twice as many for
+/// what leads there.
 const AHEAD: usize = 8;
 
 /// Builds a tree.

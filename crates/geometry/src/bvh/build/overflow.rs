@@ -1,7 +1,8 @@
 //! Primitives that find no room in the block that was planned for them.
 //!
-//! Trees are cut as if each block took its full number of primitives. Where one does not, because it has room for
-//! less than what they bring, the rest goes to blocks behind it, and all leaves are told where their blocks are now.
+//! Trees are cut as if each block took its full number of primitives. Where one does not, because
+//! it has room for less than what they bring, the rest goes to blocks behind it, and all leaves are
+//! told where their blocks are now.
 
 use super::pages;
 use super::primitives::Primitives;

@@ -1,8 +1,9 @@
 //! Room for long arrays, in large pages of memory.
 //!
-//! Memory is handed out by the page when it is first written to, and each page costs about a microsecond: in pages of 4 KiB a
-//! quarter of the time in which a tree is built in a hurry, and later more entries of the page table than a
-//! processor remembers when rays go through the tree. Linux gives pages of 2 MiB to who asks for them.
+//! Memory is handed out by the page when it is first written to, and each page costs about a
+//! microsecond: in pages of 4 KiB a quarter of the time in which a tree is built in a hurry, and
+//! later more entries of the page table than a processor remembers when rays go through the tree.
+//! Linux gives pages of 2 MiB to who asks for them.
 
 #![allow(unsafe_code)]
 
@@ -21,7 +22,8 @@ pub(super) fn filled<T: Clone>(value: T, len: usize) -> Vec<T> {
     list
 }
 
-/// Asks for large pages where whole ones lie in the vector's room, so that none takes memory that is not asked for already.
+/// Asks for large pages where whole ones lie in the vector's room, so that none takes memory that
+/// is not asked for already.
 #[cfg(target_os = "linux")]
 fn ask_for_large_pages<T>(list: &Vec<T>) {
     const PAGE: usize = 2 << 20;
@@ -31,8 +33,8 @@ fn ask_for_large_pages<T>(list: &Vec<T>) {
         return;
     }
     let first = list.as_ptr().wrapping_byte_add(before).cast_mut().cast();
-    // SAFETY: these bytes belong to the vector, and the advice changes nothing in them. A system that cannot follow it, which
-    // is what an error would tell, gives small pages.
+    // SAFETY: these bytes belong to the vector, and the advice changes nothing in them. A system
+    // that cannot follow it, which is what an error would tell, gives small pages.
     unsafe { libc::madvise(first, (bytes - before) / PAGE * PAGE, libc::MADV_HUGEPAGE) };
 }
 

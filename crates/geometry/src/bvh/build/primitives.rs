@@ -36,8 +36,8 @@ pub(crate) trait Primitives: Sync {
     /// Asks for a primitive, soon to be put into a block.
     fn prefetch(&self, _geometry: u32, _primitive: u32) {}
 
-    /// Makes a block; gives how many of the primitives, of which only the ids count, have found room in it, and the box around
-    /// these. Those that have not will have blocks of their own.
+    /// Makes a block; gives how many of the primitives, of which only the ids count, have found
+    /// room in it, and the box around these. Those that have not will have blocks of their own.
     fn block(&self, primitives: &[Reference]) -> (Self::Block, usize, Extent);
 }
 

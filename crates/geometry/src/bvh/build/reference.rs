@@ -3,8 +3,8 @@
 use math::{Bounds3, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// A box as (low, −high): the union of two boxes is then a minimum, twice. The lanes w mean nothing here; a
-/// [`Reference`] keeps its ids in them.
+/// A box as (low, −high): the union of two boxes is then a minimum, twice. The lanes w mean nothing
+/// here; a [`Reference`] keeps its ids in them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Extent {

@@ -1,7 +1,8 @@
 //! New boxes for a tree whose primitives have moved.
 //!
-//! Blocks are brought up to date in the order of memory, then nodes from the leaves upwards: [`super::widen`] has
-//! written each node before those below it, and all that are below a child together.
+//! Blocks are brought up to date in the order of memory, then nodes from the leaves upwards:
+//! [`super::widen`] has written each node before those below it, and all that are below a child
+//! together.
 
 use super::reference::Extent;
 use crate::bvh::node::WideNode;
@@ -43,7 +44,8 @@ fn refit_subtree(nodes: &mut [WideNode], first: usize, blocks: &[Extent]) {
     refit_node(nodes, first, blocks);
 }
 
-/// Gives the first of some nodes the boxes of its blocks and of the nodes below it. It is the node `first` of the tree.
+/// Gives the first of some nodes the boxes of its blocks and of the nodes below it. It is the node
+/// `first` of the tree.
 fn refit_node(nodes: &mut [WideNode], first: usize, blocks: &[Extent]) {
     for lane in 0..nodes[0].len() {
         let child = nodes[0].children()[lane];

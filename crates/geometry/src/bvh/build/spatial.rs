@@ -1,8 +1,9 @@
 //! Planes that split space, and what becomes of primitives across them.
 //!
-//! A triangle is cut at the plane and the box drawn around each part, inside of the box that the reference had
-//! before; other primitives have their box cut. Where a side of a triangle crosses the plane is rounded, and the
-//! box made wider by as much, so that no part of the triangle is in neither box.
+//! A triangle is cut at the plane and the box drawn around each part, inside of the box that the
+//! reference had before; other primitives have their box cut. Where a side of a triangle crosses
+//! the plane is rounded, and the box made wider by as much, so that no part of the triangle is in
+//! neither box.
 
 use super::reference::{Extent, Reference, in_parts};
 use super::tree::Blocks;
@@ -39,8 +40,8 @@ impl Plane {
         in_parts(references, serial, Intervals::merge).cheapest(&grid, blocks)
     }
 
-    /// The side (0 left, 1 right) to which a primitive across the plane best goes if it goes to one alone, and
-    /// whether that costs less than both.
+    /// The side (0 left, 1 right) to which a primitive across the plane best goes if it goes to one
+    /// alone, and whether that costs less than both.
     pub fn one_side(&self, r: &Reference) -> (usize, bool) {
         let cost = |(extent, count): (Extent, u32)| extent.half_area() * count as f32;
         let alone = |side: usize| {
@@ -120,7 +121,8 @@ impl Grid {
     }
 }
 
-/// For each axis and interval, the box around what lies in it, and how many references begin and end there.
+/// For each axis and interval, the box around what lies in it, and how many references begin and
+/// end there.
 struct Intervals {
     boxes: [[Extent; INTERVALS]; 3],
     begin: [[u32; INTERVALS]; 3],

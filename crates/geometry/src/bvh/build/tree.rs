@@ -1,15 +1,15 @@
 //! The binary tree that every builder grows, and how it is best cut into wide nodes.
 //!
-//! The tree stands over an array of references; each inner node divides a range of them in two. A place in
-//! the array can only be a border once, so that an inner node is stored at the index of its border, and
-//! threads that work on different ranges write to different parts of one array.
+//! The tree stands over an array of references; each inner node divides a range of them in two. A
+//! place in the array can only be a border once, so that an inner node is stored at the index of
+//! its border, and threads that work on different ranges write to different parts of one array.
 //!
-//! A wide node takes the place of a connected part of the binary tree with at most [`WIDTH`] branches. Which
-//! parts are cheapest to trace is found from the leaves upwards: the cost C(n, i) of representing what is
-//! below n by at most i children of some wide node is
-//!   C(n, 1) = min(A·c·blocks (if that is a leaf), A + min_k C(l, k) + C(r, WIDTH − k)),
-//!   C(n, i) = min(C(n, i − 1), min_k C(l, k) + C(r, i − k))
-//! with the area A of its box and the cost c of a block, where the test of a wide node costs 1 ([Ylitie et al. 2017 §3.1]).
+//! A wide node takes the place of a connected part of the binary tree with at most [`WIDTH`]
+//! branches. Which parts are cheapest to trace is found from the leaves upwards: the cost C(n, i)
+//! of representing what is below n by at most i children of some wide node is C(n, 1) =
+//! min(A·c·blocks (if that is a leaf), A + min_k C(l, k) + C(r, WIDTH − k)), C(n, i) = min(C(n, i −
+//! 1), min_k C(l, k) + C(r, i − k)) with the area A of its box and the cost c of a block, where the
+//! test of a wide node costs 1 ([Ylitie et al. 2017 §3.1]).
 
 use super::reference::{Extent, Reference};
 use crate::bvh::node::WIDTH;
@@ -51,9 +51,9 @@ impl Blocks {
 pub(super) struct Inner {
     /// Borders at which the halves are divided in turn; 0 where a half is not.
     pub halves: [u32; 2],
-    /// Four bits for each number of branches i from 2: how many the left half gets, 0 to do with i − 1. No branch of a wide
-    /// node has all of its branches: the last bits say how many the left half gets of a wide node here. Bit 0 says that, as one
-    /// branch, this is a leaf.
+    /// Four bits for each number of branches i from 2: how many the left half gets, 0 to do with i
+    /// − 1. No branch of a wide node has all of its branches: the last bits say how many the left
+    /// half gets of a wide node here. Bit 0 says that, as one branch, this is a leaf.
     plan: u64,
     /// What there is below this if it becomes a wide node.
     pub below: Size,
@@ -129,7 +129,8 @@ pub(super) struct Grown {
     pub root: u32,
     pub count: u32,
     pub extent: Extent,
-    /// C(n, i + 1); the last is not asked for, as a branch of a wide node never has all of its branches.
+    /// C(n, i + 1); the last is not asked for, as a branch of a wide node never has all of its
+    /// branches.
     cost: [f32; WIDTH],
     /// What it becomes as so many branches.
     size: [Size; WIDTH],
@@ -197,7 +198,8 @@ fn share(left: &Grown, right: &Grown) -> ([f32; WIDTH], [u32; WIDTH]) {
         cost[1..].copy_from_slice(&left.cost[..WIDTH - 1]);
         return (cost.map(|cost| cost + right.cost[0]), std::array::from_fn(|i| (i as u32).max(1)));
     }
-    // All i at a time, so that this becomes vector code without a branch: the right half has no cost for less than one branch.
+    // All i at a time, so that this becomes vector code without a branch: the right half has no
+    // cost for less than one branch.
     let mut right_cost = [f32::INFINITY; 2 * WIDTH];
     right_cost[WIDTH..].copy_from_slice(&right.cost);
     let mut left_shares = [1; WIDTH];

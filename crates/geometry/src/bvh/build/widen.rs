@@ -1,13 +1,14 @@
 //! From the binary tree to wide nodes.
 //!
-//! Nodes are written parent first, then the subtrees one after another, each as a whole; the blocks of the leaves are
-//! written in the order of the references. The sizes of subtrees are known before, so that threads can write to parts
-//! of one array.
+//! Nodes are written parent first, then the subtrees one after another, each as a whole; the blocks
+//! of the leaves are written in the order of the references. The sizes of subtrees are known
+//! before, so that threads can write to parts of one array.
 //!
-//! The children of a node are ordered by what they promise to a ray that looks for any hit, which begins with the last: the
-//! chance of a hit in a box that the ray enters, over the expected cost of the search there ([Ize & Hansen 2011]). In a leaf
-//! the chance is the ratio of the surfaces of the primitives' boxes and of its own, and the cost its blocks; in a node, both
-//! follow from those of the children, each of which is entered with the probability of the ratio of surfaces.
+//! The children of a node are ordered by what they promise to a ray that looks for any hit, which
+//! begins with the last: the chance of a hit in a box that the ray enters, over the expected cost
+//! of the search there ([Ize & Hansen 2011]). In a leaf the chance is the ratio of the surfaces of
+//! the primitives' boxes and of its own, and the cost its blocks; in a node, both follow from those
+//! of the children, each of which is entered with the probability of the ratio of surfaces.
 
 use super::pages;
 use super::reference::{Extent, Reference};

@@ -8,9 +8,10 @@
 //! atom    = number | name | name "(" sum { "," sum } ")" | "(" sum ")"
 //! ```
 //!
-//! Names are x, y, z, pi, e and the functions sqrt, abs, sin, cos, tan, exp, log, min, max and pow; −x² is −(x²), and powers
-//! bind from the right. A power with a whole number for its exponent is a product, so that its base may be negative; any
-//! other is defined for bases that are not. Length, depth and steps are bounded.
+//! Names are x, y, z, pi, e and the functions sqrt, abs, sin, cos, tan, exp, log, min, max and pow;
+//! −x² is −(x²), and powers bind from the right. A power with a whole number for its exponent is a
+//! product, so that its base may be negative; any other is defined for bases that are not. Length,
+//! depth and steps are bounded.
 
 use super::program::{Builder, Function, Program, TooLong, Value};
 use std::fmt;
@@ -243,7 +244,8 @@ impl Parser<'_> {
         if bytes.get(end) == Some(&b'.') {
             end += 1 + digits(end + 1);
         }
-        // An e is an exponent only if digits follow; otherwise it is a name that lacks its operator.
+        // An e is an exponent only if digits follow; otherwise it is a name that lacks its
+        // operator.
         if matches!(bytes.get(end), Some(b'e' | b'E')) {
             let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
             let exponent = digits((end + 1 + sign).min(bytes.len()));

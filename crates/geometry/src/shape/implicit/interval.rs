@@ -1,8 +1,8 @@
 //! Ranges of doubles that surely hold the exact result of what was computed ([Moore 1966]).
 //!
-//! Ends are rounded outwards. The elementary functions of the system's library are taken to be right to four units in the
-//! last place, which all common ones undercut. A function is taken over that part of a range where it is defined; where it is
-//! defined nowhere, the result is empty.
+//! Ends are rounded outwards. The elementary functions of the system's library are taken to be
+//! right to four units in the last place, which all common ones undercut. A function is taken over
+//! that part of a range where it is defined; where it is defined nowhere, the result is empty.
 
 use super::program::{Function, Number, power};
 use std::f64::consts::TAU;
@@ -80,7 +80,8 @@ impl Interval {
         }
     }
 
-    /// The range of a function that rises between the ends, whose values may be wrong by four units.
+    /// The range of a function that rises between the ends, whose values may be wrong by four
+    /// units.
     fn rising(self, f: impl Fn(f64) -> f64) -> Self {
         let wide = |x: f64, up: bool| {
             let margin = x.abs() * (4.0 * f64::EPSILON) + f64::MIN_POSITIVE;

@@ -1,6 +1,7 @@
 //! A number with its first and second derivatives by x, y and z: forward automatic differentiation.
 //!
-//! For g(u): ∇g = g′·∇u and Hg = g′·Hu + g″·∇u·∇uᵀ; for u·v: H = u·Hv + v·Hu + ∇u·∇vᵀ + ∇v·∇uᵀ ([Griewank 2008 §2]).
+//! For g(u): ∇g = g′·∇u and Hg = g′·Hu + g″·∇u·∇uᵀ; for u·v: H = u·Hv + v·Hu + ∇u·∇vᵀ + ∇v·∇uᵀ
+//! ([Griewank 2008 §2]).
 
 use super::program::{Function, Number, power};
 use math::{DMat3, DVec3};

@@ -1,9 +1,10 @@
 //! The surface F(x, y, z) = 0 of a formula, within a box.
 //!
-//! The nearest place along a ray is proved to be that ([`roots`]). The normal is the gradient, found by automatic
-//! differentiation; the outside is where F > 0. What lies outside of the box is cut off and leaves the surface open there.
-//! (u, v) are the spherical angles around the middle of the box. There is no way to choose a point evenly on such a surface,
-//! so that it has no area to be sampled by.
+//! The nearest place along a ray is proved to be that ([`roots`]). The normal is the gradient,
+//! found by automatic differentiation; the outside is where F > 0. What lies outside of the box is
+//! cut off and leaves the surface open there. (u, v) are the spherical angles around the middle of
+//! the box. There is no way to choose a point evenly on such a surface, so that it has no area to
+//! be sampled by.
 
 mod formula;
 mod interval;
@@ -30,8 +31,8 @@ use program::Program;
 use roots::Roots;
 use std::sync::Arc;
 
-/// A formula F(x, y, z): numbers, x, y, z, pi, e, + − * / ^, parentheses, and the functions sqrt, abs, sin, cos, tan, exp, log,
-/// min, max and pow.
+/// A formula F(x, y, z): numbers, x, y, z, pi, e, + − * / ^, parentheses, and the functions sqrt,
+/// abs, sin, cos, tan, exp, log, min, max and pow.
 #[derive(Clone, Debug)]
 pub struct Formula {
     program: Arc<Program>,

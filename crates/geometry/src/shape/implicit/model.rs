@@ -1,10 +1,12 @@
-//! What a formula does along a piece of a ray: a Taylor model, which is a polynomial and a bound on how far the formula is
-//! from it ([Makino 2003]).
+//! What a formula does along a piece of a ray: a Taylor model, which is a polynomial and a bound on
+//! how far the formula is from it ([Makino 2003]).
 //!
-//! With s ∈ [−1, 1] over the piece, |F(s) − Σ cₖ sᵏ| ≤ r. Sums and products of models are those of their polynomials; what
-//! exceeds the degree and what rounding loses goes to r. A function g is expanded about the middle of its argument,
-//! Σ aₖ·uᵏ, with the last coefficient taken over the whole range of the argument, so that the remainder is in it. Each model
-//! carries a range by interval arithmetic too, which is the better bound where a function is about to leave its domain.
+//! With s ∈ [−1, 1] over the piece, |F(s) − Σ cₖ sᵏ| ≤ r. Sums and products of models are those of
+//! their polynomials; what exceeds the degree and what rounding loses goes to r. A function g is
+//! expanded about the middle of its argument, Σ aₖ·uᵏ, with the last coefficient taken over the
+//! whole range of the argument, so that the remainder is in it. Each model carries a range by
+//! interval arithmetic too, which is the better bound where a function is about to leave its
+//! domain.
 
 use super::interval::Interval;
 use super::program::{Function, Number, power};

@@ -1,8 +1,10 @@
-//! A formula as a list of operations, each used by later ones, to be carried out on any kind of number.
+//! A formula as a list of operations, each used by later ones, to be carried out on any kind of
+//! number.
 //!
-//! Equal operations are kept once and constants are folded. What the operations are carried out on decides what comes out:
-//! plain numbers give the value of F, [`super::interval::Interval`] a range that holds it over a box, [`super::jet::Jet`] its
-//! derivatives, [`super::model::Model`] a polynomial along a ray with a bound on how far F is from it.
+//! Equal operations are kept once and constants are folded. What the operations are carried out on
+//! decides what comes out: plain numbers give the value of F, [`super::interval::Interval`] a range
+//! that holds it over a box, [`super::jet::Jet`] its derivatives, [`super::model::Model`] a
+//! polynomial along a ray with a bound on how far F is from it.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,15 +1,17 @@
 //! Where a formula is zero along a ray: all places in order, each proved.
 //!
-//! A piece of the ray is described by a [`Model`], whose polynomial P is written in Bernstein form: it lies in the convex hull
-//! of its control points (k/n, bₖ). Where |P| > r nothing is met. A line from an end's control point that passes below all
-//! others (above, where P is negative) says from which parameter on P may come within r of zero; what lies before is cut off,
-//! which at a single root converges as Newton's method does ([Sederberg 1990]). A piece that hardly shrinks is cut in two.
-//! Whenever r is no longer small beside P, the formula is evaluated anew on what is left.
+//! A piece of the ray is described by a [`Model`], whose polynomial P is written in Bernstein form:
+//! it lies in the convex hull of its control points (k/n, bₖ). Where |P| > r nothing is met. A line
+//! from an end's control point that passes below all others (above, where P is negative) says from
+//! which parameter on P may come within r of zero; what lies before is cut off, which at a single
+//! root converges as Newton's method does ([Sederberg 1990]). A piece that hardly shrinks is cut in
+//! two. Whenever r is no longer small beside P, the formula is evaluated anew on what is left.
 //!
-//! A piece is a root once it is as short as rounding lets the point be known, or so short that a root which only touches zero
-//! cannot be told from one that just misses. So no root is passed over; what only comes within rounding of zero counts as
-//! met. Pieces on which the formula grows beyond bounds (poles) never become roots. The work for a ray is bounded: when it is
-//! spent, what could not be ruled out counts as met.
+//! A piece is a root once it is as short as rounding lets the point be known, or so short that a
+//! root which only touches zero cannot be told from one that just misses. So no root is passed
+//! over; what only comes within rounding of zero counts as met. Pieces on which the formula grows
+//! beyond bounds (poles) never become roots. The work for a ray is bounded: when it is spent, what
+//! could not be ruled out counts as met.
 
 use super::model::Model;
 use super::program::Program;
@@ -141,8 +143,8 @@ impl<const N: usize> Iterator for Roots<'_, N> {
     }
 }
 
-/// For polynomials of degree N − 1: the control points bⱼ of sᵏ, by row j and column k. The blossom of sᵏ at −1 (n − j times)
-/// and 1 (j times).
+/// For polynomials of degree N − 1: the control points bⱼ of sᵏ, by row j and column k. The blossom
+/// of sᵏ at −1 (n − j times) and 1 (j times).
 const fn basis<const N: usize>() -> [[f64; N]; N] {
     let mut rows = [[0.0; N]; N];
     let mut j = 0;
@@ -198,7 +200,8 @@ fn largest<const N: usize>(b: &[f64; N]) -> f64 {
     b.iter().fold(0.0, |largest, b| f64::max(largest, b.abs()))
 }
 
-/// The part of [0, 1] outside of which the polynomial is further than `r` from zero; `None` where all of it is.
+/// The part of [0, 1] outside of which the polynomial is further than `r` from zero; `None` where
+/// all of it is.
 fn clip<const N: usize>(b: &[f64; N], r: f64) -> Option<[f64; 2]> {
     let reach = |from: usize, other: fn(usize) -> usize| {
         let first = b[from];

@@ -1,4 +1,5 @@
-//! Formulas at random: what is computed of them holds their values, and whatever text comes, nothing panics.
+//! Formulas at random: what is computed of them holds their values, and whatever text comes,
+//! nothing panics.
 
 use super::interval::Interval;
 use super::jet::Jet;

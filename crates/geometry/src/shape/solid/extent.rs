@@ -1,4 +1,5 @@
-//! Boxes along the axes, whose sides may be infinitely far away, and where rays enter and leave them.
+//! Boxes along the axes, whose sides may be infinitely far away, and where rays enter and leave
+//! them.
 
 use math::DVec3;
 
@@ -21,8 +22,8 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// The part of a span that is inside. The faces are numbered from `first`: the lower and the upper one across x, across y,
-    /// across z.
+    /// The part of a span that is inside. The faces are numbered from `first`: the lower and the
+    /// upper one across x, across y, across z.
     pub fn clip(&self, o: DVec3, d: DVec3, [mut enter, mut leave]: Span, first: u32) -> Option<Span> {
         for axis in 0..3 {
             if d[axis] == 0.0 {

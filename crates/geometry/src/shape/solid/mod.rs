@@ -1,13 +1,15 @@
 //! Constructive solid geometry: bodies joined, cut by each other, or taken away from each other.
 //!
-//! A ray is inside of each body on some spans of its length. Along the ends of all spans, in order, it is counted how many
-//! bodies it is inside of: in a union it has to be one at least, in an intersection all, in a difference the first one and no
-//! other ([Roth 1982]). Combinations are bodies again. The surface at an end is that of the body whose end it is, turned round
-//! where that body is taken away. Ends at the very same place count as one, so that faces which coincide exactly leave nothing
-//! between them.
+//! A ray is inside of each body on some spans of its length. Along the ends of all spans, in order,
+//! it is counted how many bodies it is inside of: in a union it has to be one at least, in an
+//! intersection all, in a difference the first one and no other ([Roth 1982]). Combinations are
+//! bodies again. The surface at an end is that of the body whose end it is, turned round where that
+//! body is taken away. Ends at the very same place count as one, so that faces which coincide
+//! exactly leave nothing between them.
 //!
-//! A hit's parameters are the number of the face and 0; a [`SurfacePoint`]'s are those of the body. There is no way to choose
-//! a point evenly on such a surface, so that it has no area to be sampled by.
+//! A hit's parameters are the number of the face and 0; a [`SurfacePoint`]'s are those of the body.
+//! There is no way to choose a point evenly on such a surface, so that it has no area to be sampled
+//! by.
 
 mod extent;
 mod part;
@@ -70,15 +72,16 @@ impl Solid {
         Self::revolved(render_from_object, [0.0, 0.0, slope * slope], height, [0.0, height])
     }
 
-    /// What is between two heights of the bowl that opens along the object's z axis and is `radius` wide at the larger of them,
-    /// which must be above 0.
+    /// What is between two heights of the bowl that opens along the object's z axis and is `radius`
+    /// wide at the larger of them, which must be above 0.
     pub fn paraboloid(render_from_object: &Transform, radius: f32, z: [f32; 2]) -> Self {
         let z = ascending(z).map(|z| z.max(0.0));
         let radius = f64::from(radius);
         Self::revolved(render_from_object, [0.0, radius * radius / z[1], 0.0], 0.0, z)
     }
 
-    /// What the surface encloses that the line between two points of different z sweeps around the object's z axis.
+    /// What the surface encloses that the line between two points of different z sweeps around the
+    /// object's z axis.
     pub fn hyperboloid(render_from_object: &Transform, ends: [Point3; 2]) -> Self {
         let [from, to] = ends.map(|p| p.as_dvec3());
         let (q, e) = (from.truncate(), (to - from).truncate());
@@ -210,7 +213,8 @@ impl Tree {
     }
 }
 
-/// Spans of a combination from the ends of its operands' spans, each with the change of the count and whose it is.
+/// Spans of a combination from the ends of its operands' spans, each with the change of the count
+/// and whose it is.
 fn combine(operation: Operation, operands: i32, ends: &mut [(Crossing, i32, usize)], spans: &mut Vec<Span>) {
     ends.sort_by(|(a, ..), (b, ..)| a.t.total_cmp(&b.t));
     let (mut in_first, mut in_others) = (0, 0);

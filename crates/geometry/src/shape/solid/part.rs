@@ -1,8 +1,8 @@
 //! What solids are made of: bodies with a closed boundary, each in a space of its own.
 //!
-//! A solid of revolution is a profile x² + y² ≤ ρ(z) between two heights: ball, cylinder, cone, paraboloid, hyperboloid, closed
-//! by flat ends. Without a profile it is all that lies between the heights. The body of a formula is where F < 0 in its box,
-//! closed by the sides of the box.
+//! A solid of revolution is a profile x² + y² ≤ ρ(z) between two heights: ball, cylinder, cone,
+//! paraboloid, hyperboloid, closed by flat ends. Without a profile it is all that lies between the
+//! heights. The body of a formula is where F < 0 in its box, closed by the sides of the box.
 
 use super::super::implicit::{Body, Formula, Root, reach};
 use super::super::level::Level;
@@ -59,7 +59,8 @@ impl Part {
         (min.is_finite() && max.is_finite()).then(|| self.quadric.bounds(min, max))
     }
 
-    /// Adds the spans of the ray inside of the body to `spans`, in order; its faces are numbered from `first`.
+    /// Adds the spans of the ray inside of the body to `spans`, in order; its faces are numbered
+    /// from `first`.
     pub fn spans(&self, ray: &Ray, range: Span, first: u32, spans: &mut Vec<Span>) {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         if d == DVec3::ZERO {
@@ -201,7 +202,8 @@ impl Revolved {
     /// Where a ray is inside of the profile, regardless of heights: on up to two stretches.
     fn inside(&self, profile: &Profile, o: DVec3, d: DVec3) -> [Option<[f64; 2]>; 2] {
         const FAR: f64 = f64::INFINITY;
-        // How x² + y² − ρ goes far out; along an asymptote that is told by a point of the stretch in question.
+        // How x² + y² − ρ goes far out; along an asymptote that is told by a point of the stretch
+        // in question.
         let curvature = d.x * d.x + d.y * d.y - profile.rho[2] * d.z * d.z;
         let is_positive =
             |t: f64| if curvature == 0.0 { profile.jet(o + d * t).0 > 0.0 } else { curvature > 0.0 };

@@ -44,7 +44,8 @@ impl Builder<'_> {
         handle
     }
 
-    /// Decodes all images that were asked for. One that cannot be decoded is reported and stands as one black pixel.
+    /// Decodes all images that were asked for. One that cannot be decoded is reported and stands as
+    /// one black pixel.
     pub(super) fn decode_images(&mut self) -> Arena<ImageDesc> {
         let requests = std::mem::take(&mut self.images.requests);
         let decoded: Vec<_> = requests

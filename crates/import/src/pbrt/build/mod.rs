@@ -1,4 +1,5 @@
-//! From statements to descriptions: one file per family, and here what they share: looking up names and files.
+//! From statements to descriptions: one file per family, and here what they share: looking up names
+//! and files.
 
 mod camera;
 mod files;
@@ -127,7 +128,8 @@ impl<'a> Builder<'a> {
         builder
     }
 
-    /// The handles of all named things of a kind, in the order of their statements. The first of several wins.
+    /// The handles of all named things of a kind, in the order of their statements. The first of
+    /// several wins.
     fn table<S, T>(
         &mut self,
         what: &str,
@@ -151,7 +153,8 @@ impl<'a> Builder<'a> {
         table
     }
 
-    /// Reads a statement by a function that asks for its parameters, and checks that it asked for all.
+    /// Reads a statement by a function that asks for its parameters, and checks that it asked for
+    /// all.
     fn read<T>(
         &mut self,
         statement: Statement,
@@ -164,7 +167,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// [`Builder::read`] of something that must be there: its default stands in for what cannot be read.
+    /// [`Builder::read`] of something that must be there: its default stands in for what cannot be
+    /// read.
     fn read_or_default<T: Default>(
         &mut self,
         statement: Statement,
@@ -174,7 +178,8 @@ impl<'a> Builder<'a> {
         Stated::new(value.unwrap_or_default(), origin)
     }
 
-    /// Reports attributes that no statement used: no statement followed, or none has such a parameter.
+    /// Reports attributes that no statement used: no statement followed, or none has such a
+    /// parameter.
     fn unused_attributes(&mut self, statements: &Statements) {
         for attribute in &statements.attributes {
             if !self.used_attributes.contains(&attribute.span) {

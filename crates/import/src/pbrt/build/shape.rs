@@ -188,8 +188,9 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
     })
 }
 
-/// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it is negative; what it may say
-/// is told by `geometry::Formula`. `"point3 bounds"`: two corners of the box at which the surface is cut off, ±2 if absent.
+/// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it
+/// is negative; what it may say is told by `geometry::Formula`. `"point3 bounds"`: two corners of
+/// the box at which the surface is cut off, ±2 if absent.
 fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
     let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
     let Some(formula) = reader.string("f") else {
@@ -210,9 +211,9 @@ fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
     }
 }
 
-/// `"string operation"`: `union`, `intersection`, or `difference` (the first without all others). `"string operands"`: names of
-/// objects, all shapes of which are one body; they are placed as an instance of the object would be, and their materials count
-/// for nothing here.
+/// `"string operation"`: `union`, `intersection`, or `difference` (the first without all others).
+/// `"string operands"`: names of objects, all shapes of which are one body; they are placed as an
+/// instance of the object would be, and their materials count for nothing here.
 fn solid(reader: &mut Reader) -> Option<ShapeKind> {
     let known = [
         ("union", SolidOperation::Union),
@@ -253,7 +254,8 @@ fn operand(builder: &mut Builder, name: &Spanned<String>) -> Option<Spanned<Hand
     }
 }
 
-/// The indices of a mesh, `N` per face; `default` are those of a mesh of one face, which needs none.
+/// The indices of a mesh, `N` per face; `default` are those of a mesh of one face, which needs
+/// none.
 fn indices<const N: usize>(
     reader: &mut Reader,
     vertices: usize,

@@ -103,7 +103,8 @@ impl TextureValue for SpectrumDesc {
 }
 
 impl Builder<'_> {
-    /// Builds all textures in the order in which they were said, so that each finds those before it.
+    /// Builds all textures in the order in which they were said, so that each finds those before
+    /// it.
     pub(super) fn textures(&mut self, statements: &mut Statements, desc: &mut SceneDesc) {
         let mut floats = statements.float_textures.drain(..);
         let mut spectra = statements.spectrum_textures.drain(..);
@@ -246,7 +247,8 @@ fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
     }
 }
 
-/// Where on the unit square a point lies. Parameters of mappings other than the chosen one are refused as unknown.
+/// Where on the unit square a point lies. Parameters of mappings other than the chosen one are
+/// refused as unknown.
 fn mapping(reader: &mut Reader) -> MappingDesc {
     let kind = reader.choice("mapping", 0, &[("uv", 0), ("spherical", 1), ("cylindrical", 2), ("planar", 3)]);
     let delta = |reader: &mut Reader| [reader.float("udelta", 0.0), reader.float("vdelta", 0.0)];
