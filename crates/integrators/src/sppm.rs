@@ -14,12 +14,13 @@
 //! scenes of which the camera sees a corner. Caustics on glossy surfaces are left to chance.
 //!
 //! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every
-//! pixel has a radius of its own, which shrinks by what the pixel has found so far, as (N + γM)/(N
-//! + M) with γ = 2/3. Here all have the radius that [Knaus 2011] give a pass by its number, with α
-//! = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt to
-//! where photons are dense. What is won is that a pass depends on no pass before it: a picture can
-//! be interrupted, continued and merged from shards to the same bits, and neither threads nor order
-//! matter. Edges of paths are counted as everywhere: `max_depth` holds for the sum of both ends.
+//! pixel has a radius of its own, which shrinks by what the pixel has found so far, as (N +
+//! γM)/(N + M) with γ = 2/3. Here all have the radius that [Knaus 2011] give a pass by its number,
+//! with α = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt
+//! to where photons are dense. What is won is that a pass depends on no pass before it: a picture
+//! can be interrupted, continued and merged from shards to the same bits, and neither threads nor
+//! order matter. Edges of paths are counted as everywhere: `max_depth` holds for the sum of both
+//! ends.
 //!
 //! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
 //! [Pharr 2016 §16.2].

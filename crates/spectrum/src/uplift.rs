@@ -1,8 +1,8 @@
 //! Smooth spectra from RGB values.
 //!
-//! An RGB reflectance becomes s(c₀t² + c₁t + c₂) with t = (λ − 540) / 100 and the sigmoid s(x) = ½
-//! + x / (2√(1 + x²)), which lies in [0, 1] whatever the coefficients. The coefficients come from a
-//! table over the RGB cube, made by `cargo xtask rgb-table`: for each position i of the largest
+//! An RGB reflectance becomes s(c₀t² + c₁t + c₂) with t = (λ − 540) / 100 and the sigmoid s(x) =
+//! ½ + x / (2√(1 + x²)), which lies in [0, 1] whatever the coefficients. The coefficients come from
+//! a table over the RGB cube, made by `cargo xtask rgb-table`: for each position i of the largest
 //! component, over its value z and the ratios x, y of the two next components to it. Between nodes
 //! the coefficients are trilinear in x, y and (z − ½) / √(z (1 − z)), in which those of grey are
 //! linear, so that dark and bright colours come out right.
