@@ -316,6 +316,58 @@ fn files_that_include_each_other_without_end_are_cut_off() {
 #[test]
 fn noise_does_not_fill_memory_with_messages() {
     let found = messages(&"Noise 1 2 3\n".repeat(100_000));
-    assert!(found.len() < 1000);
-    assert!(found.last().is_some_and(|last| last.contains("[too-many]")));
+    assert!(found.len() < 200);
+    assert!(found.last().is_some_and(|last| last.contains("[more-errors]")));
+}
+
+#[test]
+fn any_number_of_warnings_is_no_error() {
+    let found = messages(&format!("WorldBegin\n{}", "TransformBegin TransformEnd WorldEnd\n".repeat(10_000)));
+    assert_eq!(found.len(), 3, "{found:#?}");
+    assert!(found.iter().all(|found| found.starts_with("2:") && found.contains("warning[deprecated]")));
+    let names: String = (0..150).map(|i| format!("Attribute \"shape\" \"float a{i}\" 1\n")).collect();
+    let found = messages(&format!("WorldBegin\n{names}"));
+    assert_eq!(found.len(), 101);
+    assert!(
+        found[100].contains("warning[more-warnings] only the first 100 warnings are shown"),
+        "{found:#?}"
+    );
+}
+
+#[test]
+fn messages_quote_a_part_of_what_is_endless() {
+    let long = "x".repeat(3_000_000);
+    for text in [
+        format!("{long} 1"),
+        format!("\"{long}"),
+        format!("Camera {long}"),
+        format!("Camera \"{long}\""),
+        format!("Include \"{long}\""),
+        format!("Camera \"perspective\" \"float {long}\" 1"),
+        format!("Camera \"perspective\" \"{long} fov\" 1"),
+        format!("Camera \"perspective\" \"float fov\" {long}"),
+        format!("Camera \"perspective\" \"float fov\" [ 1 \"{long}\" ]"),
+        format!("WorldBegin NamedMaterial \"{long}\" Shape \"sphere\""),
+        format!(
+            "WorldBegin Texture \"{long}\" \"float\" \"constant\" Texture \"{long}\" \"float\" \"constant\""
+        ),
+        format!("WorldBegin Material \"diffuse\" \"spectrum reflectance\" \"{long}\""),
+        format!("WorldBegin Shape \"plymesh\" \"string filename\" \"{long}.ply\""),
+    ] {
+        let found = messages(&text);
+        assert!(!found.is_empty(), "{:.60}", text);
+        assert!(found.iter().all(|found| found.len() < 3000), "{:.60}", found[0]);
+    }
+}
+
+#[test]
+fn a_statement_has_a_limited_number_of_parameters() {
+    let many: String = (0..100_000).map(|i| format!("\"float a{i}\" 1 ")).collect();
+    let found = messages(&format!("Sampler \"sobol\" {many}\nWorldBegin"));
+    assert!(
+        found
+            .iter()
+            .any(|found| found.contains("[too-many-parameters] a statement has at most 1000 parameters")),
+        "{found:#?}"
+    );
 }

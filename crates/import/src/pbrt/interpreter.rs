@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use description::{Diagnostic, FileId, SourceMap, Span, Spanned};
 
 use super::names;
-use super::parameter::is_directive;
+use super::parameter::{is_directive, skip_to_directive};
 use super::state::{Block, BlockKind, GraphicsState, MaterialReference, TransformSet};
 use super::statement::{ObjectStatement, Statements};
 use super::token::{Token, TokenKind, Tokens};
@@ -144,19 +144,19 @@ impl<'a> Interpreter<'a> {
                 TokenKind::Word if is_directive(tokens.bytes(token)) => {
                     let directive = String::from_utf8_lossy(tokens.bytes(token));
                     if self.directive(&directive, token, &mut tokens).is_err() {
-                        recover(&mut tokens);
+                        skip_to_directive(&mut tokens);
                     }
                 }
                 TokenKind::Unterminated => {
                     let message = "this string has no closing quote on its line";
                     self.report.error("unterminated-string", message, tokens.span(token));
-                    recover(&mut tokens);
+                    skip_to_directive(&mut tokens);
                 }
                 _ => {
                     let found = String::from_utf8_lossy(tokens.bytes(token)).into_owned();
                     let message = format!("a directive should stand here, not {}", shortened(&found));
                     self.report.error("unexpected-token", message, tokens.span(token));
-                    recover(&mut tokens);
+                    skip_to_directive(&mut tokens);
                 }
             }
         }
@@ -196,15 +196,11 @@ impl<'a> Interpreter<'a> {
             "AttributeBegin" => self.begin_block(BlockKind::Attribute, span)?,
             "AttributeEnd" => self.end_block(BlockKind::Attribute, span)?,
             "TransformBegin" => {
-                self.report.warning_once(
-                    "deprecated",
-                    "`TransformBegin` is now written `AttributeBegin`",
-                    span,
-                );
+                self.report.warning("deprecated", "`TransformBegin` is now written `AttributeBegin`", span);
                 self.begin_block(BlockKind::Attribute, span)?;
             }
             "TransformEnd" => {
-                self.report.warning_once("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
+                self.report.warning("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
                 self.end_block(BlockKind::Attribute, span)?;
             }
             "Attribute" => self.attribute(tokens)?,
@@ -412,18 +408,6 @@ impl<'a> Interpreter<'a> {
         let message = format!("{expected} should stand here, not {found}");
         self.report.error("unexpected-token", message, tokens.span(token));
         Err(Abandoned)
-    }
-}
-
-/// Skips to the next directive.
-fn recover(tokens: &mut Tokens) {
-    loop {
-        let token = tokens.peek();
-        match token.kind {
-            TokenKind::End => return,
-            TokenKind::Word if is_directive(tokens.bytes(token)) => return,
-            _ => _ = tokens.next(),
-        }
     }
 }
 
