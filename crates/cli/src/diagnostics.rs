@@ -225,7 +225,7 @@ error[unknown-type]: no shape is called `spere`
         let file = sources.add("a.pbrt", "x\n".repeat(40_000).into_bytes());
         let warning = |line| Diagnostic::warning("w", "hair", Span::new(file, 2 * line, 2 * line + 1));
         let warnings: Vec<_> = (0..40_000).map(warning).collect();
-        let shown = shown(&warnings);
+        let shown = super::shown(&warnings);
         assert_eq!(shown.len(), 1);
         let text = render(&shown[0], &sources, &renderer(false));
         assert!(

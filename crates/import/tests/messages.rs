@@ -8,7 +8,9 @@ fn messages(text: &str) -> Vec<String> {
     let assets = MemoryAssets::default()
         .with("scene.pbrt", text)
         .with("self.pbrt", "Include \"self.pbrt\"")
-        .with("double.pbrt", "Include \"double.pbrt\" Include \"double.pbrt\"")
+        .with("a.pbrt", "Include \"b.pbrt\"")
+        .with("b.pbrt", "Include \"a.pbrt\" Include \"a.pbrt\"")
+        .with("room.glb", "glTF")
         .with("wide.pbrt", "Include \"narrow.pbrt\" ".repeat(101))
         .with("narrow.pbrt", "Include \"empty.pbrt\" ".repeat(100))
         .with("empty.pbrt", "")
@@ -16,6 +18,8 @@ fn messages(text: &str) -> Vec<String> {
         .with("bad.png", "no image")
         .with("bad.spd", "400 1 500")
         .with("bad.dat", "1 2 x 4");
+    let deep = |i: u32| format!("Include \"deep{}.pbrt\"", i + 1);
+    let assets = (0..100).fold(assets, |assets, i| assets.with(format!("deep{i}.pbrt"), deep(i)));
     let imported = import("scene.pbrt", &assets);
     let show = |diagnostic: &description::Diagnostic| {
         let position = imported.sources.position(diagnostic.span());
@@ -129,7 +133,22 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
         "1:19 warning[ignored] no statement uses the attribute `raduis`",
     ),
     (r#"Include "none.pbrt""#, "1:9 error[unreadable-file] cannot read `none.pbrt`: no such file"),
-    (r#"Include "self.pbrt""#, "1:9 error[include-limit] files include each other more than 64 deep"),
+    (
+        r#"Include "self.pbrt""#,
+        "1:9 error[include-cycle] files include each other in a cycle: self.pbrt → self.pbrt",
+    ),
+    (
+        r#"Include "a.pbrt""#,
+        "1:9 error[include-cycle] files include each other in a cycle: a.pbrt → b.pbrt → a.pbrt",
+    ),
+    (
+        r#"Include "scene.pbrt""#,
+        "1:9 error[include-cycle] files include each other in a cycle: scene.pbrt → scene.pbrt",
+    ),
+    (
+        r#"Include "room.glb""#,
+        "1:9 error[foreign-format] `room.glb` is a glTF scene, which alhazen does not read (scenes are pbrt-v4, PLY or OBJ files)",
+    ),
 ];
 
 /// Mistakes after `WorldBegin`.
@@ -303,8 +322,8 @@ fn all_mistakes_of_a_scene_come_in_one_run() {
 }
 
 #[test]
-fn files_that_include_each_other_without_end_are_cut_off() {
-    for (file, message) in [("double", "more than 64 deep"), ("wide", "more than 10000 files are included")] {
+fn too_many_included_files_are_cut_off() {
+    for (file, message) in [("deep0", "more than 64 deep"), ("wide", "more than 10000 files are included")] {
         let found = messages(&format!("Include \"{file}.pbrt\"\nWorldBegin"));
         assert!(
             found.iter().any(|found| found.contains("[include-limit]") && found.contains(message)),
