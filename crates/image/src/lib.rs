@@ -20,7 +20,7 @@ mod wrap;
 
 pub use codec::{
     Format, ImageInfo, LayerInfo, ReadOptions, Sample, SampleDepth, WriteOptions, encode, info, link_target,
-    read, replace_file, write,
+    read, replace_file, replace_file_with, write,
 };
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;

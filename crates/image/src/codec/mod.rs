@@ -12,7 +12,7 @@ mod raster;
 
 use std::{
     fs::{self, File, OpenOptions},
-    io::{self, Write},
+    io::{self, BufWriter, Write},
     panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
 };
@@ -205,16 +205,30 @@ pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> R
     Ok(replace_file(path, &encode(image, format, options)?)?)
 }
 
-/// Writes a file that appears whole or not at all: it is written beside its final place and then
-/// moved there. Symbolic links are followed: their target is replaced, and they stay.
+/// Writes a file that appears whole or not at all; see [`replace_file_with`].
 pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    replace_file_with(path, |file| file.write_all(bytes))
+}
+
+/// Writes a file that appears whole or not at all: it is written beside its final place and then
+/// moved there. A symbolic link is followed. What is no file, such as a pipe, is written as it is.
+pub fn replace_file_with<E: From<io::Error>>(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+) -> Result<(), E> {
     let path = &link_target(path);
     if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
-        return fs::write(path, bytes);
+        let mut file = BufWriter::new(OpenOptions::new().write(true).open(path)?);
+        write(&mut file)?;
+        return Ok(file.flush()?);
     }
-    let (mut file, temporary) = create_beside(path)?;
-    let written =
-        file.write_all(bytes).and_then(|()| file.sync_all()).and_then(|()| fs::rename(&temporary, path));
+    let (file, temporary) = create_beside(path)?;
+    let mut file = BufWriter::new(file);
+    let written = write(&mut file).and_then(|()| {
+        file.flush()?;
+        file.get_ref().sync_all()?;
+        Ok(fs::rename(&temporary, path)?)
+    });
     if written.is_err() {
         // The first error is the one to tell; a leftover that cannot be removed either changes
         // nothing about it.
