@@ -42,7 +42,7 @@ impl fmt::Display for ContourError {
             Self::TooShort { contour } => write!(f, "contour {contour} has fewer than three points"),
             Self::TooMany => write!(f, "more than {MOST_CORNERS} points make a mesh, not a polygon"),
             Self::Flat => write!(f, "the outer contour has no area"),
-            Self::OffPlane { point } => write!(f, "point {point} is outside of the plane of the others"),
+            Self::OffPlane { point } => write!(f, "point {point} is not in the plane of the others"),
             Self::Touch { edges: [a, b] } => {
                 write!(f, "the edges that begin with the points {a} and {b} touch or cross")
             }

@@ -184,7 +184,7 @@ fn floats<'a, const N: usize>(mut words: impl Iterator<Item = &'a [u8]>) -> Resu
         let word = words.next().unwrap_or(b"");
         match number::float(word).filter(|value| value.is_finite()) {
             Some(number) => *value = number,
-            None => return invalid(format!("`{:.40}` is no number", String::from_utf8_lossy(word))),
+            None => return invalid(format!("`{:.40}` is not a number", String::from_utf8_lossy(word))),
         }
     }
     Ok(values)
@@ -194,7 +194,7 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
     let mut indices = [None; 3];
     for (place, text) in word.split(|&byte| byte == b'/').enumerate() {
         if place == 3 {
-            return invalid(format!("`{:.40}` is no corner", String::from_utf8_lossy(word)));
+            return invalid(format!("`{:.40}` is not a face corner", String::from_utf8_lossy(word)));
         }
         if text.is_empty() && place > 0 {
             continue;
@@ -212,7 +212,7 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
     }
     match indices {
         [Some(position), uv, normal] => Ok((position, uv, normal)),
-        _ => invalid(format!("`{:.40}` is no corner", String::from_utf8_lossy(word))),
+        _ => invalid(format!("`{:.40}` is not a face corner", String::from_utf8_lossy(word))),
     }
 }
 
