@@ -295,8 +295,8 @@ impl Scene {
         self.light(light).sample_li(context, u, lambda, allow_incomplete)
     }
 
-    /// [`LightRef::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere
-    /// around all that has an end; what has none may keep it from there: `None` if it does.
+    /// [`LightRef::sample_le`] of one of this scene's lights. Light from infinity starts at the
+    /// sphere around all that has an end; what has none may keep it from there: `None` if it does.
     pub fn sample_emission(
         &self,
         light: LightId,

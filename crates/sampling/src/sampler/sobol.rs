@@ -72,8 +72,8 @@ impl Sobol {
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
-        // The upper bits are the pixel; the rest, which is the position in it, is randomised like any
-        // dimension, or pictures of different seeds would have samples in common.
+        // The upper bits are the pixel; the rest, which is the position in it, is randomised like
+        // any dimension, or pictures of different seeds would have samples in common.
         let position = |dimension| {
             let bits = sobol_bits(self.index, dimension) << self.log2_side;
             self.randomize.bits(bits, self.seed_of(dimension))

@@ -1,8 +1,8 @@
 //! Light from one direction, as from the sun without its disk; the same everywhere in the scene.
 //!
-//! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Emitted rays start uniformly
-//! on that disk. They miss what lies outside of the scene's sphere, as parts of infinite planes do.
-//! Sources: [Pharr 2023 §12.3].
+//! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Emitted rays start
+//! uniformly on that disk. They miss what lies outside of the scene's sphere, as parts of infinite
+//! planes do. Sources: [Pharr 2023 §12.3].
 
 use super::{Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
 use math::{AnimatedTransform, Point2, Ray, Vec3, Vector3};
