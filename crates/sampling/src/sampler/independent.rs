@@ -1,6 +1,6 @@
 //! Uniform random numbers without any arrangement: the yardstick for the others.
 
-use super::hash;
+use crate::hash::hash;
 use crate::Rng;
 use math::Vec2;
 

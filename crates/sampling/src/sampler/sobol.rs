@@ -6,9 +6,9 @@
 //! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
 //! sequence goes on.
 
-use super::Randomize;
+use super::randomize::Randomize;
+use crate::hash::{hash, unit_interval};
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_bits};
-use crate::{hash, unit_interval};
 use math::Vec2;
 use std::sync::Arc;
 
