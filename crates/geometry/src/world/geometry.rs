@@ -3,6 +3,7 @@
 use crate::curve::Curves;
 use crate::shape::{Shape, TriangleMesh};
 use crate::sphere_set::SphereSet;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A geometry, counted over the whole world in the order of
@@ -73,13 +74,17 @@ impl Geometry {
         }
     }
 
-    /// One primitive as a shape of its own, as a light needs it; `None` for curves, which do not
-    /// emit.
-    pub fn shape(&self, primitive: u32) -> Option<Shape> {
+    /// Whether its primitives move by themselves.
+    pub fn is_moving(&self) -> bool {
+        matches!(self, Self::Shapes(shapes) if matches!(shapes.first(), Some(Shape::MovingTriangle(_))))
+    }
+
+    /// One primitive as a shape, as lights sample it; `None` for curves, which do not emit.
+    pub fn shape(&self, primitive: u32) -> Option<Cow<'_, Shape>> {
         match self {
-            Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
-            Self::Shapes(shapes) => Some(shapes[primitive as usize].clone()),
-            Self::Spheres(set) => Some(set.sphere(primitive as usize).into()),
+            Self::Mesh(mesh) => Some(Cow::Owned(mesh.triangle(primitive as usize).into())),
+            Self::Shapes(shapes) => Some(Cow::Borrowed(&shapes[primitive as usize])),
+            Self::Spheres(set) => Some(Cow::Owned(set.sphere(primitive as usize).into())),
             Self::Curves(_) => None,
         }
     }

@@ -73,7 +73,10 @@ impl InstancePath {
     }
 
     /// This path followed by one more instance.
-    pub(super) fn into(mut self, id: InstanceId) -> Self {
+    ///
+    /// # Panics
+    /// When the path has [`MAX_DEPTH`](Self::MAX_DEPTH) instances already.
+    pub fn into(mut self, id: InstanceId) -> Self {
         let len = self.ids().len();
         self.0[len] = id;
         self

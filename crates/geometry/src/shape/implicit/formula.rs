@@ -25,6 +25,10 @@ enum Order {
 }
 
 impl Formula {
+    /// The largest coordinate of a box within which a surface can be used: rays are in single
+    /// precision, where squares of larger coordinates overflow.
+    pub const MAX_COORDINATE: f32 = 1e18;
+
     /// Reads a formula of x, y and z, such as `x^2 + y^2 + z^2 - 1`.
     ///
     /// ```
