@@ -1,10 +1,10 @@
 //! The Stanford polygon format PLY: a text header that names elements and their properties, then
 //! their values as text or as binary numbers of either byte order [Turk 1994].
 //!
-//! Vertices have `x y z`, perhaps `nx ny nz`, and texture coordinates as `u v`, `s t`,
+//! Vertices have `x y z`, optionally `nx ny nz`, and texture coordinates as `u v`, `s t`,
 //! `texture_u texture_v` or `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`,
-//! and perhaps a number `face_indices`. Instead of faces there may be `tristrips`: strips of
-//! triangles, with −1 between them. All other properties and elements are skipped.
+//! and optionally a number `face_indices`. Instead of faces there may be `tristrips`: triangle
+//! strips separated by −1. All other properties and elements are skipped.
 
 use math::{Vec2, Vec3};
 
@@ -139,12 +139,12 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), MeshError> {
     }
 }
 
-/// Where values come from.
+/// The values after the header.
 trait Body {
-    /// The least number of bytes that a value of a type takes.
+    /// The minimal number of bytes of a value of a type.
     fn least_size(scalar: Scalar) -> usize;
 
-    /// The bytes that are left.
+    /// The number of bytes that are left.
     fn left(&self) -> usize;
 
     /// The next value.
@@ -245,7 +245,7 @@ fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// Refuses an element that cannot lie in the bytes that are left.
+/// Refuses an element that does not fit in the bytes that are left.
 fn check_size<B: Body>(element: &Element, left: usize) -> Result<(), MeshError> {
     let row: usize = element
         .properties
@@ -352,7 +352,7 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
     Ok(())
 }
 
-/// Faces as they lie in the file.
+/// Faces as in the file.
 #[derive(Default)]
 struct Faces {
     /// The corners of all faces.
@@ -421,7 +421,7 @@ fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshEr
             }
             let corner = corner as u32;
             if length >= 2 {
-                // Every other triangle of a strip turns the other way.
+                // Every second triangle of a strip has the opposite winding.
                 let [a, b] = if length % 2 == 0 { last } else { [last[1], last[0]] };
                 faces.corners.extend([a, b, corner]);
                 faces.ends.push(faces.corners.len());

@@ -99,8 +99,8 @@ impl<'b, 'a> Reader<'b, 'a> {
         });
     }
 
-    /// The index of the parameter of a name, if it is given with one of the types; any other type is
-    /// reported.
+    /// The index of the parameter of a name, if it is given with one of the types; any other type
+    /// is reported.
     fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
         self.asked.push(name);
         let index = self.given.iter().position(|given| given.parameter.name == name)?;
