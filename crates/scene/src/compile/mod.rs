@@ -17,7 +17,7 @@ use crate::camera;
 use crate::light::{AreaEmission, Light, LightId, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, Scene, SceneOptions};
-use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
+use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
 use description::{
     AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
 };
@@ -38,7 +38,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     let camera = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics);
     let render_from_world = camera.as_ref().map_or(DMat4::IDENTITY, |c| c.transform().render_from_world());
-    let textures = texture::compile(desc, &render_from_world, &mut diagnostics);
+    let textures = TextureCompiler::new(desc, &render_from_world, &mut diagnostics);
     let mut compiler = Compiler {
         desc,
         render_from_world,
@@ -74,6 +74,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         disable_texture_filtering: desc.options.disable_texture_filtering,
         force_diffuse: desc.options.force_diffuse,
     };
+    let textures = textures.finish();
     let has_footprints = !options.disable_texture_filtering && textures.are_filtered();
     let scene = Scene {
         camera,
@@ -96,7 +97,7 @@ struct Compiler<'a> {
     desc: &'a SceneDesc,
     render_from_world: DMat4,
     diagnostics: Vec<Diagnostic>,
-    textures: Textures,
+    textures: TextureCompiler,
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
@@ -113,8 +114,8 @@ impl Compiler<'_> {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
     }
 
-    fn float_texture(&mut self, parameter: &FloatParameter) -> FloatTextureId {
-        self.textures.float_parameter(parameter)
+    fn float_texture(&mut self, parameter: &FloatParameter, span: Span) -> FloatTextureId {
+        self.textures.float_parameter(parameter, span, &mut self.diagnostics)
     }
 
     fn spectrum_texture(
