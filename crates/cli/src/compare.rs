@@ -18,7 +18,8 @@ use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
 use crate::numbers::count;
 use crate::output;
-use crate::render::{named_after, scene_failure, start_threads};
+use crate::render::{named_after, scene_failure};
+use crate::threads::start_threads;
 
 /// Renders a scene by several algorithms and writes the report.
 pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
@@ -66,7 +67,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     };
     interrupt.begin_rendering();
     if talkative {
-        diagnostics::print(&imported.diagnostics, &imported.sources);
+        diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
 
     let mut bar: Option<Arc<Bar>> = None;
@@ -85,13 +86,14 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     let Ok(mut comparison) = outcome else {
         let message = "interrupted before anything could be compared; there is no report";
         if arguments.json {
-            say(serde_json::json!({ "status": "interrupted" }))
+            say(serde_json::json!({ "status": "interrupted" }))?;
         } else {
-            warn(message)
+            warn(message)?;
         }
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
-    comparison.warnings = imported.diagnostics.iter().map(|warning| warning.message.clone()).collect();
+    comparison.warnings =
+        diagnostics::shown(&imported.diagnostics).into_iter().map(|warning| warning.message).collect();
     let mut json = comparison.to_json();
     json["warnings"] = diagnostics::to_json(&imported.diagnostics, &imported.sources).1;
     report.write(&comparison, &json)?;
@@ -99,11 +101,11 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     if arguments.json {
         json["outputs"] =
             [&report.page, &report.numbers].map(|path| path.display().to_string()).as_slice().into();
-        say(json);
+        say(json)?;
     } else if talkative {
-        say(summary(&comparison, &report));
+        say(summary(&comparison, &report))?;
     } else if interrupted {
-        warn("interrupted; the report is of what had been done");
+        warn("interrupted; the report is of what had been done")?;
     }
     Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }

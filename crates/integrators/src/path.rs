@@ -68,7 +68,7 @@ pub(crate) struct Origin {
 impl Path {
     /// Knows no lights until it is prepared for a scene.
     pub fn new(settings: PathSettings) -> Self {
-        Self { settings, lights: LightSampler::new(settings.light_sampler, &[]) }
+        Self { settings, lights: LightSampler::default() }
     }
 
     /// The weight of light from `light` that a ray met along `wi`. Without an `origin` no light

@@ -15,4 +15,4 @@ pub mod texture;
 pub use compile::{Compiled, compile};
 pub use geometry::RayStats;
 pub use interaction::{Footprint, SurfaceInteraction};
-pub use scene::{GeometryEntry, Interfaces, Scene, SceneOptions};
+pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene, SceneOptions};

@@ -3,6 +3,7 @@
 //! All mistakes come out at once, with the spans of what is to blame; what can be described but not
 //! yet drawn is a warning that says what is drawn instead.
 
+mod area_lights;
 mod curves;
 mod emission;
 mod lights;
@@ -14,10 +15,11 @@ mod spheres;
 mod tessellation;
 
 use crate::camera;
-use crate::light::{AreaEmission, Light, LightId, SceneSphere};
+use crate::light::{AreaEmission, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
-use crate::scene::{GeometryEntry, Scene, SceneOptions};
+use crate::scene::{GeometryEntry, InstanceEntry, Scene, SceneOptions};
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
+use area_lights::Emitters;
 use description::{
     AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
 };
@@ -52,22 +54,21 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
             })
             .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
+        instances: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),
-        lights: Vec::new(),
+        emitters: vec![Emitters::default()],
     };
     compiler.materials();
     compiler.area_emissions();
     compiler.shapes();
     let world = std::mem::take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
-    compiler.lights(sphere);
-    let Compiler { diagnostics, textures, entries, materials, lights, .. } = compiler;
+    let lights = compiler.light_table(&world, sphere);
+    let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
     let Some(camera) = camera.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)) else {
         return Err(diagnostics);
     };
-    let infinite_lights =
-        (0..).map(LightId).zip(&lights).filter(|(_, light)| light.is_infinite()).map(|(id, _)| id).collect();
     let options = SceneOptions {
         disable_pixel_jitter: desc.options.disable_pixel_jitter,
         disable_wavelength_jitter: desc.options.disable_wavelength_jitter,
@@ -81,10 +82,10 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         world,
         sphere,
         entries,
+        instances,
         materials: Materials::new(materials),
         textures,
         lights,
-        infinite_lights,
         samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
         options,
         has_footprints,
@@ -101,8 +102,10 @@ struct Compiler<'a> {
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
+    instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
-    lights: Vec<Light>,
+    /// By group of the world.
+    emitters: Vec<Emitters>,
 }
 
 impl Compiler<'_> {
