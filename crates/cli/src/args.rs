@@ -283,9 +283,22 @@ pub struct Convert {
     /// How values are stored: `natural` keeps what the picture has where the format can.
     #[arg(long, value_enum, default_value_t = Depth::Natural)]
     pub depth: Depth,
+    /// Convert an image of the sphere of directions, such as an environment map, to another
+    /// projection. It is read as the one whose shape it has.
+    #[arg(long, value_enum)]
+    pub projection: Option<Projection>,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
     pub json: bool,
+}
+
+/// How an image shows the sphere of directions; +z is up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Projection {
+    /// The square octahedral mapping of the pbrt-v4 format.
+    EqualArea,
+    /// Longitude along the rows, from +x towards +y; twice as wide as high.
+    LatitudeLongitude,
 }
 
 /// How values are stored.
