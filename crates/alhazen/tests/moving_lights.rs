@@ -59,8 +59,8 @@ fn emitting_shapes_of_objects_are_as_if_written_out() {
         Shape \"trianglemesh\" \"point3 P\" [-0.3 -0.3 0  -0.3 0.3 0  0.3 0.3 0  0.3 -0.3 0]\n\
         \"integer indices\" [0 1 2 0 2 3]\n\
         AttributeBegin Translate 0 0.8 0 Shape \"sphere\" \"float radius\" 0.1 AttributeEnd\n";
-    // One is stretched and mirrored; one lies in an object of its own.
-    let (first, second) = ("Translate -0.8 0 1.2 Scale -1 0.7 1.4", "Translate 0.5 -0.3 1.5 Rotate 30 0 1 0");
+    // One is stretched; one lies in an object of its own.
+    let (first, second) = ("Translate -0.8 0 1.2 Scale 1 0.7 1.4", "Translate 0.5 -0.3 1.5 Rotate 30 0 1 0");
     let written_out =
         format!("AttributeBegin {first}\n{lamps}AttributeEnd\nAttributeBegin {second}\n{lamps}AttributeEnd");
     let instanced = format!(
