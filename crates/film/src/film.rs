@@ -17,7 +17,7 @@ use image::{Chromaticities, Image, ImageError, ImageMetadata, Window};
 use math::Bounds2i;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
-use crate::splats::SplatSums;
+use crate::splats::{Grid, SplatSums};
 use crate::{ExactSum, Filter, PixelSensor, Splatter};
 
 /// Side of a tile in pixels.
@@ -96,6 +96,27 @@ impl Pixel {
         self.samples += other.samples;
     }
 
+    /// Red, green, blue, weight, samples.
+    fn component(&self, component: usize) -> i128 {
+        match component {
+            0..3 => self.rgb[component].units(),
+            3 => self.weight.units(),
+            _ => self.samples.into(),
+        }
+    }
+
+    fn add_component(&mut self, component: usize, value: i128) -> Result<(), String> {
+        match component {
+            0..3 => self.rgb[component].merge(ExactSum::from_units(value)),
+            3 => self.weight.merge(ExactSum::from_units(value)),
+            _ => {
+                let count = u64::try_from(value).ok().and_then(|count| self.samples.checked_add(count));
+                self.samples = count.ok_or_else(|| format!("{value} samples"))?;
+            }
+        }
+        Ok(())
+    }
+
     /// The mean sensor response; black before the first sample.
     fn mean(&self) -> [f64; 3] {
         let weight = self.weight.value();
@@ -164,6 +185,10 @@ impl Gate {
     }
 }
 
+/// The layers of a film's pixels: samples of radiance, and splats.
+const SAMPLES: &str = "samples";
+const SPLATS: &str = "splats";
+
 /// A film.
 #[derive(Debug)]
 pub struct Film {
@@ -226,6 +251,119 @@ impl Film {
     /// [`SPLAT_BYTES`](crate::SPLAT_BYTES) for each pixel; it has no tiles.
     pub fn for_splats(&self) -> Self {
         Self { pixels: Vec::new(), ..self.blank() }
+    }
+
+    /// What it was made of.
+    pub fn settings(&self) -> FilmSettings {
+        FilmSettings {
+            full_resolution: self.full_resolution,
+            pixel_bounds: self.bounds,
+            diagonal: self.diagonal,
+            filter: self.filter.clone(),
+            sensor: self.gate.sensor.clone(),
+            max_component_value: self.gate.max_component_value,
+            color_space: self.color_space,
+            half_floats: self.half_floats,
+        }
+    }
+
+    /// A film with these of the layers that [`Self::layer_names`] tells.
+    pub(crate) fn with_layers(settings: FilmSettings, layers: &[&str]) -> Result<Self, ImageError> {
+        let mut film = Self::new(settings)?;
+        if !layers.contains(&SAMPLES) {
+            film.pixels = Vec::new();
+        }
+        if layers.contains(&SPLATS) {
+            film.splats.make_room(&film.bounds);
+        }
+        Ok(film)
+    }
+
+    /// The bytes that [`Self::with_layers`] takes, or what is wrong with the layers.
+    pub(crate) fn bytes_of(settings: &FilmSettings, layers: &[&str]) -> Result<u64, String> {
+        let layer_bytes = |layer: &&str| match *layer {
+            SAMPLES => Ok(size_of::<Pixel>() as u64),
+            SPLATS => Ok(crate::SPLAT_BYTES as u64),
+            other => Err(format!("an unknown layer `{other}`")),
+        };
+        let bytes: u64 = layers.iter().map(layer_bytes).sum::<Result<_, _>>()?;
+        Ok(settings.pixel_bounds.area() as u64 * bytes)
+    }
+
+    /// The layers that the film has.
+    pub(crate) fn layer_names(&self) -> Vec<&'static str> {
+        let samples = (!self.pixels.is_empty()).then_some(SAMPLES);
+        samples.into_iter().chain((!self.splats.is_empty()).then_some(SPLATS)).collect()
+    }
+
+    fn sample_components(&self) -> usize {
+        if self.pixels.is_empty() { 0 } else { 5 }
+    }
+
+    /// How many numbers its layers have for a pixel.
+    pub(crate) fn component_count(&self) -> usize {
+        self.sample_components() + if self.splats.is_empty() { 0 } else { 3 }
+    }
+
+    /// The numbers of one component of a tile, pixel by pixel.
+    pub(crate) fn sums(&self, tile: usize, component: usize) -> Vec<i128> {
+        match component.checked_sub(self.sample_components()) {
+            Some(component) => self.splats.sums(tile, component),
+            None => {
+                self.pixels[self.tile_range(tile)].iter().map(|pixel| pixel.component(component)).collect()
+            }
+        }
+    }
+
+    /// Adds to the numbers of one component of a tile.
+    pub(crate) fn add_sums(&mut self, tile: usize, component: usize, sums: &[i128]) -> Result<(), String> {
+        if let Some(component) = component.checked_sub(self.sample_components()) {
+            self.splats.add_sums(tile, component, sums);
+            return Ok(());
+        }
+        let range = self.tile_range(tile);
+        for (pixel, &sum) in self.pixels[range].iter_mut().zip(sums) {
+            pixel.add_component(component, sum)?;
+        }
+        Ok(())
+    }
+
+    fn tile_range(&self, tile: usize) -> std::ops::Range<usize> {
+        let tile = Grid(self.bounds).bounds(tile);
+        let start = self.index(tile.min);
+        start..start + tile.area()
+    }
+
+    /// How many rows of tiles it has.
+    pub(crate) fn tile_rows(&self) -> usize {
+        Grid(self.bounds).rows()
+    }
+
+    /// The tiles of a row.
+    pub(crate) fn tiles_of_row(&self, row: usize) -> std::ops::Range<usize> {
+        let columns = Grid(self.bounds).columns();
+        row * columns..(row + 1) * columns
+    }
+
+    /// How many pixels a tile has.
+    pub(crate) fn tile_area(&self, tile: usize) -> usize {
+        Grid(self.bounds).bounds(tile).area()
+    }
+
+    /// How many paths had their chance to add splats.
+    pub(crate) fn path_count(&self) -> u64 {
+        self.splats.paths()
+    }
+
+    /// Counts paths that had their chance to add splats.
+    pub(crate) fn add_path_count(&mut self, paths: u64) {
+        self.splats.add_paths(paths);
+    }
+
+    /// Counts refused samples of which some were at these pixels.
+    pub(crate) fn add_rejected(&mut self, count: u64, pixels: impl IntoIterator<Item = [i32; 2]>) {
+        let pixels = pixels.into_iter().map(|[x, y]| (y, x)).collect();
+        self.gate.rejected().merge(&Rejected { count, pixels });
     }
 
     /// Width and height of the whole image in pixels.

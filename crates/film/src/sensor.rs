@@ -31,6 +31,16 @@ impl PixelSensor {
         }
     }
 
+    /// A sensor of these parts.
+    pub(crate) fn new(scale: f32, xyz_from_sensor_rgb: Matrix3) -> Self {
+        Self { scale, xyz_from_sensor_rgb }
+    }
+
+    /// The factor from XYZ of light to responses.
+    pub(crate) fn scale(&self) -> f32 {
+        self.scale
+    }
+
     /// The three responses to light at `lambda`: an unbiased estimate.
     #[inline]
     pub fn to_sensor_rgb(&self, light: &SampledSpectrum, lambda: &SampledWavelengths) -> Rgb {

@@ -42,6 +42,30 @@ impl SplatSums {
         }
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.tiles.is_empty()
+    }
+
+    pub(crate) fn paths(&self) -> u64 {
+        self.paths.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn add_paths(&self, count: u64) {
+        self.paths.fetch_add(count, Ordering::Relaxed);
+    }
+
+    /// One component of a tile, in units of the sums.
+    pub(crate) fn sums(&self, tile: usize, component: usize) -> Vec<i128> {
+        lock(&self.tiles[tile]).iter().map(|splat| splat[component].units()).collect()
+    }
+
+    /// Adds units to one component of a tile.
+    pub(crate) fn add_sums(&self, tile: usize, component: usize, sums: &[i128]) {
+        for (splat, &sum) in lock(&self.tiles[tile]).iter_mut().zip(sums) {
+            splat[component].merge(ExactSum::from_units(sum));
+        }
+    }
+
     pub(crate) fn merge(&mut self, other: &Self, bounds: &Bounds2i) {
         if other.tiles.is_empty() {
             return;
@@ -79,7 +103,7 @@ pub struct Splatter<'film> {
 impl Splatter<'_> {
     /// Counts paths that had their chance to add splats.
     pub fn add_paths(&self, count: u64) {
-        self.sums.paths.fetch_add(count, Ordering::Relaxed);
+        self.sums.add_paths(count);
     }
 
     /// All film positions (in pixels, (0, 0) being the top left corner of the whole picture) that
@@ -150,18 +174,22 @@ impl Splatter<'_> {
 
 /// The film's pixels in tiles, as they are stored.
 #[derive(Clone, Copy)]
-struct Grid(Bounds2i);
+pub(crate) struct Grid(pub(crate) Bounds2i);
 
 impl Grid {
-    fn columns(self) -> usize {
+    pub(crate) fn columns(self) -> usize {
         (self.0.width() as usize).div_ceil(TILE_SIZE as usize)
     }
 
-    fn tiles(self) -> usize {
-        self.columns() * (self.0.height() as usize).div_ceil(TILE_SIZE as usize)
+    pub(crate) fn rows(self) -> usize {
+        (self.0.height() as usize).div_ceil(TILE_SIZE as usize)
     }
 
-    fn bounds(self, tile: usize) -> Bounds2i {
+    fn tiles(self) -> usize {
+        self.columns() * self.rows()
+    }
+
+    pub(crate) fn bounds(self, tile: usize) -> Bounds2i {
         let (row, column) = ((tile / self.columns()) as i32, (tile % self.columns()) as i32);
         tile_at(&self.0, [self.0.min[0] + column * TILE_SIZE, self.0.min[1] + row * TILE_SIZE])
     }

@@ -36,6 +36,16 @@ impl ExactSum {
         self.0 = self.0.saturating_add(other.0);
     }
 
+    /// The sum in units of 2⁻⁶⁴.
+    pub(crate) fn units(self) -> i128 {
+        self.0
+    }
+
+    /// The sum of so many units of 2⁻⁶⁴.
+    pub(crate) fn from_units(units: i128) -> Self {
+        Self(units)
+    }
+
     /// The number nearest to the sum.
     #[inline]
     pub fn value(self) -> f64 {

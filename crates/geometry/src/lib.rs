@@ -15,7 +15,6 @@ mod curve;
 mod mesh;
 mod placement;
 mod shape;
-mod simd;
 mod sphere_set;
 mod surface;
 mod tessellation;
@@ -24,13 +23,13 @@ mod world;
 
 pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
+pub use lanes::InstructionSet;
 pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MovingMesh,
     MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample, ShapeSampleContext, Solid,
     Sphere, Triangle,
 };
-pub use simd::InstructionSet;
 pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};

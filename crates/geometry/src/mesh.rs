@@ -1,7 +1,7 @@
 //! Triangles that share vertices.
 
 use crate::shape::Triangle;
-use crate::simd::prefetch;
+use lanes::prefetch;
 use math::{Bounds3, Normal3, Point3, Transform, Vec2, Vector3};
 use std::fmt;
 use std::sync::Arc;
@@ -192,13 +192,13 @@ impl TriangleMesh {
     /// Asks for the indices of a triangle, soon to be read.
     #[inline(always)]
     pub(crate) fn prefetch_indices(&self, triangle: usize) {
-        prefetch(&self.indices[triangle]);
+        prefetch(&raw const self.indices[triangle]);
     }
 
     /// Asks for the corners of a triangle, soon to be read.
     #[inline(always)]
     pub(crate) fn prefetch_corners(&self, triangle: usize) {
-        self.indices[triangle].iter().for_each(|&i| prefetch(&self.positions[i as usize]));
+        self.indices[triangle].iter().for_each(|&i| prefetch(&raw const self.positions[i as usize]));
     }
 
     /// One triangle with all that its vertices carry.

@@ -13,7 +13,7 @@
 
 #![allow(unsafe_code)]
 
-use crate::simd::{Lanes, Vector};
+use lanes::{F32x1, Vector};
 use math::{Ray, Vec2, Vec3, difference_of_products, gamma};
 
 /// Edge functions below this may owe their sign to underflow.
@@ -99,10 +99,9 @@ impl Sheared {
     /// corners 1 and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
-        // SAFETY: every processor has single floats.
-        let lane = unsafe { self.lanes::<1, Lanes<1>>() };
-        let found =
-            LaneHits::of(corners.map(|corner| lane.shear(|axis| Lanes([corner[axis]]))), Lanes([t_max]))?;
+        // SAFETY: every processor computes with single floats.
+        let (lane, float) = unsafe { (self.lanes::<1, F32x1>(), |x: f32| F32x1::splat(x)) };
+        let found = LaneHits::of(corners.map(|corner| lane.shear(|axis| float(corner[axis]))), float(t_max))?;
         if found.doubts != 0 {
             return self.decide(corners).filter(|hit| hit.0 < t_max);
         }

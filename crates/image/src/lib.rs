@@ -18,7 +18,10 @@ mod pyramid;
 mod resample;
 mod wrap;
 
-pub use codec::{Format, ReadOptions, SampleDepth, WriteOptions, encode, read, replace_file, write};
+pub use codec::{
+    Format, ImageInfo, LayerInfo, ReadOptions, Sample, SampleDepth, WriteOptions, encode, info, link_target,
+    read, replace_file, replace_file_with, write,
+};
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};

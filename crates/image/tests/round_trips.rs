@@ -201,6 +201,22 @@ fn a_failed_write_leaves_the_old_file() {
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
 }
 
+#[cfg(unix)]
+#[test]
+fn symbolic_links_are_followed_and_stay() {
+    let folder = Folder::new("link");
+    fs::create_dir(folder.0.join("target")).unwrap();
+    let [link, second, file] = ["link.exr", "second.exr", "target/file.exr"].map(|name| folder.0.join(name));
+    std::os::unix::fs::symlink("target/file.exr", &link).unwrap();
+    std::os::unix::fs::symlink(&link, &second).unwrap();
+    for path in [&link, &second] {
+        write(&gradient(3), path, &WriteOptions::default()).unwrap();
+        assert!(fs::symlink_metadata(path).unwrap().is_symlink());
+        assert_eq!(fs::read(path).unwrap(), fs::read(&file).unwrap());
+        fs::remove_file(&file).unwrap();
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_named() {

@@ -113,6 +113,26 @@ fn seeds_and_pixels_differ() {
 }
 
 #[test]
+fn positions_in_a_pixel_of_different_seeds_are_uncorrelated() {
+    for ((name, mut a), (_, mut b)) in random_samplers(SPP, 1).into_iter().zip(random_samplers(SPP, 2)) {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for pixel in (0..16).flat_map(|y| (0..16).map(move |x| [x, y])) {
+            for index in 0..SPP {
+                let [p, q] = [&mut a, &mut b].map(|sampler| {
+                    sampler.start_pixel_sample(pixel, index, 0);
+                    sampler.get_pixel_2d().as_dvec2() - 0.5
+                });
+                sum += p.dot(q);
+                count += 2.0;
+            }
+        }
+        // A product of two uniform deviations has the variance 1/144.
+        let correlation = 12.0 * sum / count;
+        assert!(correlation.abs() < 5.0 / f64::sqrt(count), "{name}: {correlation}");
+    }
+}
+
+#[test]
 fn counts_are_those_asked_for_or_rounded_up() {
     for (name, sampler) in random_samplers(12, 0) {
         let rounds_up = name.starts_with("sobol") || name.starts_with("zsobol");

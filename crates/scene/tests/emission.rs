@@ -20,7 +20,7 @@ fn all_lights() -> Vec<Case> {
 
 fn emit(case: &Case, random: &mut Random) -> Option<LightLeSample> {
     let [u, v] = [(); 2].map(|()| random.get_2d().into());
-    case.light().sample_le(u, v, 0.25, &lambda(), case.scene.textures())
+    case.light().sample_le(u, v, 0.25, &lambda())
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn directions_have_their_density() {
         // Around the normal they are the same everywhere.
         let direction = |u: [f32; 2]| {
             let place = random.get_2d().into();
-            let sample = light.sample_le(place, u.into(), 0.0, &lambda(), case.scene.textures())?;
+            let sample = light.sample_le(place, u.into(), 0.0, &lambda())?;
             Some(Frame::from_z(sample.n).to_local(sample.ray.d).to_array())
         };
         let chi2 = Chi2 { samples: 50_000, tests: cases.len(), ..Chi2::default() };
@@ -98,11 +98,10 @@ fn directions_have_their_density() {
 #[test]
 fn directions_of_spots_have_their_density() {
     for case in &delta_lights()[1..3] {
-        let Light::Spot(light) = case.light() else { unreachable!() };
+        let Light::Spot(light) = case.light().row() else { unreachable!() };
         let frame = Frame::from_z(light.axis);
         let direction = |u: [f32; 2]| {
-            let sample =
-                case.light().sample_le(Vec2::ZERO, u.into(), 0.0, &lambda(), case.scene.textures())?;
+            let sample = case.light().sample_le(Vec2::ZERO, u.into(), 0.0, &lambda())?;
             let w = frame.to_local(sample.ray.d);
             Some([w.z, w.y.atan2(w.x).rem_euclid(TAU)])
         };
@@ -170,8 +169,7 @@ fn light_from_far_away_falls_evenly_on_the_disk_around_the_scene() {
         let (sphere, mut random) = (case.scene.sphere(), Random::new(i as u64));
         let position = |u: [f32; 2]| {
             let direction = random.get_2d().into();
-            let sample =
-                case.light().sample_le(u.into(), direction, 0.0, &lambda(), case.scene.textures())?;
+            let sample = case.light().sample_le(u.into(), direction, 0.0, &lambda())?;
             let o = Frame::from_z(-sample.ray.d).to_local(sample.ray.o - sphere.center) / sphere.radius;
             assert!((o.z - 1.0).abs() < 1e-4, "{}: rays start beyond the sphere", case.name);
             let radius = o.truncate().length();

@@ -100,6 +100,33 @@ impl Filter {
         })
     }
 
+    /// Its kind and parameters as film files have them: both radii, then those that its kind has,
+    /// then zeros.
+    pub(crate) fn to_numbers(&self) -> (u8, [f32; 4]) {
+        let Vec2 { x, y } = self.radius();
+        match self {
+            Self::Box(_) => (0, [x, y, 0.0, 0.0]),
+            Self::Triangle(_) => (1, [x, y, 0.0, 0.0]),
+            Self::Gaussian(filter, _) => (2, [x, y, filter.sigma, 0.0]),
+            Self::Mitchell(filter, _) => (3, [x, y, filter.b, filter.c]),
+            Self::LanczosSinc(filter, _) => (4, [x, y, filter.tau, 0.0]),
+        }
+    }
+
+    /// The filter of this kind and these parameters, if there is one.
+    pub(crate) fn from_numbers(kind: u8, [x, y, first, second]: [f32; 4]) -> Option<Self> {
+        let radius = [x, y];
+        let desc = match kind {
+            0 => FilterDesc::Box { radius },
+            1 => FilterDesc::Triangle { radius },
+            2 => FilterDesc::Gaussian { radius, sigma: first },
+            3 => FilterDesc::Mitchell { radius, b: first, c: second },
+            4 => FilterDesc::LanczosSinc { radius, tau: first },
+            _ => return None,
+        };
+        Self::new(&desc).ok()
+    }
+
     /// Half width and half height in pixels.
     pub fn radius(&self) -> Vec2 {
         match self {

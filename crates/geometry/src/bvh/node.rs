@@ -12,7 +12,7 @@
 
 #![allow(unsafe_code)]
 
-use crate::simd::Vector;
+use lanes::Vector;
 use math::{Bounds3, Ray, Vec3, gamma};
 
 /// Children of a node, and rays that pass together.
@@ -257,8 +257,8 @@ impl WideNode {
                 let last_plane =
                     V::splat(*self.planes.get_unchecked(2 * axis + 3 - first).get_unchecked(lane));
                 [
-                    first_plane.mul_sub_loosely(rays.inverse[axis], rays.near[axis]),
-                    last_plane.mul_sub_loosely(rays.inverse[axis], rays.far[axis]),
+                    first_plane.relaxed_mul_sub(rays.inverse[axis], rays.near[axis]),
+                    last_plane.relaxed_mul_sub(rays.inverse[axis], rays.far[axis]),
                 ]
             };
             near = enter.max(near);
@@ -285,11 +285,11 @@ impl WideNode {
             };
             // Should one of two be no number, then the second is.
             let enter = first_plane
-                .mul_sub_loosely(least.inverse[axis], least.near[axis])
-                .min(first_plane.mul_sub_loosely(greatest.inverse[axis], greatest.near[axis]));
+                .relaxed_mul_sub(least.inverse[axis], least.near[axis])
+                .min(first_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.near[axis]));
             let leave = last_plane
-                .mul_sub_loosely(least.inverse[axis], least.far[axis])
-                .max(last_plane.mul_sub_loosely(greatest.inverse[axis], greatest.far[axis]));
+                .relaxed_mul_sub(least.inverse[axis], least.far[axis])
+                .max(last_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.far[axis]));
             near = enter.max(near);
             far = leave.min(far);
         }
@@ -310,8 +310,8 @@ impl WideNode {
                 let first_plane = V::load(self.planes.get_unchecked(first));
                 let last_plane = V::load(self.planes.get_unchecked(2 * axis + 3 - first));
                 [
-                    first_plane.mul_sub_loosely(ray.inverse[axis], ray.near[axis]),
-                    last_plane.mul_sub_loosely(ray.inverse[axis], ray.far[axis]),
+                    first_plane.relaxed_mul_sub(ray.inverse[axis], ray.near[axis]),
+                    last_plane.relaxed_mul_sub(ray.inverse[axis], ray.far[axis]),
                 ]
             };
             near = enter.max(near);

@@ -11,7 +11,7 @@
 
 use super::node::{Beam, Child, Slabs, WIDTH, WideNode};
 use super::{Bvh, MAX_DEPTH};
-use crate::simd::{Simd, Vector};
+use lanes::{Simd, Vector, prefetch};
 use math::Ray;
 use std::mem::MaybeUninit;
 use std::ops::Range;
@@ -118,7 +118,7 @@ impl Bvh {
         // `Child::leaf` for nodes and blocks that there are, and the tree is not deeper than what
         // the stack was measured for: `Bvh::build` saw to both.
         unsafe {
-            let slabs = Slabs::<S::Sixteen>::new(ray, &self.bounds);
+            let slabs = Slabs::<S::F32x16>::new(ray, &self.bounds);
             let nodes = self.nodes.as_ptr();
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
@@ -129,7 +129,7 @@ impl Bvh {
                 while !next.is_leaf() {
                     let node = &*nodes.add(next.index());
                     extents += node.len() as u64;
-                    let ahead = |child| self.prefetch::<S, _>(leaves.blocks(), child);
+                    let ahead = |child| self.prefetch(leaves.blocks(), child);
                     next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, ahead);
                 }
                 if next == Waiting::END.child() {
@@ -164,8 +164,8 @@ impl Bvh {
         }
         // SAFETY: as in `traverse`.
         unsafe {
-            let beam = Beam::<S::Sixteen>::new(rays, &self.bounds);
-            let zero = S::Sixteen::splat(0.0);
+            let beam = Beam::<S::F32x16>::new(rays, &self.bounds);
+            let zero = S::F32x16::splat(0.0);
             let mut furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
             let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<Waiting>();
@@ -181,8 +181,8 @@ impl Bvh {
                     furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
                 } else {
                     let node = self.nodes.get_unchecked(child.index());
-                    let ends = S::Sixteen::load(t_max);
-                    let (near, mut entered) = node.intersect_beam(&beam, S::Sixteen::splat(furthest), zero);
+                    let ends = S::F32x16::load(t_max);
+                    let (near, mut entered) = node.intersect_beam(&beam, S::F32x16::splat(furthest), zero);
                     extents += node.len() as u64;
                     let near = near.store();
                     let floor = top;
@@ -193,7 +193,7 @@ impl Bvh {
                         extents += WIDTH as u64;
                         if hits != 0 {
                             let child = *node.children().get_unchecked(lane);
-                            self.prefetch::<S, _>(blocks, child);
+                            self.prefetch(blocks, child);
                             sink(&mut top, floor, Together::new(*near.get_unchecked(lane), hits, child).0);
                         }
                     }
@@ -209,12 +209,12 @@ impl Bvh {
 
     /// Asks for a node or a block.
     #[inline(always)]
-    fn prefetch<S: Simd, B>(&self, blocks: &[B], child: Child) {
+    fn prefetch<B>(&self, blocks: &[B], child: Child) {
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
         let block = blocks.as_ptr().wrapping_add(child.blocks().start).cast::<u8>();
         let at = if child.is_leaf() { block } else { node };
         for line in 0..Self::AHEAD {
-            S::prefetch(at.wrapping_add(64 * line));
+            prefetch(at.wrapping_add(64 * line));
         }
     }
 }
@@ -223,7 +223,7 @@ impl Bvh {
 #[inline(always)]
 unsafe fn descend<S: Simd, const ANY: bool>(
     node: &WideNode,
-    slabs: &Slabs<S::Sixteen>,
+    slabs: &Slabs<S::F32x16>,
     t_max: f32,
     top: &mut *mut Waiting,
     ahead: impl Fn(Child),
@@ -231,7 +231,7 @@ unsafe fn descend<S: Simd, const ANY: bool>(
     // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the
     // tree.
     unsafe {
-        let (near, hits) = node.intersect(slabs, S::Sixteen::splat(t_max), S::Sixteen::splat(0.0));
+        let (near, hits) = node.intersect(slabs, S::F32x16::splat(t_max), S::F32x16::splat(0.0));
         if hits == 0 {
             pop(top, t_max)
         } else if ANY {
@@ -300,7 +300,7 @@ unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahe
 #[inline(always)]
 unsafe fn choose_nearest<S: Simd>(
     node: &WideNode,
-    near: S::Sixteen,
+    near: S::F32x16,
     mut hits: u32,
     top: &mut *mut Waiting,
     ahead: impl Fn(Child),

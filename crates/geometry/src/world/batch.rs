@@ -17,8 +17,8 @@ use super::packet::Packet;
 use super::query::{Any, Nearest, Query};
 use super::{Hit, InstancePath, RayStats, World};
 use crate::bvh::{Leaves, WIDTH};
-use crate::simd::{Simd, Task, Vector};
 use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
+use lanes::{Simd, Task, Vector};
 use math::Ray;
 use std::ops::Range;
 
@@ -94,8 +94,8 @@ impl<'a, Q: Query, F: Fn(&'a (Ray, f32)) -> Q> Task for Batch<'a, '_, Q, F> {
         if let Some(order) = order(rays) {
             for (turn, &i) in order.iter().enumerate() {
                 if let Some(&ahead) = order.get(turn + AHEAD) {
-                    prefetch::<S, _>(&rays[ahead]);
-                    prefetch::<S, _>(&answers[ahead]);
+                    prefetch(&rays[ahead]);
+                    prefetch(&answers[ahead]);
                 }
                 answers[i] = world.trace(&rays[i].0, question(&rays[i]), stats);
             }
@@ -122,12 +122,12 @@ impl<'a, Q: Query, F: Fn(&'a (Ray, f32)) -> Q> Task for Batch<'a, '_, Q, F> {
     }
 }
 
-/// Asks for something of less than two lines of the cache.
+/// Prefetches a value that spans at most two cache lines.
 #[inline(always)]
-fn prefetch<S: Simd, T>(what: &T) {
-    let first = (&raw const *what).cast::<u8>();
-    S::prefetch(first);
-    S::prefetch(first.wrapping_add(size_of::<T>() - 1));
+fn prefetch<T>(value: &T) {
+    let first = (&raw const *value).cast::<u8>();
+    lanes::prefetch(first);
+    lanes::prefetch(first.wrapping_add(size_of::<T>() - 1));
 }
 
 /// How far apart the directions of rays side by side may be, in parts of their length.
@@ -174,7 +174,7 @@ impl<'a> SideBySide<'a> {
         let mut primitives = 0;
         // SAFETY: the caller promises the instructions.
         unsafe {
-            let lanes: ShearedLanes<S::Sixteen> = Sheared::each(&self.sheared);
+            let lanes: ShearedLanes<S::F32x16> = Sheared::each(&self.sheared);
             let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]| {
                 if entering.count_ones() <= Self::FEW {
                     let mut entering = entering;
@@ -188,7 +188,7 @@ impl<'a> SideBySide<'a> {
                             group,
                             instance: InstancePath::TOP,
                             sheared: &self.sheared[i],
-                            lanes: &self.sheared[i].lanes::<{ Packet::VERTICES }, S::Eight>(),
+                            lanes: &self.sheared[i].lanes::<{ Packet::VERTICES }, S::F32x8>(),
                             query: &mut queries[i],
                             primitives: 0,
                         };
@@ -202,7 +202,7 @@ impl<'a> SideBySide<'a> {
                 for packet in &group.packets()[blocks] {
                     for lane in 0..packet.len() {
                         primitives += WIDTH as u64;
-                        let found = packet.intersect_rays(lane, &lanes, S::Sixteen::load(t_max));
+                        let found = packet.intersect_rays(lane, &lanes, S::F32x16::load(t_max));
                         if let Some(found) = found {
                             self.offer(group, packet, lane, &found, queries, t_max);
                         }

@@ -3,7 +3,7 @@
 use super::group::Group;
 use super::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, Placed, World};
 use crate::bvh::BuildQuality;
-use crate::simd::InstructionSet;
+use lanes::InstructionSet;
 use rayon::prelude::*;
 
 /// A world in the making.

@@ -9,8 +9,8 @@ use super::query::Query;
 use super::spheres::Spheres;
 use super::{Geometry, GeometryId, Hit, InstanceId, InstancePath, Placed, RayStats, World};
 use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
-use crate::simd::{Simd, Task};
 use crate::watertight::{Sheared, ShearedLanes};
+use lanes::{Simd, Task};
 use math::{Bounds3, Ray, gamma};
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -235,7 +235,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
         let sheared = Sheared::new(trace.ray);
         // SAFETY: the caller promises the instructions.
         unsafe {
-            let lanes = sheared.lanes::<{ Packet::VERTICES }, S::Eight>();
+            let lanes = sheared.lanes::<{ Packet::VERTICES }, S::F32x8>();
             let mut t_max = query.t_max();
             let mut leaves = Triangles::<S, Q> {
                 group,
@@ -257,7 +257,7 @@ pub(super) struct Triangles<'a, S: Simd, Q> {
     pub group: &'a Group,
     pub instance: InstancePath,
     pub sheared: &'a Sheared,
-    pub lanes: &'a ShearedLanes<S::Eight>,
+    pub lanes: &'a ShearedLanes<S::F32x8>,
     pub query: &'a mut Q,
     /// How many were tested.
     pub primitives: u64,

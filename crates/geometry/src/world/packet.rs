@@ -9,8 +9,8 @@ use super::numbers::Numbers;
 use super::{Geometry, Hit, InstancePath};
 use crate::TriangleMesh;
 use crate::bvh::{Extent, Primitives, Reference};
-use crate::simd::{Simd, Vector, first_equal};
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
+use lanes::{Simd, Vector, first_equal};
 use math::{Bounds3, Vec2, Vec3};
 
 /// Triangles of one geometry or of many: two lines of the cache.
@@ -78,18 +78,18 @@ impl Packet {
     #[inline(always)]
     pub fn intersect<S: Simd>(
         &self,
-        ray: &ShearedLanes<S::Eight>,
+        ray: &ShearedLanes<S::F32x8>,
         t_max: f32,
     ) -> Option<LaneHits<{ Self::WIDTH }>> {
         // SAFETY: axes are below 3, and whoever has `ray` has the instructions.
         let (vertices, t_max) = unsafe {
-            let coordinate = |axis: usize| S::Eight::load(self.vertices.get_unchecked(axis));
-            (ray.shear(coordinate), S::Four::splat(t_max))
+            let coordinate = |axis: usize| S::F32x8::load(self.vertices.get_unchecked(axis));
+            (ray.shear(coordinate), S::F32x4::splat(t_max))
         };
         let corners = [
-            vertices.map(|v| S::pick::<0>(v, &self.corners)),
-            vertices.map(|v| S::pick::<1>(v, &self.corners)),
-            vertices.map(|v| S::pick::<2>(v, &self.corners)),
+            vertices.map(|v| S::permute::<0>(v, &self.corners)),
+            vertices.map(|v| S::permute::<1>(v, &self.corners)),
+            vertices.map(|v| S::permute::<2>(v, &self.corners)),
         ];
         LaneHits::of(corners, t_max)
     }

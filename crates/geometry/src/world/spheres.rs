@@ -12,8 +12,8 @@ use super::group::{Trace, visit};
 use super::query::Query;
 use super::{Geometry, GeometryId, Hit};
 use crate::bvh::{BuildQuality, Bvh, Extent, Leaves, Primitives, Reference};
-use crate::simd::{Simd, Task, Vector};
 use crate::sphere_set::SphereSet;
+use lanes::{Simd, Task, Vector};
 use math::{Bounds3, MACHINE_EPSILON, Ray, Vec2, Vec3};
 use std::ops::Range;
 
@@ -110,7 +110,7 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
         let mut t_max = query.t_max();
         // SAFETY: the caller promises the instructions.
         unsafe {
-            let lanes = UnitRay::<S::Eight>::new(trace.ray);
+            let lanes = UnitRay::<S::F32x8>::new(trace.ray);
             let mut leaves = Tests { packets: &spheres.packets, trace, lanes, query, primitives: 0 };
             let all = trace.all(spheres.packets.len());
             let (extents, stop) = visit::<S, Q>(&spheres.tree, all, trace.ray, &mut t_max, &mut leaves);

@@ -84,19 +84,19 @@ impl Halton {
 
     pub(super) fn get_1d(&mut self) -> f32 {
         let dimension = self.next_dimension(1);
-        self.coordinate(dimension)
+        self.coordinate(dimension, self.index)
     }
 
     pub(super) fn get_2d(&mut self) -> Vec2 {
         let dimension = self.next_dimension(2);
-        Vec2::new(self.coordinate(dimension), self.coordinate(dimension + 1))
+        Vec2::new(self.coordinate(dimension, self.index), self.coordinate(dimension + 1, self.index))
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
-        Vec2::new(
-            radical_inverse(0, self.index >> self.exponents[0]),
-            radical_inverse(1, self.index / self.scales[1]),
-        )
+        // The low digits are the pixel; the others, which are the position in it, are randomised
+        // like those of any dimension, or pictures of different seeds would have samples in common.
+        let position = |axis: usize| self.coordinate(axis, self.index / self.scales[axis]);
+        Vec2::new(position(0), position(1))
     }
 
     /// Takes dimensions, from the third again when all are used.
@@ -109,15 +109,15 @@ impl Halton {
         dimension
     }
 
-    fn coordinate(&self, dimension: usize) -> f32 {
+    fn coordinate(&self, dimension: usize, index: u64) -> f32 {
         match self.randomize {
-            Randomize::None => radical_inverse(dimension, self.index),
+            Randomize::None => radical_inverse(dimension, index),
             Randomize::PermuteDigits => self.permutations[dimension]
                 .get_or_init(|| DigitPermutations::new(dimension, self.seed))
-                .radical_inverse(self.index),
+                .radical_inverse(index),
             Randomize::FastOwen | Randomize::Owen => {
                 let hash = mix_bits((1 + ((dimension as u64) << 4)) ^ ((self.seed as u64) << 32));
-                owen_scrambled_radical_inverse(dimension, self.index, hash as u32)
+                owen_scrambled_radical_inverse(dimension, index, hash as u32)
             }
         }
     }

@@ -49,7 +49,12 @@ impl Randomize {
     /// A Sobol' coordinate made random by `seed`.
     #[inline]
     fn sobol(self, index: u64, dimension: usize, seed: u32) -> f32 {
-        let bits = sobol_bits(index, dimension);
+        self.bits(sobol_bits(index, dimension), seed)
+    }
+
+    /// A binary fraction of 32 bits, made random by `seed`.
+    #[inline]
+    fn bits(self, bits: u32, seed: u32) -> f32 {
         unit_interval(match self {
             Randomize::None => bits,
             Randomize::PermuteDigits => bits ^ seed,

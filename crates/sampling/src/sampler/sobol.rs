@@ -7,8 +7,8 @@
 //! sequence goes on.
 
 use super::Randomize;
+use crate::hash;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_bits};
-use crate::{hash, unit_interval};
 use math::Vec2;
 use std::sync::Arc;
 
@@ -72,9 +72,13 @@ impl Sobol {
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
-        // The upper bits are the pixel, the rest is the place in it.
-        let within = |dimension| unit_interval(sobol_bits(self.index, dimension) << self.log2_side);
-        Vec2::new(within(0), within(1))
+        // The upper bits are the pixel; the rest, which is the position in it, is randomised like
+        // any dimension, or pictures of different seeds would have samples in common.
+        let position = |dimension| {
+            let bits = sobol_bits(self.index, dimension) << self.log2_side;
+            self.randomize.bits(bits, self.seed_of(dimension))
+        };
+        Vec2::new(position(0), position(1))
     }
 
     /// Takes dimensions, from the third again when all are used.
@@ -88,8 +92,11 @@ impl Sobol {
     }
 
     fn coordinate(&self, dimension: usize) -> f32 {
-        let seed = hash(&[dimension as u32, self.seed]) as u32;
-        self.randomize.sobol(self.index, dimension, seed)
+        self.randomize.bits(sobol_bits(self.index, dimension), self.seed_of(dimension))
+    }
+
+    fn seed_of(&self, dimension: usize) -> u32 {
+        hash(&[dimension as u32, self.seed]) as u32
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use alhazen_scene::Scene;
-use alhazen_scene::light::{Light, LightSampleContext};
+use alhazen_scene::light::{LightId, LightRef, LightSampleContext};
 use description::{
     AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
     TransformDesc,
@@ -16,8 +16,8 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn light(&self) -> &Light {
-        &self.scene.lights()[0]
+    pub fn light(&self) -> LightRef<'_> {
+        self.scene.light(LightId(0))
     }
 }
 

@@ -4,7 +4,7 @@
 
 pub mod lights;
 
-use alhazen_scene::light::{Light, LightLiSample, LightSampleContext};
+use alhazen_scene::light::{LightLiSample, LightRef, LightSampleContext};
 use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction, View, world_from_render};
 use description::{ImageDesc, MeshDesc, PatchMeshDesc, SceneDesc, ShapeKind};
 use image::Image;
@@ -57,14 +57,12 @@ pub fn arriving(scene: &Scene, from: &LightSampleContext, w: Vector3) -> f64 {
 /// A sample of a light, unless something stands before it.
 pub fn seen_sample(
     scene: &Scene,
-    light: &Light,
+    light: LightRef,
     from: &LightSampleContext,
     u: [f32; 2],
     allow_incomplete: bool,
 ) -> Option<LightLiSample> {
-    let id = scene.lights().iter().position(|l| std::ptr::eq(l, light)).expect("a light of the scene");
-    let id = alhazen_scene::light::LightId(id as u32);
-    let sample = scene.sample_light(id, from, u.into(), &lambda(), allow_incomplete)?;
+    let sample = scene.sample_light(light.id(), from, u.into(), &lambda(), allow_incomplete)?;
     let hidden = sample.p.is_some_and(|p| {
         let ray = Ray::between(from.p, from.n, p, sample.n, from.time);
         scene.occluded(&ray, Ray::SHADOW_END, Interfaces::Stop, &mut RayStats::default())

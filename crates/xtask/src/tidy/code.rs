@@ -22,7 +22,7 @@ const NOWHERE: [(&str, &str); 5] = [
 /// Where unsafe code may stand: vectors and what rays do with them, and what loads another library
 /// to compare with.
 const UNSAFE: [&str; 5] = [
-    "crates/geometry/src/simd/",
+    "crates/lanes/",
     "crates/geometry/src/bvh/",
     "crates/geometry/src/watertight.rs",
     "crates/geometry/src/world/",
@@ -141,7 +141,7 @@ mod tests {
             assert_eq!(found("crates/math/tests/a.rs", code), 1, "{code}");
         }
         assert_eq!(found("crates/math/tests/a.rs", "#[ignore = \"slow: an hour\"]"), 0);
-        assert_eq!(found("crates/geometry/src/simd/a.rs", "unsafe { a() }"), 0);
+        assert_eq!(found("crates/lanes/src/a.rs", "unsafe { a() }"), 0);
         assert_eq!(found("crates/geometry/src/shape/a.rs", "unsafe { a() }"), 1);
     }
 

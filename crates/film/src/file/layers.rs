@@ -1,0 +1,112 @@
+//! A film's sums in a film file.
+
+use super::FilmFileError;
+use super::section::Fields;
+use crate::{Film, MAX_REJECTED_PIXELS, TILE_SIZE};
+
+/// Appends what a film counts as a whole: paths of splats and refused samples.
+pub fn put_totals(payload: &mut Vec<u8>, film: &Film) {
+    payload.extend(film.path_count().to_le_bytes());
+    let rejected = film.rejected();
+    payload.extend(rejected.count.to_le_bytes());
+    payload.push(rejected.pixels().count() as u8);
+    payload.extend(rejected.pixels().flatten().flat_map(i32::to_le_bytes));
+}
+
+/// Adds what [`put_totals`] has written.
+pub fn add_totals(fields: &mut Fields, film: &mut Film) -> Result<(), FilmFileError> {
+    film.add_path_count(fields.u64()?);
+    let (count, pixels) = (fields.u64()?, fields.u8()?);
+    if usize::from(pixels) > MAX_REJECTED_PIXELS || u64::from(pixels) > count {
+        return Err(fields.wrong(&format!("it remembers {pixels} of {count} refused samples")));
+    }
+    let mut remembered = Vec::new();
+    for _ in 0..pixels {
+        remembered.push([fields.i32()?, fields.i32()?]);
+    }
+    film.add_rejected(count, remembered);
+    Ok(())
+}
+
+/// Appends the sums of a row of tiles: tile by tile, component by component, each as a block.
+pub fn put_row(payload: &mut Vec<u8>, film: &Film, row: usize) {
+    for tile in film.tiles_of_row(row) {
+        for component in 0..film.component_count() {
+            put_block(payload, &film.sums(tile, component));
+        }
+    }
+}
+
+/// Adds what [`put_row`] has written.
+pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), FilmFileError> {
+    for tile in film.tiles_of_row(row) {
+        for component in 0..film.component_count() {
+            let sums = block(fields, film.tile_area(tile))?;
+            film.add_sums(tile, component, &sums).map_err(|problem| fields.wrong(&problem))?;
+        }
+    }
+    Ok(())
+}
+
+/// The most bytes that a row of tiles takes.
+pub fn max_row_bytes(film: &Film) -> u64 {
+    let tile = 1 + 16 * TILE_SIZE as u64 * TILE_SIZE as u64;
+    film.tiles_of_row(0).len() as u64 * film.component_count() as u64 * tile
+}
+
+/// Appends whole numbers, each in as many bytes as the longest of them needs, with that length
+/// before them.
+fn put_block(payload: &mut Vec<u8>, values: &[i128]) {
+    let length = values.iter().map(|&value| byte_length(value)).max().unwrap_or(0);
+    payload.push(length as u8);
+    values.iter().for_each(|value| payload.extend(&value.to_le_bytes()[..length]));
+}
+
+/// The bytes that a number in two's complement needs; none for 0.
+fn byte_length(value: i128) -> usize {
+    let magnitude = if value < 0 { !value } else { value };
+    let bits = i128::BITS - magnitude.leading_zeros();
+    if value == 0 { 0 } else { (bits as usize + 1).div_ceil(8) }
+}
+
+/// Reads a block of so many numbers.
+fn block(fields: &mut Fields, count: usize) -> Result<Vec<i128>, FilmFileError> {
+    let length = usize::from(fields.u8()?);
+    if length > 16 {
+        return Err(fields.wrong(&format!("a number of {length} bytes")));
+    }
+    if length == 0 {
+        return Ok(vec![0; count]);
+    }
+    let numbers = fields.bytes(length * count)?.chunks_exact(length).map(|bytes| {
+        let sign = if bytes[length - 1] & 0x80 != 0 { 0xff } else { 0 };
+        i128::from_le_bytes(std::array::from_fn(|index| bytes.get(index).copied().unwrap_or(sign)))
+    });
+    Ok(numbers.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::section::Section;
+    use super::*;
+
+    #[test]
+    fn numbers_of_any_length_survive() {
+        for values in [
+            vec![],
+            vec![0; 5],
+            vec![127, -128, 0],
+            vec![128, -129],
+            vec![-1; 3],
+            vec![i128::MAX, i128::MIN, 1 << 96],
+        ] {
+            let mut payload = Vec::new();
+            put_block(&mut payload, &values);
+            let section = Section { tag: *b"ROWS", payload };
+            let mut fields = section.fields();
+            assert_eq!(block(&mut fields, values.len()).unwrap(), values);
+            fields.finish().unwrap();
+        }
+        assert_eq!([0, 1, -1, 127, 128, -128, -129].map(byte_length), [0, 1, 1, 1, 2, 1, 2]);
+    }
+}

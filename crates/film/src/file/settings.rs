@@ -1,0 +1,83 @@
+//! A film's settings in a film file.
+
+use math::Bounds2i;
+use spectrum::{Matrix3, RgbColorSpace};
+
+use super::FilmFileError;
+use super::ReadLimits;
+use super::section::{Fields, put_text};
+use crate::{Film, FilmSettings, Filter, PixelSensor};
+
+/// Appends the settings of a film, and the names of its layers.
+pub fn put(payload: &mut Vec<u8>, film: &Film) {
+    let settings = film.settings();
+    let Bounds2i { min, max } = settings.pixel_bounds;
+    let corners = [settings.full_resolution, min, max];
+    payload.extend(corners.into_iter().flatten().flat_map(i32::to_le_bytes));
+    payload.extend(settings.diagonal.to_le_bytes());
+    let (kind, parameters) = settings.filter.to_numbers();
+    payload.push(kind);
+    payload.extend(parameters.into_iter().flat_map(f32::to_le_bytes));
+    let (scale, Matrix3(matrix)) = (settings.sensor.scale(), settings.sensor.xyz_from_sensor_rgb());
+    payload.extend(scale.to_le_bytes());
+    payload.extend(matrix.into_iter().flatten().flat_map(f64::to_le_bytes));
+    payload.extend(settings.max_component_value.to_le_bytes());
+    put_text(payload, settings.color_space.name());
+    payload.push(settings.half_floats.into());
+    let layers = film.layer_names();
+    payload.push(layers.len() as u8);
+    layers.iter().for_each(|name| put_text(payload, name));
+}
+
+/// Reads what [`put`] has written, and makes a film of it without light.
+pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFileError> {
+    let mut corner = || Ok::<_, FilmFileError>([fields.i32()?, fields.i32()?]);
+    let (full_resolution, min, max) = (corner()?, corner()?, corner()?);
+    // Sizes that are no sizes would overflow below.
+    let inside = |axis: usize| 0 <= min[axis] && min[axis] < max[axis] && max[axis] <= full_resolution[axis];
+    if !(inside(0) && inside(1)) {
+        return Err(fields.wrong(&format!("pixels {min:?} to {max:?} of {full_resolution:?}")));
+    }
+    let diagonal = fields.f32()?;
+    let kind = fields.u8()?;
+    let parameters = [fields.f32()?, fields.f32()?, fields.f32()?, fields.f32()?];
+    let filter = Filter::from_numbers(kind, parameters).ok_or_else(|| fields.wrong("an unknown filter"))?;
+    let scale = fields.f32()?;
+    let mut matrix = [[0.0; 3]; 3];
+    for value in matrix.iter_mut().flatten() {
+        *value = fields.f64()?;
+    }
+    let sensor = PixelSensor::new(scale, Matrix3(matrix));
+    let max_component_value = fields.array().map(f32::from_le_bytes)?;
+    let color_space = fields.text()?;
+    let color_space = RgbColorSpace::named(color_space)
+        .ok_or_else(|| fields.wrong(&format!("an unknown colour space `{color_space}`")))?;
+    let half_floats = fields.u8()? != 0;
+    let settings = FilmSettings {
+        full_resolution,
+        pixel_bounds: Bounds2i { min, max },
+        diagonal,
+        filter,
+        sensor,
+        max_component_value,
+        color_space,
+        half_floats,
+    };
+    let mut layers = Vec::new();
+    for _ in 0..fields.u8()? {
+        layers.push(fields.text()?);
+    }
+    let bytes = Film::bytes_of(&settings, &layers).map_err(|problem| fields.wrong(&problem))?;
+    limits.take(bytes, "a film")?;
+    Film::with_layers(settings, &layers).map_err(|error| FilmFileError::Limits(error.to_string()))
+}
+
+/// Reads what [`put`] has written, and refuses settings that are not those of this film.
+pub fn check(fields: &mut Fields, film: &Film) -> Result<(), FilmFileError> {
+    let mut own = Vec::new();
+    put(&mut own, film);
+    if fields.bytes(own.len()).is_ok_and(|other| other == own) {
+        return Ok(());
+    }
+    Err(FilmFileError::Mismatch("the settings of the films differ".into()))
+}

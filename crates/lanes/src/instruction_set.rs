@@ -1,0 +1,72 @@
+//! Instruction sets as values: which the processor has, and how to run with one of them.
+
+#[cfg(target_arch = "aarch64")]
+use crate::neon;
+use crate::scalar;
+use crate::simd::Task;
+#[cfg(target_arch = "x86_64")]
+use crate::{avx2, avx512, sse2};
+
+/// An instruction set. All give the same results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum InstructionSet {
+    /// One float at a time: every processor.
+    Scalar,
+    /// Four floats at once: every x86-64 processor.
+    Sse2,
+    /// Eight floats at once, with fused multiply-add: x86-64 since 2013.
+    Avx2,
+    /// Sixteen floats at once: x86-64 with AVX-512.
+    Avx512,
+    /// Four floats at once: every 64-bit Arm processor.
+    Neon,
+}
+
+impl InstructionSet {
+    /// All there are, the best first.
+    pub const ALL: [Self; 5] = [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Scalar];
+
+    /// The best one that this processor has.
+    pub fn detect() -> Self {
+        Self::ALL.into_iter().find(|set| set.is_available()).unwrap_or(Self::Scalar)
+    }
+
+    /// Whether this processor has it.
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Scalar => scalar::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Sse2 => sse2::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => avx2::is_available(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => avx512::is_available(),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => neon::is_available(),
+            #[allow(unreachable_patterns)]
+            _ => false,
+        }
+    }
+
+    /// Runs a task with it.
+    ///
+    /// # Safety
+    /// The processor must have it.
+    #[inline(always)]
+    pub unsafe fn run<T: Task>(self, task: T) -> T::Output {
+        // SAFETY: as the caller promises.
+        unsafe {
+            match self {
+                #[cfg(target_arch = "x86_64")]
+                Self::Avx512 => avx512::run(task),
+                #[cfg(target_arch = "x86_64")]
+                Self::Avx2 => avx2::run(task),
+                #[cfg(target_arch = "x86_64")]
+                Self::Sse2 => sse2::run(task),
+                #[cfg(target_arch = "aarch64")]
+                Self::Neon => neon::run(task),
+                _ => scalar::run(task),
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! One float at a time: the fallback of every architecture, and the reference for other sets.
+
+use crate::pair::Pair;
+
+type F32x2 = Pair<F32x1>;
+type F32x4 = Pair<F32x2>;
+
+instruction_set! {
+    Scalar, is_detected [];
+    F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
+}
+
+vector! {
+    /// A single float, which every processor computes with.
+    F32x1(f32): Vector<1>;
+    splat(x) = x;
+    load(from) = from.read();
+    store(to, a) = to.write(a);
+    add(a, b) = a + b;
+    sub(a, b) = a - b;
+    mul(a, b) = a * b;
+    div(a, b) = a / b;
+    abs(a) = a.abs();
+    min(a, b) = if a < b { a } else { b };
+    max(a, b) = if a > b { a } else { b };
+    mul_add(a, b, c) = a.mul_add(b, c);
+    neg_mul_add(a, b, c) = (-a).mul_add(b, c);
+    mul_sub(a, b, c) = a.mul_add(b, -c);
+    relaxed_mul_sub(a, b, c) = a * b - c;
+    -> u32:
+    le(a, b) = (a <= b) as u32;
+    lt(a, b) = (a < b) as u32;
+}
