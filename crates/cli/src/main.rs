@@ -15,6 +15,7 @@ mod output;
 mod render;
 mod scene;
 mod summary;
+mod threads;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;

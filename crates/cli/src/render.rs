@@ -19,6 +19,7 @@ use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
 use crate::output;
 use crate::summary::{Seconds, Summary, peak_memory};
+use crate::threads::start_threads;
 
 /// Renders a scene and tells what came of it.
 pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
@@ -148,15 +149,6 @@ fn write_early(picture: &Image, outputs: &[PathBuf]) {
     for path in outputs {
         let _ = write_picture(picture, path);
     }
-}
-
-/// Makes the threads that everything runs on.
-pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = threads {
-        builder = builder.num_threads(threads.into());
-    }
-    builder.build_global().map_err(|error| Failure::Input(format!("cannot start threads: {error}")))
 }
 
 /// The failure that a wrong scene is.

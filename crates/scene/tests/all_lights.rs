@@ -4,7 +4,7 @@
 mod common;
 
 use alhazen_scene::Interfaces;
-use alhazen_scene::light::LightSampleContext;
+use alhazen_scene::light::{LightId, LightSampleContext};
 use common::lights::*;
 use common::*;
 use description::{SceneDesc, ShapeDesc, ShapeKind, TransformDesc};

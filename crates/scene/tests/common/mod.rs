@@ -30,8 +30,11 @@ pub fn lambda() -> SampledWavelengths {
     SampledWavelengths::sample_visible(0.3)
 }
 
+/// The shutter time of rays and points, while what moves is on its way.
+pub const TIME: f32 = 0.25;
+
 pub fn ray(o: Point3, d: Vector3) -> Ray {
-    Ray::new(o, d, 0.0)
+    Ray::new(o, d, TIME)
 }
 
 /// The nearest surface along a ray.
@@ -41,7 +44,7 @@ pub fn hit(scene: &Scene, ray: &Ray) -> Option<SurfaceInteraction> {
 
 /// A point that light may reach; without a surface if `n` is zero.
 pub fn context(p: Point3, n: Normal3) -> LightSampleContext {
-    LightSampleContext { p: Point3Error::exact(p), n, ns: n, time: 0.0 }
+    LightSampleContext { p: Point3Error::exact(p), n, ns: n, time: TIME }
 }
 
 /// The radiance that arrives from `w`, whatever it comes from, at the first wavelength.
