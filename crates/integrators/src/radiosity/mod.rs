@@ -51,16 +51,17 @@ mod domain;
 mod element;
 mod form_factor;
 mod hemicube;
+mod light_samples;
 mod mesh;
 mod ply;
 mod primitives;
+mod settings;
 mod shooting;
 mod show;
 mod subdivide;
+mod surfaces;
 #[cfg(test)]
 mod tests;
-
-use std::path::PathBuf;
 
 use film::{Film, FilmTile};
 use geometry::RayStats;
@@ -71,67 +72,14 @@ use scene::light_sampler::{LightSampler, LightSamplerKind};
 use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
+use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
+pub use settings::{FormFactors, RadiositySettings};
 use shooting::Solution;
-use show::{Interpolation, Look};
-
-/// How form factors are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FormFactors {
-    /// By the closed form for polygons, with rays for what lies between.
-    Analytic,
-    /// By a hemicube.
-    Hemicube {
-        /// Pixels along an edge.
-        resolution: u32,
-    },
-}
-
-/// Settings of [`Radiosity`]; see there for units and defaults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RadiositySettings {
-    /// Most scattering events.
-    pub max_depth: u32,
-    /// How form factors are found.
-    pub form_factors: FormFactors,
-    /// Longest side of a patch, in scene units; a tenth of the scene's radius if `None`.
-    pub patch_size: Option<f32>,
-    /// How often an element may be quartered.
-    pub subdivision: u32,
-    /// The change of light across an element, in parts of what is there, above which it is
-    /// quartered.
-    pub gradient: f32,
-    /// Most elements.
-    pub max_patches: u32,
-    /// Share of light that need not be sent.
-    pub tolerance: f32,
-    /// Passes in which light is sent, one at least.
-    pub steps: u32,
-    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
-    pub gather: u32,
-    /// File for the elements with their radiosity as vertex colours.
-    pub mesh_out: Option<PathBuf>,
-}
-
-impl Default for RadiositySettings {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            form_factors: FormFactors::Analytic,
-            patch_size: None,
-            subdivision: 3,
-            gradient: 0.1,
-            max_patches: 50_000,
-            tolerance: 0.002,
-            steps: 8,
-            gather: 0,
-            mesh_out: None,
-        }
-    }
-}
+use show::{Interpolation, Shown};
 
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
@@ -235,8 +183,7 @@ impl Integrator for Radiosity {
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
-        let look =
-            Look { interpolation: &state.interpolation, view, solution: &state.solution, scene, control };
+        let shown = Shown { interpolation: &state.interpolation, solution: &state.solution };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
@@ -246,12 +193,14 @@ impl Integrator for Radiosity {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
                     let mut l = Bands::ZERO;
                     if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
-                        l = look.radiance(ray, &mut sampler, &mut stats)? * weight;
+                        let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
+                        l = shown.radiance(&mut tracer, ray) * weight;
+                        tracer.finish()?;
                     }
                     tile.add_groups(
                         [x, y],
                         l.groups(),
-                        look.solution.wavelengths.groups(),
+                        shown.solution.wavelengths.groups(),
                         sample.filter_weight,
                     );
                 }

@@ -6,6 +6,7 @@ mod agreement;
 mod ambient_occlusion;
 mod border;
 mod build;
+mod cancellation;
 mod direct_light;
 mod furnace;
 mod merging;
