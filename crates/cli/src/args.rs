@@ -9,15 +9,16 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Renders scenes by following light.
 #[derive(Debug, Parser)]
-#[command(name = "alhazen", version, subcommand_required = true, after_help = EXIT_CODES)]
+#[command(name = "alhazen", version = env!("ALHAZEN_VERSION"), subcommand_required = true)]
+#[command(after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
 }
 
-const EXIT_CODES: &str =
-    "Exit codes: 0 done, 1 the input is wrong, 2 the command line is wrong, 130 interrupted.";
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
+     wrong, 130 interrupted.";
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -38,20 +39,26 @@ pub enum Command {
     /// Look at scene files.
     #[command(subcommand)]
     Scene(Scene),
-    /// Compare and convert pictures.
+    /// Inspect, compare and convert pictures.
     #[command(subcommand)]
     Image(Image),
+    /// Write a script that completes commands and options in a shell.
+    Completions(Completions),
+    /// Write the manual as man pages.
+    Man(Man),
 }
 
 impl Command {
-    /// Whether the result, and errors too, are to be one JSON object on standard output.
+    /// Whether the result, and errors too, are one JSON object on standard output.
     pub fn json(&self) -> bool {
         match self {
             Self::Render(render) => render.json,
             Self::Compare(compare) => compare.json,
             Self::Scene(Scene::Check(check)) => check.json,
+            Self::Image(Image::Info(info)) => info.json,
             Self::Image(Image::Diff(diff)) => diff.json,
             Self::Image(Image::Convert(convert)) => convert.json,
+            Self::Completions(_) | Self::Man(_) => false,
         }
     }
 }
@@ -77,8 +84,8 @@ pub struct Render {
     /// Other changes to the scene.
     #[command(flatten)]
     pub changes: Changes,
-    /// Say nothing but errors.
-    #[arg(long, conflicts_with = "json")]
+    /// Print nothing but errors; with --json, the JSON object too.
+    #[arg(long)]
     pub quiet: bool,
     /// Write one JSON object to standard output instead of text, errors too.
     #[arg(long)]
@@ -176,8 +183,8 @@ pub struct Compare {
     /// Changes to the scene, for all.
     #[command(flatten)]
     pub changes: Changes,
-    /// Say nothing but errors.
-    #[arg(long, conflicts_with = "json")]
+    /// Print nothing but errors; with --json, the JSON object too.
+    #[arg(long)]
     pub quiet: bool,
     /// Write the report's numbers to standard output, as one JSON object instead of text, errors
     /// too.
@@ -207,6 +214,8 @@ pub struct Check {
 /// Commands about pictures.
 #[derive(Debug, Subcommand)]
 pub enum Image {
+    /// Show what a picture file holds: size, layers, channels, storage and header.
+    Info(Info),
     /// Tell how far a picture is from a reference: MSE, relative MSE, FLIP.
     ///
     /// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² +
@@ -215,6 +224,21 @@ pub enum Image {
     Diff(Diff),
     /// Write a picture in another format: that of the new name's extension.
     Convert(Convert),
+}
+
+/// Options of `alhazen image info`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Info {
+    /// The picture: EXR, PNG, JPEG, HDR, TGA, PFM, BMP, QOI or TIFF.
+    pub file: PathBuf,
+    /// Print the linear values of all channels at this pixel instead: its column and row in the
+    /// whole frame, counted from 0 at the upper left.
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub pixel: Option<[i32; 2]>,
+    /// Write one JSON object to standard output instead of text.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `alhazen image diff`.
@@ -276,6 +300,22 @@ pub enum Depth {
     F16,
     /// Single floats.
     F32,
+}
+
+/// Arguments of `alhazen completions`.
+#[derive(Args, Debug)]
+pub struct Completions {
+    /// The shell that the script is for.
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+/// Arguments of `alhazen man`.
+#[derive(Args, Debug)]
+pub struct Man {
+    /// Write alhazen.1 and a page for each command into this folder, which is made if it does not
+    /// exist. [default: alhazen.1 alone, to standard output]
+    pub folder: Option<PathBuf>,
 }
 
 fn render_long_help() -> String {

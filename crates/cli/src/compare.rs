@@ -66,7 +66,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     };
     interrupt.begin_rendering();
     if talkative {
-        diagnostics::print(&imported.diagnostics, &imported.sources);
+        diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
 
     let mut bar: Option<Arc<Bar>> = None;
@@ -85,9 +85,9 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     let Ok(mut comparison) = outcome else {
         let message = "interrupted before anything could be compared; there is no report";
         if arguments.json {
-            say(serde_json::json!({ "status": "interrupted" }))
+            say(serde_json::json!({ "status": "interrupted" }))?;
         } else {
-            warn(message)
+            warn(message)?;
         }
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
@@ -99,11 +99,11 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     if arguments.json {
         json["outputs"] =
             [&report.page, &report.numbers].map(|path| path.display().to_string()).as_slice().into();
-        say(json);
+        say(json)?;
     } else if talkative {
-        say(summary(&comparison, &report));
+        say(summary(&comparison, &report))?;
     } else if interrupted {
-        warn("interrupted; the report is of what had been done");
+        warn("interrupted; the report is of what had been done")?;
     }
     Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }

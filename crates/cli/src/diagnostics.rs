@@ -9,7 +9,7 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use serde_json::{Value, json};
 
-use crate::console::warn;
+use crate::console::{Undelivered, warn};
 
 /// Most bytes of a line that are shown after what a message is about.
 const MARGIN: usize = 200;
@@ -19,15 +19,13 @@ const MARGIN: usize = 200;
 const LONGEST_START: usize = 10_000;
 
 /// Writes diagnostics and their number to standard error.
-pub fn print(diagnostics: &[Diagnostic], sources: &SourceMap) {
+pub fn print(diagnostics: &[Diagnostic], sources: &SourceMap) -> Result<(), Undelivered> {
     let renderer = renderer(std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none());
     for diagnostic in diagnostics {
-        warn(format_args!("{}\n", render(diagnostic, sources, &renderer)));
+        warn(format_args!("{}\n", render(diagnostic, sources, &renderer)))?;
     }
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
-    if let Some(summary) = summary(errors, diagnostics.len() - errors) {
-        warn(summary);
-    }
+    summary(errors, diagnostics.len() - errors).map_or(Ok(()), warn)
 }
 
 /// "2 errors and 1 warning"; `None` where there is nothing.

@@ -62,7 +62,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     };
     interrupt.begin_rendering();
     if talkative {
-        diagnostics::print(&imported.diagnostics, &imported.sources);
+        diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
     let compiled_at = Instant::now();
 
@@ -118,11 +118,11 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     };
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
-        say(summary.to_json(warnings));
+        say(summary.to_json(warnings))?;
     } else if talkative {
-        say(&summary);
+        say(&summary)?;
     } else if let Some(interruption) = summary.interruption() {
-        warn(interruption);
+        warn(interruption)?;
     }
     Ok(if summary.interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }

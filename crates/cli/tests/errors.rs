@@ -42,7 +42,7 @@ fn a_wrong_formula_is_shown_with_a_caret_in_it() {
 fn scene_check_tells_without_rendering() {
     let folder = Folder::with_scene("check");
     let right = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(0);
-    assert_eq!((right.out.as_str(), right.err.as_str()), ("scene.pbrt is right\n", ""));
+    assert_eq!((right.out.as_str(), right.err.as_str()), ("scene.pbrt is valid\n", ""));
     folder.write(
         "sensor.pbrt",
         &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),

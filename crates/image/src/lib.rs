@@ -19,7 +19,8 @@ mod resample;
 mod wrap;
 
 pub use codec::{
-    Format, ReadOptions, SampleDepth, WriteOptions, encode, read, replace_file, replace_file_with, write,
+    Format, ImageInfo, LayerInfo, ReadOptions, Sample, SampleDepth, WriteOptions, encode, info, link_target,
+    read, replace_file, replace_file_with, write,
 };
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
