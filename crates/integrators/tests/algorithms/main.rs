@@ -11,5 +11,6 @@ mod furnace;
 mod merging;
 mod mlt;
 mod photon_mapping;
-mod render_loop;
+
+mod session;
 mod support;
