@@ -175,7 +175,8 @@ pub struct Changes {
     /// [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(0..))]
     pub seed: Option<i32>,
-    /// Threads to render with; their number never changes the picture. [default: all cores]
+    /// Threads to render with; their number never changes the picture. At most 256, or 4 for each
+    /// core of a machine with more than 64. [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
 }

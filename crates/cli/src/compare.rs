@@ -14,12 +14,13 @@ use crate::args::Compare;
 use crate::bar::Bar;
 use crate::console::{say, warn};
 use crate::diagnostics;
-use crate::drive::{scene_failure, start_threads};
+use crate::drive::scene_failure;
 use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
 use crate::numbers::count;
 use crate::output;
 use crate::results::named_after;
+use crate::threads::start_threads;
 
 /// Renders a scene by several algorithms and writes the report.
 pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
@@ -89,7 +90,8 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         }
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
-    comparison.warnings = imported.diagnostics.iter().map(|warning| warning.message.clone()).collect();
+    comparison.warnings =
+        diagnostics::shown(&imported.diagnostics).into_iter().map(|warning| warning.message).collect();
     let mut json = comparison.to_json();
     json["warnings"] = diagnostics::to_json(&imported.diagnostics, &imported.sources).1;
     report.write(&comparison, &json)?;

@@ -220,15 +220,6 @@ impl<'a> Preview<'a> {
     }
 }
 
-/// Makes the threads that everything runs on.
-pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = threads {
-        builder = builder.num_threads(threads.into());
-    }
-    builder.build_global().map_err(|error| Failure::Input(format!("cannot start threads: {error}")))
-}
-
 /// The failure that a wrong scene is.
 pub fn scene_failure(imported: Imported) -> Failure {
     Failure::Scene { diagnostics: imported.diagnostics, sources: imported.sources }

@@ -20,6 +20,7 @@ mod results;
 mod resume;
 mod scene;
 mod summary;
+mod threads;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;

@@ -10,11 +10,12 @@ use alhazen::{Fingerprint, Job, RenderOrder, Shard};
 
 use crate::args::Render;
 use crate::checkpoint::Checkpoint;
-use crate::drive::{Prepared, Task, Verbosity, start_threads};
+use crate::drive::{Prepared, Task, Verbosity};
 use crate::failure::{Failure, about_file};
 use crate::interrupt::Interrupt;
 use crate::output;
 use crate::results::named_after;
+use crate::threads::start_threads;
 
 /// Renders a scene and reports what came of it.
 pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {

@@ -11,11 +11,12 @@ use clap::Args;
 
 use crate::args::{EXIT_CODES, RenderLimits, time};
 use crate::checkpoint::{self, Checkpoint};
-use crate::drive::{Prepared, Task, Verbosity, start_threads};
+use crate::drive::{Prepared, Task, Verbosity};
 use crate::failure::{Failure, about_file};
 use crate::interrupt::Interrupt;
 use crate::output;
 use crate::results::named_after;
+use crate::threads::start_threads;
 
 /// Options of `alhazen resume`.
 #[derive(Args, Debug)]

@@ -147,6 +147,7 @@ fn a_wrong_command_line_is_told() {
             "cannot set techniques to `true`: pictures of all strategies take 2.3 GiB, more than 2 GiB",
         ),
         (&["render", "scene.pbrt", "--pixel", "24,0"], "not in the image of 24 × 16 pixels"),
+        (&["render", "scene.pbrt", "--threads", "60000"], "cannot start 60000 threads: this machine has"),
         (&["render", "scene.pbrt", "--resolution", "12"], "640x480"),
         (&["paint", "scene.pbrt"], "paint"),
     ] {

@@ -38,7 +38,7 @@ pub use camera::{
     SphericalMapping,
 };
 pub use color::{ColorSpaceDesc, SpectrumDesc};
-pub use diagnostic::{Diagnostic, Severity};
+pub use diagnostic::{Diagnostic, DiagnosticList, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
 pub use integrator::{

@@ -109,7 +109,7 @@ fn spawned_rays_do_not_meet_a_placed_surface_again() {
         let triangle =
             mesh(vec![Vec3::ZERO, Vec3::X, Vec3::new(0.3, 1.0, 0.5)], vec![[0, 1, 2]], &Transform::IDENTITY);
         for geometry in [Geometry::from(shape), triangle.into()] {
-            let shape = geometry.shape(0).expect("a shape");
+            let shape = geometry.shape(0).expect("a shape").into_owned();
             let world = placed([geometry], m.into());
             for _ in 0..100 {
                 let target = m.point(shape.sample(uniform_2d(rng)).expect("a sample").p.p);

@@ -16,5 +16,5 @@ mod view;
 pub use compile::{Compiled, compile};
 pub use geometry::RayStats;
 pub use interaction::{Footprint, SurfaceInteraction};
-pub use scene::{GeometryEntry, Interfaces, Scene};
+pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
 pub use view::{CompiledView, View, ViewOptions, samples_per_pixel, world_from_render};

@@ -1,7 +1,10 @@
 //! The compiled world: what rays meet, what it is made of, and what shines.
 
 use crate::interaction::{Footprint, SurfaceInteraction};
-use crate::light::{Light, LightId, LightLeSample, LightLiSample, LightSampleContext, SceneSphere};
+use crate::light::{
+    AreaEmission, LightId, LightLeSample, LightLiSample, LightRef, LightSampleContext, LightTable, Lights,
+    SceneSphere,
+};
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
@@ -19,8 +22,18 @@ pub struct GeometryEntry {
     pub material: MaterialId,
     /// Where it is there, unless everywhere.
     pub alpha: Option<FloatTextureId>,
-    /// The light of its first primitive, if it emits; those of the others follow.
-    pub first_light: Option<LightId>,
+    /// The light of its first primitive, if it emits; those of the others follow. Counted from the
+    /// first light of the group that it stands in: the id is the sum with the
+    /// [`InstanceEntry::first_light`] of all instances through which it is seen.
+    pub first_light: Option<u32>,
+}
+
+/// What belongs to one instance of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct InstanceEntry {
+    /// The first light of what it shows, counted from the first light of the group that it stands
+    /// in.
+    pub first_light: u32,
 }
 
 /// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass
@@ -38,7 +51,7 @@ impl Interfaces {
     /// What they do to the light of `light` where media are not known. The path tracer of the
     /// pbrt-v4 format, which draws them as surfaces that a path goes through, finds lights behind
     /// them by chance alone: so delta lights throw their shadow, and others do not.
-    pub fn before(light: &Light) -> Self {
+    pub fn before(light: LightRef) -> Self {
         if light.is_delta() { Self::Stop } else { Self::Pass }
     }
 }
@@ -52,8 +65,8 @@ pub struct Scene {
     pub(crate) entries: Vec<GeometryEntry>,
     pub(crate) materials: Materials,
     pub(crate) textures: Textures,
-    pub(crate) lights: Vec<Light>,
-    pub(crate) infinite_lights: Vec<LightId>,
+    pub(crate) instances: Vec<InstanceEntry>,
+    pub(crate) lights: LightTable,
     pub(crate) has_filtered_textures: bool,
 }
 
@@ -70,25 +83,41 @@ impl Scene {
         self.has_filtered_textures && !view.options.disable_texture_filtering
     }
 
-    /// The lights; their ids are their indices.
-    pub fn lights(&self) -> &[Light] {
-        &self.lights
+    /// What belongs to the geometries of the world, by [`GeometryId`].
+    pub fn geometries(&self) -> &[GeometryEntry] {
+        &self.entries
+    }
+
+    /// What belongs to the instances of the world, by [`InstanceId`](geometry::InstanceId).
+    pub fn instances(&self) -> &[InstanceEntry] {
+        &self.instances
+    }
+
+    /// What area lights emit, by [`EmissionId`](crate::light::EmissionId).
+    pub fn emissions(&self) -> &[AreaEmission] {
+        self.lights.emissions()
+    }
+
+    /// The lights.
+    #[inline]
+    pub fn lights(&self) -> Lights<'_> {
+        Lights { table: &self.lights, world: &self.world, textures: &self.textures }
     }
 
     /// The light of an id.
     #[inline]
-    pub fn light(&self, id: LightId) -> &Light {
-        &self.lights[id.0 as usize]
+    pub fn light(&self, id: LightId) -> LightRef<'_> {
+        self.lights().get(id)
     }
 
     /// The lights that rays leaving the scene meet.
     pub fn infinite_lights(&self) -> &[LightId] {
-        &self.infinite_lights
+        self.lights.infinite()
     }
 
     /// A way of choosing among the lights.
     pub fn light_sampler(&self, kind: LightSamplerKind) -> LightSampler {
-        LightSampler::new(kind, &self.lights)
+        LightSampler::new(kind, self.lights())
     }
 
     /// The geometry, for what wants to look at it without materials.
@@ -128,7 +157,11 @@ impl Scene {
         SurfaceInteraction {
             surface,
             material: entry.material,
-            area_light: entry.first_light.map(|first| LightId(first.0 + hit.primitive)),
+            area_light: entry.first_light.map(|first| {
+                let instances = hit.instance.ids().iter().map(|id| self.instances[id.0 as usize]);
+                let offset: u32 = instances.map(|instance| instance.first_light).sum();
+                LightId(offset + first + hit.primitive)
+            }),
             footprint: Footprint::default(),
         }
     }
@@ -204,7 +237,7 @@ impl Scene {
 
     /// Radiance that arrives along a ray which leaves the scene.
     pub fn escaped(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.infinite_lights
+        self.infinite_lights()
             .iter()
             .fold(SampledSpectrum::ZERO, |sum, &id| sum + self.light(id).le(ray, lambda))
     }
@@ -221,7 +254,7 @@ impl Scene {
         })
     }
 
-    /// [`Light::sample_li`] of one of this scene's lights.
+    /// [`LightRef::sample_li`] of one of this scene's lights.
     pub fn sample_light(
         &self,
         light: LightId,
@@ -230,11 +263,11 @@ impl Scene {
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
+        self.light(light).sample_li(context, u, lambda, allow_incomplete)
     }
 
-    /// [`Light::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere
-    /// around all that has an end; what has none may keep it from there: `None` if it does.
+    /// [`LightRef::sample_le`] of one of this scene's lights. Light from infinity starts at the
+    /// sphere around all that has an end; what has none may keep it from there: `None` if it does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -245,7 +278,7 @@ impl Scene {
         stats: &mut RayStats,
     ) -> Option<LightLeSample> {
         let light = self.light(light);
-        let sample = light.sample_le(u_position, u_direction, time, lambda, &self.textures)?;
+        let sample = light.sample_le(u_position, u_direction, time, lambda)?;
         if sample.p.is_none() && self.world.is_endless() {
             let way_back = Ray { d: -sample.ray.d, ..sample.ray };
             if self.occluded(&way_back, f32::INFINITY, Interfaces::before(light), stats) {

@@ -4,7 +4,7 @@
 mod common;
 
 use alhazen_scene::Interfaces;
-use alhazen_scene::light::LightSampleContext;
+use alhazen_scene::light::{LightId, LightSampleContext};
 use common::lights::*;
 use common::*;
 use description::{SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
@@ -220,7 +220,7 @@ fn an_image_lies_upright_on_its_surface() {
     }
     let scene = scene(&desc);
     let at = |u, v| {
-        let radiance = scene.lights()[0].radiance(Vec3::Z, Vec2::new(u, v), Vec3::Z, &lambda());
+        let radiance = scene.light(LightId(0)).radiance(Vec3::Z, Vec2::new(u, v), Vec3::Z, &lambda());
         radiance.max_component()
     };
     assert!(at(0.1, 0.1) > 0.0);
@@ -238,7 +238,7 @@ fn a_light_that_is_cut_out_shines_by_its_alpha() {
         (0..count)
             .map(|_| {
                 let u = random.get_2d();
-                let sample = case.light().sample_li(&from, u.into(), &lambda(), false, case.scene.textures());
+                let sample = case.light().sample_li(&from, u.into(), &lambda(), false);
                 sample.map_or(0.0, |s| f64::from(s.l[0] / s.pdf))
             })
             .collect::<Moments>()
@@ -248,7 +248,7 @@ fn a_light_that_is_cut_out_shines_by_its_alpha() {
     assert!((part.mean / whole.mean - 0.3).abs() < 0.03, "{} {}", part.mean, whole.mean);
     // Entirely cut out, it is invisible, but shines.
     let invisible = scene(&alpha(0.0));
-    assert!(invisible.lights()[0].is_delta());
+    assert!(invisible.light(LightId(0)).is_delta());
     assert!(hit(&invisible, &ray(from.p.p, -Vec3::Z)).is_none());
     welch_test(&irradiance(&alpha(0.0), 10_000), &whole, 1).unwrap();
 }

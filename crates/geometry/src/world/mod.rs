@@ -27,6 +27,7 @@ use group::{Group, Trace};
 use lanes::InstructionSet;
 use math::{AnimatedTransform, Bounds3, Ray, Vec2};
 use query::{Any, Nearest, Query};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 pub use builder::WorldBuilder;
@@ -115,13 +116,17 @@ impl Geometry {
         }
     }
 
-    /// One primitive as a shape of its own, as a light wants it; `None` of curves, which do not
-    /// emit.
-    pub fn shape(&self, primitive: u32) -> Option<Shape> {
+    /// Whether its primitives move by themselves.
+    pub fn is_moving(&self) -> bool {
+        matches!(self, Self::Shapes(shapes) if matches!(shapes.first(), Some(Shape::MovingTriangle(_))))
+    }
+
+    /// One primitive as a shape, as lights sample it; `None` of curves, which do not emit.
+    pub fn shape(&self, primitive: u32) -> Option<Cow<'_, Shape>> {
         match self {
-            Self::Mesh(mesh) => Some(Shape::Triangle(mesh.triangle(primitive as usize))),
-            Self::Shapes(shapes) => Some(shapes[primitive as usize].clone()),
-            Self::Spheres(set) => Some(set.sphere(primitive as usize).into()),
+            Self::Mesh(mesh) => Some(Cow::Owned(mesh.triangle(primitive as usize).into())),
+            Self::Shapes(shapes) => Some(Cow::Borrowed(&shapes[primitive as usize])),
+            Self::Spheres(set) => Some(Cow::Owned(set.sphere(primitive as usize).into())),
             Self::Curves(_) => None,
         }
     }

@@ -21,8 +21,11 @@ impl InstancePath {
         &self.0[..len]
     }
 
-    /// The way on, into an instance.
-    pub(super) fn into(mut self, id: InstanceId) -> Self {
+    /// The path on into an instance.
+    ///
+    /// # Panics
+    /// When the path has [`MOST`](Self::MOST) instances already.
+    pub fn into(mut self, id: InstanceId) -> Self {
         let len = self.ids().len();
         self.0[len] = id;
         self

@@ -42,7 +42,7 @@ impl Bidirectional<'_> {
         let source = self.scene.light(light);
         let (pdf_position, pdf_direction) = match place {
             Some((p, n)) => {
-                let (position, direction) = source.pdf_le(p, n, -wi);
+                let (position, direction) = source.pdf_le(p, n, -wi, context.time);
                 (if n == Normal3::ZERO { 1.0 } else { position }, direction)
             }
             None => {

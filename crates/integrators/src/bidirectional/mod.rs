@@ -65,10 +65,7 @@ pub(crate) struct Lights {
 impl Lights {
     /// Those of no scene.
     pub fn none() -> Self {
-        Self {
-            seen_from: LightSampler::new(LightSamplerKind::Bvh, &[]),
-            emitting: PowerLightSampler::new(&[]),
-        }
+        Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default() }
     }
 
     pub fn of(scene: &Scene) -> Self {

@@ -115,7 +115,7 @@ impl Path<'_> {
             let pmf = paths.lights.seen_from.pmf(&context, light);
             return per_area(pmf * source.pdf_li(&context, wi, false), first.0, p, n);
         }
-        let (pdf_position, pdf_direction) = source.pdf_le(p, n, -wi);
+        let (pdf_position, pdf_direction) = source.pdf_le(p, n, -wi, context.time);
         let mut density = f64::from(paths.lights.emitting.pmf(light) * pdf_position)
             * per_area(pdf_direction, p, first.0, first.1);
         for index in 0..s - 2 {

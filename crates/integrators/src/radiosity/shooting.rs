@@ -227,7 +227,7 @@ impl Solution {
     ) -> Result<(), Cancelled> {
         let lights: Vec<LightId> = (0..scene.lights().len() as u32)
             .map(LightId)
-            .filter(|&id| !matches!(scene.light(id), Light::Area(_)) || scene.light(id).is_delta())
+            .filter(|&id| !matches!(scene.light(id).row(), Light::Area(_)) || scene.light(id).is_delta())
             .collect();
         if lights.is_empty() {
             return Ok(());
@@ -464,7 +464,7 @@ fn from_light(
     context: &LightSampleContext,
     stats: &mut RayStats,
 ) -> [Bands; 2] {
-    let strata = match scene.light(light) {
+    let strata = match scene.light(light).row() {
         Light::Point(_) | Light::Spot(_) | Light::Distant(_) => 1,
         Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) => LIGHT_STRATA,
     };

@@ -198,9 +198,9 @@ fn the_sky_is_an_emitter() {
     desc.shapes.push(ball.into());
     let scene = compile(&desc);
     let solution = solved(&scene, &RadiositySettings { subdivision: 0, ..settings(0.2) });
-    let sky = solution
-        .wavelengths
-        .sample(|lambda| scene.lights()[0].le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda));
+    let sky = solution.wavelengths.sample(|lambda| {
+        scene.light(scene::light::LightId(0)).le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda)
+    });
     let area: f32 = solution.cut.elements.iter().map(|element| element.area).sum();
     let mean: f32 = solution.cut.elements.iter().map(|e| e.irradiance()[0].mean() * e.area / area).sum();
     let expected = sky.mean() * std::f32::consts::PI;

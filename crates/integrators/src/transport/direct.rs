@@ -33,7 +33,7 @@ impl DirectLighting {
 
     /// By no lights.
     pub fn none() -> Self {
-        let lights = LightSampler::new(LightSamplerKind::Uniform, &[]);
+        let lights = LightSampler::default();
         Self { lights, interfaces: Interfaces::Stop }
     }
 

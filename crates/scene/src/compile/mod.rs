@@ -3,6 +3,7 @@
 //! All mistakes come out at once, with the spans of what is to blame; what can be described but not
 //! yet drawn is a warning that says what is drawn instead.
 
+mod area_lights;
 mod curves;
 mod emission;
 mod lights;
@@ -13,11 +14,12 @@ mod solids;
 mod spheres;
 mod tessellation;
 
-use crate::light::{AreaEmission, Light, LightId, SceneSphere};
+use crate::light::{AreaEmission, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
-use crate::scene::{GeometryEntry, Scene};
+use crate::scene::{GeometryEntry, InstanceEntry, Scene};
 use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
 use crate::view::world_from_render;
+use area_lights::Emitters;
 use description::{
     AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
 };
@@ -53,32 +55,31 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
             })
             .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
+        instances: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),
-        lights: Vec::new(),
+        emitters: vec![Emitters::default()],
     };
     compiler.materials();
     compiler.area_emissions();
     compiler.shapes();
     let world = std::mem::take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
-    compiler.lights(sphere);
-    let Compiler { diagnostics, textures, entries, materials, lights, .. } = compiler;
+    let lights = compiler.light_table(&world, sphere);
+    let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
-    let infinite_lights =
-        (0..).map(LightId).zip(&lights).filter(|(_, light)| light.is_infinite()).map(|(id, _)| id).collect();
     let has_filtered_textures = textures.are_filtered();
     let scene = Scene {
         world_from_render,
         world,
         sphere,
         entries,
+        instances,
         materials: Materials::new(materials),
         textures,
         lights,
-        infinite_lights,
         has_filtered_textures,
     };
     Ok(Compiled { scene, warnings: diagnostics })
@@ -93,8 +94,10 @@ struct Compiler<'a> {
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
+    instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
-    lights: Vec<Light>,
+    /// By group of the world.
+    emitters: Vec<Emitters>,
 }
 
 impl Compiler<'_> {

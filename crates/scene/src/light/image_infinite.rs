@@ -7,10 +7,10 @@
 //! ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the plain distribution, and
 //! start evenly on the disk that faces them and covers the scene.
 
-use super::{LightLeSample, LightLiSample, SceneSphere};
+use super::{LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
 use image::{Image, WrapMode};
 use math::{
-    Bounds2, Point2, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
+    Bounds2, Point2, Ray, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
 };
 use sampling::PiecewiseConstant2d;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
@@ -24,7 +24,7 @@ pub struct ImageInfiniteLight {
     image: Arc<Image>,
     color_space: &'static RgbColorSpace,
     scale: f32,
-    pub(super) scene: SceneSphere,
+    scene: SceneSphere,
     distribution: PiecewiseConstant2d,
     compensated: PiecewiseConstant2d,
 }
@@ -72,23 +72,7 @@ impl ImageInfiniteLight {
         )
     }
 
-    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let mut sum = SampledSpectrum::ZERO;
-        let (width, height) = (self.image.width(), self.image.height());
-        for y in 0..height {
-            for x in 0..width {
-                sum += self.spectrum(Rgb::from(self.image.rgb(x, y)).clamp_zero(), lambda);
-            }
-        }
-        sum * (4.0 * PI * PI * self.scene.radius * self.scene.radius / (width * height) as f32)
-    }
-
-    pub(super) fn le(&self, d: Vector3, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let w = self.render_from_light.inverse().vector(d).normalize();
-        self.lookup(equal_area_sphere_to_square(w), lambda)
-    }
-
-    pub(super) fn sample_li(
+    fn sample(
         &self,
         u: Point2,
         lambda: &SampledWavelengths,
@@ -108,14 +92,57 @@ impl ImageInfiniteLight {
         })
     }
 
-    pub(super) fn sample_le(
+    fn pdf(&self, wi: Vector3, allow_incomplete: bool) -> f32 {
+        let w = self.render_from_light.inverse().vector(wi).normalize();
+        self.distribution(allow_incomplete).pdf(equal_area_sphere_to_square(w)) / (4.0 * PI)
+    }
+}
+
+impl LightModel for ImageInfiniteLight {
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn is_infinite(&self) -> bool {
+        true
+    }
+
+    fn phi(&self, _part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
+        let mut sum = SampledSpectrum::ZERO;
+        let (width, height) = (self.image.width(), self.image.height());
+        for y in 0..height {
+            for x in 0..width {
+                sum += self.spectrum(Rgb::from(self.image.rgb(x, y)).clamp_zero(), lambda);
+            }
+        }
+        sum * (4.0 * PI * PI * self.scene.radius * self.scene.radius / (width * height) as f32)
+    }
+
+    fn le(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
+        let w = self.render_from_light.inverse().vector(ray.d).normalize();
+        self.lookup(equal_area_sphere_to_square(w), lambda)
+    }
+
+    fn sample_li(
         &self,
+        _part: &LightPart,
+        _context: &LightSampleContext,
+        u: Point2,
+        lambda: &SampledWavelengths,
+        allow_incomplete: bool,
+    ) -> Option<LightLiSample> {
+        self.sample(u, lambda, allow_incomplete)
+    }
+
+    fn sample_le(
+        &self,
+        _part: &LightPart,
         u_position: Point2,
         u_direction: Point2,
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
-        let LightLiSample { l, wi, pdf, n, .. } = self.sample_li(u_direction, lambda, false)?;
+        let LightLiSample { l, wi, pdf, n, .. } = self.sample(u_direction, lambda, false)?;
         Some(LightLeSample {
             l,
             ray: self.scene.ray_from(wi, u_position, time),
@@ -126,8 +153,17 @@ impl ImageInfiniteLight {
         })
     }
 
-    pub(super) fn pdf_li(&self, wi: Vector3, allow_incomplete: bool) -> f32 {
-        let w = self.render_from_light.inverse().vector(wi).normalize();
-        self.distribution(allow_incomplete).pdf(equal_area_sphere_to_square(w)) / (4.0 * PI)
+    fn pdf_li(
+        &self,
+        _part: &LightPart,
+        _context: &LightSampleContext,
+        wi: Vector3,
+        allow_incomplete: bool,
+    ) -> f32 {
+        self.pdf(wi, allow_incomplete)
+    }
+
+    fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
+        (self.scene.pdf_facing_disk(ray), self.pdf(ray.d, false))
     }
 }

@@ -2,10 +2,10 @@
 
 use super::*;
 use alhazen_scene::Scene;
-use alhazen_scene::light::{Light, LightSampleContext};
+use alhazen_scene::light::{LightId, LightRef, LightSampleContext};
 use description::{
-    AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
-    TransformDesc,
+    AreaLightDesc, InfiniteRadiance, InstanceDesc, LightDesc, LightKind, MeshKey, ObjectDesc, SceneDesc,
+    ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -16,8 +16,8 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn light(&self) -> &Light {
-        &self.scene.lights()[0]
+    pub fn light(&self) -> LightRef<'_> {
+        self.scene.light(LightId(0))
     }
 }
 
@@ -140,7 +140,51 @@ pub fn area_lights() -> Vec<Case> {
         ("bent patch", area(bent, both_sides)),
         ("disk, image", with_image(disk(0.0, 0.9))),
     ];
-    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+    cases
+        .into_iter()
+        .chain(placed_area_lights())
+        .map(|(name, desc)| Case { name, scene: scene(&desc) })
+        .collect()
+}
+
+/// Emitting shapes that are seen through instances, and that move.
+fn placed_area_lights() -> Vec<(&'static str, SceneDesc)> {
+    let stretch = DMat4::from_rotation_z(0.4) * DMat4::from_scale(DVec3::new(-0.8, 1.3, 1.1));
+    let turn = DMat4::from_translation(DVec3::new(0.2, -0.1, 0.1)) * DMat4::from_rotation_y(0.5);
+    let [stretch, turn] = [stretch, turn].map(TransformDesc::fixed);
+    let to = DMat4::from_translation(DVec3::new(0.3, 0.2, -0.2)) * DMat4::from_rotation_x(0.7);
+    let moving = TransformDesc { start: DMat4::IDENTITY, end: to, times: [-1.0, 1.0] };
+    let mut mesh = triangle();
+    if let ShapeKind::Triangles(mesh) = &mut mesh {
+        let positions: Arc<[Point3]> =
+            mesh.positions.iter().map(|p| *p + Vec3::new(0.3, -0.2, 0.4)).collect();
+        mesh.later.push(MeshKey { positions, ..MeshKey::default() });
+    }
+    vec![
+        ("stretched sphere", instanced(area(sphere(0.8), both_sides), &[stretch])),
+        ("disk in an object", instanced(area(disk(0.2, 0.9), one_side), &[turn, stretch])),
+        ("triangle in an object", instanced(area(triangle(), one_side), &[stretch, turn])),
+        ("patch in an object, image", instanced(with_image(rectangle([-1.0, -0.5], [0.8, 0.7])), &[stretch])),
+        ("moving disk", area(disk(0.2, 0.9), |_, shape| shape.world_from_object = moving)),
+        ("disk in a moving object", instanced(area(disk(0.2, 0.9), one_side), &[turn, moving])),
+        ("triangle with moving corners", area(mesh, both_sides)),
+    ]
+}
+
+/// Makes the shapes of a scene an object, placed by the last transform within that by the one before.
+fn instanced(mut desc: SceneDesc, transforms: &[TransformDesc]) -> SceneDesc {
+    let shapes = std::mem::take(&mut desc.shapes);
+    let mut object = ObjectDesc { shapes, ..ObjectDesc::default() };
+    for (i, &world_from_object) in transforms.iter().rev().enumerate() {
+        let object_handle = desc.objects.push(std::mem::take(&mut object));
+        let instance = InstanceDesc { object: object_handle, world_from_object };
+        if i + 1 < transforms.len() {
+            object.instances.push(instance);
+        } else {
+            desc.instances.push(instance);
+        }
+    }
+    desc
 }
 
 pub fn infinite_lights() -> Vec<Case> {

@@ -169,7 +169,7 @@ mod tests {
     /// What each subpath has left of `photons`, of which it has left one at most, over the power of
     /// the lights.
     fn shares<'a>((scene, _): &(Scene, View), photons: impl Iterator<Item = &'a Photon>) -> Moments {
-        let power = scene.lights()[0].phi(&SampledWavelengths::sample_visible(0.3))[0];
+        let power = scene.light(scene::light::LightId(0)).phi(&SampledWavelengths::sample_visible(0.3))[0];
         let mut shares: Vec<f64> = photons.map(|photon| f64::from(photon.beta[0] / power)).collect();
         shares.resize(PATHS as usize, 0.0);
         shares.into_iter().collect()
