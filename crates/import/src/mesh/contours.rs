@@ -1,11 +1,11 @@
 //! Triangulation of plane polygons with holes.
 //!
-//! Each hole is joined to the outer contour by a *bridge*, an edge that is traversed in both directions,
-//! so that one contour is left for the ear clipping of [`super::polygon`]. Holes are taken from the
-//! right to the left. Of each, the rightmost corner M is bridged: the ray from M to the right meets
-//! the contour first on some edge, whose right end V would be seen from M if no corner stood in the
-//! triangle between them; of the corners that do, the one nearest in angle to the ray is seen
-//! ([Eberly 2002]).
+//! Each hole is joined to the outer contour by a *bridge*, an edge that is traversed in both
+//! directions, so that one contour is left for the ear clipping of [`super::polygon`]. Holes are
+//! taken from the right to the left. Of each, the rightmost corner M is bridged: the ray from M to
+//! the right meets the contour first on some edge, whose right end V is visible from M if no corner
+//! is in the triangle between them; of the corners in it, the one nearest in angle to the ray is
+//! visible ([Eberly 2002]).
 //!
 //! Contours that touch or cross, or that are not nested as they should be, are refused first.
 

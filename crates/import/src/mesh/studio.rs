@@ -4,8 +4,8 @@
 //! The light is an environment of constant radiance with a large soft key light in it. The key
 //! light is as bright as makes the lit ground look exactly like the environment behind it: for a
 //! diffuse ground of reflectance ρ under an environment of radiance L, the key light's irradiance
-//! is E = π L (1/ρ − 1), as ρ (π L + E) / π = L. The ground's edge and the horizon are then not
-//! seen, and the shadow lies in an even grey.
+//! is E = π L (1/ρ − 1), as ρ (π L + E) / π = L. Neither the ground's edge nor a horizon is then
+//! visible, and the shadow lies in an even grey.
 
 use std::f32::consts::PI;
 use std::sync::Arc;
