@@ -21,8 +21,10 @@ pub struct Cli {
 }
 
 /// Ends the help of every command.
-pub const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
-     wrong, 130 interrupted.";
+pub const EXIT_CODES: &str = concat!(
+    "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, ",
+    "2 the command line is wrong, 130 interrupted."
+);
 
 /// The commands.
 #[derive(Debug, Subcommand)]
