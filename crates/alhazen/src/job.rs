@@ -9,7 +9,7 @@ use film::Film;
 use image::{Attribute, Image, ImageMetadata};
 use import::{AssetSource, Imported};
 use integrators::{ByProduct, Cancelled, Control, Integrator, RenderReport};
-use scene::Scene;
+use scene::{Scene, View};
 
 use crate::sketch::Sketch;
 use crate::{OverrideError, Overrides, integrator_name, sampler_name};
@@ -17,6 +17,7 @@ use crate::{OverrideError, Overrides, integrator_name, sampler_name};
 /// Everything that one render needs, and the film that holds what it has found so far.
 pub struct Job {
     scene: Scene,
+    view: View,
     film: Film,
     integrator: Box<dyn Integrator>,
     header: Header,
@@ -50,11 +51,13 @@ impl Job {
     /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with
     /// it.
     pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
-        let (scene, film, built) = match (scene::compile(desc), film::compile(desc), integrators::build(desc))
-        {
-            (Ok(scene), Ok(film), Ok(built)) => (scene, film, built),
-            (scene, film, built) => {
+        let view = View::compile(desc, scene::world_from_render(desc));
+        let compiled = (view, scene::compile(desc), film::compile(desc), integrators::build(desc));
+        let (view, scene, film, built) = match compiled {
+            (Ok(view), Ok(scene), Ok(film), Ok(built)) => (view, scene, film, built),
+            (view, scene, film, built) => {
                 let said = [
+                    view.map_or_else(|errors| errors, |view| view.warnings),
                     scene.map_or_else(|errors| errors, |scene| scene.warnings),
                     film.map_or_else(|errors| errors, |film| film.warnings),
                     built.map_or_else(|errors| errors, |built| built.warnings),
@@ -62,23 +65,23 @@ impl Job {
                 return Err(said.concat());
             }
         };
-        let warnings = [scene.warnings, film.warnings, built.warnings].concat();
-        let (scene, film, integrator) = (scene.scene, film.film, built.integrator);
+        let warnings = [view.warnings, scene.warnings, film.warnings, built.warnings].concat();
+        let (scene, view, film, integrator) = (scene.scene, view.view, film.film, built.integrator);
         let header = header(desc, integrator.samples_per_pixel());
         let sketch = Sketch::new(desc, &film);
-        Ok(CompiledJob { job: Self { scene, film, integrator, header, sketch }, warnings })
+        Ok(CompiledJob { job: Self { scene, view, film, integrator, header, sketch }, warnings })
     }
 
     /// A first look at the picture, before it is rendered and without any part in it: in pixels so
     /// large that a render takes many times as long, repeated to the size of the picture. `None`
     /// where the picture has so few pixels itself, or if it was cancelled.
-    pub fn sketch(&mut self, cancel: &Arc<AtomicBool>) -> Option<Image> {
-        self.sketch.as_ref()?.draw(&mut self.scene, &self.film, &self.header, cancel)
+    pub fn sketch(&self, cancel: &Arc<AtomicBool>) -> Option<Image> {
+        self.sketch.as_ref()?.draw(&self.scene, &self.view, &self.film, &self.header, cancel)
     }
 
     /// Renders all passes. Where the render is cancelled, the film has what was found until then.
     pub fn render(&mut self, control: &Control) -> Result<RenderReport, Cancelled> {
-        integrators::render(self.integrator.as_mut(), &self.scene, &mut self.film, control)
+        integrators::render(self.integrator.as_mut(), &self.scene, &self.view, &mut self.film, control)
     }
 
     /// The picture as it stands, with the scene's camera and settings in its header.

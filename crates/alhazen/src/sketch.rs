@@ -16,7 +16,7 @@ use film::Film;
 use image::{Image, Pixels, Window};
 use integrators::Control;
 use math::Bounds2i;
-use scene::Scene;
+use scene::{Scene, View};
 
 use crate::{Header, Overrides};
 
@@ -60,7 +60,8 @@ impl Sketch {
     /// Renders it as the picture of `film`; `None` if it was cancelled.
     pub fn draw(
         &self,
-        scene: &mut Scene,
+        scene: &Scene,
+        view: &View,
         film: &Film,
         header: &Header,
         cancel: &Arc<AtomicBool>,
@@ -68,11 +69,9 @@ impl Sketch {
         let mut integrator = integrators::build(&self.desc).ok()?.integrator;
         let mut small = film::compile(&self.desc).ok()?.film;
         let control = Control { cancel: Arc::clone(cancel), ..Control::default() };
-        let drawn = scene.with_coarser_pixels(self.n, |scene| {
-            integrator.prepare(scene);
-            integrator.pass(0, scene, &mut small, &control)
-        });
-        drawn.ok()?;
+        let view = View { samples_per_pixel: 1, ..view.coarser(self.n) };
+        integrator.prepare(scene, &view, &control).ok()?;
+        integrator.pass(0, scene, &view, &mut small, &control).ok()?;
         Some(enlarged(&header.picture(&small), self.n, film))
     }
 }

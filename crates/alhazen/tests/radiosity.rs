@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use alhazen::image::Image;
 use alhazen::import::{Files, import, read_ply};
 use alhazen::integrators::{ByProduct, Control};
+use alhazen::scene::View;
 use alhazen::{Job, Overrides};
 
 use common::{render_scene, render_text, rgb_values};
@@ -183,12 +184,13 @@ fn a_pass_depends_on_its_number_alone() {
     let mut desc = import(scene("radiosity-room.pbrt"), &Files).desc;
     overrides("radiosity", 16, 2, &settings).apply(&mut desc).unwrap();
     let scene = alhazen::scene::compile(&desc).unwrap().scene;
+    let view = View::compile(&desc, scene.world_from_render()).unwrap().view;
     let picture = |passes: &[u32]| {
         let mut integrator = alhazen::integrators::build(&desc).ok().unwrap().integrator;
         let mut film = alhazen::film::compile(&desc).unwrap().film;
-        integrator.prepare(&scene);
+        integrator.prepare(&scene, &view, &Control::default()).unwrap();
         for &pass in passes {
-            integrator.pass(pass, &scene, &mut film, &Control::default()).unwrap();
+            integrator.pass(pass, &scene, &view, &mut film, &Control::default()).unwrap();
         }
         film
     };

@@ -5,18 +5,18 @@ use std::path::PathBuf;
 use film::Film;
 use geometry::RayStats;
 use image::Image;
-use scene::Scene;
+use scene::{Scene, View};
 
 use crate::{Cancelled, Control};
 
 /// An algorithm of light transport, run by [`render`](crate::render()).
 ///
-/// What a pass finds depends on the scene, the settings, the seed and the pass's number alone: not
-/// on threads, nor on which passes came before it, if only their numbers were lower. It is added to
-/// the film; but a pass of an algorithm that gets ever nearer to one solution may put a new picture
-/// in the place of the old one ([`Radiosity`](crate::Radiosity)).
+/// The result of a pass depends on the scene, the view, the settings, the seed and the number of the
+/// pass alone: not on threads, nor on which passes were done before, as long as their numbers are
+/// lower. It is added to the film; but a pass of an algorithm that converges to one solution may
+/// replace the picture so far ([`Radiosity`](crate::Radiosity)).
 pub trait Integrator: Send {
-    /// How many passes make the picture.
+    /// How many passes the picture takes.
     fn passes(&self) -> u32;
 
     /// How many of these passes a pixel of the finished picture is the mean of.
@@ -24,36 +24,37 @@ pub trait Integrator: Send {
         self.passes()
     }
 
-    /// Looks at the scene; called once, before the first pass.
-    fn prepare(&mut self, scene: &Scene);
+    /// Builds what depends on the scene and the view; called once, before the first pass. `Err` if
+    /// it was cancelled: then it has to be called again before a pass.
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled>;
 
-    /// Does one pass, one sample per pixel, on the threads of rayon's current pool, and looks at
-    /// `control` at least once per tile of the film. A pass that was cancelled leaves some pixels
-    /// with a sample less, which their weights account for.
+    /// Does one pass, one sample per pixel, on the threads of rayon's current pool. A cancelled pass
+    /// ends within a few rays, and leaves some pixels with one sample less, for which their weights
+    /// account.
     fn pass(
         &mut self,
         pass: u32,
         scene: &Scene,
+        view: &View,
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled>;
 
-    /// What the passes so far have made beside the picture.
+    /// What the passes so far have produced beside the picture.
     fn by_products(&self) -> Vec<ByProduct> {
         Vec::new()
     }
 
-    /// What else is worth telling of the passes so far, as names of one or two words and what there
-    /// is to say.
+    /// Facts about the passes so far, as names of one or two words and values.
     fn summary(&self) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 }
 
-/// Something that is made beside the picture.
+/// Something that is produced beside the picture.
 pub enum ByProduct {
-    /// A picture, to stand beside the main one and be called like it with this added.
+    /// An image, and the suffix of its name after that of the picture.
     Picture(String, Image),
-    /// The contents of a file that was asked for.
+    /// The contents of a file that a setting asks for.
     File(PathBuf, Vec<u8>),
 }

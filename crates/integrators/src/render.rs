@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use film::Film;
 use geometry::RayStats;
-use scene::Scene;
+use scene::{Scene, View};
 
 use crate::{Cancelled, Control, Integrator, Progress};
 
@@ -21,13 +21,14 @@ pub struct RenderReport {
     pub elapsed: Duration,
 }
 
-/// Renders the scene into the film, on the threads of rayon's current pool.
+/// Renders a view of the scene into the film, on the threads of rayon's current pool.
 ///
 /// After `Err` the film is valid all the same: it holds the light of the passes, and tiles, that
 /// were done, and the last progress told has their rays.
 pub fn render(
     integrator: &mut dyn Integrator,
     scene: &Scene,
+    view: &View,
     film: &mut Film,
     control: &Control,
 ) -> Result<RenderReport, Cancelled> {
@@ -36,9 +37,9 @@ pub fn render(
     let samples_per_pass = film.pixel_bounds().area() as u64;
     let mut report = RenderReport::default();
     control.check()?;
-    integrator.prepare(scene);
+    integrator.prepare(scene, view, control)?;
     for pass in 0..passes {
-        let outcome = integrator.pass(pass, scene, film, control);
+        let outcome = integrator.pass(pass, scene, view, film, control);
         let under_way = control.take_counted();
         if let Ok(stats) = outcome {
             report.stats += stats;

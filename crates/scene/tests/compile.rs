@@ -3,7 +3,7 @@
 mod common;
 
 use alhazen_scene::light::LightId;
-use alhazen_scene::{RayStats, compile};
+use alhazen_scene::{RayStats, View, compile, world_from_render};
 use common::*;
 use description::{
     AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, CurveBasis, CurveDesc,
@@ -30,13 +30,16 @@ fn with_parameter<T>(value: T, name: &'static str, start: u32) -> Stated<T> {
 }
 
 fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
-    match compile(desc) {
-        Ok(compiled) => compiled.warnings,
-        Err(diagnostics) => {
-            assert!(diagnostics.iter().any(Diagnostic::is_error));
-            diagnostics
-        }
-    }
+    let errors = |diagnostics: Vec<Diagnostic>| {
+        assert!(diagnostics.iter().any(Diagnostic::is_error));
+        diagnostics
+    };
+    let view = View::compile(desc, world_from_render(desc));
+    [
+        view.map_or_else(errors, |view| view.warnings),
+        compile(desc).map_or_else(errors, |scene| scene.warnings),
+    ]
+    .concat()
 }
 
 /// The one message about a scene.

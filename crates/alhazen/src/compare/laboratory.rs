@@ -4,7 +4,7 @@ use description::{Diagnostic, SceneDesc};
 use image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use image::{Image, Window};
 use integrators::{Cancelled, Control};
-use scene::Scene;
+use scene::{Scene, View};
 
 use super::measure::{measure, reference_noise};
 use super::twins::Twins;
@@ -25,6 +25,7 @@ const REFERENCE_FACTOR: u32 = 16;
 pub struct Laboratory {
     setup: Setup,
     scene: Scene,
+    view: View,
     contenders: Vec<Entry>,
     reference: ReferencePlan,
     /// What will be drawn otherwise than described.
@@ -75,6 +76,14 @@ impl Laboratory {
         }
 
         let mut warnings = Vec::new();
+        // One view for all, so that textures are filtered alike; where time is the limit, for the
+        // samples that the scene asks for, as when it is rendered.
+        let view = View::compile(&first.desc, scene::world_from_render(&first.desc));
+        let mut view = view.map_err(|errors| first.wrong(errors))?;
+        if let Budget::Time(_) = plan.budget {
+            view.view.samples_per_pixel = scene::samples_per_pixel(scene);
+        }
+        warnings.extend(view.warnings);
         let compiled = scene::compile(&first.desc).map_err(|errors| first.wrong(errors))?;
         warnings.extend(compiled.warnings);
         let film = film::compile(&first.desc).map_err(|errors| first.wrong(errors))?.film;
@@ -106,7 +115,8 @@ impl Laboratory {
             }
         };
         let warned = Vec::new();
-        let mut laboratory = Self { setup, scene: compiled.scene, contenders, reference, warnings: warned };
+        let mut laboratory =
+            Self { setup, scene: compiled.scene, view: view.view, contenders, reference, warnings: warned };
         for (name, value) in &plan.overrides.settings {
             let takes = |entry: &Entry| entry.overrides.settings.iter().any(|(taken, _)| taken == name);
             if !laboratory.entries().any(takes) {
@@ -138,21 +148,24 @@ impl Laboratory {
     /// After a cancellation the comparison is of what has been done. `Err` means that there is
     /// nothing to compare: no contender has done a pass.
     pub fn compare(self, mut begin: impl FnMut(&str) -> Control) -> Result<Comparison, Cancelled> {
-        let Self { setup, scene, contenders, reference, warnings } = self;
+        let Self { setup, scene, view, contenders, reference, warnings } = self;
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
                 let control = begin(&format!("reference by {}", entry.name));
                 // Seeds of its own: a picture judged by its own samples would look better than it
                 // is.
-                render_reference(&entry, half, setup.seed.wrapping_add(2), &scene, &control)?
+                render_reference(&entry, half, setup.seed.wrapping_add(2), (&scene, &view), &control)?
             }
         };
         let (mut runs, mut missing) = (Vec::new(), Vec::new());
         let mut interrupted = false;
         for entry in &contenders {
-            let run =
-                if interrupted { None } else { run(entry, &setup, &scene, &reference, &begin(&entry.name)) };
+            let run = if interrupted {
+                None
+            } else {
+                run(entry, &setup, (&scene, &view), &reference, &begin(&entry.name))
+            };
             interrupted |= run.as_ref().is_none_or(|run| run.interrupted);
             match run {
                 Some(run) => runs.push(run),
@@ -215,11 +228,11 @@ fn render_reference(
     entry: &Entry,
     half: Budget,
     seed: i32,
-    scene: &Scene,
+    viewed: (&Scene, &View),
     control: &Control,
 ) -> Result<Reference, Cancelled> {
     let mut twins = twins(entry, seed);
-    twins.render(scene, half, control, |_| ())?;
+    twins.render(viewed, half, control, |_| ())?;
     let halves = twins.pictures();
     let picture = Image::from_fn(halves[0].width(), halves[0].height(), ["R", "G", "B"], |x, y| {
         let [a, b] = [0, 1].map(|half: usize| halves[half].rgb(x, y));
@@ -241,10 +254,16 @@ fn render_reference(
 }
 
 /// Renders and measures one contender; `None` where it was cancelled before a pass was done.
-fn run(entry: &Entry, setup: &Setup, scene: &Scene, reference: &Reference, control: &Control) -> Option<Run> {
+fn run(
+    entry: &Entry,
+    setup: &Setup,
+    viewed: (&Scene, &View),
+    reference: &Reference,
+    control: &Control,
+) -> Option<Run> {
     let mut twins = twins(entry, setup.seed);
     let mut checkpoints = Vec::new();
-    let outcome = twins.render(scene, setup.budget, control, |twins| {
+    let outcome = twins.render(viewed, setup.budget, control, |twins| {
         let effort = twins.effort();
         checkpoints.push(Checkpoint {
             passes: effort.passes,

@@ -12,7 +12,7 @@ use film::Film;
 use geometry::RayStats;
 use image::Image;
 use integrators::{Cancelled, Control, Integrator, Progress};
-use scene::Scene;
+use scene::{Scene, View};
 
 use super::Budget;
 use crate::Overrides;
@@ -64,7 +64,7 @@ impl Twins {
     /// cancelled, unless no pass was done by both until then.
     pub fn render(
         &mut self,
-        scene: &Scene,
+        (scene, view): (&Scene, &View),
         budget: Budget,
         control: &Control,
         mut at_checkpoint: impl FnMut(&Self),
@@ -72,13 +72,13 @@ impl Twins {
         control.check()?;
         for twin in &mut self.twins {
             let start = Instant::now();
-            twin.integrator.prepare(scene);
+            twin.integrator.prepare(scene, view, control)?;
             twin.elapsed += start.elapsed();
         }
         let all = self.twins[0].integrator.passes();
         let (mut checkpoint, mut outcome) = (0, Ok(()));
         while outcome.is_ok() && self.passes < all && !budget.is_spent(self.effort().seconds) {
-            outcome = self.pass(scene, control);
+            outcome = self.pass(scene, view, control);
             if self.passes == next_checkpoint(checkpoint) {
                 at_checkpoint(self);
                 checkpoint = self.passes;
@@ -93,11 +93,11 @@ impl Twins {
 
     /// One pass of each. A cancelled one counts for nothing, though the films may have a part of
     /// its light.
-    fn pass(&mut self, scene: &Scene, control: &Control) -> Result<(), Cancelled> {
+    fn pass(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         let mut took = [Duration::ZERO; 2];
         for (twin, took) in self.twins.iter_mut().zip(&mut took) {
             let start = Instant::now();
-            let stats = twin.integrator.pass(self.passes, scene, &mut twin.film, control)?;
+            let stats = twin.integrator.pass(self.passes, scene, view, &mut twin.film, control)?;
             *took = start.elapsed();
             self.stats += stats;
         }

@@ -29,8 +29,10 @@
 //! then known at the first wavelength only; [`hero_only`] turns it into light at the wavelengths
 //! that both began with.
 
+mod bdpt;
 mod connect;
 mod light_end;
+mod light_vertex;
 mod partial;
 mod subpaths;
 #[cfg(test)]
@@ -38,11 +40,14 @@ mod tests;
 mod vertex;
 mod walk;
 
-use scene::Scene;
 use scene::light_sampler::{LightSampler, LightSamplerKind, PowerLightSampler};
+use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
+pub(crate) use bdpt::techniques;
+pub use bdpt::{Bdpt, BdptSettings};
 pub(crate) use connect::Found;
+pub(crate) use light_vertex::LightVertex;
 pub(crate) use partial::{Balance, Merges, Partial};
 pub(crate) use subpaths::OnTheWay;
 pub(crate) use vertex::Vertex;
@@ -75,6 +80,7 @@ impl Lights {
 #[derive(Clone, Copy)]
 pub(crate) struct Bidirectional<'a> {
     pub scene: &'a Scene,
+    pub view: &'a View,
     pub lights: &'a Lights,
     /// How strategies share paths.
     pub balance: Balance,

@@ -66,17 +66,17 @@ use film::{Film, FilmTile};
 use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::Sampler;
-use scene::Scene;
 use scene::camera::CameraRayDifferential;
 use scene::light_sampler::{LightSampler, LightSamplerKind};
+use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
-use crate::pixel_loop::PixelSamples;
+use crate::transport::pixel_samples::PixelSamples;
 use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
 use shooting::Solution;
-use show::{Look, View};
+use show::{Interpolation, Look};
 
 /// How form factors are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,8 +147,8 @@ struct State {
     lights: LightSampler,
     /// How many steps of sending are done.
     sent: u32,
-    view: View,
-    /// The step after which the view shows the solution.
+    interpolation: Interpolation,
+    /// The step after which the interpolation shows the solution.
     shown: Option<u32>,
     /// The mesh to be saved.
     mesh: Vec<u8>,
@@ -156,11 +156,16 @@ struct State {
 
 impl State {
     /// Before light is sent.
-    fn new(scene: &Scene, settings: &RadiositySettings, control: &Control) -> Result<Self, Cancelled> {
-        let solution = Solution::new(scene, settings, control)?;
+    fn new(
+        scene: &Scene,
+        view: &View,
+        settings: &RadiositySettings,
+        control: &Control,
+    ) -> Result<Self, Cancelled> {
+        let solution = Solution::new(scene, view, settings, control)?;
         let lights = scene.light_sampler(LightSamplerKind::Bvh);
-        let view = View::new(scene, &solution, &lights, 0);
-        Ok(Self { solution, lights, sent: 0, view, shown: None, mesh: Vec::new() })
+        let interpolation = Interpolation::new(scene, &solution, &lights, 0);
+        Ok(Self { solution, lights, sent: 0, interpolation, shown: None, mesh: Vec::new() })
     }
 
     /// Sends light as a pass asks for. Steps that earlier passes have not done are done now, one by
@@ -169,6 +174,7 @@ impl State {
         &mut self,
         pass: u32,
         scene: &Scene,
+        view: &View,
         color_space: &RgbColorSpace,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
@@ -176,16 +182,17 @@ impl State {
         let mut stats = RayStats::default();
         while self.sent < steps.min(pass + 1) {
             let share = tolerance.powf((self.sent + 1) as f32 / steps as f32);
-            stats += self.solution.shoot(scene, share, control)?;
+            stats += self.solution.shoot(scene, view, share, control)?;
             self.sent += 1;
         }
         let step = pass.min(steps);
         if self.shown != Some(step) {
             let is_finished = step == steps;
-            self.view = View::new(scene, &self.solution, &self.lights, if is_finished { gather } else { 0 });
+            let gather = if is_finished { gather } else { 0 };
+            self.interpolation = Interpolation::new(scene, &self.solution, &self.lights, gather);
             self.shown = Some(step);
             if is_finished && self.solution.settings.mesh_out.is_some() {
-                self.mesh = ply::encode(scene, &self.solution, &self.view, color_space);
+                self.mesh = ply::encode(scene, &self.solution, &self.interpolation, color_space);
             }
         }
         Ok(stats)
@@ -208,29 +215,28 @@ impl Integrator for Radiosity {
         self.sampler.samples_per_pixel()
     }
 
-    fn prepare(&mut self, _scene: &Scene) {
-        // Surfaces are cut in the first pass, which can be cancelled.
-        self.state = None;
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.state = Some(State::new(scene, view, &self.settings, control)?);
+        Ok(())
     }
 
     fn pass(
         &mut self,
         pass: u32,
         scene: &Scene,
+        view: &View,
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
         let steps = self.settings.steps;
         let samples = self.sampler.samples_per_pixel();
-        if self.state.is_none() {
-            self.state = Some(State::new(scene, &self.settings, control)?);
-        }
         let Some(state) = &mut self.state else { return Ok(RayStats::default()) };
-        let mut stats = state.advance(pass, scene, self.color_space, control)?;
+        let mut stats = state.advance(pass, scene, view, self.color_space, control)?;
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
-        let pixels = PixelSamples { index, scene, filter: &filter, sampler: &self.sampler };
-        let look = Look { view: &state.view, solution: &state.solution, scene, control };
+        let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
+        let look =
+            Look { interpolation: &state.interpolation, view, solution: &state.solution, scene, control };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
@@ -271,8 +277,8 @@ impl Integrator for Radiosity {
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {
-        let Some(State { solution, view, .. }) = &self.state else { return Vec::new() };
-        let mebibytes = (solution.bytes() + view.bytes()) as f64 / f64::from(1 << 20);
+        let Some(State { solution, interpolation, .. }) = &self.state else { return Vec::new() };
+        let mebibytes = (solution.bytes() + interpolation.bytes()) as f64 / f64::from(1 << 20);
         let mut notes = vec![
             ("patches", solution.cut.patches.len().to_string()),
             ("elements", solution.cut.elements.len().to_string()),

@@ -35,7 +35,7 @@ use math::{Normal3, Ray, Vec2};
 use rayon::prelude::*;
 use sampling::hash_float;
 use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
-use scene::{Interfaces, Scene};
+use scene::{Interfaces, Scene, View};
 use spectrum::SampledSpectrum;
 
 use super::bands::{Bands, Wavelengths};
@@ -68,9 +68,14 @@ pub(crate) struct Solution {
 
 impl Solution {
     /// Nothing has been sent yet.
-    pub fn new(scene: &Scene, settings: &RadiositySettings, control: &Control) -> Result<Self, Cancelled> {
-        let wavelengths = Wavelengths::new(!scene.options().disable_wavelength_jitter);
-        let cut = Cut::new(scene, settings, &wavelengths, control)?;
+    pub fn new(
+        scene: &Scene,
+        view: &View,
+        settings: &RadiositySettings,
+        control: &Control,
+    ) -> Result<Self, Cancelled> {
+        let wavelengths = Wavelengths::new(!view.options.disable_wavelength_jitter);
+        let cut = Cut::new(scene, view, settings, &wavelengths, control)?;
         let settings = settings.clone();
         let begun = settings.max_depth == 0;
         let mut solution = Self { wavelengths, cut, settings, begun, total: 0.0, shots: 0 };
@@ -93,15 +98,21 @@ impl Solution {
     }
 
     /// Shoots until no more than a share of all light is left to be sent.
-    pub fn shoot(&mut self, scene: &Scene, share: f32, control: &Control) -> Result<RayStats, Cancelled> {
+    pub fn shoot(
+        &mut self,
+        scene: &Scene,
+        view: &View,
+        share: f32,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
         let mut stats = RayStats::default();
         if !self.begun {
-            self.receive_lights(scene, control, &mut stats)?;
+            self.receive_lights(scene, view, control, &mut stats)?;
             self.begun = true;
         }
         while self.total > 0.0 && self.unshot_share() > share {
             let Some((patch, side)) = self.brightest() else { break };
-            self.shoot_from(scene, patch, side, control, &mut stats)?;
+            self.shoot_from(scene, view, patch, side, control, &mut stats)?;
         }
         self.cut.settle();
         Ok(stats)
@@ -130,6 +141,7 @@ impl Solution {
     fn shoot_from(
         &mut self,
         scene: &Scene,
+        view: &View,
         source: u32,
         side: usize,
         control: &Control,
@@ -162,7 +174,7 @@ impl Solution {
                     })
                 };
                 wholes = each(&self.cut.patches, control, stats, on_whole)?;
-                self.receive(scene, brightness, &wholes, |cut, ids| {
+                self.receive(scene, view, brightness, &wholes, |cut, ids| {
                     each_element(cut, ids, control, stats, |element, stats| match element.patch == source {
                         // What is bent stands off its chord, and would see it: from behind, as if
                         // it filled the sky.
@@ -174,7 +186,7 @@ impl Solution {
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
                 let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
-                self.receive(scene, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
+                self.receive(scene, view, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };
         let Cut { patches, elements, .. } = &mut self.cut;
@@ -209,6 +221,7 @@ impl Solution {
     fn receive_lights(
         &mut self,
         scene: &Scene,
+        view: &View,
         control: &Control,
         stats: &mut RayStats,
     ) -> Result<(), Cancelled> {
@@ -239,7 +252,8 @@ impl Solution {
             element.area * sum
         };
         self.total += each_element(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
-        let lit = self.receive(scene, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
+        let lit =
+            self.receive(scene, view, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
             element.quarters = lit.quarters;
             let sides = element.irradiance();
@@ -269,6 +283,7 @@ impl Solution {
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
+        view: &View,
         brightness: f32,
         wholes: &[Option<Received>],
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
@@ -300,7 +315,7 @@ impl Solution {
                 coarse = self.cut.lagging(scene, &self.settings, is_asked);
             }
             has_cut |= !coarse.is_empty();
-            fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
+            fresh = self.cut.split(scene, view, &self.settings, &self.wavelengths, &coarse);
         }
         Ok(received)
     }

@@ -19,18 +19,18 @@ use math::{Frame, Ray, RayDifferential, Vec2};
 use rayon::prelude::*;
 use sampling::{Sampler, warp};
 use scene::light_sampler::LightSampler;
-use scene::{Scene, SurfaceInteraction};
+use scene::{Scene, SurfaceInteraction, View};
 use std::f32::consts::FRAC_1_PI;
 
 use super::bands::Bands;
 use super::element::Albedo;
 use super::mesh::{Cell, Corner};
 use super::shooting::{Solution, arrives, sample_light};
-use crate::direct::pass_through;
+use crate::transport::path_state::pass_through;
 use crate::{Cancelled, Control};
 
-/// A solution made ready to be looked at.
-pub(crate) struct View {
+/// A solution interpolated over the surfaces.
+pub(crate) struct Interpolation {
     /// The outline of each element.
     outlines: Vec<Vec<Corner>>,
     /// The irradiance of both sides at each vertex.
@@ -42,7 +42,7 @@ pub(crate) struct View {
     gather: u32,
 }
 
-impl View {
+impl Interpolation {
     /// Spreads the light of elements to their vertices.
     pub fn new(scene: &Scene, solution: &Solution, lights: &LightSampler, gather: u32) -> Self {
         let mesh = &solution.cut.mesh;
@@ -109,6 +109,7 @@ impl View {
 
 /// A look at a solution, which may be broken off.
 pub(crate) struct Look<'a> {
+    pub interpolation: &'a Interpolation,
     pub view: &'a View,
     pub solution: &'a Solution,
     pub scene: &'a Scene,
@@ -123,7 +124,7 @@ impl Look<'_> {
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> Result<Bands, Cancelled> {
-        let Self { view, solution, scene, .. } = *self;
+        let Self { interpolation, view, solution, scene, .. } = *self;
         let wavelengths = &solution.wavelengths;
         let mut l = Bands::ZERO;
         loop {
@@ -135,7 +136,7 @@ impl Look<'_> {
             if interaction.area_light.is_some() {
                 l += wavelengths.sample(|lambda| scene.emitted(&interaction, surface.wo, lambda));
             }
-            let Some(albedo) = Albedo::at(scene, &mut interaction, &ray, wavelengths) else {
+            let Some(albedo) = Albedo::at(scene, view, &mut interaction, &ray, wavelengths) else {
                 ray = pass_through(&ray, &interaction, hit.t);
                 continue;
             };
@@ -143,8 +144,8 @@ impl Look<'_> {
                 return Ok(l);
             }
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
-            if let (Some((leaf, uv)), 0) = (leaf, view.gather) {
-                let sides = albedo.scatter(&view.irradiance(solution, leaf, uv));
+            if let (Some((leaf, uv)), 0) = (leaf, interpolation.gather) {
+                let sides = albedo.scatter(&interpolation.irradiance(solution, leaf, uv));
                 return Ok(l + sides[seen_side(&surface)] * FRAC_1_PI);
             }
             return Ok(l + self.gathered(&interaction, &albedo, sampler, stats)?);
@@ -163,7 +164,7 @@ impl Look<'_> {
         let ns = s.shading.n;
         let toward = if s.wo.dot(ns) < 0.0 { -ns } else { ns };
         let frame = Frame::from_z(toward);
-        let samples = self.view.gather.max(1);
+        let samples = self.interpolation.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
             self.control.check()?;
@@ -196,11 +197,11 @@ impl Look<'_> {
         sampler: &mut Sampler,
         stats: &mut RayStats,
     ) -> Bands {
-        let Self { view, solution, scene, .. } = *self;
+        let Self { interpolation, solution, scene, .. } = *self;
         let s = &interaction.surface;
         let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
         let context = interaction.light_context();
-        let Some((light, pmf)) = view.lights.sample(&context, u) else { return Bands::ZERO };
+        let Some((light, pmf)) = interpolation.lights.sample(&context, u) else { return Bands::ZERO };
         let found = sample_light(scene, &solution.wavelengths, light, &context, u_light);
         let Some((l, sample)) = found else { return Bands::ZERO };
         let cos_theta = sample.wi.dot(s.shading.n);

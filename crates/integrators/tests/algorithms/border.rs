@@ -8,7 +8,7 @@ use description::{
 };
 use testkit::{Moments, welch_test};
 
-use crate::support::{compile, diffuse, emission, quad, v, walls};
+use crate::support::{diffuse, emission, quad, v, viewed, walls};
 
 const RESOLUTION: [i32; 2] = [12, 8];
 
@@ -34,9 +34,9 @@ fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: i32, seed: i3
     let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
     let kind = SamplerKind::Independent;
     desc.sampler.value = SamplerDesc { kind, pixel_samples: samples, seed: Some(seed) };
-    let (scene, mut film) = (compile(&desc), film::compile(&desc).unwrap().film);
+    let ((scene, view), mut film) = (viewed(&desc), film::compile(&desc).unwrap().film);
     let mut integrator = build(&desc).unwrap().integrator;
-    render(&mut *integrator, &scene, &mut film, &Control::default()).unwrap();
+    render(&mut *integrator, &scene, &view, &mut film, &Control::default()).unwrap();
     let image = film.develop();
     let [width, height] = RESOLUTION.map(|n| n as u32);
     let row = |y| (0..width).map(|x| f64::from(image.rgb(x, y)[1])).sum::<f64>() / f64::from(width);

@@ -282,17 +282,17 @@ fn it_tells_of_its_photons_and_stops_when_told_to() {
     let mut desc = room();
     from_above(&mut desc, 1.0, 16);
     desc.integrator = IntegratorDesc::PhotonMapping(small(&PhotonMappingDesc::default())).into();
-    let scene = crate::support::compile(&desc);
+    let (scene, view) = crate::support::viewed(&desc);
     let mut film = film::compile(&desc).unwrap().film;
     let mut integrator = build(&desc).unwrap().integrator;
-    integrator.prepare(&scene);
+    integrator.prepare(&scene, &view, &Control::default()).unwrap();
     let control = Control::default();
-    integrator.pass(0, &scene, &mut film, &control).unwrap();
+    integrator.pass(0, &scene, &view, &mut film, &control).unwrap();
     let summary = integrator.summary();
     assert!(
         summary[0].1.contains("in the global map") && summary[1].1.contains("in the mean"),
         "{summary:?}"
     );
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(integrator.pass(1, &scene, &mut film, &control).is_err());
+    assert!(integrator.pass(1, &scene, &view, &mut film, &control).is_err());
 }

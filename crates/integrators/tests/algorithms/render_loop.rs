@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
-use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, build, render};
+use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, Tracer, build, render};
 use description::{
     IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc,
     SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
@@ -15,10 +15,9 @@ use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use scene::Scene;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::support::{at, compile, diffuse, emission, glass, sphere, v, white_sky};
+use crate::support::{at, diffuse, emission, glass, sphere, v, viewed, white_sky};
 
 /// 40 × 24 pixels of two balls and a lamp, 4 samples each.
 fn balls() -> SceneDesc {
@@ -47,10 +46,10 @@ fn bits(film: &Film) -> Vec<u32> {
 }
 
 pub fn picture(desc: &SceneDesc, threads: usize, control: &Control) -> (Film, Result<RayStats, Cancelled>) {
-    let (scene, mut film) = (compile(desc), empty_film(desc));
+    let ((scene, view), mut film) = (viewed(desc), empty_film(desc));
     let mut integrator = build(desc).unwrap().integrator;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let report = pool.install(|| render(&mut *integrator, &scene, &mut film, control));
+    let report = pool.install(|| render(&mut *integrator, &scene, &view, &mut film, control));
     (film, report.map(|report| report.stats))
 }
 
@@ -118,15 +117,8 @@ struct Brake {
 }
 
 impl RayIntegrator for Brake {
-    fn li(
-        &self,
-        _: &Scene,
-        _: RayDifferential,
-        _: &mut SampledWavelengths,
-        _: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> SampledSpectrum {
-        stats.rays += 1;
+    fn li(&self, tracer: &mut Tracer, _: RayDifferential, _: &mut SampledWavelengths) -> SampledSpectrum {
+        tracer.stats.rays += 1;
         if self.rays.fetch_add(1, Ordering::Relaxed) == 700 {
             self.control.store(true, Ordering::Relaxed);
         }
@@ -138,14 +130,14 @@ impl RayIntegrator for Brake {
 fn a_render_stopped_within_a_pass_is_valid() {
     let mut desc = balls();
     desc.options.disable_wavelength_jitter = true;
-    let (scene, mut film) = (compile(&desc), empty_film(&desc));
+    let ((scene, view), mut film) = (viewed(&desc), empty_film(&desc));
     let mut control = Control::default();
     let told = Arc::new(Mutex::new(Progress::default()));
     let sink = Arc::clone(&told);
     control.progress = Some(Box::new(move |progress| *sink.lock().unwrap() = *progress));
     let brake = Brake { rays: AtomicU32::new(0), control: Arc::clone(&control.cancel) };
     let mut integrator = PixelLoop::new(brake, Sampler::Independent(Independent::new(100, 0)));
-    assert_eq!(render(&mut integrator, &scene, &mut film, &control), Err(Cancelled));
+    assert_eq!(render(&mut integrator, &scene, &view, &mut film, &control), Err(Cancelled));
     let taken = film.sample_count();
     assert!((700..2 * 40 * 24).contains(&taken), "{taken}");
     assert_eq!(told.lock().unwrap().stats.rays, taken, "rays of a pass that was stopped are told");
@@ -179,9 +171,9 @@ fn what_has_not_begun_has_nothing_to_tell() {
 fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
     let mut desc = balls();
     desc.integrator = IntegratorDesc::LightTracing { max_depth: 3 }.into();
-    let (scene, mut film) = (compile(&desc), empty_film(&desc));
+    let ((scene, view), mut film) = (viewed(&desc), empty_film(&desc));
     let mut integrator = build(&desc).unwrap().integrator;
-    let report = render(&mut *integrator, &scene, &mut film, &Control::default()).unwrap();
+    let report = render(&mut *integrator, &scene, &view, &mut film, &Control::default()).unwrap();
     let (_, told) = integrator.summary().remove(0);
     let rays: u64 = told.rsplit(' ').next().unwrap().parse().unwrap();
     assert_eq!(rays, report.stats.rays - film.sample_count(), "all but the camera's rays: {told}");
@@ -192,14 +184,7 @@ fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
 struct Recorder(Mutex<Vec<[u32; 4]>>);
 
 impl RayIntegrator for &'static Recorder {
-    fn li(
-        &self,
-        _: &Scene,
-        ray: RayDifferential,
-        lambda: &mut SampledWavelengths,
-        _: &mut Sampler,
-        _: &mut RayStats,
-    ) -> SampledSpectrum {
+    fn li(&self, _: &mut Tracer, ray: RayDifferential, lambda: &mut SampledWavelengths) -> SampledSpectrum {
         let d = ray.ray.d;
         self.0.lock().unwrap().push([d.x, d.y, d.z, lambda[0]].map(f32::to_bits));
         SampledSpectrum::ZERO
@@ -215,7 +200,8 @@ fn jitter_can_be_switched_off() {
         desc.options.disable_wavelength_jitter = wavelength;
         let recorder: &'static Recorder = Box::leak(Box::default());
         let mut integrator = PixelLoop::new(recorder, Sampler::Independent(Independent::new(8, 0)));
-        render(&mut integrator, &compile(&desc), &mut empty_film(&desc), &Control::default()).unwrap();
+        let (scene, view) = viewed(&desc);
+        render(&mut integrator, &scene, &view, &mut empty_film(&desc), &Control::default()).unwrap();
         let seen = recorder.0.lock().unwrap();
         assert_eq!(seen.len(), 8);
         let directions: HashSet<_> = seen.iter().map(|sample| &sample[..3]).collect();

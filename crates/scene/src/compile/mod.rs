@@ -14,11 +14,11 @@ mod solids;
 mod spheres;
 mod tessellation;
 
-use crate::camera;
 use crate::light::{AreaEmission, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
-use crate::scene::{GeometryEntry, InstanceEntry, Scene, SceneOptions};
+use crate::scene::{GeometryEntry, InstanceEntry, Scene};
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
+use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
     AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
@@ -35,11 +35,12 @@ pub struct Compiled {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Compiles a description, or says everything that is wrong with it (warnings included).
+/// Compiles a description, apart from camera, film, sampler and integrator. Its camera chooses
+/// render space ([`world_from_render`]). Returns all errors and warnings if there is an error.
 pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
-    let camera = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics);
-    let render_from_world = camera.as_ref().map_or(DMat4::IDENTITY, |c| c.transform().render_from_world());
+    let world_from_render = world_from_render(desc);
+    let render_from_world = world_from_render.inverse();
     let textures = TextureCompiler::new(desc, &render_from_world, &mut diagnostics);
     let mut compiler = Compiler {
         desc,
@@ -66,19 +67,13 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let sphere = SceneSphere::around(&world.bounds());
     let lights = compiler.light_table(&world, sphere);
     let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
-    let Some(camera) = camera.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)) else {
+    if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
-    };
-    let options = SceneOptions {
-        disable_pixel_jitter: desc.options.disable_pixel_jitter,
-        disable_wavelength_jitter: desc.options.disable_wavelength_jitter,
-        disable_texture_filtering: desc.options.disable_texture_filtering,
-        force_diffuse: desc.options.force_diffuse,
-    };
+    }
     let textures = textures.finish();
-    let has_footprints = !options.disable_texture_filtering && textures.are_filtered();
+    let has_filtered_textures = textures.are_filtered();
     let scene = Scene {
-        camera,
+        world_from_render,
         world,
         sphere,
         entries,
@@ -86,9 +81,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         materials: Materials::new(materials),
         textures,
         lights,
-        samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
-        options,
-        has_footprints,
+        has_filtered_textures,
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }
