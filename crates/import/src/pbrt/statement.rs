@@ -1,6 +1,7 @@
 //! What a scene file says, statement by statement, with the graphics state that held at each. Names
 //! are not looked up yet: a file may use a material before it makes it.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use description::{ColorSpaceDesc, Span, Spanned, TransformDesc};
@@ -101,6 +102,8 @@ pub(crate) struct Statements {
     /// Float and spectrum textures in the order in which they were said: `true` for a spectrum
     /// texture.
     pub(crate) texture_order: Vec<bool>,
+    /// Where each texture is named; `true` for a spectrum texture.
+    pub(crate) texture_names: HashMap<(bool, String), Span>,
     pub(crate) materials: Vec<MaterialStatement>,
     pub(crate) media: Vec<MediumStatement>,
     pub(crate) lights: Vec<LightStatement>,
