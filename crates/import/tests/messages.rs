@@ -264,10 +264,6 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:41 error[parameter-value] `p1` and `p2` have the same z: a `disk` draws what such a line sweeps",
     ),
     (r#"ObjectInstance "x""#, "1:16 error[unknown-reference] there is no object `x`"),
-    (
-        r#"ObjectBegin "x" AreaLightSource "diffuse" Shape "sphere" ObjectEnd"#,
-        "1:43 warning[ignored] shapes of an object do not shine: its area light is left out",
-    ),
     (r#"Shape "implicit""#, "1:7 error[missing-parameter] `implicit` needs the parameter `f`"),
     (
         r#"Shape "implicit" "string f" "x" "point3 bounds" [1 1 1 0 0 0]"#,

@@ -159,6 +159,13 @@ impl Compiler<'_> {
                 return None;
             }
         };
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if reach > Formula::MAX_COORDINATE {
+            let limit = Formula::MAX_COORDINATE;
+            let message = format!("the bounds reach to {reach:e}; beyond {limit:e} numbers overflow");
+            self.error("invalid-bounds", message, text.span);
+            return None;
+        }
         if formula.has_no_zero(bounds) {
             self.warn("empty-shape", "the formula is zero nowhere within its bounds", text.span);
         }
