@@ -1,6 +1,5 @@
 //! The compiled world: what rays meet, what it is made of, and what shines.
 
-use crate::camera::Camera;
 use crate::interaction::{Footprint, SurfaceInteraction};
 use crate::light::{
     AreaEmission, LightId, LightLeSample, LightLiSample, LightRef, LightSampleContext, LightTable, Lights,
@@ -9,8 +8,9 @@ use crate::light::{
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
+use crate::view::View;
 use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
-use math::{Point2, Ray, RayDifferential, Vector3};
+use math::{DMat4, Point2, Ray, RayDifferential, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -36,19 +36,6 @@ pub struct InstanceEntry {
     pub first_light: u32,
 }
 
-/// Switches of the format that concern all algorithms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SceneOptions {
-    /// All samples of a pixel go through its centre.
-    pub disable_pixel_jitter: bool,
-    /// All samples take the same wavelengths.
-    pub disable_wavelength_jitter: bool,
-    /// Textures are evaluated at points.
-    pub disable_texture_filtering: bool,
-    /// Every BSDF is replaced by a diffuse one of its albedo.
-    pub force_diffuse: bool,
-}
-
 /// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass
 /// them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,11 +56,10 @@ impl Interfaces {
     }
 }
 
-/// Everything that is rendered. Never changes once compiled, but for the size of pixels while
-/// [`with_coarser_pixels`](Self::with_coarser_pixels) shows it.
+/// Everything that is rendered, from any [`View`]. Never changes once compiled.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    pub(crate) camera: Camera,
+    pub(crate) world_from_render: DMat4,
     pub(crate) world: World,
     pub(crate) sphere: SceneSphere,
     pub(crate) entries: Vec<GeometryEntry>,
@@ -81,35 +67,20 @@ pub struct Scene {
     pub(crate) textures: Textures,
     pub(crate) instances: Vec<InstanceEntry>,
     pub(crate) lights: LightTable,
-    pub(crate) samples_per_pixel: u32,
-    pub(crate) options: SceneOptions,
-    pub(crate) has_footprints: bool,
+    pub(crate) has_filtered_textures: bool,
 }
 
 impl Scene {
-    /// The observer.
-    pub fn camera(&self) -> &Camera {
-        &self.camera
+    /// The transform from render space, in which rays are traced, to world space.
+    pub fn world_from_render(&self) -> DMat4 {
+        self.world_from_render
     }
 
-    /// Shows the scene as its camera sees it with pixels `n` times as wide and high.
-    pub fn with_coarser_pixels<T>(&mut self, n: u32, look: impl FnOnce(&Self) -> T) -> T {
-        let coarser = self.camera.coarser(n);
-        let camera = std::mem::replace(&mut self.camera, coarser);
-        let seen = look(self);
-        self.camera = camera;
-        seen
-    }
-
-    /// Switches that concern all algorithms.
-    pub fn options(&self) -> SceneOptions {
-        self.options
-    }
-
-    /// Whether anything depends on the size of a pixel on a surface, so that ray differentials are
-    /// of use.
-    pub fn has_footprints(&self) -> bool {
-        self.has_footprints
+    /// Whether anything in a view depends on the size of a pixel on a surface, so that ray
+    /// differentials are needed.
+    #[inline]
+    pub fn needs_footprints(&self, view: &View) -> bool {
+        self.has_filtered_textures && !view.options.disable_texture_filtering
     }
 
     /// What belongs to the geometries of the world, by [`GeometryId`].
@@ -317,19 +288,19 @@ impl Scene {
         Some(sample)
     }
 
-    /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the
-    /// shading normal on the way. `None`: nothing is there but a change of medium; the ray goes on.
+    /// How the surface scatters at a point that `ray` of a view has hit. Computes the footprint and
+    /// perturbs the shading normal on the way. `None` for a mere interface between media, which the
+    /// ray passes.
     pub fn bsdf(
         &self,
+        view: &View,
         interaction: &mut SurfaceInteraction,
         ray: &RayDifferential,
         lambda: &mut SampledWavelengths,
         sampler: &mut Sampler,
     ) -> Option<Bsdf> {
-        if self.has_footprints {
-            // All samples of a pixel in one place see the whole pixel each.
-            let samples = if self.options.disable_pixel_jitter { 1 } else { self.samples_per_pixel };
-            interaction.compute_footprint(ray, &self.camera, samples);
+        if self.needs_footprints(view) {
+            interaction.compute_footprint(ray, view);
         }
         let entry = self.materials.resolve(interaction, &self.textures);
         if matches!(entry.material, Material::Interface) {
@@ -341,7 +312,7 @@ impl Scene {
         let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
         let s = &interaction.surface;
         let bsdf = Bsdf::new(s.shading.n, s.shading.dpdu, bxdf);
-        if !self.options.force_diffuse {
+        if !view.options.force_diffuse {
             return Some(bsdf);
         }
         let reflectance = bsdf.rho(s.wo, [(sampler.get_1d(), sampler.get_2d())]);

@@ -3,7 +3,7 @@
 mod common;
 
 use alhazen_scene::light::LightId;
-use alhazen_scene::{RayStats, compile};
+use alhazen_scene::{RayStats, View, compile, world_from_render};
 use common::*;
 use description::{
     AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, CurveBasis, CurveDesc,
@@ -30,13 +30,16 @@ fn with_parameter<T>(value: T, name: &'static str, start: u32) -> Stated<T> {
 }
 
 fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
-    match compile(desc) {
-        Ok(compiled) => compiled.warnings,
-        Err(diagnostics) => {
-            assert!(diagnostics.iter().any(Diagnostic::is_error));
-            diagnostics
-        }
-    }
+    let errors = |diagnostics: Vec<Diagnostic>| {
+        assert!(diagnostics.iter().any(Diagnostic::is_error));
+        diagnostics
+    };
+    let view = View::compile(desc, world_from_render(desc));
+    [
+        view.map_or_else(errors, |view| view.warnings),
+        compile(desc).map_or_else(errors, |scene| scene.warnings),
+    ]
+    .concat()
 }
 
 /// The one message about a scene.
@@ -159,9 +162,9 @@ fn images_that_serve_for_nothing_are_errors() {
     let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
     error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
     error(
-        &image_sky(rgb_image(4, 2, |_, _| [1.0; 3]), None),
+        &image_sky(rgb_image(4, 3, |_, _| [1.0; 3]), None),
         "image-shape",
-        "an infinite light wants a square image in the equal-area octahedral mapping, not 4 × 2",
+        "the image of an infinite light is square (equal-area octahedral) or twice as wide as high (latitude–longitude), not 4 × 3",
     );
     error(
         &image_sky(rgb_image(4, 4, |x, _| [if x == 2 { f32::NAN } else { 1.0 }; 3]), None),

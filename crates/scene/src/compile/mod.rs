@@ -14,11 +14,11 @@ mod solids;
 mod spheres;
 mod tessellation;
 
-use crate::camera;
 use crate::light::{AreaEmission, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
-use crate::scene::{GeometryEntry, InstanceEntry, Scene, SceneOptions};
-use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
+use crate::scene::{GeometryEntry, InstanceEntry, Scene};
+use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
+use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
     AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
@@ -35,12 +35,13 @@ pub struct Compiled {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Compiles a description, or says everything that is wrong with it (warnings included).
+/// Compiles a description, apart from camera, film, sampler and integrator. Its camera chooses
+/// render space ([`world_from_render`]). Returns all errors and warnings if there is an error.
 pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
-    let camera = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics);
-    let render_from_world = camera.as_ref().map_or(DMat4::IDENTITY, |c| c.transform().render_from_world());
-    let textures = texture::compile(desc, &render_from_world, &mut diagnostics);
+    let world_from_render = world_from_render(desc);
+    let render_from_world = world_from_render.inverse();
+    let textures = TextureCompiler::new(desc, &render_from_world, &mut diagnostics);
     let mut compiler = Compiler {
         desc,
         render_from_world,
@@ -66,18 +67,13 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let sphere = SceneSphere::around(&world.bounds());
     let lights = compiler.light_table(&world, sphere);
     let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
-    let Some(camera) = camera.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)) else {
+    if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
-    };
-    let options = SceneOptions {
-        disable_pixel_jitter: desc.options.disable_pixel_jitter,
-        disable_wavelength_jitter: desc.options.disable_wavelength_jitter,
-        disable_texture_filtering: desc.options.disable_texture_filtering,
-        force_diffuse: desc.options.force_diffuse,
-    };
-    let has_footprints = !options.disable_texture_filtering && textures.are_filtered();
+    }
+    let textures = textures.finish();
+    let has_filtered_textures = textures.are_filtered();
     let scene = Scene {
-        camera,
+        world_from_render,
         world,
         sphere,
         entries,
@@ -85,9 +81,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         materials: Materials::new(materials),
         textures,
         lights,
-        samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
-        options,
-        has_footprints,
+        has_filtered_textures,
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }
@@ -97,7 +91,7 @@ struct Compiler<'a> {
     desc: &'a SceneDesc,
     render_from_world: DMat4,
     diagnostics: Vec<Diagnostic>,
-    textures: Textures,
+    textures: TextureCompiler,
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
@@ -116,8 +110,8 @@ impl Compiler<'_> {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
     }
 
-    fn float_texture(&mut self, parameter: &FloatParameter) -> FloatTextureId {
-        self.textures.float_parameter(parameter)
+    fn float_texture(&mut self, parameter: &FloatParameter, span: Span) -> FloatTextureId {
+        self.textures.float_parameter(parameter, span, &mut self.diagnostics)
     }
 
     fn spectrum_texture(

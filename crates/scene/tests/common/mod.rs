@@ -5,7 +5,7 @@
 pub mod lights;
 
 use alhazen_scene::light::{LightLiSample, LightRef, LightSampleContext};
-use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction};
+use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction, View, world_from_render};
 use description::{ImageDesc, MeshDesc, PatchMeshDesc, SceneDesc, ShapeKind};
 use image::Image;
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
@@ -19,6 +19,11 @@ pub fn scene(desc: &SceneDesc) -> Scene {
     let compiled = alhazen_scene::compile(desc).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
     assert!(compiled.warnings.is_empty(), "{:?}", compiled.warnings);
     compiled.scene
+}
+
+/// The view of a description in which nothing is wrong.
+pub fn view(desc: &SceneDesc) -> View {
+    View::compile(desc, world_from_render(desc)).unwrap_or_else(|errors| panic!("{errors:?}")).view
 }
 
 pub fn lambda() -> SampledWavelengths {
