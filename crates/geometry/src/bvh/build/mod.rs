@@ -1,7 +1,7 @@
 //! Building trees.
 //!
-//! Every builder sorts references to primitives and builds a binary tree over them ([`tree`]), which
-//! is then collapsed into wide nodes ([`widen`]).
+//! Every builder sorts references to primitives and builds a binary tree over them ([`tree`]),
+//! which is then collapsed into wide nodes ([`widen`]).
 //!
 //! Temporary memory for n primitives: 32 n bytes of references and 24 n of binary nodes, freed when
 //! the blocks are made; `high` takes twice as much. `fast` has one reference and one binary node
