@@ -223,7 +223,7 @@ error[unknown-type]: no shape is called `spere`
     fn places_of_the_same_warning_are_counted() {
         let mut sources = SourceMap::default();
         let file = sources.add("a.pbrt", "x\n".repeat(40_000).into_bytes());
-        let warning = |line| Diagnostic::warning("w", "hair", Span::new(file, 2 * line, 2 * line + 1));
+        let warning = |line: u32| Diagnostic::warning("w", "hair", Span::new(file, 2 * line, 2 * line + 1));
         let warnings: Vec<_> = (0..40_000).map(warning).collect();
         let shown = super::shown(&warnings);
         assert_eq!(shown.len(), 1);

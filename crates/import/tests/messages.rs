@@ -16,6 +16,7 @@ fn messages(text: &str) -> Vec<String> {
         .with("empty.pbrt", "")
         .with("bad.ply", "ply\nformat ascii 1.0\nelement vertex 99999999\nproperty float x\nend_header\n0\n")
         .with("bad.png", "no image")
+        .with("good.pfm", "Pf\n1 1\n-1\n\0\0\0\0")
         .with("bad.spd", "400 1 500")
         .with("bad.dat", "1 2 x 4");
     let deep = |i: u32| format!("Include \"deep{}.pbrt\"", i + 1);
@@ -214,6 +215,14 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:53 error[unreadable-image] cannot read the image `bad.png`: ",
     ),
     (
+        r#"Texture "t" "float" "imagemap" "string filename" "good.pfm" "string channel" "x""#,
+        "1:78 error[unknown-choice] `channel` cannot be `x`",
+    ),
+    (
+        r#"Texture "t" "spectrum" "imagemap" "string filename" "good.pfm" "string channel" "r""#,
+        "1:64 error[unknown-parameter] `imagemap` has no parameter `channel`",
+    ),
+    (
         r#"Shape "plymesh" "string filename" "bad.ply""#,
         "1:35 error[unreadable-mesh] cannot read the mesh `bad.ply`: mesh too large: 99999999 of `vertex` cannot lie in 2 bytes",
     ),
@@ -255,10 +264,6 @@ const IN_WORLD: &[(&str, &str)] = &[
         "1:41 error[parameter-value] `p1` and `p2` have the same z: a `disk` draws what such a line sweeps",
     ),
     (r#"ObjectInstance "x""#, "1:16 error[unknown-reference] there is no object `x`"),
-    (
-        r#"ObjectBegin "x" AreaLightSource "diffuse" Shape "sphere" ObjectEnd"#,
-        "1:43 warning[ignored] shapes of an object do not shine: its area light is left out",
-    ),
     (r#"Shape "implicit""#, "1:7 error[missing-parameter] `implicit` needs the parameter `f`"),
     (
         r#"Shape "implicit" "string f" "x" "point3 bounds" [1 1 1 0 0 0]"#,

@@ -74,7 +74,7 @@ use spectrum::RgbColorSpace;
 
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{ByProduct, Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, OutputFile};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
 pub use settings::{FormFactors, RadiositySettings};
@@ -87,6 +87,8 @@ pub struct Radiosity {
     sampler: Sampler,
     color_space: &'static RgbColorSpace,
     state: Option<State>,
+    /// Whether the last pass has put a draft on the film.
+    draft_is_shown: bool,
 }
 
 /// What is known of a scene.
@@ -150,21 +152,22 @@ impl State {
 impl Radiosity {
     /// With a mesh whose colours are those of `color_space`, if one is kept.
     pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
-        Self { settings, sampler, color_space, state: None }
+        Self { settings, sampler, color_space, state: None, draft_is_shown: false }
     }
 }
 
 impl Integrator for Radiosity {
     fn passes(&self) -> u32 {
-        self.settings.steps + self.sampler.samples_per_pixel()
+        self.sampler.samples_per_pixel()
     }
 
-    fn samples_per_pixel(&self) -> u32 {
-        self.sampler.samples_per_pixel()
+    fn drafts(&self) -> u32 {
+        self.settings.steps
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.state = Some(State::new(scene, view, &self.settings, control)?);
+        self.draft_is_shown = false;
         Ok(())
     }
 
@@ -207,22 +210,22 @@ impl Integrator for Radiosity {
             }
             Ok(stats)
         };
-        // A better solution makes a new picture, which takes the place of the old one when it is
-        // whole.
-        let mut better = (pass <= steps).then(|| film.blank());
+        // A better solution makes a new picture, which takes the place of a draft when it is whole.
+        let mut better = (pass < steps || self.draft_is_shown).then(|| film.blank());
         let tiles = better.as_mut().unwrap_or(film).tiles_mut();
         let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
         drawn.into_iter().for_each(|some| stats += some);
         if let Some(better) = better {
             *film = better;
         }
+        self.draft_is_shown = pass < steps;
         Ok(stats)
     }
 
-    fn by_products(&self) -> Vec<ByProduct> {
+    fn files(&self) -> Vec<OutputFile> {
         let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
         let file = self.settings.mesh_out.iter().zip(mesh);
-        file.map(|(path, mesh)| ByProduct::File(path.clone(), mesh.clone())).collect()
+        file.map(|(path, mesh)| OutputFile { path: path.clone(), contents: mesh.clone() }).collect()
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

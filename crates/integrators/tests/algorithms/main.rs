@@ -12,5 +12,6 @@ mod furnace;
 mod merging;
 mod mlt;
 mod photon_mapping;
-mod render_loop;
+
+mod session;
 mod support;
