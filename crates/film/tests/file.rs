@@ -157,7 +157,8 @@ fn files_of_other_renders_and_doubled_passes_are_refused() {
         let limits = ReadLimits::default();
         file().merge(&other.write(Vec::new()).unwrap()[..], &limits).unwrap_err().to_string()
     };
-    let cases: [(&dyn Fn(&mut FilmFile), &str); 8] = [
+    type Change<'a> = &'a dyn Fn(&mut FilmFile);
+    let cases: [(Change, &str); 8] = [
         (&|file| file.header.scene_hash[3] ^= 1, "the scenes differ"),
         (&|file| file.header.settings.push(' '), "the settings differ"),
         (&|file| file.header.seed = 4, "the seeds differ"),
