@@ -1,14 +1,35 @@
-//! Text to standard output and standard error. Nobody listening at the other end is no reason to
-//! fail.
+//! Text to standard output and standard error. What cannot be delivered, as to a full disk, is an
+//! error; a reader that has gone away (a broken pipe) has heard enough, and is none.
 
-use std::io::Write;
+use std::fmt::{self, Display};
+use std::io::{self, ErrorKind, Write};
 
-/// A line to standard output.
-pub fn say(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stdout(), "{line}");
+/// Text that could not be written, and why.
+#[derive(Debug)]
+pub struct Undelivered {
+    stream: &'static str,
+    error: io::Error,
 }
 
-/// A line to standard error.
-pub fn warn(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{line}");
+impl Display for Undelivered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cannot write to {}: {}", self.stream, self.error)
+    }
+}
+
+/// Writes a line to standard output.
+pub fn say(line: impl Display) -> Result<(), Undelivered> {
+    deliver(io::stdout().lock(), "standard output", line)
+}
+
+/// Writes a line to standard error.
+pub fn warn(line: impl Display) -> Result<(), Undelivered> {
+    deliver(io::stderr().lock(), "standard error", line)
+}
+
+fn deliver(mut to: impl Write, stream: &'static str, line: impl Display) -> Result<(), Undelivered> {
+    match writeln!(to, "{line}").and_then(|()| to.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Undelivered { stream, error }),
+        _ => Ok(()),
+    }
 }

@@ -1,15 +1,15 @@
-//! Diagnostics of scenes shown to people, with the lines that they are about, and to programs, as
-//! JSON.
+//! Diagnostics of scenes, as text with the lines that they are about, and as JSON. Warnings of the
+//! same message are shown once with their number.
 
 use std::io::IsTerminal;
 use std::ops::Range;
 
-use alhazen::description::{Diagnostic, Severity, SourceMap, Span};
+use alhazen::description::{Diagnostic, DiagnosticList, Severity, SourceMap, Span};
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Element, Level, Origin, Renderer, Snippet};
 use serde_json::{Value, json};
 
-use crate::console::warn;
+use crate::console::{Undelivered, warn};
 
 /// Most bytes of a line that are shown after what a message is about.
 const MARGIN: usize = 200;
@@ -19,15 +19,24 @@ const MARGIN: usize = 200;
 const LONGEST_START: usize = 10_000;
 
 /// Writes diagnostics and their number to standard error.
-pub fn print(diagnostics: &[Diagnostic], sources: &SourceMap) {
+pub fn print(diagnostics: &[Diagnostic], sources: &SourceMap) -> Result<(), Undelivered> {
     let renderer = renderer(std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none());
-    for diagnostic in diagnostics {
-        warn(format_args!("{}\n", render(diagnostic, sources, &renderer)));
+    let diagnostics = shown(diagnostics);
+    for diagnostic in &diagnostics {
+        warn(format_args!("{}\n", render(diagnostic, sources, &renderer)))?;
     }
-    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
-    if let Some(summary) = summary(errors, diagnostics.len() - errors) {
-        warn(summary);
-    }
+    let count = |severity| {
+        let of_severity = diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity);
+        of_severity.map(|diagnostic| diagnostic.count).sum()
+    };
+    summary(count(Severity::Error), count(Severity::Warning)).map_or(Ok(()), warn)
+}
+
+/// The diagnostics that are shown, in the order of the text.
+pub fn shown(diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
+    let mut list = DiagnosticList::default();
+    list.extend(diagnostics.iter().cloned());
+    list.finish()
 }
 
 /// "2 errors and 1 warning"; `None` where there is nothing.
@@ -45,6 +54,7 @@ fn summary(errors: usize, warnings: usize) -> Option<String> {
 
 /// Errors and warnings as two JSON lists.
 pub fn to_json(diagnostics: &[Diagnostic], sources: &SourceMap) -> (Value, Value) {
+    let diagnostics = shown(diagnostics);
     let list = |severity| {
         let of_severity = diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity);
         of_severity.map(|diagnostic| entry(diagnostic, sources)).collect()
@@ -53,8 +63,8 @@ pub fn to_json(diagnostics: &[Diagnostic], sources: &SourceMap) -> (Value, Value
 }
 
 fn entry(diagnostic: &Diagnostic, sources: &SourceMap) -> Value {
-    let mut entry =
-        json!({ "code": diagnostic.code, "message": diagnostic.message, "help": diagnostic.help });
+    let Diagnostic { code, message, help, count, .. } = diagnostic;
+    let mut entry = json!({ "code": code, "message": message, "help": help, "count": count });
     let span = diagnostic.span();
     if !span.is_none() {
         let position = sources.position(span);
@@ -85,6 +95,15 @@ fn render(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> 
         excerpt.elements(kind, label)
     });
     let mut group = level.primary_title(diagnostic.message.as_str()).id(diagnostic.code).elements(elements);
+    let more = match (diagnostic.count, diagnostic.labels.len()) {
+        (count, 0) => Some(format!("left out: {count}")),
+        (1, _) => None,
+        (2, _) => Some("the same is found in 1 more place".into()),
+        (count, _) => Some(format!("the same is found in {} more places", count - 1)),
+    };
+    if let Some(more) = &more {
+        group = group.element(Level::NOTE.message(more.as_str()));
+    }
     if let Some(help) = &diagnostic.help {
         group = group.element(Level::HELP.message(help.as_str()));
     }
@@ -105,9 +124,8 @@ impl Excerpt {
     fn new(span: Span, sources: &SourceMap) -> Self {
         let bytes = sources.text(span.file);
         let start = bytes.len().min(span.start as usize);
-        let line_start = bytes[..start].iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
-        let line_end =
-            bytes[start..].iter().position(|&byte| byte == b'\n').map_or(bytes.len(), |at| start + at);
+        let line = sources.line_range(span);
+        let (line_start, line_end) = (line.start, line.end.max(start));
         let end = line_end.min(span.end as usize).max(start);
         let whole = start - line_start <= LONGEST_START;
         let first = if whole { line_start } else { start - MARGIN };
@@ -199,6 +217,23 @@ error[unknown-type]: no shape is called `spere`
         assert!(far.contains("a.pbrt:1:49001"), "{far}");
         let nowhere = shown(b"", |_| Diagnostic::error("e", "nothing", Span::NONE));
         assert_eq!(nowhere, "error[e]: nothing");
+    }
+
+    #[test]
+    fn places_of_the_same_warning_are_counted() {
+        let mut sources = SourceMap::default();
+        let file = sources.add("a.pbrt", "x\n".repeat(40_000).into_bytes());
+        let warning = |line: u32| Diagnostic::warning("w", "hair", Span::new(file, 2 * line, 2 * line + 1));
+        let warnings: Vec<_> = (0..40_000).map(warning).collect();
+        let shown = super::shown(&warnings);
+        assert_eq!(shown.len(), 1);
+        let text = render(&shown[0], &sources, &renderer(false));
+        assert!(
+            text.contains("a.pbrt:1:1") && text.contains("the same is found in 39999 more places"),
+            "{text}"
+        );
+        let (_, json) = to_json(&warnings, &sources);
+        assert_eq!((&json[0]["count"], &json[0]["line"]), (&40_000.into(), &1.into()));
     }
 
     #[test]

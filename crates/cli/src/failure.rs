@@ -1,40 +1,51 @@
-//! Why a command did not do what it was asked for, and how that is told: text on standard error, or
-//! one JSON object on standard output; and the exit code.
+//! Why a command failed, and how that is reported: text on standard error, or one JSON object on
+//! standard output; and the exit code.
 
 use std::process::ExitCode;
 
 use alhazen::description::{Diagnostic, SourceMap};
 use serde_json::{Value, json};
 
-use crate::console::{say, warn};
+use crate::console::{Undelivered, say, warn};
 use crate::diagnostics;
 
 /// Why a command ended without its result.
 #[derive(Debug)]
 pub enum Failure {
-    /// The command line asks for what cannot be.
+    /// The command line is wrong.
     Usage(String),
     /// A file is missing, wrong or cannot be written.
     Input(String),
     /// A scene is wrong.
     Scene {
-        /// Everything there is to say about it.
+        /// All diagnostics of the scene.
         diagnostics: Vec<Diagnostic>,
-        /// The texts that it is about.
+        /// The files that they are about.
         sources: SourceMap,
     },
+    /// The result, or a message, could not be written.
+    Output(Undelivered),
+}
+
+impl From<Undelivered> for Failure {
+    fn from(undelivered: Undelivered) -> Self {
+        Self::Output(undelivered)
+    }
 }
 
 impl Failure {
-    /// Tells the failure.
+    /// Reports the failure; gives the exit code of the program.
     pub fn report(&self, as_json: bool) -> ExitCode {
-        if as_json {
-            say(self.to_json());
-        } else {
-            match self {
-                Self::Usage(message) | Self::Input(message) => warn(format_args!("error: {message}")),
-                Self::Scene { diagnostics, sources } => diagnostics::print(diagnostics, sources),
-            }
+        let reported = match self {
+            // Standard output may be what failed.
+            Self::Output(undelivered) => warn(format_args!("error: {undelivered}")),
+            _ if as_json => say(self.to_json()),
+            Self::Usage(message) | Self::Input(message) => warn(format_args!("error: {message}")),
+            Self::Scene { diagnostics, sources } => diagnostics::print(diagnostics, sources),
+        };
+        if let Err(undelivered) = reported {
+            // The last place to report to; the exit code tells of a failure all the same.
+            let _ = warn(format_args!("error: {undelivered}"));
         }
         ExitCode::from(self.exit_code())
     }
@@ -42,13 +53,14 @@ impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
-            Self::Input(_) | Self::Scene { .. } => 1,
+            Self::Input(_) | Self::Scene { .. } | Self::Output(_) => 1,
         }
     }
 
     fn to_json(&self) -> Value {
         let (errors, warnings) = match self {
             Self::Usage(message) | Self::Input(message) => (json!([{ "message": message }]), json!([])),
+            Self::Output(undelivered) => (json!([{ "message": undelivered.to_string() }]), json!([])),
             Self::Scene { diagnostics, sources } => diagnostics::to_json(diagnostics, sources),
         };
         let status = if self.exit_code() == 2 { "usage" } else { "error" };

@@ -1,21 +1,45 @@
-//! `alhazen image`: pictures compared and converted.
+//! `alhazen image`: pictures inspected, compared and converted.
 
 use std::path::Path;
 
 use alhazen::image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use alhazen::image::{
-    Image, ImageError, SampleDepth, WriteOptions, false_color::false_color, metrics, read, write,
+    Image, ImageError, Projection, SampleDepth, WriteOptions, false_color::false_color, info as image_info,
+    metrics, read, write,
 };
 use serde_json::json;
 
-use crate::args::{Convert, Depth, Diff, Metric};
+use crate::args::{self, Convert, Depth, Diff, Info, Metric};
 use crate::console::say;
 use crate::failure::{Failure, about_file};
+use crate::inspect::{FileInfo, Pixel};
 use crate::output;
 
 fn open(path: &Path) -> Result<Image, Failure> {
+    decode(&std::fs::read(path).map_err(|error| about_file(path, error))?, path)
+}
+
+fn decode(bytes: &[u8], path: &Path) -> Result<Image, Failure> {
+    read(bytes, &path.to_string_lossy(), &Default::default()).map_err(|error| about_file(path, error))
+}
+
+/// Shows what a picture file holds, or the values of one of its pixels.
+pub fn info(arguments: &Info) -> Result<(), Failure> {
+    let path = &arguments.file;
     let bytes = std::fs::read(path).map_err(|error| about_file(path, error))?;
-    read(&bytes, &path.to_string_lossy(), &Default::default()).map_err(|error| about_file(path, error))
+    match arguments.pixel {
+        Some(pixel) => {
+            let image = decode(&bytes, path)?;
+            let pixel = Pixel::new(&image, pixel).map_err(|problem| about_file(path, problem))?;
+            Ok(if arguments.json { say(pixel.to_json(path)) } else { say(pixel) }?)
+        }
+        None => {
+            let info =
+                image_info(&bytes, &path.to_string_lossy()).map_err(|error| about_file(path, error))?;
+            let header = FileInfo { path, bytes: bytes.len() as u64, info };
+            Ok(if arguments.json { say(header.to_json()) } else { say(header) }?)
+        }
+    }
 }
 
 /// Tells how far one picture is from another.
@@ -42,39 +66,45 @@ pub fn diff(arguments: &Diff) -> Result<(), Failure> {
         write(&picture, path, &WriteOptions::default()).map_err(|error| about_file(path, error))?;
     }
     if arguments.json {
-        say(json!({
-                "status": "done",
-                "mse": difference.mse,
-                "relmse": difference.rel_mse,
-                "flip": flip.mean,
-                "max_error": difference.max_error,
-                "mean_a": difference.reference_mean,
-                "mean_b": difference.test_mean,
-                "non_finite": difference.non_finite,
-                "output": arguments.output.as_ref().map(|path| path.display().to_string()),
-        }));
-        return Ok(());
+        return Ok(say(json!({
+            "status": "done",
+            "mse": difference.mse,
+            "relmse": difference.rel_mse,
+            "flip": flip.mean,
+            "max_error": difference.max_error,
+            "mean_a": difference.reference_mean,
+            "mean_b": difference.test_mean,
+            "non_finite": difference.non_finite,
+            "output": arguments.output.as_ref().map(|path| path.display().to_string()),
+        }))?);
     }
     let means = |mean: [f64; 3]| mean.map(|channel| format!("{channel:.6}")).join("  ");
-    say(format_args!("MSE        {:.6e}", difference.mse));
-    say(format_args!("relMSE     {:.6e}", difference.rel_mse));
-    say(format_args!("FLIP       {:.6}", flip.mean));
-    say(format_args!("max error  {:.6}", difference.max_error));
-    say(format_args!("mean of A  {}", means(difference.reference_mean)));
-    say(format_args!("mean of B  {}", means(difference.test_mean)));
+    let mut lines = vec![
+        format!("MSE        {:.6e}", difference.mse),
+        format!("relMSE     {:.6e}", difference.rel_mse),
+        format!("FLIP       {:.6}", flip.mean),
+        format!("max error  {:.6}", difference.max_error),
+        format!("mean of A  {}", means(difference.reference_mean)),
+        format!("mean of B  {}", means(difference.test_mean)),
+    ];
     if difference.non_finite > 0 {
-        say(format_args!("{} values are not finite and left out", difference.non_finite));
+        lines.push(format!("{} values are not finite and left out", difference.non_finite));
     }
-    if let Some(path) = &arguments.output {
-        say(format_args!("error picture in {}", path.display()));
-    }
-    Ok(())
+    lines.extend(arguments.output.as_ref().map(|path| format!("error picture in {}", path.display())));
+    Ok(say(lines.join("\n"))?)
 }
 
 /// Writes a picture in another format.
 pub fn convert(arguments: &Convert) -> Result<(), Failure> {
     output::check(&arguments.output).map_err(Failure::Usage)?;
-    let image = open(&arguments.input)?;
+    let mut image = open(&arguments.input)?;
+    if let Some(projection) = arguments.projection {
+        let projection = match projection {
+            args::Projection::EqualArea => Projection::EqualArea,
+            args::Projection::LatitudeLongitude => Projection::LatitudeLongitude,
+        };
+        image = image.reproject(projection).map_err(|error| about_file(&arguments.input, error))?;
+    }
     let depth = match arguments.depth {
         Depth::Natural => SampleDepth::Natural,
         Depth::U8 => SampleDepth::U8,
@@ -86,12 +116,12 @@ pub fn convert(arguments: &Convert) -> Result<(), Failure> {
         .map_err(|error| about_file(&arguments.output, error))?;
     if arguments.json {
         say(json!({
-                "status": "done",
-                "output": arguments.output.display().to_string(),
-                "width": image.width(),
-                "height": image.height(),
-                "channels": image.channels(),
-        }));
+            "status": "done",
+            "output": arguments.output.display().to_string(),
+            "width": image.width(),
+            "height": image.height(),
+            "channels": image.channels(),
+        }))?;
     }
     Ok(())
 }

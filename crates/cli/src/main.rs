@@ -2,18 +2,27 @@
 
 mod args;
 mod bar;
+mod checkpoint;
 mod compare;
 mod console;
 mod diagnostics;
+mod drive;
 mod failure;
 mod image;
+mod inspect;
 mod interrupt;
+mod manual;
+mod merge;
 mod numbers;
 mod output;
 mod render;
+mod results;
+mod resume;
 mod scene;
 mod summary;
+mod threads;
 
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use args::{Cli, Command};
@@ -28,21 +37,29 @@ fn main() -> ExitCode {
     let done = |()| ExitCode::SUCCESS;
     let result = match &cli.command {
         Command::Render(arguments) => render::render(arguments),
+        Command::Resume(arguments) => resume::resume(arguments),
+        Command::Merge(arguments) => merge::merge(arguments).map(done),
         Command::Compare(arguments) => compare::compare(arguments),
         Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
+        Command::Image(args::Image::Info(arguments)) => image::info(arguments).map(done),
         Command::Image(args::Image::Diff(arguments)) => image::diff(arguments).map(done),
         Command::Image(args::Image::Convert(arguments)) => image::convert(arguments).map(done),
+        Command::Completions(arguments) => manual::completions(arguments).map(done),
+        Command::Man(arguments) => manual::man(arguments).map(done),
     };
     result.unwrap_or_else(|failure| failure.report(cli.command.json()))
 }
 
-/// Tells what is wrong with the command line, or gives the help that was asked for.
+/// Reports what is wrong with the command line, or prints the help that was asked for.
 fn usage(error: &clap::Error) -> ExitCode {
     let wrong = error.use_stderr();
     if wrong && std::env::args().any(|argument| argument == "--json") {
         return Failure::Usage(error.render().to_string().trim().to_owned()).report(true);
     }
-    // If nobody listens, there is nobody to tell.
-    let _ = error.print();
-    ExitCode::from(if wrong { 2 } else { 0 })
+    match error.print() {
+        Err(error) if !wrong && error.kind() != ErrorKind::BrokenPipe => {
+            Failure::Input(format!("cannot write to standard output: {error}")).report(false)
+        }
+        _ => ExitCode::from(if wrong { 2 } else { 0 }),
+    }
 }

@@ -3,7 +3,7 @@
 use std::fs::{self, OpenOptions};
 use std::path::Path;
 
-use alhazen::image::Format;
+use alhazen::image::{Format, link_target};
 
 /// Whether a picture can be written to `path`: its extension names a format, its folder is there
 /// and takes files, and what stands in its place can be replaced. The error says which of these
@@ -22,6 +22,8 @@ pub fn check(path: &Path) -> Result<(), String> {
 /// Whether a file can be written to `path`, whatever its extension.
 pub fn check_place(path: &Path) -> Result<(), String> {
     let shown = path.display();
+    // The file is written where a symbolic link leads.
+    let path = &link_target(path);
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -60,6 +62,12 @@ mod tests {
         assert!(problem("missing/a.exr").ends_with("missing does not exist"));
         assert!(problem("file/a.exr").ends_with("file is not a folder"));
         assert!(problem("folder.exr").ends_with("it is a folder"));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("missing/b.exr", folder.join("link.exr")).unwrap();
+            assert!(problem("link.exr").ends_with("missing does not exist"));
+            fs::remove_file(folder.join("link.exr")).unwrap();
+        }
         check(&folder.join("a.EXR")).unwrap();
         let left: Vec<_> = fs::read_dir(&folder).unwrap().collect();
         assert_eq!(left.len(), 2, "the check leaves nothing behind");

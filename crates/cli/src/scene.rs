@@ -1,4 +1,4 @@
-//! `alhazen scene`: scene files looked at.
+//! `alhazen scene`: scene files checked.
 
 use std::path::Path;
 
@@ -11,37 +11,34 @@ use crate::console::say;
 use crate::diagnostics;
 use crate::failure::Failure;
 
-/// Tells everything that is wrong with a scene, or drawn otherwise than it says. What is wrong
-/// makes a failure.
+/// Reports all errors and warnings of a scene; errors make it a failure.
 pub fn check(arguments: &Check) -> Result<(), Failure> {
     let mut imported = import(&arguments.scene, &Files);
-    // What was understood of a wrong scene is compiled all the same: its author wants to hear of
-    // everything at once.
-    let (said, wrong) = match Job::compile(&imported.desc) {
+    // A scene with errors is compiled too, as far as it was understood: its author wants to see all
+    // errors in one run.
+    let (found, wrong) = match Job::compile(&imported.desc) {
         Ok(compiled) => (compiled.warnings, false),
-        Err(said) => (said, true),
+        Err(errors) => (errors, true),
     };
     let wrong = wrong || imported.has_errors();
-    imported.diagnostics.extend(said);
+    imported.diagnostics.extend(found);
     let (diagnostics, sources) = (imported.diagnostics, imported.sources);
     if wrong {
         return Err(Failure::Scene { diagnostics, sources });
     }
     if arguments.json {
         let (_, warnings) = diagnostics::to_json(&diagnostics, &sources);
-        say(json!({ "status": "done", "errors": [], "warnings": warnings }));
-        return Ok(());
+        return Ok(say(json!({ "status": "done", "errors": [], "warnings": warnings }))?);
     }
-    diagnostics::print(&diagnostics, &sources);
+    diagnostics::print(&diagnostics, &sources)?;
     let name = if arguments.scene == Path::new("-") {
         "the scene".into()
     } else {
         arguments.scene.display().to_string()
     };
-    say(if diagnostics.is_empty() {
-        format!("{name} is right")
+    Ok(say(if diagnostics.is_empty() {
+        format!("{name} is valid")
     } else {
-        format!("{name} can be rendered, but not all of it as it says")
-    });
-    Ok(())
+        format!("{name} can be rendered, with the differences above")
+    })?)
 }

@@ -42,7 +42,7 @@ fn a_wrong_formula_is_shown_with_a_caret_in_it() {
 fn scene_check_tells_without_rendering() {
     let folder = Folder::with_scene("check");
     let right = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(0);
-    assert_eq!((right.out.as_str(), right.err.as_str()), ("scene.pbrt is right\n", ""));
+    assert_eq!((right.out.as_str(), right.err.as_str()), ("scene.pbrt is valid\n", ""));
     folder.write(
         "sensor.pbrt",
         &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),
@@ -147,6 +147,7 @@ fn a_wrong_command_line_is_told() {
             "cannot set techniques to `true`: pictures of all strategies take 2.3 GiB, more than 2 GiB",
         ),
         (&["render", "scene.pbrt", "--pixel", "24,0"], "not in the image of 24 × 16 pixels"),
+        (&["render", "scene.pbrt", "--threads", "60000"], "cannot start 60000 threads: this machine has"),
         (&["render", "scene.pbrt", "--resolution", "12"], "640x480"),
         (&["paint", "scene.pbrt"], "paint"),
     ] {

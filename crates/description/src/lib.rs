@@ -38,7 +38,7 @@ pub use camera::{
     SphericalMapping,
 };
 pub use color::{ColorSpaceDesc, SpectrumDesc};
-pub use diagnostic::{Diagnostic, Severity};
+pub use diagnostic::{Diagnostic, DiagnosticList, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
 pub use integrator::{
@@ -60,7 +60,7 @@ pub use shape::{
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use texture::{
-    EncodingDesc, FloatParameter, FloatTextureDesc, ImageTextureDesc, MappingDesc, Parameter,
+    EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
     SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, WrapMode,
 };
 pub use transform::TransformDesc;

@@ -1,15 +1,16 @@
-//! Files by number, places in them, and how a place is shown to a reader.
+//! Source files by number, spans of them, and the lines and columns of spans.
 
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 
 /// The number of a file in a [`SourceMap`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FileId(pub u32);
 
 impl FileId {
-    /// Of what was said by who uses a scene, as on a command line, rather than in a file. Its spans
-    /// count what was said.
+    /// Of values that the caller gives, as on a command line, rather than a file. Their spans number
+    /// these values.
     pub const CALLER: Self = Self(u32::MAX - 1);
 }
 
@@ -25,7 +26,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The span of what was said in no file.
+    /// The span of what stands in no file.
     pub const NONE: Self = Self { file: FileId(u32::MAX), start: 0, end: 0 };
 
     /// The bytes `start..end` of a file.
@@ -53,17 +54,17 @@ impl Default for Span {
     }
 }
 
-/// A value and the place where it was said.
+/// A value and where it is given.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Spanned<T> {
-    /// What was said.
+    /// The value.
     pub value: T,
-    /// Where it was said.
+    /// Where it is given.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
-    /// A value with its place.
+    /// A value with its span.
     pub fn new(value: T, span: Span) -> Self {
         Self { value, span }
     }
@@ -78,35 +79,52 @@ pub struct Position {
     pub column: usize,
 }
 
-/// All files that were read as text, with what they held when they were read.
+/// All files that were read as text, with their content.
 ///
-/// Texts are bytes: comments may be in any encoding. Compressed files are kept as the text that was
-/// in them.
+/// Texts are bytes: comments may be in any encoding. Of compressed files the unpacked text is kept.
 #[derive(Clone, Debug, Default)]
 pub struct SourceMap {
-    files: Vec<(String, Arc<[u8]>)>,
+    files: Vec<SourceFile>,
+}
+
+#[derive(Clone, Debug)]
+struct SourceFile {
+    name: String,
+    text: Arc<[u8]>,
+    /// Where lines begin; found when the first position is asked for.
+    line_starts: OnceLock<Vec<u32>>,
+}
+
+impl SourceFile {
+    fn line_starts(&self) -> &[u32] {
+        self.line_starts.get_or_init(|| {
+            let ends = self.text.iter().enumerate().filter(|&(_, &byte)| byte == b'\n');
+            std::iter::once(0).chain(ends.map(|(at, _)| at as u32 + 1)).collect()
+        })
+    }
 }
 
 impl SourceMap {
     /// Adds a file under the name that messages will show.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<[u8]>>) -> FileId {
-        self.files.push((name.into(), text.into()));
+        let line_starts = OnceLock::new();
+        self.files.push(SourceFile { name: name.into(), text: text.into(), line_starts });
         FileId(self.files.len() as u32 - 1)
     }
 
     /// The name of a file; empty for [`Span::NONE`]'s.
     pub fn name(&self, file: FileId) -> &str {
-        self.files.get(file.0 as usize).map_or("", |(name, _)| name)
+        self.files.get(file.0 as usize).map_or("", |file| &file.name)
     }
 
     /// The text of a file; empty for [`Span::NONE`]'s.
     pub fn text(&self, file: FileId) -> &[u8] {
-        self.files.get(file.0 as usize).map_or(&[], |(_, text)| text)
+        self.files.get(file.0 as usize).map_or(&[], |file| &file.text)
     }
 
     /// The text of a file, shared.
     pub fn shared_text(&self, file: FileId) -> Arc<[u8]> {
-        self.files.get(file.0 as usize).map_or_else(|| Arc::from([]), |(_, text)| text.clone())
+        self.files.get(file.0 as usize).map_or_else(|| Arc::from([]), |file| file.text.clone())
     }
 
     /// The number of files.
@@ -129,21 +147,35 @@ impl SourceMap {
     /// Where a span begins.
     pub fn position(&self, span: Span) -> Position {
         let text = self.text(span.file);
-        let before = &text[..text.len().min(span.start as usize)];
-        let line_start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |at| at + 1);
-        Position {
-            line: 1 + before.iter().filter(|&&byte| byte == b'\n').count(),
-            column: 1 + String::from_utf8_lossy(&before[line_start..]).chars().count(),
-        }
+        let at = text.len().min(span.start as usize);
+        let (number, start) = self.line_start(span.file, at);
+        // Every character but its first byte is continuation bytes; so is a stray one no character.
+        let characters = text[start..at].iter().filter(|&&byte| byte & 0xc0 != 0x80).count();
+        Position { line: 1 + number, column: 1 + characters }
     }
 
-    /// The whole line in which a span begins, without its line end.
-    pub fn line(&self, span: Span) -> Cow<'_, str> {
+    /// The bytes of the line in which a span begins, without its line end.
+    pub fn line_range(&self, span: Span) -> Range<usize> {
         let text = self.text(span.file);
         let at = text.len().min(span.start as usize);
-        let start = text[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |found| found + 1);
-        let end = text[at..].iter().position(|&byte| byte == b'\n').map_or(text.len(), |found| at + found);
-        String::from_utf8_lossy(text[start..end].strip_suffix(b"\r").unwrap_or(&text[start..end]))
+        let (number, start) = self.line_start(span.file, at);
+        let next = self.files.get(span.file.0 as usize).and_then(|file| file.line_starts().get(number + 1));
+        let end = next.map_or(text.len(), |&next| next as usize - 1);
+        let carriage_return = text[start..end].ends_with(b"\r");
+        start..end - usize::from(carriage_return)
+    }
+
+    /// The line in which a span begins, without its line end.
+    pub fn line(&self, span: Span) -> Cow<'_, str> {
+        String::from_utf8_lossy(&self.text(span.file)[self.line_range(span)])
+    }
+
+    /// The number of the line that a byte is in, from 0, and where it starts.
+    fn line_start(&self, file: FileId, at: usize) -> (usize, usize) {
+        let Some(file) = self.files.get(file.0 as usize) else { return (0, 0) };
+        let starts = file.line_starts();
+        let number = starts.partition_point(|&start| start as usize <= at) - 1;
+        (number, starts[number] as usize)
     }
 }
 
@@ -152,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_counted_in_lines_and_characters() {
+    fn positions_are_lines_and_characters() {
         let mut sources = SourceMap::default();
         let file = sources.add("a.pbrt", "ab\r\nd\u{e9}f\ng".as_bytes());
         let f = Span::new(file, 7, 8);

@@ -1,4 +1,4 @@
-//! Where files come from. This is the only door of the crate to the outside.
+//! Where files come from. No other part of the crate reads files.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
 
-/// A place that has files.
+/// A source of files.
 pub trait AssetSource: Sync {
     /// The whole content of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
@@ -16,25 +16,59 @@ pub trait AssetSource: Sync {
 }
 
 /// The file system; the path `-` is standard input.
+///
+/// What has no length, as pipes and standard input, is read up to 1 GiB. Devices are refused.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Files;
+
+impl Files {
+    /// Most bytes of a pipe, which may have no end.
+    const LONGEST_STREAM: u64 = 1 << 30;
+}
 
 impl AssetSource for Files {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         if path == Path::new("-") {
-            let mut bytes = Vec::new();
-            io::stdin().lock().read_to_end(&mut bytes)?;
-            return Ok(bytes);
+            return read_at_most(io::stdin().lock(), Self::LONGEST_STREAM);
         }
-        if path.is_dir() {
+        let kind = std::fs::metadata(path)?.file_type();
+        if kind.is_file() {
+            return std::fs::read(path);
+        }
+        if kind.is_dir() {
             return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
         }
-        std::fs::read(path)
+        if is_device(kind) {
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, not a file"));
+        }
+        read_at_most(std::fs::File::open(path)?, Self::LONGEST_STREAM)
     }
 
     fn exists(&self, path: &Path) -> bool {
         path == Path::new("-") || path.is_file()
     }
+}
+
+#[cfg(unix)]
+fn is_device(kind: std::fs::FileType) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    kind.is_char_device() || kind.is_block_device()
+}
+
+#[cfg(not(unix))]
+fn is_device(_: std::fs::FileType) -> bool {
+    false
+}
+
+/// All bytes of a stream; an error if there are more than `limit`.
+fn read_at_most(stream: impl Read, limit: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    stream.take(limit + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > limit {
+        let message = format!("it has more than {} MiB", limit >> 20);
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    Ok(bytes)
 }
 
 /// Files held in memory: for tests, archives and callers without a file system.
@@ -61,23 +95,26 @@ impl AssetSource for MemoryAssets {
     }
 }
 
-/// Reads a file and unpacks it if its content is gzip, whatever it is called.
+/// Reads a file and unpacks it if its content is gzip, whatever it is called. The content may be
+/// 64 MiB or 256 times as long as the file, whichever is more, and 4 GiB at most.
 pub(crate) fn read_unpacked(assets: &dyn AssetSource, path: &Path) -> io::Result<Vec<u8>> {
-    /// No honest text or mesh is packed tighter than this many to one.
+    /// Texts and meshes are packed less tightly than this many to one.
     const GREATEST_RATIO: u64 = 256;
     const ALWAYS_ALLOWED: u64 = 64 << 20;
+    const NEVER_ALLOWED: u64 = 4 << 30;
 
     let bytes = assets.read(path)?;
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(bytes);
     }
-    let limit = (bytes.len() as u64 * GREATEST_RATIO).max(ALWAYS_ALLOWED);
-    let mut unpacked = Vec::new();
-    MultiGzDecoder::new(bytes.as_slice()).take(limit + 1).read_to_end(&mut unpacked)?;
-    if unpacked.len() as u64 > limit {
-        return Err(io::Error::new(io::ErrorKind::InvalidData, "its packed content is unreasonably large"));
-    }
-    Ok(unpacked)
+    let limit = (bytes.len() as u64 * GREATEST_RATIO).clamp(ALWAYS_ALLOWED, NEVER_ALLOWED);
+    read_at_most(MultiGzDecoder::new(bytes.as_slice()), limit).map_err(|error| match error.kind() {
+        io::ErrorKind::FileTooLarge => io::Error::new(
+            io::ErrorKind::FileTooLarge,
+            format!("unpacked, {error}, which is too much for {} packed bytes", bytes.len()),
+        ),
+        _ => error,
+    })
 }
 
 /// The path of a file that another file names: beside that file if it is there, else beside the
@@ -116,7 +153,23 @@ mod tests {
         assert!(bomb.len() < 100_000);
         let assets = MemoryAssets::default().with("bomb", bomb);
         let error = read_unpacked(&assets, Path::new("bomb")).unwrap_err();
-        assert_eq!(error.kind(), io::ErrorKind::InvalidData);
+        assert_eq!(error.kind(), io::ErrorKind::FileTooLarge);
+        assert!(error.to_string().starts_with("unpacked, it has more than 64 MiB"), "{error}");
+    }
+
+    #[test]
+    fn endless_streams_are_cut_off() {
+        let error = read_at_most(io::repeat(7), 3 << 20).unwrap_err();
+        assert_eq!(error.to_string(), "it has more than 3 MiB");
+        assert_eq!(read_at_most(&[7_u8; 100][..], 100).unwrap().len(), 100);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn devices_are_no_files() {
+        for path in ["/dev/zero", "/dev/null"] {
+            assert!(Files.read(Path::new(path)).unwrap_err().to_string().contains("device"), "{path}");
+        }
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Scene and mesh files read into a [`SceneDesc`].
 //!
 //! [`import`] always gives a description: the scene as far as it could be understood, the texts
-//! that were read, and everything there is to say about them. Files are reached through an
+//! that were read, and all errors and warnings about them. Files are read through an
 //! [`AssetSource`] only.
 
 mod assets;
+mod foreign;
 mod images;
 mod mesh;
 mod number;
@@ -20,19 +21,19 @@ pub use assets::{AssetSource, Files, MemoryAssets};
 pub use mesh::{Mesh, MeshError, read_obj, read_ply};
 pub use suggest::closest;
 
-/// What came of reading a scene.
+/// A scene that was read.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The scene, as far as it could be understood.
     pub desc: SceneDesc,
     /// The texts that the spans of the scene and its messages refer to.
     pub sources: SourceMap,
-    /// Everything that is wrong or strange, in the order of the text.
+    /// All errors and warnings, in the order of the text.
     pub diagnostics: Vec<Diagnostic>,
 }
 
 impl Imported {
-    /// Whether anything is so wrong that the scene does not mean what its author wrote.
+    /// Whether there is any error.
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(Diagnostic::is_error)
     }

@@ -1,31 +1,19 @@
-//! The messages of one import.
+//! The diagnostics of one import.
 
-use std::collections::HashSet;
+use description::{Diagnostic, DiagnosticList, Span};
 
-use description::{Diagnostic, Severity, Span};
-
-/// Collects messages up to a limit, so that a file of noise does not fill memory.
+/// Collects diagnostics up to a limit, so that a file of noise does not fill memory.
 #[derive(Debug, Default)]
-pub(crate) struct Report {
-    diagnostics: Vec<Diagnostic>,
-    is_full: bool,
-    given_once: HashSet<String>,
-}
+pub(crate) struct Report(DiagnosticList);
 
 impl Report {
-    const LIMIT: usize = 500;
-
     pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
-        if self.diagnostics.len() < Self::LIMIT {
-            self.diagnostics.push(diagnostic);
-        } else {
-            self.is_full = true;
-        }
+        self.0.push(diagnostic);
     }
 
-    /// Whether no more messages are taken.
+    /// Whether there are so many errors that reading on is of no use.
     pub(crate) fn is_full(&self) -> bool {
-        self.is_full
+        self.0.has_too_many_errors()
     }
 
     pub(crate) fn error(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
@@ -36,26 +24,8 @@ impl Report {
         self.push(Diagnostic::warning(code, message, span));
     }
 
-    /// A warning that is given for its first place only.
-    pub(crate) fn warning_once(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
-        let message = message.into();
-        if self.given_once.insert(message.clone()) {
-            self.warning(code, message, span);
-        }
-    }
-
-    /// All messages in the order of the text that they are about.
-    pub(crate) fn finish(mut self) -> Vec<Diagnostic> {
-        self.diagnostics.sort_by_key(|diagnostic| (diagnostic.span().file, diagnostic.span().start));
-        if self.is_full {
-            self.diagnostics.push(Diagnostic {
-                severity: Severity::Error,
-                code: "too-many",
-                message: format!("only the first {} messages are shown", Self::LIMIT),
-                labels: Vec::new(),
-                help: None,
-            });
-        }
-        self.diagnostics
+    /// All diagnostics in the order of the text.
+    pub(crate) fn finish(self) -> Vec<Diagnostic> {
+        self.0.finish()
     }
 }

@@ -10,11 +10,13 @@ use scene::Interfaces;
 use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
-use crate::bdpt::techniques::{MAX_BYTES, MAX_DEPTH};
+use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
+use crate::light_paths::endless;
+use crate::radiosity;
 use crate::{
     AmbientOcclusion, Bdpt, BdptSettings, Integrator, Kernel, LightTracing, Mlt, MltSettings, Path,
     PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, Radiosity, RadiositySettings, RandomWalk,
-    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted, endless, radiosity,
+    RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted,
 };
 
 /// What [`build`] gives.

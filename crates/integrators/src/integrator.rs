@@ -4,56 +4,66 @@ use std::path::PathBuf;
 
 use film::Film;
 use geometry::RayStats;
-use image::Image;
-use scene::Scene;
+use scene::{Scene, View};
 
 use crate::{Cancelled, Control};
 
-/// An algorithm of light transport, run by [`render`](crate::render()).
+/// An algorithm of light transport, run by a [`Session`](crate::Session).
 ///
-/// What a pass finds depends on the scene, the settings, the seed and the pass's number alone: not
-/// on threads, nor on which passes came before it, if only their numbers were lower. It is added to
-/// the film; but a pass of an algorithm that gets ever nearer to one solution may put a new picture
-/// in the place of the old one ([`Radiosity`](crate::Radiosity)).
+/// What a pass adds to the film depends on the scene, the view, the settings, the seed and the number
+/// of the pass alone: not on threads, nor on which passes were done before. The numbers begin with
+/// those of the [drafts](Self::drafts).
 pub trait Integrator: Send {
-    /// How many passes make the picture.
+    /// How many passes the picture is planned for: the samples of a pixel that it is the mean of.
+    /// There may be fewer, and more.
     fn passes(&self) -> u32;
 
-    /// How many of these passes a pixel of the finished picture is the mean of.
-    fn samples_per_pixel(&self) -> u32 {
-        self.passes()
+    /// How many passes come before those, each of which puts a better draft in the place of the
+    /// picture. They add nothing to the finished one.
+    fn drafts(&self) -> u32 {
+        0
     }
 
-    /// Looks at the scene; called once, before the first pass.
-    fn prepare(&mut self, scene: &Scene);
+    /// Builds what depends on the scene and the view; called once, before the first pass. `Err` if
+    /// it was cancelled: then it has to be called again before a pass.
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled>;
 
-    /// Does one pass, one sample per pixel, on the threads of rayon's current pool, and looks at
-    /// `control` at least once per tile of the film. A pass that was cancelled leaves some pixels
-    /// with a sample less, which their weights account for.
+    /// Does one pass, one sample per pixel, on the threads of rayon's current pool. A cancelled pass
+    /// ends within a few rays, and leaves some pixels with one sample less, for which their weights
+    /// account.
     fn pass(
         &mut self,
         pass: u32,
         scene: &Scene,
+        view: &View,
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled>;
 
-    /// What the passes so far have made beside the picture.
-    fn by_products(&self) -> Vec<ByProduct> {
+    /// Films that the passes so far have filled beside the picture's, with their names. Their
+    /// pictures stand beside the main one and are called like it with the name added.
+    fn films(&self) -> Vec<(String, &Film)> {
         Vec::new()
     }
 
-    /// What else is worth telling of the passes so far, as names of one or two words and what there
-    /// is to say.
+    /// Goes on with films that [`films`](Self::films) has given; called before the first pass.
+    fn set_films(&mut self, _films: Vec<(String, Film)>) {}
+
+    /// The files that were asked for, as far as the passes so far have made them.
+    fn files(&self) -> Vec<OutputFile> {
+        Vec::new()
+    }
+
+    /// Facts about the passes so far, as names of one or two words and values.
     fn summary(&self) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 }
 
-/// Something that is made beside the picture.
-pub enum ByProduct {
-    /// A picture, to stand beside the main one and be called like it with this added.
-    Picture(String, Image),
-    /// The contents of a file that was asked for.
-    File(PathBuf, Vec<u8>),
+/// A file that is made beside the picture.
+pub struct OutputFile {
+    /// Where it goes.
+    pub path: PathBuf,
+    /// Its contents.
+    pub contents: Vec<u8>,
 }

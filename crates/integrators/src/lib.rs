@@ -1,7 +1,7 @@
-//! The algorithms of light transport and the one loop that runs them.
+//! The algorithms of light transport and the one driver that runs them.
 //!
-//! An [`Integrator`] fills a film in passes; [`render`] runs the passes, tells of each and stops
-//! when asked to. An algorithm that only has to answer how much light comes along one ray is a
+//! An [`Integrator`] fills a film in passes; a [`Session`] runs the passes until a limit is reached
+//! or it is cancelled. An algorithm that only has to answer how much light comes along one ray is a
 //! [`RayIntegrator`], and [`PixelLoop`] makes an integrator of it. [`build`] chooses the algorithm
 //! that a scene names.
 //!
@@ -25,49 +25,29 @@
 //! light at the end of a path that reaches the camera, and the depth of a path the number of its
 //! scattering events: depth 0 shows lights alone, depth 1 adds direct light.
 
-mod ambient_occlusion;
-mod bdpt;
 mod bidirectional;
 mod build;
+mod camera_paths;
 mod control;
-mod direct;
-mod endless;
-mod glints;
 mod integrator;
-mod light_tracing;
-mod merging;
-mod mlt;
-mod path;
-mod photon;
-mod photon_grid;
-mod photon_map;
-mod photon_mapping;
-mod pixel_loop;
+mod light_paths;
+mod metropolis;
+mod photons;
 mod radiosity;
-mod random_walk;
-mod ray_casting;
-mod render;
-mod simple_path;
-mod sppm;
-mod vcm;
-mod whitted;
+mod session;
+mod transport;
 
-pub use ambient_occlusion::AmbientOcclusion;
-pub use bdpt::{Bdpt, BdptSettings};
+pub use bidirectional::{Bdpt, BdptSettings};
 pub use build::{Built, build};
-pub use control::{Cancelled, Control, FilmSink, Progress, ProgressSink};
-pub use integrator::{ByProduct, Integrator};
-pub use light_tracing::LightTracing;
-pub use mlt::{Mlt, MltSettings};
-pub use path::{Path, PathSettings};
-pub use photon_map::Kernel;
-pub use photon_mapping::{PhotonMapping, PhotonMappingSettings};
-pub use pixel_loop::{PixelLoop, RayIntegrator};
+pub use camera_paths::{
+    AmbientOcclusion, Path, PathSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath,
+    Whitted,
+};
+pub use control::{Cancelled, Clock, Control};
+pub use integrator::{Integrator, OutputFile};
+pub use light_paths::LightTracing;
+pub use metropolis::{Mlt, MltSettings};
+pub use photons::{Kernel, PhotonMapping, PhotonMappingSettings, Sppm, SppmSettings, Vcm, VcmSettings};
 pub use radiosity::{FormFactors, Radiosity, RadiositySettings};
-pub use random_walk::RandomWalk;
-pub use ray_casting::RayCasting;
-pub use render::{RenderReport, render};
-pub use simple_path::SimplePath;
-pub use sppm::{Sppm, SppmSettings};
-pub use vcm::{Vcm, VcmSettings};
-pub use whitted::Whitted;
+pub use session::{Limits, Progress, Session, SessionState, Stop};
+pub use transport::Tracer;

@@ -6,10 +6,11 @@
 //! otherwise; ∂(u,v)/∂(x,y) then follow by least squares from ∂p/∂(u,v). Reflections and
 //! refractions off smooth surfaces carry the differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
 
-use crate::camera::{Camera, differential_scale};
+use crate::camera::differential_scale;
 use crate::light::{LightId, LightSampleContext};
 use crate::material::MaterialId;
 use crate::texture::TextureContext;
+use crate::view::View;
 use geometry::SurfacePoint;
 use math::{Differentials, Point3, Ray, RayDifferential, Vec3, Vector3, difference_of_products};
 use scattering::BsdfSample;
@@ -81,7 +82,7 @@ impl SurfaceInteraction {
     }
 
     /// Finds the footprint of the pixel that `ray` came from.
-    pub fn compute_footprint(&mut self, ray: &RayDifferential, camera: &Camera, samples_per_pixel: u32) {
+    pub fn compute_footprint(&mut self, ray: &RayDifferential, view: &View) {
         let s = &self.surface;
         let plane = |o: Point3, d: Vector3| {
             let t = s.n.dot(s.p.p - o) / s.n.dot(d);
@@ -91,7 +92,9 @@ impl SurfaceInteraction {
             .differentials
             .and_then(|d| Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?]));
         let [dpdx, dpdy] = seen.unwrap_or_else(|| {
-            camera.approximate_dp_dxy(s.p.p, s.n, s.time, differential_scale(samples_per_pixel))
+            // Without jitter each sample of a pixel stands for the whole pixel.
+            let samples = if view.options.disable_pixel_jitter { 1 } else { view.samples_per_pixel };
+            view.camera.approximate_dp_dxy(s.p.p, s.n, s.time, differential_scale(samples))
         });
         // Normal equations of [∂p/∂u ∂p/∂v]·[du dv]ᵀ = dp.
         let (a, b, c) = (s.dpdu.dot(s.dpdu), s.dpdu.dot(s.dpdv), s.dpdv.dot(s.dpdv));

@@ -1,7 +1,7 @@
-//! The compiled world: textures, materials, lights, cameras and the scene they make.
+//! The compiled scene: textures, materials, lights and geometry, and the views of it.
 //!
-//! [`compile`] turns what an author said into a [`Scene`], once; from then on nothing changes.
-//! Everything stands in tables and is referred to by small ids.
+//! [`compile`] turns a description into a [`Scene`], once; from then on nothing changes. Everything
+//! is in tables and is referred to by small ids. A [`View`] adds the camera.
 
 pub mod camera;
 mod compile;
@@ -11,8 +11,10 @@ pub mod light_sampler;
 pub mod material;
 mod scene;
 pub mod texture;
+mod view;
 
 pub use compile::{Compiled, compile};
 pub use geometry::RayStats;
 pub use interaction::{Footprint, SurfaceInteraction};
-pub use scene::{GeometryEntry, Interfaces, Scene, SceneOptions};
+pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
+pub use view::{CompiledView, View, ViewOptions, samples_per_pixel, world_from_render};

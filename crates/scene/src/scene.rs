@@ -1,13 +1,16 @@
 //! The compiled world: what rays meet, what it is made of, and what shines.
 
-use crate::camera::Camera;
 use crate::interaction::{Footprint, SurfaceInteraction};
-use crate::light::{Light, LightId, LightLeSample, LightLiSample, LightSampleContext, SceneSphere};
+use crate::light::{
+    AreaEmission, LightId, LightLeSample, LightLiSample, LightRef, LightSampleContext, LightTable, Lights,
+    SceneSphere,
+};
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
+use crate::view::View;
 use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
-use math::{Point2, Ray, RayDifferential, Vector3};
+use math::{DMat4, Point2, Ray, RayDifferential, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -19,21 +22,18 @@ pub struct GeometryEntry {
     pub material: MaterialId,
     /// Where it is there, unless everywhere.
     pub alpha: Option<FloatTextureId>,
-    /// The light of its first primitive, if it emits; those of the others follow.
-    pub first_light: Option<LightId>,
+    /// The light of its first primitive, if it emits; those of the others follow. Counted from the
+    /// first light of the group that it stands in: the id is the sum with the
+    /// [`InstanceEntry::first_light`] of all instances through which it is seen.
+    pub first_light: Option<u32>,
 }
 
-/// Switches of the format that concern all algorithms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SceneOptions {
-    /// All samples of a pixel go through its centre.
-    pub disable_pixel_jitter: bool,
-    /// All samples take the same wavelengths.
-    pub disable_wavelength_jitter: bool,
-    /// Textures are evaluated at points.
-    pub disable_texture_filtering: bool,
-    /// Every BSDF is replaced by a diffuse one of its albedo.
-    pub force_diffuse: bool,
+/// What belongs to one instance of the world.
+#[derive(Clone, Copy, Debug)]
+pub struct InstanceEntry {
+    /// The first light of what it shows, counted from the first light of the group that it stands
+    /// in.
+    pub first_light: u32,
 }
 
 /// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass
@@ -51,73 +51,73 @@ impl Interfaces {
     /// What they do to the light of `light` where media are not known. The path tracer of the
     /// pbrt-v4 format, which draws them as surfaces that a path goes through, finds lights behind
     /// them by chance alone: so delta lights throw their shadow, and others do not.
-    pub fn before(light: &Light) -> Self {
+    pub fn before(light: LightRef) -> Self {
         if light.is_delta() { Self::Stop } else { Self::Pass }
     }
 }
 
-/// Everything that is rendered. Never changes once compiled, but for the size of pixels while
-/// [`with_coarser_pixels`](Self::with_coarser_pixels) shows it.
+/// Everything that is rendered, from any [`View`]. Never changes once compiled.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    pub(crate) camera: Camera,
+    pub(crate) world_from_render: DMat4,
     pub(crate) world: World,
     pub(crate) sphere: SceneSphere,
     pub(crate) entries: Vec<GeometryEntry>,
     pub(crate) materials: Materials,
     pub(crate) textures: Textures,
-    pub(crate) lights: Vec<Light>,
-    pub(crate) infinite_lights: Vec<LightId>,
-    pub(crate) samples_per_pixel: u32,
-    pub(crate) options: SceneOptions,
-    pub(crate) has_footprints: bool,
+    pub(crate) instances: Vec<InstanceEntry>,
+    pub(crate) lights: LightTable,
+    pub(crate) has_filtered_textures: bool,
 }
 
 impl Scene {
-    /// The observer.
-    pub fn camera(&self) -> &Camera {
-        &self.camera
+    /// The transform from render space, in which rays are traced, to world space.
+    pub fn world_from_render(&self) -> DMat4 {
+        self.world_from_render
     }
 
-    /// Shows the scene as its camera sees it with pixels `n` times as wide and high.
-    pub fn with_coarser_pixels<T>(&mut self, n: u32, look: impl FnOnce(&Self) -> T) -> T {
-        let coarser = self.camera.coarser(n);
-        let camera = std::mem::replace(&mut self.camera, coarser);
-        let seen = look(self);
-        self.camera = camera;
-        seen
+    /// Whether anything in a view depends on the size of a pixel on a surface, so that ray
+    /// differentials are needed.
+    #[inline]
+    pub fn needs_footprints(&self, view: &View) -> bool {
+        self.has_filtered_textures && !view.options.disable_texture_filtering
     }
 
-    /// Switches that concern all algorithms.
-    pub fn options(&self) -> SceneOptions {
-        self.options
+    /// What belongs to the geometries of the world, by [`GeometryId`].
+    pub fn geometries(&self) -> &[GeometryEntry] {
+        &self.entries
     }
 
-    /// Whether anything depends on the size of a pixel on a surface, so that ray differentials are
-    /// of use.
-    pub fn has_footprints(&self) -> bool {
-        self.has_footprints
+    /// What belongs to the instances of the world, by [`InstanceId`](geometry::InstanceId).
+    pub fn instances(&self) -> &[InstanceEntry] {
+        &self.instances
     }
 
-    /// The lights; their ids are their indices.
-    pub fn lights(&self) -> &[Light] {
-        &self.lights
+    /// What area lights emit, by [`EmissionId`](crate::light::EmissionId).
+    pub fn emissions(&self) -> &[AreaEmission] {
+        self.lights.emissions()
+    }
+
+    /// The lights.
+    #[inline]
+    pub fn lights(&self) -> Lights<'_> {
+        Lights { table: &self.lights, world: &self.world, textures: &self.textures }
     }
 
     /// The light of an id.
     #[inline]
-    pub fn light(&self, id: LightId) -> &Light {
-        &self.lights[id.0 as usize]
+    pub fn light(&self, id: LightId) -> LightRef<'_> {
+        self.lights().get(id)
     }
 
     /// The lights that rays leaving the scene meet.
     pub fn infinite_lights(&self) -> &[LightId] {
-        &self.infinite_lights
+        self.lights.infinite()
     }
 
     /// A way of choosing among the lights.
     pub fn light_sampler(&self, kind: LightSamplerKind) -> LightSampler {
-        LightSampler::new(kind, &self.lights)
+        LightSampler::new(kind, self.lights())
     }
 
     /// The geometry, for what wants to look at it without materials.
@@ -157,7 +157,11 @@ impl Scene {
         SurfaceInteraction {
             surface,
             material: entry.material,
-            area_light: entry.first_light.map(|first| LightId(first.0 + hit.primitive)),
+            area_light: entry.first_light.map(|first| {
+                let instances = hit.instance.ids().iter().map(|id| self.instances[id.0 as usize]);
+                let offset: u32 = instances.map(|instance| instance.first_light).sum();
+                LightId(offset + first + hit.primitive)
+            }),
             footprint: Footprint::default(),
         }
     }
@@ -233,7 +237,7 @@ impl Scene {
 
     /// Radiance that arrives along a ray which leaves the scene.
     pub fn escaped(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.infinite_lights
+        self.infinite_lights()
             .iter()
             .fold(SampledSpectrum::ZERO, |sum, &id| sum + self.light(id).le(ray, lambda))
     }
@@ -250,7 +254,7 @@ impl Scene {
         })
     }
 
-    /// [`Light::sample_li`] of one of this scene's lights.
+    /// [`LightRef::sample_li`] of one of this scene's lights.
     pub fn sample_light(
         &self,
         light: LightId,
@@ -259,11 +263,11 @@ impl Scene {
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        self.light(light).sample_li(context, u, lambda, allow_incomplete, &self.textures)
+        self.light(light).sample_li(context, u, lambda, allow_incomplete)
     }
 
-    /// [`Light::sample_le`] of one of this scene's lights. Light from infinity starts at the sphere
-    /// around all that has an end; what has none may keep it from there: `None` if it does.
+    /// [`LightRef::sample_le`] of one of this scene's lights. Light from infinity starts at the
+    /// sphere around all that has an end; what has none may keep it from there: `None` if it does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -274,8 +278,8 @@ impl Scene {
         stats: &mut RayStats,
     ) -> Option<LightLeSample> {
         let light = self.light(light);
-        let sample = light.sample_le(u_position, u_direction, time, lambda, &self.textures)?;
-        if sample.p.is_none() && self.world.is_endless() {
+        let sample = light.sample_le(u_position, u_direction, time, lambda)?;
+        if sample.p.is_none() && self.world.is_unbounded() {
             let way_back = Ray { d: -sample.ray.d, ..sample.ray };
             if self.occluded(&way_back, f32::INFINITY, Interfaces::before(light), stats) {
                 return None;
@@ -284,19 +288,19 @@ impl Scene {
         Some(sample)
     }
 
-    /// How the surface scatters at a point that `ray` has met. Finds the footprint and bends the
-    /// shading normal on the way. `None`: nothing is there but a change of medium; the ray goes on.
+    /// How the surface scatters at a point that `ray` of a view has hit. Computes the footprint and
+    /// perturbs the shading normal on the way. `None` for a mere interface between media, which the
+    /// ray passes.
     pub fn bsdf(
         &self,
+        view: &View,
         interaction: &mut SurfaceInteraction,
         ray: &RayDifferential,
         lambda: &mut SampledWavelengths,
         sampler: &mut Sampler,
     ) -> Option<Bsdf> {
-        if self.has_footprints {
-            // All samples of a pixel in one place see the whole pixel each.
-            let samples = if self.options.disable_pixel_jitter { 1 } else { self.samples_per_pixel };
-            interaction.compute_footprint(ray, &self.camera, samples);
+        if self.needs_footprints(view) {
+            interaction.compute_footprint(ray, view);
         }
         let entry = self.materials.resolve(interaction, &self.textures);
         if matches!(entry.material, Material::Interface) {
@@ -308,7 +312,7 @@ impl Scene {
         let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
         let s = &interaction.surface;
         let bsdf = Bsdf::new(s.shading.n, s.shading.dpdu, bxdf);
-        if !self.options.force_diffuse {
+        if !view.options.force_diffuse {
             return Some(bsdf);
         }
         let reflectance = bsdf.rho(s.wo, [(sampler.get_1d(), sampler.get_2d())]);

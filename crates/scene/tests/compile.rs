@@ -3,7 +3,7 @@
 mod common;
 
 use alhazen_scene::light::LightId;
-use alhazen_scene::{RayStats, compile};
+use alhazen_scene::{RayStats, View, compile, world_from_render};
 use common::*;
 use description::{
     AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, CurveBasis, CurveDesc,
@@ -30,13 +30,16 @@ fn with_parameter<T>(value: T, name: &'static str, start: u32) -> Stated<T> {
 }
 
 fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
-    match compile(desc) {
-        Ok(compiled) => compiled.warnings,
-        Err(diagnostics) => {
-            assert!(diagnostics.iter().any(Diagnostic::is_error));
-            diagnostics
-        }
-    }
+    let errors = |diagnostics: Vec<Diagnostic>| {
+        assert!(diagnostics.iter().any(Diagnostic::is_error));
+        diagnostics
+    };
+    let view = View::compile(desc, world_from_render(desc));
+    [
+        view.map_or_else(errors, |view| view.warnings),
+        compile(desc).map_or_else(errors, |scene| scene.warnings),
+    ]
+    .concat()
 }
 
 /// The one message about a scene.
@@ -159,9 +162,9 @@ fn images_that_serve_for_nothing_are_errors() {
     let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
     error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
     error(
-        &image_sky(rgb_image(4, 2, |_, _| [1.0; 3]), None),
+        &image_sky(rgb_image(4, 3, |_, _| [1.0; 3]), None),
         "image-shape",
-        "an infinite light wants a square image in the equal-area octahedral mapping, not 4 × 2",
+        "the image of an infinite light is square (equal-area octahedral) or twice as wide as high (latitude–longitude), not 4 × 3",
     );
     error(
         &image_sky(rgb_image(4, 4, |x, _| [if x == 2 { f32::NAN } else { 1.0 }; 3]), None),
@@ -463,14 +466,17 @@ fn moving() -> TransformDesc {
 #[test]
 fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
     let light = |light: LightDesc| with(|desc| desc.lights.push_stated(stated(light, 4)));
-    let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
-    let message = "lights do not move yet; drawn where it starts";
-    warns(&light(LightDesc { world_from_light: moving(), ..point.into() }), message, 4);
+    let image = |desc: &mut SceneDesc| desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
+    let moving_sky = with(|desc| {
+        let radiance = InfiniteRadiance::Image(image(desc));
+        let sky = LightKind::Infinite { radiance, illuminance: None, portal: None };
+        desc.lights.push_stated(stated(LightDesc { world_from_light: moving(), ..sky.into() }, 4));
+    });
+    warns(&moving_sky, "environments do not move yet; drawn where it starts", 4);
     let goniometric = LightKind::Goniometric { intensity: 1.0.into(), power: None, image: None };
     warns(&light(goniometric.into()), "light `goniometric` is not drawn yet; drawn as `point`", 4);
     let projection = with(|desc| {
-        let image = desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
-        let kind = LightKind::Projection { image, power: None, fov: 90.0 };
+        let kind = LightKind::Projection { image: image(desc), power: None, fov: 90.0 };
         desc.lights.push_stated(stated(kind.into(), 4));
     });
     warns(&projection, "light `projection` is not drawn yet; left out", 4);
@@ -478,23 +484,6 @@ fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
     let portal = LightKind::Infinite { radiance, illuminance: None, portal: Some([Vec3::ZERO; 4]) };
     let desc = with(|desc| desc.lights.push_stated(with_parameter(portal.into(), "portal", 7)));
     warns(&desc, "portals are not drawn yet; light comes from everywhere", 7);
-
-    let emitting = |desc: &mut SceneDesc, world_from_object| {
-        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
-        stated(ShapeDesc { area_light, world_from_object, ..sphere(1.0).into() }, 8)
-    };
-    let desc = with(|desc| {
-        let shape = emitting(desc, moving());
-        desc.shapes.push_stated(shape);
-    });
-    warns(&desc, "moving shapes do not emit yet; drawn without light", 8);
-    let in_object = with(|desc| {
-        let mut object = ObjectDesc::default();
-        object.shapes.push_stated(emitting(desc, TransformDesc::default()));
-        let object = desc.objects.push(object);
-        desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::default() });
-    });
-    warns(&in_object, "shapes of objects do not emit; drawn without light", 8);
 }
 
 fn distance_along(desc: &SceneDesc, o: Vec3, d: Vec3, time: f32) -> Option<f32> {
@@ -591,4 +580,51 @@ fn emitting_primitives_know_their_lights() {
         let p = sample.expect("the lit side").p.expect("a surface").p;
         assert_eq!(light(p.x, p.y), light(x, y));
     }
+}
+
+#[test]
+fn hits_of_instances_find_the_light_that_was_sampled() {
+    // An object of two triangles and a ball that emit, twice within another, which has a light of
+    // its own and is shown twice, one of them moving; and a light before them all.
+    let desc = with(|desc| {
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
+        let quad = triangles(
+            &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+            &[[0, 1, 2], [0, 2, 3]],
+        );
+        let at = |x, y| TransformDesc::translation(x, y, 0.0);
+        let ball = |x, y| ShapeDesc { area_light, world_from_object: at(x, y), ..sphere(0.5).into() };
+        desc.shapes.push(ball(0.0, -5.0));
+        let mut inner = ObjectDesc::default();
+        inner.shapes.push(ShapeDesc { area_light, ..quad.into() });
+        inner.shapes.push(ball(2.0, 0.0));
+        let inner = desc.objects.push(inner);
+        let mut outer = ObjectDesc::default();
+        outer.instances.push(InstanceDesc { object: inner, world_from_object: at(0.0, 0.0) });
+        outer.instances.push(InstanceDesc { object: inner, world_from_object: at(4.0, 0.0) });
+        outer.shapes.push(ball(8.0, 0.0));
+        let object = desc.objects.push(outer);
+        desc.instances.push(InstanceDesc { object, world_from_object: at(0.0, 0.0) });
+        let up = DMat4::from_translation(DVec3::Y * 10.0);
+        let world_from_object = TransformDesc { end: up, ..at(0.0, 5.0) };
+        desc.instances.push(InstanceDesc { object, world_from_object });
+    });
+    let scene = scene(&desc);
+    assert_eq!(scene.lights().len(), 15);
+    let from = |p: Vec3| context(p, Vec3::ZERO);
+    let mut ids = std::collections::HashSet::new();
+    for x in [-0.5, 0.5, 2.0, 3.5, 4.5, 6.0, 8.0, 0.0] {
+        for y in if x == 0.0 { vec![-5.0] } else { vec![0.0, 5.0 + 5.0 * TIME] } {
+            // Near the diagonals, off which the triangles differ.
+            let o = Vec3::new(x, y - 0.1 * x.signum(), 9.0);
+            let id = hit(&scene, &ray(o, -Vec3::Z)).and_then(|s| s.area_light).expect("a light");
+            assert!(ids.insert(id), "a light of its own at ({x}, {y})");
+            assert!(scene.light(id).pdf_li(&from(o), -Vec3::Z, false) > 0.0);
+            for u in [[0.2, 0.3], [0.8, 0.6]] {
+                let sample = scene.sample_light(id, &from(o), u.into(), &lambda(), false).expect("light");
+                assert_eq!(hit(&scene, &ray(o, sample.wi)).and_then(|s| s.area_light), Some(id));
+            }
+        }
+    }
+    assert_eq!(ids.len(), 15);
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use alhazen_scene::{Interfaces, Scene, SurfaceInteraction};
+use alhazen_scene::{Interfaces, Scene, SurfaceInteraction, View};
 use common::*;
 use description::{
     CameraDesc, CameraKind, ConductorDesc, ConductorReflectance, Handle, LensDesc, MaterialDesc,
@@ -34,7 +34,7 @@ fn down(x: f32, y: f32) -> Ray {
 fn bsdf_at(scene: &Scene, ray: Ray, lambda: &mut SampledWavelengths) -> (SurfaceInteraction, Option<Bsdf>) {
     let mut surface = hit(scene, &ray).expect("a surface");
     let mut sampler = Sampler::Independent(Independent::new(1, 0));
-    let bsdf = scene.bsdf(&mut surface, &ray.into(), lambda, &mut sampler);
+    let bsdf = scene.bsdf(&view(&SceneDesc::default()), &mut surface, &ray.into(), lambda, &mut sampler);
     (surface, bsdf)
 }
 
@@ -245,7 +245,7 @@ fn a_normal_map_bends_towards_its_tangents() {
 }
 
 /// A camera at the origin that looks along +z, with small pixels.
-fn observed(shapes: impl IntoIterator<Item = ShapeDesc>) -> Scene {
+fn observed(shapes: impl IntoIterator<Item = ShapeDesc>) -> (Scene, View) {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [2000, 2000];
     desc.options.disable_pixel_jitter = true;
@@ -255,7 +255,7 @@ fn observed(shapes: impl IntoIterator<Item = ShapeDesc>) -> Scene {
     shapes.into_iter().for_each(|shape| {
         desc.shapes.push(shape);
     });
-    scene(&desc)
+    (scene(&desc), view(&desc))
 }
 
 fn placed(kind: ShapeKind, z: f64, turn: f64) -> ShapeDesc {
@@ -264,16 +264,16 @@ fn placed(kind: ShapeKind, z: f64, turn: f64) -> ShapeDesc {
     ShapeDesc { world_from_object, ..kind.into() }
 }
 
-fn through(scene: &Scene, x: f32, y: f32) -> RayDifferential {
+fn through(view: &View, x: f32, y: f32) -> RayDifferential {
     let film = Vec2::new(x, y);
     let sample =
         alhazen_scene::camera::CameraSample { film, lens: Vec2::splat(0.5), time: 0.0, filter_weight: 1.0 };
-    scene.camera().generate_ray_differential(&sample).expect("a ray").ray
+    view.camera.generate_ray_differential(&sample).expect("a ray").ray
 }
 
-fn met(scene: &Scene, ray: &RayDifferential) -> SurfaceInteraction {
+fn met((scene, view): &(Scene, View), ray: &RayDifferential) -> SurfaceInteraction {
     let mut surface = hit(scene, &ray.ray).expect("a surface");
-    surface.compute_footprint(ray, scene.camera(), 1);
+    surface.compute_footprint(ray, view);
     surface
 }
 
@@ -286,9 +286,9 @@ fn assert_near(a: Vector3, b: Vector3, tolerance: f32) {
 #[test]
 fn footprints_are_the_distances_of_neighbouring_hits() {
     for shape in [placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.7), placed(sphere(1.0), 4.0, 0.3)] {
-        let scene = observed([shape]);
+        let observed = observed([shape]);
         for [x, y] in FILM {
-            let at = |x, y| met(&scene, &through(&scene, x, y));
+            let at = |x, y| met(&observed, &through(&observed.1, x, y));
             let (here, right, below) = (at(x, y), at(x + 1.0, y), at(x, y + 1.0));
             let f = here.footprint;
             assert_near(f.dpdx, right.p() - here.p(), 0.02);
@@ -304,10 +304,10 @@ fn footprints_are_the_distances_of_neighbouring_hits() {
 
 #[test]
 fn footprints_without_differentials_are_the_cameras() {
-    let scene = observed([placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.3)]);
-    let with = through(&scene, 1000.0, 1000.0);
-    let seen = met(&scene, &with).footprint;
-    let guessed = met(&scene, &with.ray.into()).footprint;
+    let observed = observed([placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.3)]);
+    let with = through(&observed.1, 1000.0, 1000.0);
+    let seen = met(&observed, &with).footprint;
+    let guessed = met(&observed, &with.ray.into()).footprint;
     // The least of the film: never more than in its middle, and not by much.
     let ratio = guessed.dpdx.length() / seen.dpdx.length();
     assert!(ratio > 0.5 && ratio < 1.05, "{ratio}");
@@ -316,15 +316,15 @@ fn footprints_without_differentials_are_the_cameras() {
 /// Follows a ray over one smooth surface to the next; returns the footprint there and the true
 /// distances.
 fn after_scattering(
-    scene: &Scene,
+    observed: &(Scene, View),
     film: [f32; 2],
     scatter: impl Fn(Vector3, &SurfaceInteraction) -> BsdfSample,
 ) -> [[Vector3; 2]; 2] {
     let follow = |x, y| {
-        let ray = through(scene, x, y);
-        let first = met(scene, &ray);
+        let ray = through(&observed.1, x, y);
+        let first = met(observed, &ray);
         let sample = scatter(first.surface.wo, &first);
-        met(scene, &first.spawn_scattered(&ray, &sample))
+        met(observed, &first.spawn_scattered(&ray, &sample))
     };
     let [x, y] = film;
     let (here, right, below) = (follow(x, y), follow(x + 1.0, y), follow(x, y + 1.0));
@@ -339,9 +339,9 @@ fn specular(wi: Vector3, lobe: BxdfFlags) -> BsdfSample {
 fn differentials_follow_mirrors() {
     let behind = || placed(rectangle([-90.0, -90.0], [90.0, 90.0]), -6.0, 0.2);
     for mirror in [placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.4), placed(sphere(1.0), 4.0, 0.3)] {
-        let scene = observed([mirror, behind()]);
+        let observed = observed([mirror, behind()]);
         for film in FILM {
-            let [claimed, true_distances] = after_scattering(&scene, film, |wo, surface| {
+            let [claimed, true_distances] = after_scattering(&observed, film, |wo, surface| {
                 let wi = reflect(wo, surface.surface.shading.n);
                 specular(wi, BxdfFlags::SPECULAR | BxdfFlags::REFLECTION)
             });
@@ -356,9 +356,9 @@ fn differentials_follow_mirrors() {
 fn differentials_follow_refractions() {
     let behind = || placed(rectangle([-90.0, -90.0], [90.0, 90.0]), 9.0, 0.2);
     for body in [placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.4), placed(sphere(1.0), 4.0, 0.3)] {
-        let scene = observed([body, behind()]);
+        let observed = observed([body, behind()]);
         for film in FILM {
-            let [claimed, true_distances] = after_scattering(&scene, film, |wo, surface| {
+            let [claimed, true_distances] = after_scattering(&observed, film, |wo, surface| {
                 let n = surface.surface.shading.n;
                 let n = if wo.dot(n) < 0.0 { -n } else { n };
                 let (wi, eta) = refract(wo, n, 1.5).expect("no total reflection from outside");
@@ -375,11 +375,11 @@ fn differentials_follow_refractions() {
 
 #[test]
 fn rough_scattering_loses_the_differentials() {
-    let scene = observed([placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.4)]);
-    let ray = through(&scene, 1000.0, 1000.0);
-    let mut surface = met(&scene, &ray);
+    let observed = observed([placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.4)]);
+    let ray = through(&observed.1, 1000.0, 1000.0);
+    let mut surface = met(&observed, &ray);
     let mut sampler = Sampler::Independent(Independent::new(1, 0));
-    let bsdf = scene.bsdf(&mut surface, &ray, &mut lambda(), &mut sampler).unwrap();
+    let bsdf = observed.0.bsdf(&observed.1, &mut surface, &ray, &mut lambda(), &mut sampler).unwrap();
     let wo = surface.surface.wo;
     let sample = bsdf.sample_f(wo, 0.5, Vec2::splat(0.3), TransportMode::Radiance, Directions::All).unwrap();
     assert!(surface.spawn_scattered(&ray, &sample).differentials.is_none());
@@ -389,7 +389,10 @@ fn rough_scattering_loses_the_differentials() {
 fn everything_can_be_drawn_diffuse() {
     let mut desc = floor(|_| MaterialKind::Conductor(ConductorDesc::default()).into());
     desc.options.force_diffuse = true;
-    let (_, bsdf) = bsdf_at(&scene(&desc), down(0.0, 0.0), &mut lambda());
+    let scene = scene(&desc);
+    let mut surface = hit(&scene, &down(0.0, 0.0)).expect("a surface");
+    let (ray, mut sampler) = (down(0.0, 0.0).into(), Sampler::Independent(Independent::new(1, 0)));
+    let bsdf = scene.bsdf(&view(&desc), &mut surface, &ray, &mut lambda(), &mut sampler);
     let Bxdf::Diffuse(diffuse) = bsdf.unwrap().bxdf else { panic!() };
     assert!(diffuse.reflectance.min_component() > 0.3);
 }

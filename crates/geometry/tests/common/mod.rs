@@ -121,6 +121,6 @@ pub fn shapes(m: &Transform) -> Vec<(&'static str, Shape)> {
     ];
     let centers = [Vec3::new(9.0, 0.0, 0.0), Vec3::new(0.1, -0.2, 0.1)];
     let set = SphereSet::new(centers.into(), [0.8].into(), m, true).map(Geometry::from);
-    shapes.extend(set.ok().and_then(|set| Some(("sphere of a set", set.shape(1)?))));
+    shapes.extend(set.ok().and_then(|set| Some(("sphere of a set", set.shape(1)?.into_owned()))));
     shapes
 }

@@ -173,7 +173,7 @@ fn fill<'a, S, T: 'a>(
     Ok(())
 }
 
-fn metadata(header: &Header) -> ImageMetadata {
+pub(super) fn metadata(header: &Header) -> ImageMetadata {
     let mut metadata = ImageMetadata {
         chromaticities: header.shared_attributes.chromaticities.map(|c| Chromaticities {
             red: [c.red.0, c.red.1],
@@ -212,7 +212,7 @@ fn metadata(header: &Header) -> ImageMetadata {
     metadata
 }
 
-fn from_bounds(bounds: IntegerBounds) -> Window {
+pub(super) fn from_bounds(bounds: IntegerBounds) -> Window {
     let end = bounds.end();
     Window { min: [bounds.position.0, bounds.position.1], max: [end.0, end.1] }
 }
@@ -407,7 +407,7 @@ fn to_text(text: &str) -> Result<Text, ImageError> {
         .ok_or_else(|| ImageError::Unsupported(format!("{text:?} has characters that EXR cannot hold")))
 }
 
-fn from_library(error: exr::error::Error) -> ImageError {
+pub(super) fn from_library(error: exr::error::Error) -> ImageError {
     use exr::error::Error;
     match error {
         Error::Io(error) => ImageError::Io(error),

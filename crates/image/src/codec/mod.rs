@@ -6,6 +6,7 @@
 //! third-party decoder becomes [`ImageError::Invalid`].
 
 mod exr;
+mod info;
 mod pfm;
 mod raster;
 
@@ -15,6 +16,8 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
 };
+
+pub use info::{ImageInfo, LayerInfo, Sample, info};
 
 use crate::{
     depth::SampleDepth, encoding::ColorEncoding, error::ImageError, image::Image, source::PixelSource,
@@ -67,6 +70,13 @@ impl Format {
     pub fn from_name(name: &str) -> Option<Self> {
         let extension = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();
         Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()))
+    }
+
+    /// The format of a file: by its content, or where that does not tell, by its name.
+    fn of(bytes: &[u8], name: &str) -> Result<Self, ImageError> {
+        Self::from_content(bytes).or_else(|| Self::from_name(name)).ok_or_else(|| {
+            ImageError::Unsupported("neither content nor name tell a known image format".into())
+        })
     }
 
     /// The format that these first bytes are the signature of; never [`Format::Tga`], which has
@@ -145,9 +155,7 @@ pub struct WriteOptions {
 /// Decodes the bytes of a file. `name` is used where the content does not tell the format, and may
 /// be empty.
 pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, ImageError> {
-    let Some(format) = Format::from_content(bytes).or_else(|| Format::from_name(name)) else {
-        return Err(ImageError::Unsupported("neither content nor name tell a known image format".into()));
-    };
+    let format = Format::of(bytes, name)?;
     let decode = || match format {
         Format::Exr => exr::decode(bytes, options),
         Format::Pfm => pfm::decode(bytes, options),
@@ -217,8 +225,8 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Writes a file that appears whole or not at all: it is written beside its final place and then
-/// moved there. A symbolic link is followed. What is no file, such as a pipe, is written as it is.
-/// `write` is given the file without a buffer.
+/// moved there. Symbolic links are followed: their target is replaced, and they stay. What is no
+/// file, such as a pipe, is written as it is. `write` is given the file without a buffer.
 pub fn replace_file_with<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut File) -> Result<(), E>,
@@ -245,16 +253,18 @@ fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|existing| !existing.is_file())
 }
 
-/// What a path leads to by symbolic links, whether or not it exists.
-fn link_target(path: &Path) -> PathBuf {
-    /// As many as Linux follows.
-    const MAX_LINKS: usize = 40;
-    let mut path = path.to_owned();
-    for _ in 0..MAX_LINKS {
-        let Ok(target) = fs::read_link(&path) else { break };
-        path = path.parent().unwrap_or(Path::new("")).join(target);
+/// The file that a path leads to through symbolic links, whether it exists or not; the path itself
+/// where it is no link.
+pub fn link_target(path: &Path) -> PathBuf {
+    /// As many links as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { break };
+        // A relative link starts at the folder that it is in.
+        target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    path
+    target
 }
 
 /// Creates a new file in the folder of `path`, so that it can be renamed to it.

@@ -202,7 +202,7 @@ fn dynamic(
     image.ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))
 }
 
-fn library_format(format: Format) -> Result<ImageFormat, ImageError> {
+pub(super) fn library_format(format: Format) -> Result<ImageFormat, ImageError> {
     Ok(match format {
         Format::Png => ImageFormat::Png,
         Format::Jpeg => ImageFormat::Jpeg,
@@ -217,7 +217,7 @@ fn library_format(format: Format) -> Result<ImageFormat, ImageError> {
     })
 }
 
-fn from_library(error: RasterError) -> ImageError {
+pub(super) fn from_library(error: RasterError) -> ImageError {
     match error {
         RasterError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             ImageError::Invalid("the data ends early".into())

@@ -10,11 +10,12 @@ use std::path::{Path, PathBuf};
 use description::{Diagnostic, FileId, SourceMap, Span, Spanned};
 
 use super::names;
-use super::parameter::is_directive;
+use super::parameter::{is_directive, skip_to_directive};
 use super::state::{Block, BlockKind, GraphicsState, MaterialReference, TransformSet};
 use super::statement::{ObjectStatement, Statements};
 use super::token::{Token, TokenKind, Tokens};
 use crate::assets::{AssetSource, read_unpacked, resolve};
+use crate::foreign;
 use crate::number;
 use crate::report::Report;
 use crate::suggest::did_you_mean;
@@ -90,8 +91,8 @@ pub(crate) struct Interpreter<'a> {
     in_world: bool,
     /// The object that is being defined.
     pub(super) object: Option<ObjectStatement>,
-    /// Files that are being read.
-    depth: usize,
+    /// The files that are being read, each but the first included by the one before it.
+    reading: Vec<FileId>,
     /// `Include` and `Import` directives that were run.
     included: usize,
     /// Files that were read, by path.
@@ -114,7 +115,7 @@ impl<'a> Interpreter<'a> {
             blocks: Vec::new(),
             in_world: false,
             object: None,
-            depth: 0,
+            reading: Vec::new(),
             included: 0,
             files: HashMap::new(),
         }
@@ -135,6 +136,7 @@ impl<'a> Interpreter<'a> {
 
     /// Runs the directives of one file.
     fn file(&mut self, file: FileId) {
+        self.reading.push(file);
         let text = self.sources.shared_text(file);
         let mut tokens = Tokens::new(&text, file);
         while !self.report.is_full() {
@@ -144,22 +146,23 @@ impl<'a> Interpreter<'a> {
                 TokenKind::Word if is_directive(tokens.bytes(token)) => {
                     let directive = String::from_utf8_lossy(tokens.bytes(token));
                     if self.directive(&directive, token, &mut tokens).is_err() {
-                        recover(&mut tokens);
+                        skip_to_directive(&mut tokens);
                     }
                 }
                 TokenKind::Unterminated => {
                     let message = "this string has no closing quote on its line";
                     self.report.error("unterminated-string", message, tokens.span(token));
-                    recover(&mut tokens);
+                    skip_to_directive(&mut tokens);
                 }
                 _ => {
                     let found = String::from_utf8_lossy(tokens.bytes(token)).into_owned();
                     let message = format!("a directive should stand here, not {}", shortened(&found));
                     self.report.error("unexpected-token", message, tokens.span(token));
-                    recover(&mut tokens);
+                    skip_to_directive(&mut tokens);
                 }
             }
         }
+        self.reading.pop();
     }
 
     fn directive(&mut self, name: &str, token: Token, tokens: &mut Tokens) -> Step {
@@ -196,15 +199,11 @@ impl<'a> Interpreter<'a> {
             "AttributeBegin" => self.begin_block(BlockKind::Attribute, span)?,
             "AttributeEnd" => self.end_block(BlockKind::Attribute, span)?,
             "TransformBegin" => {
-                self.report.warning_once(
-                    "deprecated",
-                    "`TransformBegin` is now written `AttributeBegin`",
-                    span,
-                );
+                self.report.warning("deprecated", "`TransformBegin` is now written `AttributeBegin`", span);
                 self.begin_block(BlockKind::Attribute, span)?;
             }
             "TransformEnd" => {
-                self.report.warning_once("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
+                self.report.warning("deprecated", "`TransformEnd` is now written `AttributeEnd`", span);
                 self.end_block(BlockKind::Attribute, span)?;
             }
             "Attribute" => self.attribute(tokens)?,
@@ -307,9 +306,7 @@ impl<'a> Interpreter<'a> {
     fn include(&mut self, tokens: &mut Tokens) -> Step {
         let name = self.string(tokens, "the file's name")?;
         if let Some(file) = self.open_named(&name) {
-            self.depth += 1;
             self.file(file);
-            self.depth -= 1;
         }
         Ok(())
     }
@@ -320,9 +317,7 @@ impl<'a> Interpreter<'a> {
         if let Some(file) = self.open_named(&name) {
             let (state, systems, depth) =
                 (self.state.clone(), self.coordinate_systems.clone(), self.blocks.len());
-            self.depth += 1;
             self.file(file);
-            self.depth -= 1;
             self.close_blocks(depth);
             (self.state, self.coordinate_systems) = (state, systems);
         }
@@ -330,7 +325,7 @@ impl<'a> Interpreter<'a> {
     }
 
     fn open_named(&mut self, name: &Spanned<String>) -> Option<FileId> {
-        if self.depth >= Self::DEEPEST_INCLUDE {
+        if self.reading.len() > Self::DEEPEST_INCLUDE {
             let message = format!("files include each other more than {} deep", Self::DEEPEST_INCLUDE);
             self.report.error("include-limit", message, name.span);
             return None;
@@ -343,7 +338,15 @@ impl<'a> Interpreter<'a> {
         }
         let naming_file = self.sources.name(name.span.file);
         let path = resolve(self.assets, &name.value, naming_file, self.sources.name(FileId(0)));
-        self.open(&path, name.span)
+        let file = self.open(&path, name.span)?;
+        if let Some(first) = self.reading.iter().position(|&reading| reading == file) {
+            let cycle: Vec<_> =
+                self.reading[first..].iter().chain([&file]).map(|&file| self.sources.name(file)).collect();
+            let message = format!("files include each other in a cycle: {}", cycle.join(" → "));
+            self.report.error("include-cycle", message, name.span);
+            return None;
+        }
+        Some(file)
     }
 
     fn open(&mut self, path: &Path, span: Span) -> Option<FileId> {
@@ -353,6 +356,12 @@ impl<'a> Interpreter<'a> {
         let shown = path.to_string_lossy().into_owned();
         match read_unpacked(self.assets, path) {
             Ok(text) if u32::try_from(text.len()).is_ok() => {
+                if let Some(what) = foreign::recognise(&shown, &text) {
+                    let message = format!("`{shown}` is {what}, which alhazen does not read");
+                    let diagnostic = Diagnostic::error("foreign-format", message, span);
+                    self.report.push(diagnostic.with_help("scenes are pbrt-v4, PLY or OBJ files"));
+                    return None;
+                }
                 let file = self.sources.add(shown, text);
                 self.files.insert(path.to_owned(), file);
                 Some(file)
@@ -412,18 +421,6 @@ impl<'a> Interpreter<'a> {
         let message = format!("{expected} should stand here, not {found}");
         self.report.error("unexpected-token", message, tokens.span(token));
         Err(Abandoned)
-    }
-}
-
-/// Skips to the next directive.
-fn recover(tokens: &mut Tokens) {
-    loop {
-        let token = tokens.peek();
-        match token.kind {
-            TokenKind::End => return,
-            TokenKind::Word if is_directive(tokens.bytes(token)) => return,
-            _ => _ = tokens.next(),
-        }
     }
 }
 

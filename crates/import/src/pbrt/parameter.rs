@@ -96,6 +96,9 @@ pub(crate) struct RawParameter {
     pub(crate) color_space: ColorSpaceDesc,
 }
 
+/// Most parameters of one statement; none that the format knows takes a tenth of them.
+const MOST_PARAMETERS: usize = 1000;
+
 /// Reads parameters as long as there are any. Whatever is wrong with one is reported, and the next
 /// one is read.
 pub(crate) fn parameters(
@@ -105,6 +108,13 @@ pub(crate) fn parameters(
 ) -> Vec<RawParameter> {
     let mut parameters: Vec<RawParameter> = Vec::new();
     while matches!(tokens.peek().kind, TokenKind::Quoted | TokenKind::Unterminated) {
+        if parameters.len() == MOST_PARAMETERS {
+            let declaration = tokens.peek();
+            let message = format!("a statement has at most {MOST_PARAMETERS} parameters");
+            report.error("too-many-parameters", message, tokens.span(declaration));
+            skip_to_directive(tokens);
+            break;
+        }
         let Some(parameter) = parameter(tokens, color_space, report) else { continue };
         if let Some(first) = parameters.iter().find(|earlier| earlier.name == parameter.name) {
             report.push(
@@ -175,7 +185,7 @@ fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<Paramet
     };
     if let Some(kind) = renamed {
         let message = format!("the parameter type `{name}` is now called `{}`", kind.name());
-        report.warning_once("deprecated", message, span);
+        report.warning("deprecated", message, span);
         return renamed;
     }
     let message = format!("there is no parameter type `{name}`");
@@ -303,6 +313,18 @@ fn push_value(tokens: &Tokens, token: Token, values: &mut Values, report: &mut R
 /// Whether a bare word begins a statement: an upper-case letter and then letters.
 pub(crate) fn is_directive(word: &[u8]) -> bool {
     matches!(word, [b'A'..=b'Z', rest @ ..] if rest.iter().all(u8::is_ascii_alphabetic))
+}
+
+/// Skips to the next directive.
+pub(crate) fn skip_to_directive(tokens: &mut Tokens) {
+    loop {
+        let token = tokens.peek();
+        match token.kind {
+            TokenKind::End => return,
+            TokenKind::Word if is_directive(tokens.bytes(token)) => return,
+            _ => _ = tokens.next(),
+        }
+    }
 }
 
 fn skip_values(tokens: &mut Tokens) {

@@ -1,16 +1,14 @@
 //! Ends of subpaths become whole paths: one function for each kind of strategy.
 
 use film::Splatter;
-use geometry::RayStats;
 use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
-use sampling::Sampler;
 use scene::camera::{CameraWiSample, FilmPlaces};
 use scene::light::LightId;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Bidirectional, Merges, Vertex, Walk, hero_only};
-use crate::photon_grid::LightVertex;
+use super::{Bidirectional, LightVertex, Merges, Vertex, Walk, hero_only};
+use crate::transport::Tracer;
 
 /// What a strategy has found.
 #[derive(Clone, Copy, Debug)]
@@ -95,14 +93,8 @@ impl Bidirectional<'_> {
     }
 
     /// s = 1: a point on a light is chosen for the vertex.
-    pub fn direct(
-        &self,
-        vertex: &Vertex,
-        lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> Option<Found> {
-        let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
+    pub fn direct(&self, vertex: &Vertex, lambda: &SampledWavelengths, tracer: &mut Tracer) -> Option<Found> {
+        let (u, u_light) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let context = vertex.light_context();
         let (light, pmf) = self.lights.seen_from.sample(&context, u)?;
         let sample = self.scene.sample_light(light, &context, u_light, lambda, false)?;
@@ -115,7 +107,7 @@ impl Bidirectional<'_> {
             Some(p) => (vertex.ray_to(p, sample.n), Ray::SHADOW_END),
             None => (Ray::spawn(vertex.p, vertex.n, wi, vertex.time), f32::INFINITY),
         };
-        if self.scene.occluded(&ray, end, Interfaces::before(self.scene.light(light)), stats) {
+        if tracer.occluded(&ray, end, Interfaces::before(self.scene.light(light))) {
             return None;
         }
         let place = sample.p.map(|p| (p.p, sample.n));
@@ -135,12 +127,12 @@ impl Bidirectional<'_> {
     }
 
     /// s, t ≥ 2: two surfaces are connected.
-    pub fn connect(&self, camera: &Vertex, light: &Vertex, stats: &mut RayStats) -> Option<Found> {
+    pub fn connect(&self, camera: &Vertex, light: &Vertex, tracer: &mut Tracer) -> Option<Found> {
         let way = light.p.p - camera.p.p;
         let distance_squared = way.length_squared();
         let wi = way / distance_squared.sqrt();
         let l = camera.scattered(wi) * light.scattered(-wi) / distance_squared;
-        if l.is_black() || !l.is_finite() || !self.visible(camera, light.p, light.n, stats) {
+        if l.is_black() || !l.is_finite() || !self.visible(camera, light.p, light.n, tracer) {
             return None;
         }
         let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
@@ -156,14 +148,14 @@ impl Bidirectional<'_> {
 
     /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses,
     /// if what arrives there comes within the `reach` of the film's pixels.
-    pub fn see(&self, vertex: &Vertex, u: Point2, reach: Bounds2, stats: &mut RayStats) -> Option<OnFilm> {
-        let camera = self.scene.camera();
+    pub fn see(&self, vertex: &Vertex, u: Point2, reach: Bounds2, tracer: &mut Tracer) -> Option<OnFilm> {
+        let camera = &self.view.camera;
         let sample = camera.sample_wi(vertex.p.p, vertex.time, u)?;
         let CameraWiSample { we, wi, pdf, film, p, n } = sample;
         let places = camera.film_places(film);
         places.within(reach).next()?;
         let l = vertex.scattered(wi) * (we / pdf);
-        if l.is_black() || !self.visible(vertex, Point3Error::exact(p), n, stats) {
+        if l.is_black() || !self.visible(vertex, Point3Error::exact(p), n, tracer) {
             return None;
         }
         let (pdf_position, pdf_direction) = camera.pdf_we(&Ray::new(p, -wi, vertex.time));
@@ -204,8 +196,8 @@ impl Bidirectional<'_> {
         Found { l: if hero { hero_only(l) } else { l }, weight, s, t }
     }
 
-    fn visible(&self, from: &Vertex, p: Point3Error, n: Normal3, stats: &mut RayStats) -> bool {
-        !self.scene.occluded(&from.ray_to(p, n), Ray::SHADOW_END, Interfaces::Pass, stats)
+    fn visible(&self, from: &Vertex, p: Point3Error, n: Normal3, tracer: &mut Tracer) -> bool {
+        !tracer.occluded(&from.ray_to(p, n), Ray::SHADOW_END, Interfaces::Pass)
     }
 }
 

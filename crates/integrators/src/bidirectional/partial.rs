@@ -25,14 +25,12 @@
 //! the merged one, which both subpaths have met. What comes straight from a light is not merged,
 //! because choosing a point on the light finds the same with less noise (m = 0 next to a light).
 //! Nor is anything merged that lies beyond a diffuse surface, seen from the camera
-//! ([`vcm`](crate::vcm) says why): behind one a camera subpath has m = 0, and at one a light
+//! ([`vcm`](crate::photons::vcm) says why): behind one a camera subpath has m = 0, and at one a light
 //! subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its d_vcm
 //! is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the
 //! factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
-
-use super::light_end::LightEnd;
 
 /// What a subpath carries for its weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,6 +38,20 @@ pub(crate) struct Partial {
     pub vcm: f32,
     pub vc: f32,
     pub vm: f32,
+}
+
+/// Densities at the light's end of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightEnd {
+    /// Density per solid angle with which the surface chooses the point, or direction, on the
+    /// light.
+    pub direct: f32,
+    /// Density per area and solid angle with which the light sends the ray.
+    pub emission: f32,
+    /// |cos| at the light's surface; 1 where it has none.
+    pub cos_theta: f32,
+    /// Whether rays cannot meet the light.
+    pub is_delta: bool,
 }
 
 /// Where merging is one of a path's strategies, on one side of a place.

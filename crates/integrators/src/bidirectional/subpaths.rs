@@ -1,11 +1,10 @@
 //! Whole subpaths, told vertex by vertex, and ends of subpaths of one length alone.
 
-use geometry::RayStats;
-use sampling::Sampler;
 use scene::camera::CameraRayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::{Bidirectional, Found, Vertex, Walk};
+use crate::transport::Tracer;
 
 /// What a camera subpath comes by.
 pub(crate) enum OnTheWay<'a> {
@@ -21,18 +20,17 @@ impl Bidirectional<'_> {
         &self,
         time: f32,
         lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-        mut visit: impl FnMut(&Vertex, &mut Sampler, &mut RayStats),
+        tracer: &mut Tracer,
+        mut visit: impl FnMut(&Vertex, &mut Tracer),
     ) {
-        let Some(mut walk) = Walk::from_light(self, time, *lambda, sampler, stats) else { return };
+        let Some(mut walk) = Walk::from_light(self, time, *lambda, tracer) else { return };
         while walk.depth < self.max_depth {
-            let Some(mut surface) = walk.meet(stats) else { return };
-            let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
+            let Some(mut surface) = walk.meet(tracer) else { return };
+            let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
             if vertex.is_connectible() {
-                visit(&vertex, sampler, stats);
+                visit(&vertex, tracer);
             }
-            if !walk.leave(&vertex, &surface, sampler) {
+            if !walk.leave(&vertex, &surface, tracer.sampler) {
                 return;
             }
         }
@@ -43,11 +41,10 @@ impl Bidirectional<'_> {
         &self,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-        visit: impl FnMut(OnTheWay, &mut Sampler, &mut RayStats),
+        tracer: &mut Tracer,
+        visit: impl FnMut(OnTheWay, &mut Tracer),
     ) {
-        self.camera_subpath_to(|_| false, camera_ray, lambda, sampler, stats, visit);
+        self.camera_subpath_to(|_| false, camera_ray, lambda, tracer, visit);
     }
 
     /// The same, as far as the first vertex that is an end.
@@ -56,28 +53,27 @@ impl Bidirectional<'_> {
         is_end: impl Fn(&Vertex) -> bool,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-        mut visit: impl FnMut(OnTheWay, &mut Sampler, &mut RayStats),
+        tracer: &mut Tracer,
+        mut visit: impl FnMut(OnTheWay, &mut Tracer),
     ) {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut before: Option<Vertex> = None;
         loop {
-            let Some(mut surface) = walk.meet(stats) else {
+            let Some(mut surface) = walk.meet(tracer) else {
                 for found in self.escaped(&walk, before.as_ref()) {
-                    visit(OnTheWay::Light(found), sampler, stats);
+                    visit(OnTheWay::Light(found), tracer);
                 }
                 return;
             };
             if let Some(found) = self.emitted(&walk, &surface, before.as_ref()) {
-                visit(OnTheWay::Light(found), sampler, stats);
+                visit(OnTheWay::Light(found), tracer);
             }
-            let Some(vertex) = walk.arrive(&mut surface, sampler) else { continue };
+            let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
             if vertex.depth > self.max_depth {
                 return;
             }
-            visit(OnTheWay::Vertex(&vertex), sampler, stats);
-            if is_end(&vertex) || !walk.leave(&vertex, &surface, sampler) {
+            visit(OnTheWay::Vertex(&vertex), tracer);
+            if is_end(&vertex) || !walk.leave(&vertex, &surface, tracer.sampler) {
                 return;
             }
             before = Some(vertex);
@@ -90,11 +86,10 @@ impl Bidirectional<'_> {
         depth: u32,
         time: f32,
         lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
+        tracer: &mut Tracer,
     ) -> Option<Vertex> {
-        let mut walk = Walk::from_light(self, time, *lambda, sampler, stats)?;
-        Some(walk.follow_to(depth, sampler, stats)?.0)
+        let mut walk = Walk::from_light(self, time, *lambda, tracer)?;
+        Some(walk.follow_to(depth, tracer)?.0)
     }
 
     /// The vertex where a camera subpath scatters for the `depth`-th time, from 1.
@@ -103,11 +98,10 @@ impl Bidirectional<'_> {
         depth: u32,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
+        tracer: &mut Tracer,
     ) -> Option<Vertex> {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
-        Some(walk.follow_to(depth, sampler, stats)?.0)
+        Some(walk.follow_to(depth, tracer)?.0)
     }
 
     /// The weighted light of all lights that a camera subpath meets by chance after it has
@@ -117,24 +111,23 @@ impl Bidirectional<'_> {
         depth: u32,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
+        tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut l = SampledSpectrum::ZERO;
-        let Some((vertex, surface)) = walk.follow_to(depth, sampler, stats) else { return l };
-        if !walk.scatter(&vertex, &surface, sampler) {
+        let Some((vertex, surface)) = walk.follow_to(depth, tracer) else { return l };
+        if !walk.scatter(&vertex, &surface, tracer.sampler) {
             return l;
         }
         loop {
-            let Some(mut surface) = walk.meet(stats) else {
+            let Some(mut surface) = walk.meet(tracer) else {
                 let escaped = self.escaped(&walk, Some(&vertex)).map(|found| found.weighted());
                 return l + escaped.sum::<SampledSpectrum>();
             };
             if let Some(found) = self.emitted(&walk, &surface, Some(&vertex)) {
                 l += found.weighted();
             }
-            if walk.arrive(&mut surface, sampler).is_some() {
+            if walk.arrive(&mut surface, tracer).is_some() {
                 return l;
             }
         }

@@ -11,19 +11,19 @@ use math::{Bounds2, Normal3, Point2, Point3, Vec2, Vec3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
 use scattering::{Directions, TransportMode};
-use scene::Scene;
 use scene::camera::{CameraRayDifferential, CameraSample};
 use scene::light::LightId;
+use scene::{Scene, View};
 use spectrum::SampledWavelengths;
 
-use super::{Balance, Bidirectional, Lights, Vertex, Walk};
-use crate::photon_grid::LightVertex;
+use super::{Balance, Bidirectional, LightVertex, Lights, Vertex, Walk};
+use crate::{Control, Tracer};
 
 const LIGHT_PATHS: usize = 37;
 
 /// The inside of a cube whose walls are diffuse or rough metal, some of them there in part, with
 /// two lamps.
-fn room() -> Scene {
+fn room() -> (Scene, View) {
     let mut desc = SceneDesc::default();
     let rough = RoughnessDesc::isotropic(0.6);
     let materials = [
@@ -60,7 +60,9 @@ fn room() -> Scene {
     desc.camera.kind =
         CameraKind::Perspective { fov: 80.0, screen: ScreenDesc::default(), lens: LensDesc::default() };
     desc.camera.camera_from_world = TransformDesc::translation(0.0, 0.0, 0.9);
-    scene::compile(&desc).expect("a scene").scene
+    let scene = scene::compile(&desc).expect("a scene").scene;
+    let view = View::compile(&desc, scene.world_from_render()).expect("a view").view;
+    (scene, view)
 }
 
 /// A path from a light to the camera: its scattering vertices, from the light's side.
@@ -113,7 +115,7 @@ impl Path<'_> {
             let pmf = paths.lights.seen_from.pmf(&context, light);
             return per_area(pmf * source.pdf_li(&context, wi, false), first.0, p, n);
         }
-        let (pdf_position, pdf_direction) = source.pdf_le(p, n, -wi);
+        let (pdf_position, pdf_direction) = source.pdf_le(p, n, -wi, context.time);
         let mut density = f64::from(paths.lights.emitting.pmf(light) * pdf_position)
             * per_area(pdf_direction, p, first.0, first.1);
         for index in 0..s - 2 {
@@ -131,7 +133,7 @@ impl Path<'_> {
         let last = self.surfaces.len() - 1;
         let to = self.place(last);
         let ray = math::Ray::new(self.camera, (to.0 - self.camera).normalize(), 0.0);
-        let mut density = per_area(paths.scene.camera().pdf_we(&ray).1, self.camera, to.0, to.1);
+        let mut density = per_area(paths.view.camera.pdf_we(&ray).1, self.camera, to.0, to.1);
         for index in ((last + 3 - t).max(1)..=last).rev() {
             let (from, to) = (self.after(index), self.place(index - 1));
             density *= self.scattered(index, from, to, TransportMode::Radiance);
@@ -196,12 +198,19 @@ fn weights_for_another_radius_are_told_apart() {
 
 /// That the recursion with one balance gives the weights by the densities of another.
 fn assert_weights(balance: Balance, expected: Balance) {
-    let scene = room();
+    let (scene, view) = room();
     let lights = Lights::of(&scene);
-    let paths = Bidirectional { scene: &scene, lights: &lights, balance, max_depth: 4, regularize: false };
+    let paths = Bidirectional {
+        scene: &scene,
+        view: &view,
+        lights: &lights,
+        balance,
+        max_depth: 4,
+        regularize: false,
+    };
     let lambda = SampledWavelengths::sample_visible(0.4);
     let mut sampler = Sampler::Independent(Independent::new(1, 3));
-    let stats = &mut RayStats::default();
+    let (control, stats) = (Control::default(), &mut RayStats::default());
     let mut seen = [0; 5];
     let slow = Bidirectional { balance: expected, ..paths };
     let everywhere = Bounds2 { min: Vec2::NEG_INFINITY, max: Vec2::INFINITY };
@@ -215,25 +224,26 @@ fn assert_weights(balance: Balance, expected: Balance) {
     let connect = |s: u32| Strategy::Connect(s as usize);
     for index in 0..4000 {
         sampler.start_pixel_sample([index, 0], 0, 0);
+        let tracer = &mut Tracer::new(&scene, &view, &control, &mut sampler, stats);
         // The sampler's next numbers choose the light and its ray.
-        let mut replay = sampler.clone();
+        let mut replay = tracer.sampler.clone();
         let (light, _) = lights.emitting.sample(replay.get_1d()).expect("a light");
         let sample = scene
-            .sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda, stats)
+            .sample_emission(light, replay.get_2d(), replay.get_2d(), 0.0, &lambda, tracer.stats)
             .expect("a ray");
         let start = (light, sample.p.expect("a place").p, sample.n);
         let mut light_subpath = Vec::new();
-        paths.light_subpath(0.0, &lambda, &mut sampler, stats, |vertex, _, _| light_subpath.push(*vertex));
+        paths.light_subpath(0.0, &lambda, tracer, |vertex, _| light_subpath.push(*vertex));
 
-        let film = Point2::from(sampler.get_2d()) * 100.0;
+        let film = Point2::from(tracer.sampler.get_2d()) * 100.0;
         let sample = CameraSample { film, lens: Vec2::ZERO, time: 0.0, filter_weight: 1.0 };
-        let ray = scene.camera().generate_ray(&sample).expect("a ray");
+        let ray = view.camera.generate_ray(&sample).expect("a ray");
         let camera = ray.ray.o;
         let ray = CameraRayDifferential { ray: ray.ray.into(), weight: ray.weight };
 
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
-            if let Some(found) = paths.see(vertex, Vec2::ZERO, everywhere, stats) {
+            if let Some(found) = paths.see(vertex, Vec2::ZERO, everywhere, tracer) {
                 check(
                     &Path { light: start, surfaces, camera },
                     connect(found.found.s),
@@ -245,7 +255,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         let mut walk = Walk::from_camera(&paths, &ray, lambda);
         let mut camera_subpath: Vec<Vertex> = Vec::new();
-        while let Some(mut surface) = walk.meet(stats) {
+        while let Some(mut surface) = walk.meet(tracer) {
             let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
             if let Some(found) = paths.emitted(&walk, &surface, camera_subpath.last())
                 && !camera_subpath.is_empty()
@@ -257,12 +267,12 @@ fn assert_weights(balance: Balance, expected: Balance) {
             if walk.depth == paths.max_depth {
                 break;
             }
-            let vertex = walk.arrive(&mut surface, &mut sampler).expect("no interfaces here");
+            let vertex = walk.arrive(&mut surface, tracer).expect("no interfaces here");
             camera_subpath.push(vertex);
             let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
 
-            let mut replay = sampler.clone();
-            if let Some(found) = paths.direct(&vertex, &lambda, &mut sampler, stats) {
+            let mut replay = tracer.sampler.clone();
+            if let Some(found) = paths.direct(&vertex, &lambda, tracer) {
                 let (u, u_light) = (replay.get_1d(), replay.get_2d());
                 let context = vertex.light_context();
                 let (light, _) = lights.seen_from.sample(&context, u).expect("a light");
@@ -272,7 +282,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                 check(&Path { light, surfaces, camera }, connect(found.s), found.weight, 2);
             }
             for (i, light) in light_subpath.iter().enumerate() {
-                if let Some(found) = paths.connect(&vertex, light, stats) {
+                if let Some(found) = paths.connect(&vertex, light, tracer) {
                     let mut surfaces: Vec<_> = light_subpath[..=i].iter().collect();
                     surfaces.extend(from_light(camera_subpath.len()));
                     let path = Path { light: start, surfaces, camera };
@@ -286,7 +296,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     }
                 }
             }
-            if !walk.leave(&vertex, &surface, &mut sampler) {
+            if !walk.leave(&vertex, &surface, tracer.sampler) {
                 break;
             }
         }

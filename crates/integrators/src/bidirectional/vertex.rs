@@ -6,7 +6,7 @@ use scene::light::LightSampleContext;
 use spectrum::SampledSpectrum;
 
 use super::{Merges, Partial};
-use crate::direct::on_its_side;
+use crate::transport::direct::on_its_side;
 
 /// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]

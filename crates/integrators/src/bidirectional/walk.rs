@@ -7,7 +7,6 @@
 //! know of it, which costs nothing but a little efficiency. Who wants a vertex of a certain depth
 //! and no other plays no roulette ([`Walk::follow_to`]).
 
-use geometry::RayStats;
 use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Directions, TransportMode};
@@ -18,7 +17,8 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::light_end::Place;
 use super::{Bidirectional, Partial, Vertex};
-use crate::direct::pass_through;
+use crate::transport::path_state::pass_through;
+use crate::transport::{Tracer, roulette};
 
 /// A subpath on its way to its next surface.
 #[derive(Clone)]
@@ -66,7 +66,7 @@ impl<'a> Walk<'a> {
         camera_ray: &CameraRayDifferential,
         lambda: SampledWavelengths,
     ) -> Self {
-        let camera = paths.scene.camera();
+        let camera = &paths.view.camera;
         let (pdf_position, pdf_direction) = camera.pdf_we(&camera_ray.ray.ray);
         let parallel = camera.is_parallel();
         let pdf = if parallel { pdf_position } else { pdf_direction };
@@ -81,12 +81,13 @@ impl<'a> Walk<'a> {
         paths: &'a Bidirectional,
         time: f32,
         lambda: SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
+        tracer: &mut Tracer,
     ) -> Option<Self> {
+        let sampler = &mut *tracer.sampler;
         let (u, u_position, u_direction) = (sampler.get_1d(), sampler.get_2d(), sampler.get_2d());
         let (light, pmf) = paths.lights.emitting.sample(u)?;
-        let sample = paths.scene.sample_emission(light, u_position, u_direction, time, &lambda, stats)?;
+        let sample =
+            paths.scene.sample_emission(light, u_position, u_direction, time, &lambda, tracer.stats)?;
         let start = (sample.beta() / pmf, Partial::default());
         let origin = (Origin::Light(light, sample.p.map(|p| (p.p, sample.n))), TransportMode::Importance);
         Some(Self::new(paths, sample.ray.into(), start, lambda, origin))
@@ -118,12 +119,12 @@ impl<'a> Walk<'a> {
     }
 
     /// The surface that the ray meets; `None` if it leaves the scene, or was stopped.
-    pub fn meet(&mut self, stats: &mut RayStats) -> Option<SurfaceInteraction> {
+    pub fn meet(&mut self, tracer: &mut Tracer) -> Option<SurfaceInteraction> {
         if self.is_stopped {
             return None;
         }
         let scene = self.paths.scene;
-        let hit = scene.hit(&self.ray.ray, f32::INFINITY, stats)?;
+        let hit = tracer.hit(&self.ray.ray)?;
         let surface = scene.world().surface(&self.ray.ray, &hit);
         self.distance += hit.t;
         self.alpha = scene.coverage(&hit, &surface);
@@ -131,8 +132,8 @@ impl<'a> Walk<'a> {
     }
 
     /// The vertex at a surface that was met; `None` if the ray passes it, to be followed on.
-    pub fn arrive(&mut self, surface: &mut SurfaceInteraction, sampler: &mut Sampler) -> Option<Vertex> {
-        let Some(mut bsdf) = self.paths.scene.bsdf(surface, &self.ray, &mut self.lambda, sampler) else {
+    pub fn arrive(&mut self, surface: &mut SurfaceInteraction, tracer: &mut Tracer) -> Option<Vertex> {
+        let Some(mut bsdf) = tracer.bsdf(surface, &self.ray, &mut self.lambda) else {
             let t = self.ray.ray.o.distance(surface.p());
             self.ray = pass_through(&self.ray, surface, t);
             if let Origin::Light(light, _) = self.origin
@@ -182,19 +183,14 @@ impl<'a> Walk<'a> {
     }
 
     /// Goes on to the vertex of a depth, without Russian roulette; `None` if it does not get there.
-    pub fn follow_to(
-        &mut self,
-        depth: u32,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> Option<(Vertex, SurfaceInteraction)> {
+    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex, SurfaceInteraction)> {
         loop {
-            let mut surface = self.meet(stats)?;
-            let Some(vertex) = self.arrive(&mut surface, sampler) else { continue };
+            let mut surface = self.meet(tracer)?;
+            let Some(vertex) = self.arrive(&mut surface, tracer) else { continue };
             if vertex.depth == depth {
                 return Some((vertex, surface));
             }
-            if !self.scatter(&vertex, &surface, sampler) {
+            if !self.scatter(&vertex, &surface, tracer.sampler) {
                 return None;
             }
         }
@@ -230,14 +226,9 @@ impl<'a> Walk<'a> {
 
     /// Russian roulette.
     fn survive(&mut self, sampler: &mut Sampler) -> bool {
-        let survival = self.share.max_component();
-        if self.depth > 1 && survival < 1.0 {
-            if survival <= 0.0 || sampler.get_1d() >= survival {
-                return false;
-            }
-            self.beta /= survival;
-            self.share /= survival;
-        }
+        let Some(survival) = roulette::survival(self.depth, self.share, sampler) else { return false };
+        self.beta /= survival;
+        self.share /= survival;
         true
     }
 }

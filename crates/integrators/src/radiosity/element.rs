@@ -10,7 +10,7 @@ use math::{Normal3, Point3, Point3Error, RayDifferential, Vec2};
 use sampling::sampler::Independent;
 use sampling::{Sampler, warp};
 use scattering::{Bsdf, Bxdf, Directions, TransportMode};
-use scene::{Scene, SurfaceInteraction};
+use scene::{Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::bands::{Bands, Wavelengths};
@@ -39,6 +39,7 @@ impl Albedo {
     /// medium.
     pub fn at(
         scene: &Scene,
+        view: &View,
         interaction: &mut SurfaceInteraction,
         ray: &RayDifferential,
         wavelengths: &Wavelengths,
@@ -46,7 +47,7 @@ impl Albedo {
         // Only scenes that force diffuse surfaces ask it anything.
         let mut sampler = Sampler::Independent(Independent::new(1, 0));
         let pair = wavelengths.sample_pair(|lambda| {
-            let bsdf = scene.bsdf(interaction, ray, &mut lambda.clone(), &mut sampler)?;
+            let bsdf = scene.bsdf(view, interaction, ray, &mut lambda.clone(), &mut sampler)?;
             Some(match bsdf.bxdf {
                 Bxdf::Diffuse(bxdf) => [bxdf.reflectance, SampledSpectrum::ZERO],
                 Bxdf::DiffuseTransmission(bxdf) => [bxdf.reflectance, bxdf.transmittance],
@@ -118,7 +119,14 @@ pub(crate) struct Element {
 
 impl Element {
     /// A leaf without light.
-    pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, place: Place) -> Self {
+    pub fn new(
+        scene: &Scene,
+        view: &View,
+        mesh: &Mesh,
+        wavelengths: &Wavelengths,
+        cell: u32,
+        place: Place,
+    ) -> Self {
         let Place { patch, quarter, level } = place;
         let world = scene.world();
         let leaf = mesh.cell(cell);
@@ -131,7 +139,7 @@ impl Element {
                 return SamplePoint { p: Point3Error::exact(Point3::ZERO), n: Normal3::ZERO, weight: 0.0 };
             };
             let weight = if area > 0.0 { areas[i] / area } else { 0.0 };
-            let here = albedo_at(scene, mesh.primitive(leaf), &surface, wavelengths)
+            let here = albedo_at(scene, view, mesh.primitive(leaf), &surface, wavelengths)
                 .unwrap_or_default()
                 .scaled(weight);
             albedo.reflectance += here.reflectance;
@@ -211,6 +219,7 @@ fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
 /// change of medium.
 pub(crate) fn albedo_at(
     scene: &Scene,
+    view: &View,
     primitive: &Hit,
     surface: &SurfacePoint,
     wavelengths: &Wavelengths,
@@ -218,7 +227,7 @@ pub(crate) fn albedo_at(
     let ray = RayDifferential::from(surface.spawn_ray(surface.n));
     let mut interaction = scene.interaction(primitive, *surface);
     let coverage = scene.coverage(primitive, surface);
-    Some(Albedo::at(scene, &mut interaction, &ray, wavelengths)?.scaled(coverage))
+    Some(Albedo::at(scene, view, &mut interaction, &ray, wavelengths)?.scaled(coverage))
 }
 
 /// What sends light on.

@@ -13,29 +13,32 @@ use spectrum::{RgbColorSpace, xyz_from};
 
 use super::bands::Bands;
 use super::shooting::Solution;
-use super::show::View;
+use super::show::Interpolation;
 
 /// Writes the mesh.
 pub(crate) fn encode(
     scene: &Scene,
     solution: &Solution,
-    view: &View,
+    interpolation: &Interpolation,
     color_space: &RgbColorSpace,
 ) -> Vec<u8> {
-    let world_from_render = scene.camera().transform().world_from_render();
+    let world_from_render = scene.world_from_render();
     let cut = &solution.cut;
     let mut vertices: Vec<(DVec3, [f32; 3], bool)> = Vec::new();
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for (id, element) in (0..).zip(&cut.elements) {
         let emitted = &cut.patches[element.patch as usize].emitted;
         let cell = cut.mesh.cell(element.cell);
-        let outline = view.outline(id);
+        let outline = interpolation.outline(id);
         let center = cut.mesh.surface(scene.world(), cell.primitive, cell.domain().center());
         let Some(center) = center else { continue };
         for (side, emitted) in emitted.iter().enumerate() {
             let radiosity = |irradiance: &[Bands; 2]| element.albedo.scatter(irradiance)[side] + *emitted;
             let corners = outline.iter().map(|corner| {
-                (cut.mesh.vertices()[corner.vertex as usize].p, radiosity(view.at_vertex(corner.vertex)))
+                (
+                    cut.mesh.vertices()[corner.vertex as usize].p,
+                    radiosity(interpolation.at_vertex(corner.vertex)),
+                )
             });
             let fan: Vec<_> =
                 std::iter::once((center.p.p, radiosity(&element.irradiance()))).chain(corners).collect();

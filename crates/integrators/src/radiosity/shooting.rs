@@ -31,19 +31,18 @@
 //! Sources: [Cohen 1988], [Cohen 1986] for elements.
 
 use geometry::RayStats;
-use math::{Normal3, Ray, Vec2};
+use math::Normal3;
 use rayon::prelude::*;
-use sampling::hash_float;
-use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
-use scene::{Interfaces, Scene};
-use spectrum::SampledSpectrum;
+use scene::light::{Light, LightId, LightSampleContext};
+use scene::{Scene, View};
 
 use super::bands::{Bands, Wavelengths};
 use super::element::{Albedo, Element, Patch};
 use super::form_factor::{Emitter, Received};
 use super::hemicube::Hemicube;
+use super::light_samples::from_light;
+use super::settings::{FormFactors, RadiositySettings};
 use super::subdivide::Cut;
-use super::{FormFactors, RadiositySettings};
 use crate::{Cancelled, Control};
 
 /// The part of all light, spread evenly, below which an irradiance is next to nothing.
@@ -68,9 +67,14 @@ pub(crate) struct Solution {
 
 impl Solution {
     /// Nothing has been sent yet.
-    pub fn new(scene: &Scene, settings: &RadiositySettings, control: &Control) -> Result<Self, Cancelled> {
-        let wavelengths = Wavelengths::new(!scene.options().disable_wavelength_jitter);
-        let cut = Cut::new(scene, settings, &wavelengths, control)?;
+    pub fn new(
+        scene: &Scene,
+        view: &View,
+        settings: &RadiositySettings,
+        control: &Control,
+    ) -> Result<Self, Cancelled> {
+        let wavelengths = Wavelengths::new(!view.options.disable_wavelength_jitter);
+        let cut = Cut::new(scene, view, settings, &wavelengths, control)?;
         let settings = settings.clone();
         let begun = settings.max_depth == 0;
         let mut solution = Self { wavelengths, cut, settings, begun, total: 0.0, shots: 0 };
@@ -93,15 +97,21 @@ impl Solution {
     }
 
     /// Shoots until no more than a share of all light is left to be sent.
-    pub fn shoot(&mut self, scene: &Scene, share: f32, control: &Control) -> Result<RayStats, Cancelled> {
+    pub fn shoot(
+        &mut self,
+        scene: &Scene,
+        view: &View,
+        share: f32,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
         let mut stats = RayStats::default();
         if !self.begun {
-            self.receive_lights(scene, control, &mut stats)?;
+            self.receive_lights(scene, view, control, &mut stats)?;
             self.begun = true;
         }
         while self.total > 0.0 && self.unshot_share() > share {
             let Some((patch, side)) = self.brightest() else { break };
-            self.shoot_from(scene, patch, side, control, &mut stats)?;
+            self.shoot_from(scene, view, patch, side, control, &mut stats)?;
         }
         self.cut.settle();
         Ok(stats)
@@ -130,6 +140,7 @@ impl Solution {
     fn shoot_from(
         &mut self,
         scene: &Scene,
+        view: &View,
         source: u32,
         side: usize,
         control: &Control,
@@ -162,7 +173,7 @@ impl Solution {
                     })
                 };
                 wholes = each(&self.cut.patches, control, stats, on_whole)?;
-                self.receive(scene, brightness, &wholes, |cut, ids| {
+                self.receive(scene, view, brightness, &wholes, |cut, ids| {
                     each_element(cut, ids, control, stats, |element, stats| match element.patch == source {
                         // What is bent stands off its chord, and would see it: from behind, as if
                         // it filled the sky.
@@ -174,7 +185,7 @@ impl Solution {
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
                 let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
-                self.receive(scene, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
+                self.receive(scene, view, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };
         let Cut { patches, elements, .. } = &mut self.cut;
@@ -209,12 +220,13 @@ impl Solution {
     fn receive_lights(
         &mut self,
         scene: &Scene,
+        view: &View,
         control: &Control,
         stats: &mut RayStats,
     ) -> Result<(), Cancelled> {
         let lights: Vec<LightId> = (0..scene.lights().len() as u32)
             .map(LightId)
-            .filter(|&id| !matches!(scene.light(id), Light::Area(_)) || scene.light(id).is_delta())
+            .filter(|&id| !matches!(scene.light(id).row(), Light::Area(_)) || scene.light(id).is_delta())
             .collect();
         if lights.is_empty() {
             return Ok(());
@@ -239,7 +251,8 @@ impl Solution {
             element.area * sum
         };
         self.total += each_element(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
-        let lit = self.receive(scene, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
+        let lit =
+            self.receive(scene, view, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
             element.quarters = lit.quarters;
             let sides = element.irradiance();
@@ -269,6 +282,7 @@ impl Solution {
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
+        view: &View,
         brightness: f32,
         wholes: &[Option<Received>],
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
@@ -300,7 +314,7 @@ impl Solution {
                 coarse = self.cut.lagging(scene, &self.settings, is_asked);
             }
             has_cut |= !coarse.is_empty();
-            fresh = self.cut.split(scene, &self.settings, &self.wavelengths, &coarse);
+            fresh = self.cut.split(scene, view, &self.settings, &self.wavelengths, &coarse);
         }
         Ok(received)
     }
@@ -439,67 +453,4 @@ fn each<I: Sync, T: Send>(
     let answers: Vec<_> = asked.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
     answers.iter().for_each(|(_, some)| *stats += *some);
     Ok(answers.into_iter().flat_map(|(answers, _)| answers).collect())
-}
-
-/// The irradiance of both sides of a point from a light, by samples of it.
-fn from_light(
-    scene: &Scene,
-    wavelengths: &Wavelengths,
-    light: LightId,
-    context: &LightSampleContext,
-    stats: &mut RayStats,
-) -> [Bands; 2] {
-    let strata = match scene.light(light) {
-        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => 1,
-        Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) => LIGHT_STRATA,
-    };
-    // Every point shifts the samples its own way, lest they all have the same shadows.
-    let place = context.p.p.to_array().map(f32::to_bits);
-    let shift = Vec2::new(hash_float(&place), hash_float(&[place[2], place[0], place[1]]));
-    let mut sides = [Bands::ZERO; 2];
-    for i in 0..strata * strata {
-        let u = (Vec2::new((i % strata) as f32, (i / strata) as f32) + shift) / strata as f32;
-        let Some((l, sample)) = sample_light(scene, wavelengths, light, context, u) else { continue };
-        if arrives(scene, light, context, &sample, stats) {
-            let cos_theta = sample.wi.dot(context.n);
-            sides[usize::from(cos_theta < 0.0)] +=
-                l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
-        }
-    }
-    sides
-}
-
-/// Samples of a light that has an extent, along each axis.
-const LIGHT_STRATA: u32 = 8;
-
-/// A direction to a light, and its radiance there at all wavelengths.
-pub(crate) fn sample_light(
-    scene: &Scene,
-    wavelengths: &Wavelengths,
-    light: LightId,
-    context: &LightSampleContext,
-    u: Vec2,
-) -> Option<(Bands, LightLiSample)> {
-    let mut found = None;
-    let l = wavelengths.sample(|lambda| {
-        let sample = scene.sample_light(light, context, u, lambda, false);
-        found = found.or(sample);
-        sample.map_or(SampledSpectrum::ZERO, |sample| sample.l)
-    });
-    found.map(|sample| (l, sample))
-}
-
-/// Whether a point sees the sample of a light.
-pub(crate) fn arrives(
-    scene: &Scene,
-    light: LightId,
-    context: &LightSampleContext,
-    sample: &LightLiSample,
-    stats: &mut RayStats,
-) -> bool {
-    let (ray, end) = match sample.p {
-        Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
-        None => (context.spawn_ray(sample.wi), f32::INFINITY),
-    };
-    !scene.occluded(&ray, end, Interfaces::before(scene.light(light)), stats)
 }

@@ -2,12 +2,12 @@
 //! and smaller elements.
 
 use rayon::prelude::*;
-use scene::Scene;
+use scene::{Scene, View};
 
-use super::RadiositySettings;
 use super::bands::Wavelengths;
 use super::element::{Element, Patch, Place};
 use super::mesh::Mesh;
+use super::settings::RadiositySettings;
 use crate::{Cancelled, Control};
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.
@@ -26,12 +26,13 @@ impl Cut {
     /// primitives are cut at all, so that large ones always can be.
     pub fn new(
         scene: &Scene,
+        view: &View,
         settings: &RadiositySettings,
         wavelengths: &Wavelengths,
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let max_patches = settings.max_patches as usize;
-        let [open, close] = scene.camera().shutter();
+        let [open, close] = view.camera.shutter();
         let whole = Mesh::new(scene, 0.5 * (open + close), max_patches.div_ceil(2), control)?;
         let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
         // No patch is larger than a square with sides of this length.
@@ -50,7 +51,7 @@ impl Cut {
             control.check()?;
             let patch = Patch::new(scene, &mesh, wavelengths, cell, settings.max_depth);
             let place = Place { patch: id, quarter: 0, level: 0 };
-            Ok((patch, Element::new(scene, &mesh, wavelengths, cell, place)))
+            Ok((patch, Element::new(scene, view, &mesh, wavelengths, cell, place)))
         };
         let made: Vec<(Patch, Element)> = ids.par_iter().map(make).collect::<Result<_, Cancelled>>()?;
         ids.iter().for_each(|&(id, cell)| mesh.set_element(cell, id));
@@ -129,6 +130,7 @@ impl Cut {
     pub fn split(
         &mut self,
         scene: &Scene,
+        view: &View,
         settings: &RadiositySettings,
         wavelengths: &Wavelengths,
         coarse: &[u32],
@@ -150,7 +152,7 @@ impl Cut {
             let quarter_of = |cell: u32| mesh.cell(cell).domain().quarter_of(center);
             let quarter = quarter_of(self.patches[whole.patch as usize].cell);
             let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
-            let mut part = Element::new(scene, mesh, wavelengths, cell, place);
+            let mut part = Element::new(scene, view, mesh, wavelengths, cell, place);
             part.inherit(mesh, whole);
             part
         };

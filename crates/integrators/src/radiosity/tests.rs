@@ -13,7 +13,7 @@ use description::{
 use geometry::RayStats;
 use math::{Point3, Vec2};
 use sampling::Rng;
-use scene::Scene;
+use scene::{Scene, View};
 
 use super::bands::Bands;
 use super::element::Patch;
@@ -21,7 +21,7 @@ use super::form_factor::Emitter;
 use super::hemicube::Hemicube;
 use super::mesh::Corner;
 use super::shooting::Solution;
-use super::show::View;
+use super::show::Interpolation;
 use super::{FormFactors, RadiositySettings, ply};
 use crate::Control;
 use scene::light_sampler::LightSamplerKind;
@@ -65,22 +65,26 @@ fn compile(desc: &SceneDesc) -> Scene {
     scene::compile(desc).unwrap().scene
 }
 
+fn view() -> View {
+    View::compile(&SceneDesc::default(), math::DMat4::IDENTITY).unwrap().view
+}
+
 fn settings(patch_size: f32) -> RadiositySettings {
     RadiositySettings { patch_size: Some(patch_size), ..RadiositySettings::default() }
 }
 
 fn unsolved(scene: &Scene, settings: &RadiositySettings) -> Solution {
-    Solution::new(scene, settings, &Control::default()).unwrap()
+    Solution::new(scene, &view(), settings, &Control::default()).unwrap()
 }
 
 fn solved(scene: &Scene, settings: &RadiositySettings) -> Solution {
     let mut solution = unsolved(scene, settings);
-    solution.shoot(scene, settings.tolerance, &Control::default()).unwrap();
+    solution.shoot(scene, &view(), settings.tolerance, &Control::default()).unwrap();
     solution
 }
 
-fn view(scene: &Scene, solution: &Solution) -> View {
-    View::new(scene, solution, &scene.light_sampler(LightSamplerKind::Bvh), 0)
+fn interpolation(scene: &Scene, solution: &Solution) -> Interpolation {
+    Interpolation::new(scene, solution, &scene.light_sampler(LightSamplerKind::Bvh), 0)
 }
 
 /// F_ie for all elements e and one patch.
@@ -152,7 +156,7 @@ fn energy_is_conserved_while_shooting() {
         let all = power(&solution);
         assert!(all > 0.0);
         for share in [0.8, 0.3, 0.1, 0.01] {
-            solution.shoot(&scene, share, &Control::default()).unwrap();
+            solution.shoot(&scene, &view(), share, &Control::default()).unwrap();
             let absorbed = solution.cut.elements.iter().map(|element| {
                 let [outer, inner] = element.irradiance();
                 let kept = element.albedo.reflectance * -1.0 + Bands::splat(1.0);
@@ -194,9 +198,9 @@ fn the_sky_is_an_emitter() {
     desc.shapes.push(ball.into());
     let scene = compile(&desc);
     let solution = solved(&scene, &RadiositySettings { subdivision: 0, ..settings(0.2) });
-    let sky = solution
-        .wavelengths
-        .sample(|lambda| scene.lights()[0].le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda));
+    let sky = solution.wavelengths.sample(|lambda| {
+        scene.light(scene::light::LightId(0)).le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda)
+    });
     let area: f32 = solution.cut.elements.iter().map(|element| element.area).sum();
     let mean: f32 = solution.cut.elements.iter().map(|e| e.irradiance()[0].mean() * e.area / area).sum();
     let expected = sky.mean() * std::f32::consts::PI;
@@ -210,17 +214,17 @@ fn there_are_no_cracks() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.7, 0.4, 0.6, 0.3, 0.5, 0.8]));
     let settings = RadiositySettings { tolerance: 0.02, ..settings(0.5) };
     let solution = solved(&scene, &settings);
-    let view = view(&scene, &solution);
+    let interpolation = interpolation(&scene, &solution);
     let mut sides: HashMap<[u32; 2], Vec<Vec<f32>>> = HashMap::new();
     let mut anchored = 0;
     for (id, element) in (0..).zip(&solution.cut.elements) {
         let leaf = solution.cut.mesh.cell(element.cell);
-        let outline = view.outline(id);
+        let outline = interpolation.outline(id);
         anchored += outline.len() - leaf.corners().len();
         for (i, a) in outline.iter().enumerate() {
             let b = outline[(i + 1) % outline.len()];
             let [a, b]: [Corner; 2] = if a.vertex < b.vertex { [*a, b] } else { [b, *a] };
-            let light = |t: f32| view.irradiance(&solution, leaf, a.uv.lerp(b.uv, t))[0].mean();
+            let light = |t: f32| interpolation.irradiance(&solution, leaf, a.uv.lerp(b.uv, t))[0].mean();
             if a.vertex != b.vertex {
                 sides.entry([a.vertex, b.vertex]).or_default().push([0.0, 0.3, 0.8, 1.0].map(light).into());
             }
@@ -244,7 +248,7 @@ fn fine_elements_are_followed() {
     let settings = settings(0.5);
     let Solution { wavelengths, mut cut, .. } = unsolved(&scene, &settings);
     let mut divide = |ids: &[u32]| {
-        let parts = cut.split(&scene, &settings, &wavelengths, ids);
+        let parts = cut.split(&scene, &view(), &settings, &wavelengths, ids);
         let lagging = cut.lagging(&scene, &settings, |_| true);
         assert_eq!(cut.lagging(&scene, &settings, |patch| patch == 0), [0; 0], "it is as fine as any");
         (parts, lagging)
@@ -287,7 +291,8 @@ fn every_point_has_its_leaf() {
 fn the_mesh_is_written_whole() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
     let solution = solved(&scene, &settings(0.5));
-    let bytes = ply::encode(&scene, &solution, &view(&scene, &solution), spectrum::RgbColorSpace::srgb());
+    let bytes =
+        ply::encode(&scene, &solution, &interpolation(&scene, &solution), spectrum::RgbColorSpace::srgb());
     let header_end = bytes.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
     let header = String::from_utf8(bytes[..header_end].to_vec()).unwrap();
     let count = |name: &str| -> usize {
@@ -339,5 +344,5 @@ fn cutting_can_be_stopped() {
     let scene = compile(&room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
     let control = Control::default();
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(Solution::new(&scene, &settings(0.1), &control).is_err());
+    assert!(Solution::new(&scene, &view(), &settings(0.1), &control).is_err());
 }

@@ -1,6 +1,6 @@
 //! Ambient occlusion of points whose view is known.
 
-use alhazen_integrators::AmbientOcclusion;
+use alhazen_integrators::{AmbientOcclusion, Control, RayIntegrator, Tracer};
 use description::{SceneDesc, ShapeKind};
 use geometry::RayStats;
 use math::{Ray, RayDifferential};
@@ -10,9 +10,7 @@ use scene::Scene;
 use spectrum::{CIE_Y_INTEGRAL, RgbColorSpace, SampledWavelengths};
 use testkit::Moments;
 
-use alhazen_integrators::RayIntegrator;
-
-use crate::support::{assert_mean, compile, quad, v};
+use crate::support::{assert_mean, compile, quad, v, viewed};
 
 /// A floor, and what stands on it.
 fn on_a_floor(shapes: impl IntoIterator<Item = ShapeKind>) -> Scene {
@@ -28,6 +26,7 @@ fn on_a_floor(shapes: impl IntoIterator<Item = ShapeKind>) -> Scene {
 fn brightness(scene: &Scene, cos_sample: bool, max_distance: f32) -> Moments {
     let space = RgbColorSpace::rec2020();
     let rays = AmbientOcclusion::new(cos_sample, max_distance, space);
+    let ((_, view), control) = (viewed(&SceneDesc::default()), Control::default());
     let mut stats = RayStats::default();
     let mut sampler = Sampler::Independent(Independent::new(1, 3));
     let samples = (0..20_000).map(|i| {
@@ -35,7 +34,8 @@ fn brightness(scene: &Scene, cos_sample: bool, max_distance: f32) -> Moments {
         let mut lambda = SampledWavelengths::sample_visible(sampler.get_1d());
         let ray =
             RayDifferential::from(Ray::new(v(-0.3, 0.0, 0.3), v(0.5f32.sqrt(), 0.0, -(0.5f32.sqrt())), 0.0));
-        let l = rays.li(scene, ray, &mut lambda, &mut sampler, &mut stats);
+        let mut tracer = Tracer::new(scene, &view, &control, &mut sampler, &mut stats);
+        let l = rays.li(&mut tracer, ray, &mut lambda);
         f64::from(l[0] / space.illuminant().sample(&lambda)[0] * CIE_Y_INTEGRAL)
     });
     samples.collect()

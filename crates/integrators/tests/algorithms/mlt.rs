@@ -2,16 +2,19 @@
 
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Integrator, build, render};
+use alhazen_integrators::{Cancelled, Control, Integrator, build};
 use description::{
     IntegratorDesc, LightKind, LightSamplerDesc, MltDesc, MltTechnique, Origin, SamplerDesc, SamplerKind,
     SceneDesc, ShapeDesc, Span, SpectrumDesc, Stated,
 };
 use film::Film;
 use math::Vec3;
+use scene::{Scene, View};
 use testkit::{Moments, welch_test};
 
-use crate::support::{at, compile, diffuse, emission, glass, mirror, quad, sphere, v, walls, white_sky};
+use crate::support::{
+    at, diffuse, emission, finished, glass, mirror, quad, sphere, v, viewed, walls, white_sky,
+};
 
 const TECHNIQUES: [MltTechnique; 2] = [MltTechnique::Path, MltTechnique::Bdpt];
 
@@ -32,13 +35,12 @@ fn with(desc: &SceneDesc, integrator: IntegratorDesc, seed: i32) -> SceneDesc {
     desc
 }
 
-fn prepared(desc: &SceneDesc) -> (scene::Scene, Film, Box<dyn Integrator>) {
-    (compile(desc), film::compile(desc).unwrap().film, build(desc).unwrap().integrator)
+fn prepared(desc: &SceneDesc) -> ((Scene, View), Film, Box<dyn Integrator>) {
+    (viewed(desc), film::compile(desc).unwrap().film, build(desc).unwrap().integrator)
 }
 
 fn picture(desc: &SceneDesc) -> Film {
-    let (scene, mut film, mut integrator) = prepared(desc);
-    render(&mut *integrator, &scene, &mut film, &Control::default()).unwrap();
+    let film = finished(desc, build(desc).unwrap().integrator).into_state().film;
     assert_eq!(film.rejected().count, 0);
     film
 }
@@ -154,16 +156,16 @@ fn threads_never_change_a_bit() {
 fn a_pass_owes_nothing_to_those_before_it() {
     for technique in TECHNIQUES {
         let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(technique, 5)), 2);
-        let (scene, mut film, mut integrator) = prepared(&desc);
-        integrator.prepare(&scene);
+        let ((scene, view), mut film, mut integrator) = prepared(&desc);
+        integrator.prepare(&scene, &view, &Control::default()).unwrap();
         let mut parts = film.blank();
         for pass in [0, 1, 2] {
-            integrator.pass(pass, &scene, &mut film, &Control::default()).unwrap();
+            integrator.pass(pass, &scene, &view, &mut film, &Control::default()).unwrap();
         }
         for pass in [2, 0, 1] {
             let (_, mut part, mut integrator) = prepared(&desc);
-            integrator.prepare(&scene);
-            integrator.pass(pass, &scene, &mut part, &Control::default()).unwrap();
+            integrator.prepare(&scene, &view, &Control::default()).unwrap();
+            integrator.pass(pass, &scene, &view, &mut part, &Control::default()).unwrap();
             parts.merge(&part);
         }
         assert!(bits(&film) == bits(&parts), "{technique:?}");
@@ -173,11 +175,11 @@ fn a_pass_owes_nothing_to_those_before_it() {
 #[test]
 fn chains_stop_when_told_to() {
     let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(MltTechnique::Bdpt, 5)), 3);
-    let (scene, mut film, mut integrator) = prepared(&desc);
-    integrator.prepare(&scene);
+    let ((scene, view), mut film, mut integrator) = prepared(&desc);
+    integrator.prepare(&scene, &view, &Control::default()).unwrap();
     let control = Control::default();
     control.cancel.store(true, Ordering::Relaxed);
-    assert_eq!(integrator.pass(0, &scene, &mut film, &control), Err(Cancelled));
+    assert_eq!(integrator.pass(0, &scene, &view, &mut film, &control), Err(Cancelled));
     assert!(film.develop().values().all(|value| value == 0.0));
 }
 

@@ -11,7 +11,7 @@ use math::{DMat4, DVec3};
 use testkit::{Moments, t_test, welch_test};
 
 use crate::agreement::room;
-use crate::render_loop::picture;
+use crate::session::picture;
 use crate::support::{at, diffuse, emission, glass, quad, sphere, v, walls};
 
 /// The picture's luminances, row by row, of one thread's rendering with as many passes.
@@ -21,8 +21,7 @@ fn luminances(desc: &SceneDesc, integrator: &IntegratorDesc, seed: i32, passes: 
     desc.film.max_component_value = f32::INFINITY;
     desc.sampler.value =
         SamplerDesc { kind: SamplerKind::Independent, pixel_samples: passes, seed: Some(seed) };
-    let (film, result) = picture(&desc, 1, &Control::default());
-    result.unwrap();
+    let (film, _) = picture(&desc, 1);
     let image = film.develop();
     let luminance = |[r, g, b]: [f32; 3]| f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b);
     let pixels = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
@@ -282,17 +281,17 @@ fn it_tells_of_its_photons_and_stops_when_told_to() {
     let mut desc = room();
     from_above(&mut desc, 1.0, 16);
     desc.integrator = IntegratorDesc::PhotonMapping(small(&PhotonMappingDesc::default())).into();
-    let scene = crate::support::compile(&desc);
+    let (scene, view) = crate::support::viewed(&desc);
     let mut film = film::compile(&desc).unwrap().film;
     let mut integrator = build(&desc).unwrap().integrator;
-    integrator.prepare(&scene);
+    integrator.prepare(&scene, &view, &Control::default()).unwrap();
     let control = Control::default();
-    integrator.pass(0, &scene, &mut film, &control).unwrap();
+    integrator.pass(0, &scene, &view, &mut film, &control).unwrap();
     let summary = integrator.summary();
     assert!(
         summary[0].1.contains("in the global map") && summary[1].1.contains("in the mean"),
         "{summary:?}"
     );
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(integrator.pass(1, &scene, &mut film, &control).is_err());
+    assert!(integrator.pass(1, &scene, &view, &mut film, &control).is_err());
 }

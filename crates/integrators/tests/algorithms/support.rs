@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use alhazen_integrators::{Path, PathSettings, RandomWalk, RayIntegrator, SimplePath};
+use alhazen_integrators::{
+    Cancelled, Control, Integrator, Limits, Path, PathSettings, RandomWalk, RayIntegrator, Session,
+    SessionState, SimplePath, Tracer,
+};
 use description::{
     AreaLightDesc, ConductorDesc, ConductorReflectance, Handle, InfiniteRadiance, LightKind, MaterialDesc,
     MaterialKind, MeshDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
@@ -12,8 +15,8 @@ use geometry::RayStats;
 use math::{Point3, Ray, RayDifferential, Vec3, Vector3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use scene::Scene;
 use scene::light_sampler::LightSamplerKind;
+use scene::{Scene, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledWavelengths};
 use testkit::{Moments, t_test};
 
@@ -23,6 +26,25 @@ pub fn v(x: f32, y: f32, z: f32) -> Vec3 {
 
 pub fn compile(desc: &SceneDesc) -> Scene {
     scene::compile(desc).unwrap().scene
+}
+
+/// A description in which nothing is wrong, as its camera views it.
+pub fn viewed(desc: &SceneDesc) -> (Scene, View) {
+    (compile(desc), View::compile(desc, scene::world_from_render(desc)).unwrap().view)
+}
+
+/// A session of a description before its first pass.
+pub fn session(desc: &SceneDesc, integrator: Box<dyn Integrator>) -> Session {
+    let ((scene, view), film) = (viewed(desc), film::compile(desc).unwrap().film);
+    Session::new(Arc::new(scene), view, integrator, SessionState::new(film))
+}
+
+/// A session that has done all its passes.
+pub fn finished(desc: &SceneDesc, integrator: Box<dyn Integrator>) -> Session {
+    let mut session = session(desc, integrator);
+    let passes = 0..session.integrator().passes();
+    session.run(passes, &Limits::default(), &Control::default(), &mut |_| ()).unwrap();
+    session
 }
 
 pub fn diffuse(desc: &mut SceneDesc, reflectance: f32) -> Option<Handle<MaterialDesc>> {
@@ -92,14 +114,16 @@ pub fn radiance(
     d: Vector3,
     count: usize,
 ) -> Moments {
-    rays.prepare(scene);
+    let ((_, view), control) = (viewed(&SceneDesc::default()), Control::default());
+    rays.prepare(scene, &view, &control).expect("nobody cancels it");
     let mut stats = RayStats::default();
     let mut sampler = Sampler::Independent(Independent::new(1, 7));
     let samples = (0..count).map(|i| {
         sampler.start_pixel_sample([i as i32, 0], 0, 0);
         let mut lambda = SampledWavelengths::sample_visible(sampler.get_1d());
         let ray = RayDifferential::from(Ray::new(o, d.normalize(), 0.0));
-        let l = rays.li(scene, ray, &mut lambda, &mut sampler, &mut stats);
+        let mut tracer = Tracer::new(scene, &view, &control, &mut sampler, &mut stats);
+        let l = rays.li(&mut tracer, ray, &mut lambda);
         f64::from(l[0] * CIE_Y_INTEGRAL)
     });
     samples.collect()
@@ -142,24 +166,23 @@ impl Unbiased {
 }
 
 impl RayIntegrator for Unbiased {
-    fn prepare(&mut self, scene: &Scene) {
-        if let Self::Path(path) = self {
-            path.prepare(scene);
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        match self {
+            Self::Path(path) => path.prepare(scene, view, control),
+            Self::SimplePath(_) | Self::RandomWalk(_) => Ok(()),
         }
     }
 
     fn li(
         &self,
-        scene: &Scene,
+        tracer: &mut Tracer,
         ray: RayDifferential,
         lambda: &mut SampledWavelengths,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
     ) -> spectrum::SampledSpectrum {
         match self {
-            Self::Path(rays) => rays.li(scene, ray, lambda, sampler, stats),
-            Self::SimplePath(rays) => rays.li(scene, ray, lambda, sampler, stats),
-            Self::RandomWalk(rays) => rays.li(scene, ray, lambda, sampler, stats),
+            Self::Path(rays) => rays.li(tracer, ray, lambda),
+            Self::SimplePath(rays) => rays.li(tracer, ray, lambda),
+            Self::RandomWalk(rays) => rays.li(tracer, ray, lambda),
         }
     }
 }

@@ -7,7 +7,7 @@
 //! number of samples is as good as any other, and beyond it the sequence goes on.
 //! [`Randomize::FastOwen`] is taken for [`Randomize::Owen`], as the short cut is for base 2.
 
-use super::Randomize;
+use super::randomize::Randomize;
 use crate::low_discrepancy::{
     DigitPermutations, PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
 };
@@ -93,8 +93,8 @@ impl Halton {
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
-        // The low digits are the pixel; the others, which are the position in it, are randomised like
-        // those of any dimension, or pictures of different seeds would have samples in common.
+        // The low digits are the pixel; the others, which are the position in it, are randomised
+        // like those of any dimension, or pictures of different seeds would have samples in common.
         let position = |axis: usize| self.coordinate(axis, self.index / self.scales[axis]);
         Vec2::new(position(0), position(1))
     }

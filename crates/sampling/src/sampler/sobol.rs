@@ -6,8 +6,8 @@
 //! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
 //! sequence goes on.
 
-use super::Randomize;
-use crate::hash;
+use super::randomize::Randomize;
+use crate::hash::hash;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_bits};
 use math::Vec2;
 use std::sync::Arc;
@@ -72,8 +72,8 @@ impl Sobol {
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
-        // The upper bits are the pixel; the rest, which is the position in it, is randomised like any
-        // dimension, or pictures of different seeds would have samples in common.
+        // The upper bits are the pixel; the rest, which is the position in it, is randomised like
+        // any dimension, or pictures of different seeds would have samples in common.
         let position = |dimension| {
             let bits = sobol_bits(self.index, dimension) << self.log2_side;
             self.randomize.bits(bits, self.seed_of(dimension))

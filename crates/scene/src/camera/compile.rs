@@ -1,24 +1,22 @@
-//! From what the author said of the camera to a camera.
+//! Compiles the description of a camera.
 
 use super::{Camera, CameraTransform, Orthographic, Perspective, Projection, Screen, Spherical, ThinLens};
-use description::{
-    CameraDesc, CameraKind, Diagnostic, FilmDesc, LensDesc, OptionsDesc, Origin, ScreenDesc, Stated,
-};
-use math::Bounds2;
+use description::{CameraDesc, CameraKind, Diagnostic, FilmDesc, LensDesc, Origin, ScreenDesc, Stated};
+use math::{Bounds2, DMat4};
 
-/// The camera of a scene. What is wrong with it is added to `diagnostics`; `None` when some of that
-/// is an error.
+/// Places the described camera in the render space given by `world_from_render`. Errors and warnings
+/// are added to `diagnostics`; `None` if there was an error.
 pub fn compile(
     camera: &Stated<CameraDesc>,
     film: &Stated<FilmDesc>,
-    options: &OptionsDesc,
+    world_from_render: DMat4,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Camera> {
     let origin = &camera.origin;
     let before = diagnostics.len();
     let resolution = resolution(film, diagnostics);
     let projection = projection(&camera.kind, origin, resolution, diagnostics);
-    let transform = CameraTransform::new(&camera.camera_from_world, options.render_space);
+    let transform = CameraTransform::new(&camera.camera_from_world, world_from_render);
     if transform.is_none() {
         let message = "the transform of the camera has no inverse";
         diagnostics.push(

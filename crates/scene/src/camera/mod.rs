@@ -39,7 +39,7 @@ pub use perspective::Perspective;
 pub use places::FilmPlaces;
 pub use screen::{Screen, ThinLens};
 pub use spherical::Spherical;
-pub use transform::CameraTransform;
+pub use transform::{CameraTransform, world_from_render};
 
 /// Where and when light arrives at a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -78,7 +78,7 @@ impl Perspective {
 #[cfg(test)]
 mod tests {
     use crate::camera::{Camera, CameraSample, CameraTransform, Projection, Screen};
-    use description::{LensDesc, RenderSpace, ScreenDesc, TransformDesc};
+    use description::{LensDesc, ScreenDesc, TransformDesc};
     use math::{DMat4, DVec3, Vec2};
 
     /// The observer's formulas, as they stand at the head of this file.
@@ -99,7 +99,7 @@ mod tests {
             let projection =
                 super::Perspective::new(fov as f32, window, LensDesc::default().into(), resolution);
             let place = TransformDesc::fixed(frame).inverse();
-            let transform = CameraTransform::new(&place, RenderSpace::World).unwrap();
+            let transform = CameraTransform::new(&place, DMat4::IDENTITY).unwrap();
             let camera = Camera::new(Projection::Perspective(projection), transform, [0.0, 1.0], resolution);
 
             let near = 0.37;

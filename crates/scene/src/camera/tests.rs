@@ -2,7 +2,7 @@
 
 use super::*;
 use description::{
-    CameraDesc, CameraKind, FilmDesc, LensDesc, OptionsDesc, RealisticCameraDesc, RenderSpace, ScreenDesc,
+    CameraDesc, CameraKind, FilmDesc, LensDesc, RealisticCameraDesc, RenderSpace, ScreenDesc,
     SphericalMapping, Stated, TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
@@ -33,9 +33,9 @@ pub(super) fn somewhere() -> TransformDesc {
 pub(super) fn build(kind: CameraKind, camera_from_world: TransformDesc, render_space: RenderSpace) -> Camera {
     let desc = CameraDesc { kind, camera_from_world, ..CameraDesc::default() };
     let film = FilmDesc { resolution: RESOLUTION.map(|n| n as i32), ..FilmDesc::default() };
-    let options = OptionsDesc { render_space, ..OptionsDesc::default() };
+    let space = world_from_render(&desc.camera_from_world, render_space);
     let mut diagnostics = Vec::new();
-    let camera = compile(&desc.into(), &film.into(), &options, &mut diagnostics);
+    let camera = compile(&desc.into(), &film.into(), space, &mut diagnostics);
     assert!(diagnostics.is_empty(), "{diagnostics:?}");
     camera.unwrap()
 }
@@ -191,9 +191,9 @@ fn a_moving_camera_is_where_its_time_says() {
         ..CameraDesc::default()
     };
     for render_space in [RenderSpace::World, RenderSpace::CameraWorld, RenderSpace::Camera] {
-        let options = OptionsDesc { render_space, ..OptionsDesc::default() };
+        let space = world_from_render(&desc.camera_from_world, render_space);
         let camera =
-            compile(&desc.clone().into(), &FilmDesc::default().into(), &options, &mut Vec::new()).unwrap();
+            compile(&desc.clone().into(), &FilmDesc::default().into(), space, &mut Vec::new()).unwrap();
         for (u, time, x) in [(0.0, 0.5, 2.0), (0.5, 1.0, 3.0), (1.0, 1.5, 4.0)] {
             let ray = camera.generate_ray(&sample(9.0, 9.0, Vec2::ZERO, u)).unwrap().ray;
             assert_eq!(ray.time, time);
@@ -211,7 +211,7 @@ fn the_picture_does_not_depend_on_the_render_space() {
             let world = camera.transform().world_from_render();
             let ray = camera.generate_ray(&sample(70.0, 31.0, Vec2::new(0.3, 0.8), 0.0)).unwrap().ray;
             let p = camera.transform().camera_from_world(0.0).inverse().transform_point3(DVec3::Z * 3.0);
-            let p = camera.transform().render_from_world().transform_point3(p).as_vec3();
+            let p = camera.transform().world_from_render().inverse().transform_point3(p).as_vec3();
             let [dpdx, dpdy] = camera.approximate_dp_dxy(p, ray.d, 0.0, 0.5);
             (
                 world.transform_point3(ray.o.as_dvec3()),
@@ -281,7 +281,7 @@ fn mistakes_are_reported_and_named() {
     let codes = |desc: CameraDesc, resolution: [i32; 2]| {
         let film = FilmDesc { resolution, ..FilmDesc::default() };
         let mut diagnostics = Vec::new();
-        let camera = compile(&Stated::from(desc), &film.into(), &OptionsDesc::default(), &mut diagnostics);
+        let camera = compile(&Stated::from(desc), &film.into(), DMat4::IDENTITY, &mut diagnostics);
         (camera.is_some(), diagnostics.iter().map(|d| d.code).collect::<Vec<_>>())
     };
     let perspective = |fov, lens, window| CameraDesc {

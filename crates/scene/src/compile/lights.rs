@@ -7,33 +7,35 @@ use crate::light::{
     UniformInfiniteLight,
 };
 use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
-use math::{Point3, Transform, Vec3, Vector3};
+use image::Projection;
+use math::{DMat4, Point3, Transform, Vec3, Vector3};
 use std::f32::consts::PI;
 
 impl Compiler<'_> {
-    /// All of them, after the emitting surfaces. `scene` is the extent of what can be hit.
-    pub(super) fn lights(&mut self, scene: SceneSphere) {
+    /// All of them. `scene` is the extent of what can be hit.
+    pub(super) fn lights(&mut self, scene: SceneSphere) -> Vec<Light> {
         let desc = self.desc;
-        for (_, light) in desc.lights.iter() {
-            let compiled = self.light(&light.value, &light.origin, scene);
-            self.lights.extend(compiled);
-        }
+        let lights = desc.lights.iter();
+        lights.filter_map(|(_, light)| self.light(&light.value, &light.origin, scene)).collect()
     }
 
     fn light(&mut self, desc: &LightDesc, origin: &Origin, scene: SceneSphere) -> Option<Light> {
-        if desc.world_from_light.is_animated() {
-            self.warn("not-drawn", "lights do not move yet; drawn where it starts", origin.span);
-        }
-        let render_from_light = self.render_from_world * desc.world_from_light.start;
-        let Some(placement) = Transform::from_f64(render_from_light) else {
-            self.error("singular-transform", "the transform of the light has no inverse", origin.span);
+        let Some(motion) = self.motion(&desc.world_from_light) else {
+            self.singular("light", origin);
             return None;
         };
+        // What moves stays in its own space, and is brought to render space at each shutter time.
+        let motion = motion.is_moving().then(|| Box::new(motion));
+        let render_from_light = match motion {
+            Some(_) => DMat4::IDENTITY,
+            None => self.render_from_world * desc.world_from_light.start,
+        };
+        let placement = Transform::from_f64(render_from_light)?;
         let place = |p: Point3| render_from_light.transform_point3(p.as_dvec3()).as_vec3();
         Some(match &desc.kind {
             LightKind::Point { intensity, power, from } => {
                 let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
-                Light::Point(PointLight { p: place(*from), intensity })
+                Light::Point(PointLight { p: place(*from), motion, intensity })
             }
             LightKind::Spot { intensity, power, from, to, cone_angle, cone_delta_angle } => {
                 let cos_falloff_end = cone_angle.to_radians().cos();
@@ -45,6 +47,7 @@ impl Compiler<'_> {
                 Light::Spot(SpotLight {
                     p: place(*from),
                     axis,
+                    motion,
                     intensity,
                     cos_falloff_start,
                     cos_falloff_end,
@@ -54,7 +57,7 @@ impl Compiler<'_> {
                 let mut radiance = self.emission(radiance, desc.scale, origin.parameter("L"));
                 radiance.scale *= illuminance.unwrap_or(1.0);
                 let w = self.direction(&placement, *from - *to, origin)?;
-                Light::Distant(DistantLight { w, radiance, scene })
+                Light::Distant(DistantLight { w, motion, radiance, scene })
             }
             LightKind::Infinite { radiance, illuminance, portal } => {
                 if portal.is_some() {
@@ -68,6 +71,12 @@ impl Compiler<'_> {
                         Light::UniformInfinite(UniformInfiniteLight { radiance, scene })
                     }
                     InfiniteRadiance::Image(handle) => {
+                        if motion.is_some() {
+                            let message = "environments do not move yet; drawn where it starts";
+                            self.warn("not-drawn", message, origin.span);
+                        }
+                        let start = self.render_from_world * desc.world_from_light.start;
+                        let placement = Transform::from_f64(start)?;
                         self.sky(*handle, desc.scale, *illuminance, &placement, scene, origin)?
                     }
                 }
@@ -75,7 +84,7 @@ impl Compiler<'_> {
             LightKind::Goniometric { intensity, power, .. } => {
                 self.warn("not-drawn", "light `goniometric` is not drawn yet; drawn as `point`", origin.span);
                 let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
-                Light::Point(PointLight { p: place(Vec3::ZERO), intensity })
+                Light::Point(PointLight { p: place(Vec3::ZERO), motion, intensity })
             }
             LightKind::Projection { .. } => {
                 self.warn("not-drawn", "light `projection` is not drawn yet; left out", origin.span);
@@ -96,15 +105,15 @@ impl Compiler<'_> {
         let span = origin.parameter("filename");
         let (image, mut scale) = self.emission_image(handle, scale, span)?;
         let (width, height) = (image.image.width(), image.image.height());
-        if width != height {
+        let Some(projection) = Projection::of_size(width, height) else {
             let message = format!(
-                "an infinite light wants a square image in the equal-area octahedral mapping, not {width} × {height}"
+                "the image of an infinite light is square (equal-area octahedral) or twice as wide as high (latitude–longitude), not {width} × {height}"
             );
             self.error("image-shape", message, span);
             return None;
-        }
+        };
         if let Some(target) = illuminance {
-            let illuminance = upward_illuminance(&image);
+            let illuminance = upward_illuminance(&image, projection);
             if illuminance <= 0.0 {
                 let message = "an image that is black above cannot be scaled to an illuminance";
                 self.error("image-values", message, span);
@@ -112,7 +121,8 @@ impl Compiler<'_> {
             }
             scale *= target / illuminance;
         }
-        let light = ImageInfiniteLight::new(*placement, image.image, image.color_space, scale, scene);
+        let light =
+            ImageInfiniteLight::new(*placement, (image.image, projection), image.color_space, scale, scene);
         Some(Light::ImageInfinite(Box::new(light)))
     }
 

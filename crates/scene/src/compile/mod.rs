@@ -3,6 +3,7 @@
 //! All mistakes come out at once, with the spans of what is to blame; what can be described but not
 //! yet drawn is a warning that says what is drawn instead.
 
+mod area_lights;
 mod curves;
 mod emission;
 mod lights;
@@ -13,11 +14,12 @@ mod solids;
 mod spheres;
 mod tessellation;
 
-use crate::camera;
-use crate::light::{AreaEmission, Light, LightId, SceneSphere};
+use crate::light::{AreaEmission, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
-use crate::scene::{GeometryEntry, Scene, SceneOptions};
-use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
+use crate::scene::{GeometryEntry, InstanceEntry, Scene};
+use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
+use crate::view::world_from_render;
+use area_lights::Emitters;
 use description::{
     AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
 };
@@ -33,12 +35,13 @@ pub struct Compiled {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Compiles a description, or says everything that is wrong with it (warnings included).
+/// Compiles a description, apart from camera, film, sampler and integrator. Its camera chooses
+/// render space ([`world_from_render`]). Returns all errors and warnings if there is an error.
 pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
-    let camera = camera::compile(&desc.camera, &desc.film, &desc.options, &mut diagnostics);
-    let render_from_world = camera.as_ref().map_or(DMat4::IDENTITY, |c| c.transform().render_from_world());
-    let textures = texture::compile(desc, &render_from_world, &mut diagnostics);
+    let world_from_render = world_from_render(desc);
+    let render_from_world = world_from_render.inverse();
+    let textures = TextureCompiler::new(desc, &render_from_world, &mut diagnostics);
     let mut compiler = Compiler {
         desc,
         render_from_world,
@@ -52,41 +55,33 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
             })
             .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
+        instances: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),
-        lights: Vec::new(),
+        emitters: vec![Emitters::default()],
     };
     compiler.materials();
     compiler.area_emissions();
     compiler.shapes();
     let world = std::mem::take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
-    compiler.lights(sphere);
-    let Compiler { diagnostics, textures, entries, materials, lights, .. } = compiler;
-    let Some(camera) = camera.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)) else {
+    let lights = compiler.light_table(&world, sphere);
+    let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
+    if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
-    };
-    let infinite_lights =
-        (0..).map(LightId).zip(&lights).filter(|(_, light)| light.is_infinite()).map(|(id, _)| id).collect();
-    let options = SceneOptions {
-        disable_pixel_jitter: desc.options.disable_pixel_jitter,
-        disable_wavelength_jitter: desc.options.disable_wavelength_jitter,
-        disable_texture_filtering: desc.options.disable_texture_filtering,
-        force_diffuse: desc.options.force_diffuse,
-    };
-    let has_footprints = !options.disable_texture_filtering && textures.are_filtered();
+    }
+    let textures = textures.finish();
+    let has_filtered_textures = textures.are_filtered();
     let scene = Scene {
-        camera,
+        world_from_render,
         world,
         sphere,
         entries,
+        instances,
         materials: Materials::new(materials),
         textures,
         lights,
-        infinite_lights,
-        samples_per_pixel: desc.sampler.pixel_samples.max(1) as u32,
-        options,
-        has_footprints,
+        has_filtered_textures,
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }
@@ -96,12 +91,14 @@ struct Compiler<'a> {
     desc: &'a SceneDesc,
     render_from_world: DMat4,
     diagnostics: Vec<Diagnostic>,
-    textures: Textures,
+    textures: TextureCompiler,
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
+    instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
-    lights: Vec<Light>,
+    /// By group of the world.
+    emitters: Vec<Emitters>,
 }
 
 impl Compiler<'_> {
@@ -113,8 +110,8 @@ impl Compiler<'_> {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
     }
 
-    fn float_texture(&mut self, parameter: &FloatParameter) -> FloatTextureId {
-        self.textures.float_parameter(parameter)
+    fn float_texture(&mut self, parameter: &FloatParameter, span: Span) -> FloatTextureId {
+        self.textures.float_parameter(parameter, span, &mut self.diagnostics)
     }
 
     fn spectrum_texture(

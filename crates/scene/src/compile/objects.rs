@@ -32,8 +32,9 @@ impl Compiler<'_> {
         let desc = self.desc;
         let mut objects = Objects::default();
         for (_, instance) in desc.instances.iter() {
+            let span = instance.origin.span;
             if let Some((instance, _)) = self.instance(instance, &mut objects) {
-                self.world.add_instance(GroupId::TOP, instance);
+                self.add_instance(GroupId::TOP, instance, span);
             }
         }
     }
@@ -50,11 +51,12 @@ impl Compiler<'_> {
             self.error("endless-instances", format!("the object `{name}` is within itself"), span);
             return None;
         }
-        let built = (objects.open.len() < InstancePath::MOST).then(|| self.object(instance.object, objects));
+        let built =
+            (objects.open.len() < InstancePath::MAX_DEPTH).then(|| self.object(instance.object, objects));
         let Some(Placeable { group, levels }) =
-            built.filter(|object| objects.open.len() + object.levels < InstancePath::MOST)
+            built.filter(|object| objects.open.len() + object.levels < InstancePath::MAX_DEPTH)
         else {
-            let most = InstancePath::MOST;
+            let most = InstancePath::MAX_DEPTH;
             self.error("nested-too-deep", format!("instances lie more than {most} deep in each other"), span);
             return None;
         };
@@ -83,29 +85,27 @@ impl Compiler<'_> {
         let mut inner = Vec::new();
         objects.open.push(handle.index());
         for (_, instance) in object.instances.iter() {
-            inner.extend(self.instance(instance, objects));
+            let span = instance.origin.span;
+            inner.extend(self.instance(instance, objects).map(|(instance, levels)| (instance, levels, span)));
         }
         objects.open.pop();
         let shapes: Vec<_> = object.shapes.iter().map(|(_, shape)| shape).collect();
         let (moving, resting): (Vec<_>, Vec<_>) =
             shapes.chunk_by(|a, b| are_strands(a, b)).partition(|run| run[0].world_from_object.is_animated());
         for run in moving {
-            inner.extend(self.moving(run).map(|instance| (instance, 1)));
+            let span = run[0].origin.span;
+            inner.extend(self.moving(run).map(|instance| (instance, 1, span)));
         }
-        let group = self.world.add_group();
+        let group = self.add_group();
         for run in resting {
             match Transform::from_f64(self.render_from_world * run[0].world_from_object.start) {
-                Some(transform) => self.unlit(run, group, &transform),
+                Some(transform) => self.resting(run, group, &transform),
                 None => self.singular("shape", &run[0].origin),
             }
         }
-        for shape in shapes.iter().filter(|shape| shape.area_light.is_some()) {
-            let message = "shapes of objects do not emit; drawn without light";
-            self.warn("not-drawn", message, shape.origin.span);
-        }
-        let levels = inner.iter().map(|(_, levels)| *levels).max().unwrap_or(0);
-        for (instance, _) in inner {
-            self.world.add_instance(group, instance);
+        let levels = inner.iter().map(|(_, levels, _)| *levels).max().unwrap_or(0);
+        for (instance, _, span) in inner {
+            self.add_instance(group, instance, span);
         }
         let built = Placeable { group, levels };
         objects.built.insert(handle.index(), built);

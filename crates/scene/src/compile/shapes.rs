@@ -1,15 +1,13 @@
-//! Shapes, and the lights that emitting shapes are.
+//! Shapes: the geometries of the world.
 
 use super::Compiler;
 use super::curves::are_strands;
 use super::solids::Assembly;
-use crate::light::{AreaEmission, AreaLight, EmissionImage, Light, LightId};
-use crate::material::Material;
 use crate::scene::GeometryEntry;
-use crate::texture::{FloatTextureId, Texture};
+use crate::texture::FloatTextureId;
 use description::{
-    AreaLightDesc, Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind,
-    Span, Spanned, Stated, TransformDesc,
+    Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind, Span, Spanned,
+    Stated, TransformDesc,
 };
 use geometry::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
@@ -18,10 +16,7 @@ use geometry::{
 use math::{AnimatedTransform, Bounds2, Bounds3, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
-use std::f32::consts::PI;
 use std::sync::Arc;
-
-const MOVING_LIGHT: &str = "moving shapes do not emit yet; drawn without light";
 
 impl Compiler<'_> {
     /// Everything that can be hit.
@@ -34,41 +29,18 @@ impl Compiler<'_> {
         self.instances();
     }
 
-    /// What every area light emits, on whatever shape; `None` where that makes no sense.
-    pub(super) fn area_emissions(&mut self) {
-        let desc = self.desc;
-        for (_, light) in desc.area_lights.iter() {
-            let emission = self.area_emission(light, &light.origin);
-            self.area_emissions.push(emission);
-        }
-    }
-
-    fn area_emission(&mut self, desc: &AreaLightDesc, origin: &Origin) -> Option<AreaEmission> {
-        let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
-        let mut image = None;
-        if let Some(handle) = desc.image {
-            let (pixels, scale) = self.emission_image(handle, desc.scale, origin.parameter("filename"))?;
-            radiance.scale = scale;
-            image = Some(pixels);
-        }
-        Some(AreaEmission { radiance, image, two_sided: desc.two_sided, alpha: None, invisible: false })
-    }
-
     /// A shape of the world (or strands): in render space where it rests, in a group of its own
     /// where it moves.
     fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
         let shape = run[0];
         if !shape.world_from_object.is_animated() {
             return match Transform::from_f64(self.render_from_world * shape.world_from_object.start) {
-                Some(transform) => self.resting(run, &transform),
+                Some(transform) => self.resting(run, GroupId::TOP, &transform),
                 None => self.singular("shape", &shape.origin),
             };
         }
-        if shape.area_light.is_some() {
-            self.warn("not-drawn", MOVING_LIGHT, shape.origin.span);
-        }
         if let Some(instance) = self.moving(run) {
-            self.world.add_instance(GroupId::TOP, instance);
+            self.add_instance(GroupId::TOP, instance, shape.origin.span);
         }
     }
 
@@ -79,27 +51,20 @@ impl Compiler<'_> {
             self.singular("shape", &shape.origin);
             return None;
         };
-        let group = self.world.add_group();
-        self.unlit(run, group, &Transform::IDENTITY);
+        let group = self.add_group();
+        self.resting(run, group, &Transform::IDENTITY);
         Some(Instance { group, render_from_instance })
     }
 
-    /// Adds a shape to a group of instances, where nothing emits.
-    pub(super) fn unlit(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
+    /// Adds a shape to a group, in which it is at rest.
+    pub(super) fn resting(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
         let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
         for geometry in self.geometries(run, transform) {
-            self.world.add_geometry(group, geometry);
-            self.entries.push(GeometryEntry { material, alpha, first_light: None });
-        }
-    }
-
-    fn resting(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) {
-        let shape = run[0];
-        let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(run, transform) {
-            let first_light = self.area_lights(shape, &geometry, alpha);
-            self.world.add_geometry(GroupId::TOP, geometry);
+            let emitter = self.emitter(shape, &geometry, alpha);
+            let id = self.world.add_geometry(group, geometry);
+            let span = shape.origin.span;
+            let first_light = emitter.and_then(|emitter| self.add_emitter(group, id, emitter, span));
             self.entries.push(GeometryEntry { material, alpha, first_light });
         }
     }
@@ -108,20 +73,17 @@ impl Compiler<'_> {
         self.error("singular-transform", format!("the transform of the {what} has no inverse"), origin.span);
     }
 
-    fn motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
+    pub(super) fn motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
         AnimatedTransform::new(self.render_from_world * t.start, self.render_from_world * t.end, t.times)
     }
 
-    fn alpha(&mut self, shape: &ShapeDesc) -> Option<FloatTextureId> {
-        let texture = self.float_texture(shape.alpha.as_ref()?);
+    fn alpha(&mut self, shape: &Stated<ShapeDesc>) -> Option<FloatTextureId> {
+        let texture = self.float_texture(shape.alpha.as_ref()?, shape.origin.parameter("alpha"));
         self.constant_alpha(texture).is_none_or(|alpha| alpha < 1.0).then_some(texture)
     }
 
-    fn constant_alpha(&self, texture: FloatTextureId) -> Option<f32> {
-        match self.textures.float_texture(texture) {
-            Texture::Constant(alpha) => Some(*alpha),
-            _ => None,
-        }
+    pub(super) fn constant_alpha(&self, texture: FloatTextureId) -> Option<f32> {
+        self.textures.textures().constant(texture)
     }
 
     fn geometries(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) -> Vec<Geometry> {
@@ -197,6 +159,13 @@ impl Compiler<'_> {
                 return None;
             }
         };
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if reach > Formula::MAX_COORDINATE {
+            let limit = Formula::MAX_COORDINATE;
+            let message = format!("the bounds reach to {reach:e}; beyond {limit:e} numbers overflow");
+            self.error("invalid-bounds", message, text.span);
+            return None;
+        }
         if formula.has_no_zero(bounds) {
             self.warn("empty-shape", "the formula is zero nowhere within its bounds", text.span);
         }
@@ -288,68 +257,6 @@ impl Compiler<'_> {
             .collect();
         Arc::new(PiecewiseConstant2d::new(&values, width as usize, Bounds2::UNIT))
     }
-
-    /// The lights that the primitives of an emitting shape are, one each; the id of the first.
-    fn area_lights(
-        &mut self,
-        shape: &Stated<ShapeDesc>,
-        geometry: &Geometry,
-        alpha: Option<FloatTextureId>,
-    ) -> Option<LightId> {
-        let handle = shape.area_light?;
-        let span = shape.origin.span;
-        if matches!(&shape.kind, ShapeKind::Triangles(mesh) if !mesh.later.is_empty()) {
-            self.warn("not-drawn", MOVING_LIGHT, span);
-            return None;
-        }
-        if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
-            let message = "solids and surfaces given by formulas do not emit; drawn without light";
-            self.warn("not-drawn", message, span);
-            return None;
-        }
-        let material = self.material_id(shape.material);
-        if matches!(self.materials[material.0 as usize].material, Material::Interface) {
-            self.warn("light-ignored", "a shape of material `interface` does not emit", span);
-            return None;
-        }
-        let invisible = alpha.and_then(|id| self.constant_alpha(id)).is_some_and(|alpha| alpha <= 0.0);
-        let emission =
-            AreaEmission { alpha, invisible, ..self.area_emissions[handle.index()].as_ref()?.clone() };
-        let power = self.desc.area_lights[handle].power;
-        let shared = Arc::new(emission.clone());
-        let first = LightId(self.lights.len() as u32);
-        for primitive in 0..geometry.len() as u32 {
-            let Some(part) = geometry.shape(primitive) else {
-                self.warn("light-ignored", "curves do not emit; drawn without light", span);
-                return None;
-            };
-            if part.bounds().is_none() {
-                self.error(
-                    "infinite-light",
-                    "an infinite plane cannot emit: its power would be infinite",
-                    span,
-                );
-                return None;
-            }
-            // Every part is a light of its own and has the power that is asked for.
-            let emission = match power {
-                None => shared.clone(),
-                Some(power) => Arc::new(scaled_to_power(&emission, power, part.area())),
-            };
-            self.lights.push(Light::Area(AreaLight::new(part, emission)));
-        }
-        Some(first)
-    }
-}
-
-/// The emission whose total over `area` is `power`; none where nothing can shine.
-fn scaled_to_power(emission: &AreaEmission, power: f32, area: f32) -> AreaEmission {
-    let sides = if emission.two_sided { 2.0 } else { 1.0 };
-    let mean = emission.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
-    let mut scaled = emission.clone();
-    let unscaled = mean * sides * area * PI;
-    scaled.radiance.scale *= if unscaled > 0.0 { power / unscaled } else { 0.0 };
-    scaled
 }
 
 fn given<T>(values: &Arc<[T]>) -> Option<Arc<[T]>> {

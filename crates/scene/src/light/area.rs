@@ -1,35 +1,37 @@
-//! A surface that emits the same radiance in all directions: of one colour, or of an image over its
+//! Surfaces that emit the same radiance in all directions: of one colour, or of an image over their
 //! (u, v).
 //!
-//! Each triangle or patch of a mesh is a light of its own. Power: Φ = π·A·L, twice that when both
-//! sides shine. Where the surface is cut out by an alpha texture, it does not emit; a surface with
-//! the constant alpha 0 is an invisible light, which rays never meet but points still sample. Rays
-//! leave evenly from its area (patches may follow an image) and by the cosine, to both sides alike
-//! if it has two. Sources: [Pharr 2023 §12.4].
+//! Every primitive of an emitting geometry is a light of its own; a row of the table names the
+//! geometry, the instances through which it is seen, and the emission. Power: Φ = π·A·L, twice that
+//! when both sides emit. Where the surface is cut out by an alpha texture, it does not emit; a
+//! surface with the constant alpha 0 is an invisible light, which rays never meet but points still
+//! sample. Emitted rays are uniform in area (patches may follow an image) and cosine-distributed,
+//! on either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
 
-use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
-use crate::texture::{FloatTextureId, TextureContext, Textures};
-use geometry::{Shape, ShapeSample};
+use super::emitter::{Emitter, motion_bounds};
+use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
+use crate::texture::{FloatTextureId, TextureContext};
+use geometry::{GeometryId, InstancePath, ShapeSample, World};
 use image::{Image, WrapMode};
-use math::{Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
+use math::{DirectionCone, Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
 use sampling::{hash_float, warp};
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// What an emitting surface sends out; shared by the lights of a mesh.
+/// Index of an emission in its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct EmissionId(pub u32);
+
+/// What emitting surfaces send out; shared by all lights that are described alike.
 #[derive(Clone, Debug)]
 pub struct AreaEmission {
     /// Radiance; with an image only its scale counts.
     pub radiance: Emission,
     /// Colours over (u, v).
     pub image: Option<EmissionImage>,
-    /// Shine on the side against the normal, too.
+    /// Emits on the side against the normal, too.
     pub two_sided: bool,
-    /// Where the surface is there.
-    pub alpha: Option<FloatTextureId>,
-    /// Whether no ray ever meets the surface (its alpha is constantly 0).
-    pub invisible: bool,
 }
 
 /// An image of emitted colours.
@@ -41,12 +43,22 @@ pub struct EmissionImage {
     pub color_space: &'static RgbColorSpace,
 }
 
-/// An emitting shape.
+/// The primitives of an emitting geometry.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
-    shape: Shape,
-    area: f32,
-    emission: Arc<AreaEmission>,
+    /// What emits.
+    pub geometry: GeometryId,
+    /// The instances through which it is seen.
+    pub instance: InstancePath,
+    /// What it emits.
+    pub emission: EmissionId,
+    /// Where the surface is there, unless everywhere or invisible.
+    pub alpha: Option<FloatTextureId>,
+    /// Whether no ray ever meets the surface (its alpha is constantly 0).
+    pub invisible: bool,
+    /// The scale of the emission by primitive, where every primitive has a power that is asked for;
+    /// `None` where all have the emission's own.
+    pub scales: Option<Box<[f32]>>,
 }
 
 impl EmissionImage {
@@ -63,100 +75,156 @@ impl EmissionImage {
     }
 }
 
+impl AreaEmission {
+    /// No light.
+    pub fn black() -> Self {
+        let radiance = Emission { spectrum: Spectrum::Constant(0.0), scale: 0.0 };
+        Self { radiance, image: None, two_sided: false }
+    }
+
+    /// The scale with which a primitive of `area` emits `power`; 0 where it cannot emit.
+    pub fn scale_for_power(&self, power: f32, area: f32) -> f32 {
+        let sides = if self.two_sided { 2.0 } else { 1.0 };
+        let mean = self.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
+        let unscaled = mean * sides * area * PI;
+        self.radiance.scale * if unscaled > 0.0 { power / unscaled } else { 0.0 }
+    }
+
+    fn pdf_direction(&self, n: Normal3, w: Vector3) -> f32 {
+        let cos_theta = n.dot(w);
+        if self.two_sided {
+            0.5 * warp::cosine_hemisphere_pdf(cos_theta.abs())
+        } else {
+            warp::cosine_hemisphere_pdf(cos_theta.max(0.0))
+        }
+    }
+}
+
 impl AreaLight {
-    /// A light on `shape`.
-    pub fn new(shape: Shape, emission: Arc<AreaEmission>) -> Self {
-        let area = shape.area();
-        Self { shape, area, emission }
+    fn emitter<'a>(&self, world: &'a World, primitive: u32, time: f32) -> Option<Emitter<'a>> {
+        let shape = world.geometry(self.geometry).shape(primitive)?;
+        Some(Emitter::new(shape, world, &self.instance, time))
     }
 
-    pub(super) fn is_invisible(&self) -> bool {
-        self.emission.invisible
-    }
-
-    pub(super) fn radiance(
-        &self,
-        n: Normal3,
-        uv: Point2,
-        w: Vector3,
-        lambda: &SampledWavelengths,
-    ) -> SampledSpectrum {
-        let emission = &*self.emission;
-        if !emission.two_sided && n.dot(w) < 0.0 {
-            return SampledSpectrum::ZERO;
-        }
-        match &emission.image {
-            None => emission.radiance.sample(lambda),
-            Some(image) => {
-                let st = Vec2::new(uv.x, 1.0 - uv.y);
-                let rgb = Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)).clamp_zero();
-                Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda) * emission.radiance.scale
-            }
+    fn scale(&self, part: &LightPart) -> f32 {
+        match &self.scales {
+            Some(scales) => scales[part.primitive as usize],
+            None => part.emission(self.emission).radiance.scale,
         }
     }
 
-    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let emission = &*self.emission;
+    fn is_moving(&self, world: &World) -> bool {
+        let moves = |&id| world.render_from_instance(id).is_moving();
+        self.instance.ids().iter().any(moves) || world.geometry(self.geometry).is_moving()
+    }
+
+    /// The area of a primitive; of what moves, the mean of the first and the last.
+    pub(crate) fn area(&self, world: &World, primitive: u32) -> f32 {
+        let at = |time| self.emitter(world, primitive, time).map_or(0.0, |emitter| emitter.area());
+        if self.is_moving(world) { 0.5 * (at(f32::MIN) + at(f32::MAX)) } else { at(0.0) }
+    }
+
+    /// Whether a point of the surface is there, decided by a hash where its alpha is between 0 and
+    /// 1.
+    fn is_there(&self, part: &LightPart, s: &ShapeSample) -> bool {
+        let Some(alpha) = self.alpha.filter(|_| !self.invisible) else { return true };
+        let context = TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() };
+        let there = part.textures().float(alpha, &context);
+        there >= 1.0 || hash_float(&s.p.p.to_array().map(f32::to_bits)) < there
+    }
+}
+
+impl LightModel for AreaLight {
+    fn is_delta(&self) -> bool {
+        self.invisible
+    }
+
+    fn phi(&self, part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
+        let (emission, scale) = (part.emission(self.emission), self.scale(part));
         let radiance = match &emission.image {
-            None => emission.radiance.sample(lambda),
+            None => emission.radiance.spectrum.sample(lambda) * scale,
             Some(image) => {
                 let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
                 for rgb in image.pixels() {
                     sum += Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda);
                     count += 1;
                 }
-                sum * (emission.radiance.scale / count.max(1) as f32)
+                sum * (scale / count.max(1) as f32)
             }
         };
         let sides = if emission.two_sided { 2.0 } else { 1.0 };
-        radiance * (PI * sides * self.area)
+        radiance * (PI * sides * self.area(part.world(), part.primitive))
     }
 
-    pub(super) fn sample_li(
+    fn radiance(
         &self,
+        part: &LightPart,
+        n: Normal3,
+        uv: Point2,
+        w: Vector3,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let emission = part.emission(self.emission);
+        if !emission.two_sided && n.dot(w) < 0.0 {
+            return SampledSpectrum::ZERO;
+        }
+        let spectrum = match &emission.image {
+            None => emission.radiance.spectrum.sample(lambda),
+            Some(image) => {
+                let st = Vec2::new(uv.x, 1.0 - uv.y);
+                let rgb = Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)).clamp_zero();
+                Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda)
+            }
+        };
+        spectrum * self.scale(part)
+    }
+
+    fn sample_li(
+        &self,
+        part: &LightPart,
         context: &LightSampleContext,
         u: Point2,
         lambda: &SampledWavelengths,
-        textures: &Textures,
+        _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let s = self.shape.sample_from(context, u)?;
+        let s = self.emitter(part.world(), part.primitive, context.time)?.sample_from(context, u)?;
         let to_light = s.p.p - context.p.p;
-        if s.pdf == 0.0 || to_light.length_squared() == 0.0 {
-            return None;
-        }
-        if !self.is_there(&s, textures) {
+        if s.pdf == 0.0 || to_light.length_squared() == 0.0 || !self.is_there(part, &s) {
             return None;
         }
         let wi = to_light.normalize();
-        let l = self.radiance(s.n, s.uv, -wi, lambda);
+        let l = self.radiance(part, s.n, s.uv, -wi, lambda);
         (!l.is_black()).then_some(LightLiSample { l, wi, pdf: s.pdf, p: Some(s.p), n: s.n })
     }
 
-    /// Whether a point of the surface is there, decided by a hash where its alpha makes it come and
-    /// go.
-    fn is_there(&self, s: &ShapeSample, textures: &Textures) -> bool {
-        let Some(alpha) = self.emission.alpha.filter(|_| !self.emission.invisible) else { return true };
-        let there =
-            textures.float(alpha, &TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() });
-        there >= 1.0 || hash_float(&s.p.p.to_array().map(f32::to_bits)) < there
+    fn pdf_li(
+        &self,
+        part: &LightPart,
+        context: &LightSampleContext,
+        wi: Vector3,
+        _allow_incomplete: bool,
+    ) -> f32 {
+        self.emitter(part.world(), part.primitive, context.time)
+            .map_or(0.0, |emitter| emitter.pdf_from(context, wi))
     }
 
-    /// By area, and by the cosine on the sides that shine.
-    pub(super) fn sample_le(
+    /// By area, and by the cosine on the sides that emit.
+    fn sample_le(
         &self,
+        part: &LightPart,
         u_position: Point2,
         u_direction: Point2,
         time: f32,
         lambda: &SampledWavelengths,
-        textures: &Textures,
     ) -> Option<LightLeSample> {
-        let s = self.shape.sample(u_position)?;
-        if !self.is_there(&s, textures) {
+        let s = self.emitter(part.world(), part.primitive, time)?.sample(u_position)?;
+        if !self.is_there(part, &s) {
             return None;
         }
+        let emission = part.emission(self.emission);
         let mut u = u_direction;
         let mut side = s.n;
-        if self.emission.two_sided {
+        if emission.two_sided {
             u.x *= 2.0;
             if u.x >= 1.0 {
                 u.x -= 1.0;
@@ -164,7 +232,8 @@ impl AreaLight {
             }
         }
         let w = Frame::from_z(side).from_local(warp::sample_cosine_hemisphere(u));
-        let (l, pdf_direction) = (self.radiance(s.n, s.uv, w, lambda), self.pdf_direction(s.n, w));
+        let l = self.radiance(part, s.n, s.uv, w, lambda);
+        let pdf_direction = emission.pdf_direction(s.n, w);
         (pdf_direction > 0.0 && !l.is_black()).then(|| LightLeSample {
             l,
             ray: Ray::spawn(s.p, s.n, w, time),
@@ -175,40 +244,34 @@ impl AreaLight {
         })
     }
 
-    pub(super) fn pdf_le(&self, p: Point3, n: Normal3, w: Vector3) -> (f32, f32) {
-        let position = self.shape.pdf_area(p, n);
-        (if position.is_finite() { position } else { 0.0 }, self.pdf_direction(n, w))
+    fn pdf_le(&self, part: &LightPart, p: Point3, n: Normal3, w: Vector3, time: f32) -> (f32, f32) {
+        let position =
+            self.emitter(part.world(), part.primitive, time).map_or(0.0, |emitter| emitter.pdf_area(p, n));
+        (position, part.emission(self.emission).pdf_direction(n, w))
     }
 
-    fn pdf_direction(&self, n: Normal3, w: Vector3) -> f32 {
-        let cos_theta = n.dot(w);
-        if self.emission.two_sided {
-            0.5 * warp::cosine_hemisphere_pdf(cos_theta.abs())
-        } else {
-            warp::cosine_hemisphere_pdf(cos_theta.max(0.0))
-        }
-    }
-
-    pub(super) fn pdf_li(&self, context: &LightSampleContext, wi: Vector3) -> f32 {
-        self.shape.pdf_from(context, wi)
-    }
-
-    pub(super) fn bounds(&self) -> Option<LightBounds> {
-        let emission = &*self.emission;
+    fn bounds(&self, part: &LightPart) -> Option<LightBounds> {
+        let (emission, scale) = (part.emission(self.emission), self.scale(part));
         let peak = match &emission.image {
-            None => emission.radiance.max_value(),
+            None => emission.radiance.spectrum.max_value() * scale,
             Some(image) => {
                 let (sum, count) = image
                     .pixels()
                     .fold((0f64, 0u32), |(s, n), p| (s + ((p.r + p.g + p.b) / 3.0) as f64, n + 1));
-                (sum / count.max(1) as f64) as f32 * emission.radiance.scale
+                (sum / count.max(1) as f64) as f32 * scale
             }
         };
-        let normals = self.shape.normal_bounds();
+        let normals = if self.is_moving(part.world()) {
+            DirectionCone::ENTIRE_SPHERE
+        } else {
+            self.emitter(part.world(), part.primitive, 0.0)?.normal_bounds()
+        };
+        let shape = part.world().geometry(self.geometry).shape(part.primitive)?;
+        let area = self.area(part.world(), part.primitive);
         Some(LightBounds {
-            bounds: self.shape.bounds()?,
+            bounds: motion_bounds(&shape, part.world(), &self.instance)?,
             w: normals.w,
-            phi: peak * self.area * PI,
+            phi: peak * area * PI,
             cos_theta_o: normals.cos_theta,
             cos_theta_e: 0.0,
             two_sided: emission.two_sided,

@@ -1,10 +1,10 @@
-//! A light at a point that shines alike into all directions: L = I / r².
+//! A light at a point that emits alike into all directions: L = I / r².
 //!
-//! Parameters: radiant intensity I; power 4π·I. Rays leave evenly in all directions. Sources:
+//! Parameters: radiant intensity I; power 4π·I. Emitted rays are uniform in direction. Sources:
 //! [Pharr 2023 §12.2].
 
-use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
-use math::{Bounds3, Point2, Point3, Point3Error, Ray, Vec3};
+use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
+use math::{AnimatedTransform, Bounds3, Normal3, Point2, Point3, Point3Error, Ray, Vec3, Vector3};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
@@ -12,57 +12,82 @@ use std::f32::consts::PI;
 /// A point light.
 #[derive(Clone, Debug)]
 pub struct PointLight {
-    /// Position in render space.
+    /// Position in render space; in the light's own space if it moves.
     pub p: Point3,
+    /// From the light's own space to render space; `None` of a light at rest.
+    pub motion: Option<Box<AnimatedTransform>>,
     /// Radiant intensity.
     pub intensity: Emission,
 }
 
 impl PointLight {
-    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+    /// The position in render space at a shutter time.
+    pub fn position(&self, time: f32) -> Point3 {
+        self.motion.as_ref().map_or(self.p, |motion| motion.at(time).point(self.p))
+    }
+}
+
+/// A box around all places of a point.
+pub(super) fn reach(p: Point3, motion: Option<&AnimatedTransform>) -> Bounds3 {
+    let here = Bounds3::new(p, p);
+    motion.map_or(here, |motion| motion.motion_bounds(&here))
+}
+
+impl LightModel for PointLight {
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn phi(&self, _part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
         self.intensity.sample(lambda) * (4.0 * PI)
     }
 
-    pub(super) fn sample_li(
+    fn sample_li(
         &self,
+        _part: &LightPart,
         context: &LightSampleContext,
+        _u: Point2,
         lambda: &SampledWavelengths,
+        _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let to_light = self.p - context.p.p;
+        let p = self.position(context.time);
+        let to_light = p - context.p.p;
         let distance2 = to_light.length_squared();
         (distance2 > 0.0).then(|| LightLiSample {
             l: self.intensity.sample(lambda) / distance2,
             wi: to_light / distance2.sqrt(),
             pdf: 1.0,
-            p: Some(Point3Error::exact(self.p)),
+            p: Some(Point3Error::exact(p)),
             n: Vec3::ZERO,
         })
     }
 
-    pub(super) fn sample_le(
+    fn sample_le(
         &self,
-        u: Point2,
+        _part: &LightPart,
+        _u_position: Point2,
+        u_direction: Point2,
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
+        let p = self.position(time);
         Some(LightLeSample {
             l: self.intensity.sample(lambda),
-            ray: Ray::new(self.p, warp::sample_uniform_sphere(u), time),
-            p: Some(Point3Error::exact(self.p)),
+            ray: Ray::new(p, warp::sample_uniform_sphere(u_direction), time),
+            p: Some(Point3Error::exact(p)),
             n: Vec3::ZERO,
             pdf_position: 1.0,
-            pdf_direction: self.pdf_le(),
+            pdf_direction: warp::uniform_sphere_pdf(),
         })
     }
 
-    /// Density of the direction, whichever it is.
-    pub(super) fn pdf_le(&self) -> f32 {
-        warp::uniform_sphere_pdf()
+    fn pdf_le(&self, _part: &LightPart, _p: Point3, _n: Normal3, _w: Vector3, _time: f32) -> (f32, f32) {
+        (0.0, warp::uniform_sphere_pdf())
     }
 
-    pub(super) fn bounds(&self) -> Option<LightBounds> {
+    fn bounds(&self, _part: &LightPart) -> Option<LightBounds> {
         Some(LightBounds {
-            bounds: Bounds3::new(self.p, self.p),
+            bounds: reach(self.p, self.motion.as_deref()),
             w: Vec3::Z,
             phi: 4.0 * PI * self.intensity.max_value(),
             cos_theta_o: -1.0,

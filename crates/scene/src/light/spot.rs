@@ -1,14 +1,15 @@
-//! A light at a point that shines into a cone, with a soft edge: L = I · s(cos θ) / r², where the
+//! A light at a point that emits into a cone, with a soft edge: L = I · s(cos θ) / r², where the
 //! smooth step s falls from 1 at the start of the falloff to 0 at the cone's end.
 //!
 //! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Rays leave with the density of the
 //! intensity itself, p_direction = s(cos θ)·I/Φ: evenly within the start of the falloff, around it
 //! with cos θ by the smooth step; each carries all of Φ. Sources: [Pharr 2023 §12.2.1].
 
-use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightSampleContext};
+use super::point::reach;
+use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
 use math::{
-    Bounds3, Frame, Point2, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, safe_acos, safe_sqrt, smooth_step,
-    spherical_direction,
+    AnimatedTransform, Frame, Normal3, Point2, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, safe_acos,
+    safe_sqrt, smooth_step, spherical_direction,
 };
 use sampling::{sample_discrete, warp};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -17,10 +18,12 @@ use std::f32::consts::{PI, TAU};
 /// A spot light.
 #[derive(Clone, Debug)]
 pub struct SpotLight {
-    /// Position in render space.
+    /// Position in render space; in the light's own space if it moves.
     pub p: Point3,
-    /// Unit axis of the cone in render space.
+    /// Unit axis of the cone, in the same space.
     pub axis: Vector3,
+    /// From the light's own space to render space; `None` of a light at rest.
+    pub motion: Option<Box<AnimatedTransform>>,
     /// Radiant intensity on the axis.
     pub intensity: Emission,
     /// Cosine of the angle where the falloff starts.
@@ -35,39 +38,69 @@ impl SpotLight {
         2.0 * PI * ((1.0 - cos_falloff_start) + (cos_falloff_start - cos_falloff_end) / 2.0)
     }
 
-    /// The part of the intensity on the axis that leaves along `w`.
-    fn falloff(&self, w: Vector3) -> f32 {
-        smooth_step(w.dot(self.axis), self.cos_falloff_end, self.cos_falloff_start)
+    /// Position and unit axis in render space at a shutter time.
+    pub fn placement(&self, time: f32) -> (Point3, Vector3) {
+        match &self.motion {
+            None => (self.p, self.axis),
+            Some(motion) => {
+                let transform = motion.at(time);
+                (transform.point(self.p), transform.vector(self.axis).normalize_or(self.axis))
+            }
+        }
     }
 
-    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+    /// The fraction of the intensity on the axis at the cosine `cos_theta` with it.
+    fn falloff(&self, cos_theta: f32) -> f32 {
+        smooth_step(cos_theta, self.cos_falloff_end, self.cos_falloff_start)
+    }
+
+    /// Density of a direction at the cosine `cos_theta` with the axis: in proportion to the
+    /// intensity.
+    fn pdf_direction(&self, cos_theta: f32) -> f32 {
+        let solid_angle = Self::effective_solid_angle(self.cos_falloff_start, self.cos_falloff_end);
+        if solid_angle > 0.0 { self.falloff(cos_theta) / solid_angle } else { 0.0 }
+    }
+}
+
+impl LightModel for SpotLight {
+    fn is_delta(&self) -> bool {
+        true
+    }
+
+    fn phi(&self, _part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
         self.intensity.sample(lambda)
             * Self::effective_solid_angle(self.cos_falloff_start, self.cos_falloff_end)
     }
 
-    pub(super) fn sample_li(
+    fn sample_li(
         &self,
+        _part: &LightPart,
         context: &LightSampleContext,
+        _u: Point2,
         lambda: &SampledWavelengths,
+        _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let to_light = self.p - context.p.p;
+        let (p, axis) = self.placement(context.time);
+        let to_light = p - context.p.p;
         let distance2 = to_light.length_squared();
         if distance2 == 0.0 {
             return None;
         }
         let wi = to_light / distance2.sqrt();
-        let falloff = self.falloff(-wi);
+        let falloff = self.falloff((-wi).dot(axis));
         (falloff > 0.0).then(|| LightLiSample {
             l: self.intensity.sample(lambda) * (falloff / distance2),
             wi,
             pdf: 1.0,
-            p: Some(Point3Error::exact(self.p)),
+            p: Some(Point3Error::exact(p)),
             n: Vec3::ZERO,
         })
     }
 
-    pub(super) fn sample_le(
+    fn sample_le(
         &self,
+        _part: &LightPart,
+        _u_position: Point2,
         u: Point2,
         time: f32,
         lambda: &SampledWavelengths,
@@ -81,31 +114,31 @@ impl SpotLight {
             let cos_theta = warp::sample_smooth_step(ring.u_remapped, end, start);
             spherical_direction(safe_sqrt(1.0 - cos_theta * cos_theta), cos_theta, TAU * u.y)
         };
-        let w = Frame::from_z(self.axis).from_local(local);
-        let pdf_direction = self.pdf_le(w);
+        let (p, axis) = self.placement(time);
+        let w = Frame::from_z(axis).from_local(local);
+        let cos_theta = w.dot(axis);
+        let pdf_direction = self.pdf_direction(cos_theta);
         (pdf_direction > 0.0).then(|| LightLeSample {
-            l: self.intensity.sample(lambda) * self.falloff(w),
-            ray: Ray::new(self.p, w, time),
-            p: Some(Point3Error::exact(self.p)),
+            l: self.intensity.sample(lambda) * self.falloff(cos_theta),
+            ray: Ray::new(p, w, time),
+            p: Some(Point3Error::exact(p)),
             n: Vec3::ZERO,
             pdf_position: 1.0,
             pdf_direction,
         })
     }
 
-    /// Density of the direction: in proportion to the light that leaves along it.
-    pub(super) fn pdf_le(&self, w: Vector3) -> f32 {
-        let solid_angle = Self::effective_solid_angle(self.cos_falloff_start, self.cos_falloff_end);
-        if solid_angle > 0.0 { self.falloff(w) / solid_angle } else { 0.0 }
+    fn pdf_le(&self, _part: &LightPart, _p: Point3, _n: Normal3, w: Vector3, time: f32) -> (f32, f32) {
+        (0.0, self.pdf_direction(w.dot(self.placement(time).1)))
     }
 
-    pub(super) fn bounds(&self) -> Option<LightBounds> {
+    fn bounds(&self, _part: &LightPart) -> Option<LightBounds> {
         let edge = safe_acos(self.cos_falloff_end) - safe_acos(self.cos_falloff_start);
         Some(LightBounds {
-            bounds: Bounds3::new(self.p, self.p),
+            bounds: reach(self.p, self.motion.as_deref()),
             w: self.axis,
             phi: 4.0 * PI * self.intensity.max_value(),
-            cos_theta_o: self.cos_falloff_start,
+            cos_theta_o: if self.motion.is_some() { -1.0 } else { self.cos_falloff_start },
             // Room for rounding, so that points just inside of the edge keep some importance, be it
             // soft or hard.
             cos_theta_e: edge.cos().min(0.999),

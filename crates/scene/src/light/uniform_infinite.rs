@@ -2,11 +2,11 @@
 //!
 //! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling
 //! allowed it is left wholly to BSDF sampling, which covers a constant sky better than uniform
-//! directions do. Rays come evenly from all directions, and start evenly on the disk that faces
+//! directions do. Emitted rays are uniform in direction, and start uniformly on the disk that faces
 //! them and covers the scene. Sources: [Pharr 2023 §12.5.1].
 
-use super::{Emission, LightLeSample, LightLiSample, SceneSphere};
-use math::{Point2, Vec3};
+use super::{Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
+use math::{Point2, Ray, Vec3, Vector3};
 use sampling::warp;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
@@ -21,16 +21,32 @@ pub struct UniformInfiniteLight {
 }
 
 impl UniformInfiniteLight {
-    pub(super) fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+    fn pdf(allow_incomplete: bool) -> f32 {
+        if allow_incomplete { 0.0 } else { 1.0 / (4.0 * PI) }
+    }
+}
+
+impl LightModel for UniformInfiniteLight {
+    fn is_delta(&self) -> bool {
+        false
+    }
+
+    fn is_infinite(&self) -> bool {
+        true
+    }
+
+    fn phi(&self, _part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
         self.radiance.sample(lambda) * (4.0 * PI * PI * self.scene.radius * self.scene.radius)
     }
 
-    pub(super) fn le(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+    fn le(&self, _ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
         self.radiance.sample(lambda)
     }
 
-    pub(super) fn sample_li(
+    fn sample_li(
         &self,
+        _part: &LightPart,
+        _context: &LightSampleContext,
         u: Point2,
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
@@ -39,34 +55,39 @@ impl UniformInfiniteLight {
             return None;
         }
         let wi = warp::sample_uniform_sphere(u);
-        Some(LightLiSample {
-            l: self.radiance.sample(lambda),
-            wi,
-            pdf: self.pdf_li(false),
-            p: None,
-            n: Vec3::ZERO,
-        })
+        let l = self.radiance.sample(lambda);
+        Some(LightLiSample { l, wi, pdf: Self::pdf(false), p: None, n: Vec3::ZERO })
     }
 
-    pub(super) fn sample_le(
+    fn pdf_li(
         &self,
+        _part: &LightPart,
+        _context: &LightSampleContext,
+        _wi: Vector3,
+        allow_incomplete: bool,
+    ) -> f32 {
+        Self::pdf(allow_incomplete)
+    }
+
+    fn sample_le(
+        &self,
+        _part: &LightPart,
         u_position: Point2,
         u_direction: Point2,
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
-        let LightLiSample { l, wi, pdf, n, .. } = self.sample_li(u_direction, lambda, false)?;
         Some(LightLeSample {
-            l,
-            ray: self.scene.ray_from(wi, u_position, time),
+            l: self.radiance.sample(lambda),
+            ray: self.scene.ray_from(warp::sample_uniform_sphere(u_direction), u_position, time),
             p: None,
-            n,
+            n: Vec3::ZERO,
             pdf_position: self.scene.disk_pdf(),
-            pdf_direction: pdf,
+            pdf_direction: Self::pdf(false),
         })
     }
 
-    pub(super) fn pdf_li(&self, allow_incomplete: bool) -> f32 {
-        if allow_incomplete { 0.0 } else { 1.0 / (4.0 * PI) }
+    fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
+        (self.scene.pdf_facing_disk(ray), Self::pdf(false))
     }
 }

@@ -10,7 +10,7 @@
 //! solid angle of emission, K_r punishes long thin boxes, A is the area of the box. Sources:
 //! [Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3].
 
-use crate::light::{Light, LightBounds, LightId, LightSampleContext};
+use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
 use std::f32::consts::PI;
 
@@ -20,18 +20,19 @@ pub struct BvhLightSampler {
     nodes: Vec<Node>,
     infinite: Vec<LightId>,
     /// By light.
-    places: Vec<Place>,
+    trails: Vec<Trail>,
 }
 
-/// Where a light is found.
-#[derive(Clone, Copy, Debug)]
-enum Place {
+/// Where a light is found. In the tree: the path from the root, where bit i is set for the right
+/// child at depth i; trees are less than 64 deep. Elsewhere: one of two values that are no path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Trail(u64);
+
+impl Trail {
     /// Nowhere: it has no power.
-    Nowhere,
-    /// Among the infinite lights.
-    Infinite,
-    /// In the tree, by the way from the root: bit i says right at depth i.
-    Tree(u64),
+    const NOWHERE: Self = Self(u64::MAX);
+    /// Among the lights infinitely far away.
+    const INFINITE: Self = Self(u64::MAX - 1);
 }
 
 #[derive(Clone, Debug)]
@@ -55,22 +56,22 @@ const DEEPEST_CHOICE: u32 = 32;
 
 impl BvhLightSampler {
     /// For these lights.
-    pub fn new(lights: &[Light]) -> Self {
+    pub fn new(lights: Lights) -> Self {
         let mut infinite = Vec::new();
         let mut bounded = Vec::new();
-        let mut places = vec![Place::Nowhere; lights.len()];
-        for (i, light) in lights.iter().enumerate() {
-            let id = LightId(i as u32);
+        let mut trails = vec![Trail::NOWHERE; lights.len()];
+        for light in lights.iter() {
+            let id = light.id();
             match light.bounds() {
                 None => {
                     infinite.push(id);
-                    places[i] = Place::Infinite;
+                    trails[id.0 as usize] = Trail::INFINITE;
                 }
                 Some(bounds) if bounds.phi > 0.0 => bounded.push((id, bounds)),
                 Some(_) => {}
             }
         }
-        let mut sampler = Self { nodes: Vec::with_capacity(2 * bounded.len()), infinite, places };
+        let mut sampler = Self { nodes: Vec::with_capacity(2 * bounded.len()), infinite, trails };
         if !bounded.is_empty() {
             sampler.build(&mut bounded, 0, 0);
         }
@@ -80,7 +81,7 @@ impl BvhLightSampler {
     fn build(&mut self, lights: &mut [(LightId, LightBounds)], trail: u64, depth: u32) -> LightBounds {
         let index = self.nodes.len();
         if let [(id, bounds)] = lights {
-            self.places[id.0 as usize] = Place::Tree(trail);
+            self.trails[id.0 as usize] = Trail(trail);
             self.nodes.push(Node { bounds: *bounds, kind: NodeKind::Leaf(*id) });
             return *bounds;
         }
@@ -144,10 +145,10 @@ impl BvhLightSampler {
     }
 
     pub(super) fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
-        let mut trail = match self.places[light.0 as usize] {
-            Place::Nowhere => return 0.0,
-            Place::Infinite => return self.infinite_share() / self.infinite.len() as f32,
-            Place::Tree(trail) => trail,
+        let mut trail = match self.trails[light.0 as usize] {
+            Trail::NOWHERE => return 0.0,
+            Trail::INFINITE => return self.infinite_share() / self.infinite.len() as f32,
+            Trail(trail) => trail,
         };
         let (mut pmf, mut index) = (self.tree_share(context), 0);
         while let NodeKind::Interior { right } = self.nodes[index].kind {

@@ -12,7 +12,7 @@ pub use bvh::BvhLightSampler;
 pub use power::PowerLightSampler;
 pub use uniform::UniformLightSampler;
 
-use crate::light::{Light, LightId, LightSampleContext};
+use crate::light::{LightId, LightSampleContext, Lights};
 
 /// A way of choosing.
 #[derive(Clone, Debug)]
@@ -37,9 +37,16 @@ pub enum LightSamplerKind {
     Bvh,
 }
 
+impl Default for LightSampler {
+    /// A choice among no lights.
+    fn default() -> Self {
+        Self::Uniform(UniformLightSampler::default())
+    }
+}
+
 impl LightSampler {
-    /// A sampler of the given kind for these lights, whose ids are their indices.
-    pub fn new(kind: LightSamplerKind, lights: &[Light]) -> Self {
+    /// A sampler of the given kind for these lights.
+    pub fn new(kind: LightSamplerKind, lights: Lights) -> Self {
         match kind {
             LightSamplerKind::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
             LightSamplerKind::Power => Self::Power(PowerLightSampler::new(lights)),

@@ -1,19 +1,19 @@
 //! Lights in proportion to their power, wherever the point is; so that it also chooses where paths
 //! of light start, which have no point to look from.
 
-use crate::light::{Light, LightId};
+use crate::light::{LightId, Lights};
 use sampling::AliasTable;
 use spectrum::SampledWavelengths;
 
-/// Lights by power.
-#[derive(Clone, Debug)]
+/// Lights by power. The default is among no lights.
+#[derive(Clone, Debug, Default)]
 pub struct PowerLightSampler {
     table: Option<AliasTable>,
 }
 
 impl PowerLightSampler {
     /// For these lights. When none has any power, all are alike.
-    pub fn new(lights: &[Light]) -> Self {
+    pub fn new(lights: Lights) -> Self {
         let lambda = SampledWavelengths::sample_visible(0.5);
         let mut powers: Vec<f32> =
             lights.iter().map(|light| light.phi(&lambda).safe_div(lambda.pdf()).average().max(0.0)).collect();

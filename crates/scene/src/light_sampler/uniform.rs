@@ -1,16 +1,16 @@
 //! All lights alike.
 
-use crate::light::{Light, LightId};
+use crate::light::{LightId, Lights};
 
 /// Every light with the same probability.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct UniformLightSampler {
     count: u32,
 }
 
 impl UniformLightSampler {
     /// For these lights.
-    pub fn new(lights: &[Light]) -> Self {
+    pub fn new(lights: Lights) -> Self {
         Self { count: lights.len() as u32 }
     }
 

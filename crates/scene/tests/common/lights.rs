@@ -2,10 +2,10 @@
 
 use super::*;
 use alhazen_scene::Scene;
-use alhazen_scene::light::{Light, LightSampleContext};
+use alhazen_scene::light::{LightId, LightRef, LightSampleContext};
 use description::{
-    AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
-    TransformDesc,
+    AreaLightDesc, InfiniteRadiance, InstanceDesc, LightDesc, LightKind, MeshKey, ObjectDesc, SceneDesc,
+    ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -16,8 +16,8 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn light(&self) -> &Light {
-        &self.scene.lights()[0]
+    pub fn light(&self) -> LightRef<'_> {
+        self.scene.light(LightId(0))
     }
 }
 
@@ -100,9 +100,18 @@ pub fn sky(illuminance: Option<f32>) -> LightKind {
     LightKind::Infinite { radiance: InfiniteRadiance::Constant(white()), illuminance, portal: None }
 }
 
+/// A sky given by an equal-area image of `size` × `size` pixels.
 pub fn image_sky(size: u32, illuminance: Option<f32>, pixel: impl FnMut(u32, u32) -> [f32; 3]) -> SceneDesc {
+    image_sky_of([size, size], illuminance, pixel)
+}
+
+pub fn image_sky_of(
+    [width, height]: [u32; 2],
+    illuminance: Option<f32>,
+    pixel: impl FnMut(u32, u32) -> [f32; 3],
+) -> SceneDesc {
     let mut desc = free(sky(illuminance));
-    let image = desc.images.push(rgb_image(size, size, pixel));
+    let image = desc.images.push(rgb_image(width, height, pixel));
     for (_, light) in desc.lights.iter_mut() {
         let LightKind::Infinite { radiance, .. } = &mut light.kind else { continue };
         *radiance = InfiniteRadiance::Image(image);
@@ -140,7 +149,51 @@ pub fn area_lights() -> Vec<Case> {
         ("bent patch", area(bent, both_sides)),
         ("disk, image", with_image(disk(0.0, 0.9))),
     ];
-    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+    cases
+        .into_iter()
+        .chain(placed_area_lights())
+        .map(|(name, desc)| Case { name, scene: scene(&desc) })
+        .collect()
+}
+
+/// Emitting shapes that are seen through instances, and that move.
+fn placed_area_lights() -> Vec<(&'static str, SceneDesc)> {
+    let stretch = DMat4::from_rotation_z(0.4) * DMat4::from_scale(DVec3::new(-0.8, 1.3, 1.1));
+    let turn = DMat4::from_translation(DVec3::new(0.2, -0.1, 0.1)) * DMat4::from_rotation_y(0.5);
+    let [stretch, turn] = [stretch, turn].map(TransformDesc::fixed);
+    let to = DMat4::from_translation(DVec3::new(0.3, 0.2, -0.2)) * DMat4::from_rotation_x(0.7);
+    let moving = TransformDesc { start: DMat4::IDENTITY, end: to, times: [-1.0, 1.0] };
+    let mut mesh = triangle();
+    if let ShapeKind::Triangles(mesh) = &mut mesh {
+        let positions: Arc<[Point3]> =
+            mesh.positions.iter().map(|p| *p + Vec3::new(0.3, -0.2, 0.4)).collect();
+        mesh.later.push(MeshKey { positions, ..MeshKey::default() });
+    }
+    vec![
+        ("stretched sphere", instanced(area(sphere(0.8), both_sides), &[stretch])),
+        ("disk in an object", instanced(area(disk(0.2, 0.9), one_side), &[turn, stretch])),
+        ("triangle in an object", instanced(area(triangle(), one_side), &[stretch])),
+        ("patch in an object, image", instanced(with_image(rectangle([-1.0, -0.5], [0.8, 0.7])), &[stretch])),
+        ("moving disk", area(disk(0.2, 0.9), |_, shape| shape.world_from_object = moving)),
+        ("disk in a moving object", instanced(area(disk(0.2, 0.9), one_side), &[turn, moving])),
+        ("triangle with moving corners", area(mesh, both_sides)),
+    ]
+}
+
+/// Makes the shapes of a scene an object, placed by the last transform within that by the one before.
+fn instanced(mut desc: SceneDesc, transforms: &[TransformDesc]) -> SceneDesc {
+    let shapes = std::mem::take(&mut desc.shapes);
+    let mut object = ObjectDesc { shapes, ..ObjectDesc::default() };
+    for (i, &world_from_object) in transforms.iter().rev().enumerate() {
+        let object_handle = desc.objects.push(std::mem::take(&mut object));
+        let instance = InstanceDesc { object: object_handle, world_from_object };
+        if i + 1 < transforms.len() {
+            object.instances.push(instance);
+        } else {
+            desc.instances.push(instance);
+        }
+    }
+    desc
 }
 
 pub fn infinite_lights() -> Vec<Case> {
@@ -151,6 +204,9 @@ pub fn infinite_lights() -> Vec<Case> {
         ("image sky", image_sky(8, None, colours)),
         ("image sky with a sun", image_sky(8, None, sun)),
         ("image sky of one colour", image_sky(8, None, |_, _| [0.5; 3])),
+        ("panorama", image_sky_of([16, 8], None, colours)),
+        ("panorama with a sun", image_sky_of([16, 8], None, sun)),
+        ("panorama of one colour", image_sky_of([16, 8], None, |_, _| [0.5; 3])),
     ];
     cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
 }

@@ -4,8 +4,8 @@
 
 pub mod lights;
 
-use alhazen_scene::light::{Light, LightLiSample, LightSampleContext};
-use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction};
+use alhazen_scene::light::{LightLiSample, LightRef, LightSampleContext};
+use alhazen_scene::{Interfaces, RayStats, Scene, SurfaceInteraction, View, world_from_render};
 use description::{ImageDesc, MeshDesc, PatchMeshDesc, SceneDesc, ShapeKind};
 use image::Image;
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
@@ -21,12 +21,20 @@ pub fn scene(desc: &SceneDesc) -> Scene {
     compiled.scene
 }
 
+/// The view of a description in which nothing is wrong.
+pub fn view(desc: &SceneDesc) -> View {
+    View::compile(desc, world_from_render(desc)).unwrap_or_else(|errors| panic!("{errors:?}")).view
+}
+
 pub fn lambda() -> SampledWavelengths {
     SampledWavelengths::sample_visible(0.3)
 }
 
+/// The shutter time of rays and points, while what moves is on its way.
+pub const TIME: f32 = 0.25;
+
 pub fn ray(o: Point3, d: Vector3) -> Ray {
-    Ray::new(o, d, 0.0)
+    Ray::new(o, d, TIME)
 }
 
 /// The nearest surface along a ray.
@@ -36,7 +44,7 @@ pub fn hit(scene: &Scene, ray: &Ray) -> Option<SurfaceInteraction> {
 
 /// A point that light may reach; without a surface if `n` is zero.
 pub fn context(p: Point3, n: Normal3) -> LightSampleContext {
-    LightSampleContext { p: Point3Error::exact(p), n, ns: n, time: 0.0 }
+    LightSampleContext { p: Point3Error::exact(p), n, ns: n, time: TIME }
 }
 
 /// The radiance that arrives from `w`, whatever it comes from, at the first wavelength.
@@ -52,14 +60,12 @@ pub fn arriving(scene: &Scene, from: &LightSampleContext, w: Vector3) -> f64 {
 /// A sample of a light, unless something stands before it.
 pub fn seen_sample(
     scene: &Scene,
-    light: &Light,
+    light: LightRef,
     from: &LightSampleContext,
     u: [f32; 2],
     allow_incomplete: bool,
 ) -> Option<LightLiSample> {
-    let id = scene.lights().iter().position(|l| std::ptr::eq(l, light)).expect("a light of the scene");
-    let id = alhazen_scene::light::LightId(id as u32);
-    let sample = scene.sample_light(id, from, u.into(), &lambda(), allow_incomplete)?;
+    let sample = scene.sample_light(light.id(), from, u.into(), &lambda(), allow_incomplete)?;
     let hidden = sample.p.is_some_and(|p| {
         let ray = Ray::between(from.p, from.n, p, sample.n, from.time);
         scene.occluded(&ray, Ray::SHADOW_END, Interfaces::Stop, &mut RayStats::default())

@@ -94,11 +94,7 @@ impl Builder<'_> {
             self.complete_objects = index;
             let Spanned { value: name, span } = object.name;
             let mut built = ObjectDesc { name, ..ObjectDesc::default() };
-            for mut shape in object.shapes {
-                if shape.area_light.take().is_some() {
-                    let message = "shapes of an object do not shine: its area light is left out";
-                    self.report.warning("ignored", message, shape.statement.span);
-                }
+            for shape in object.shapes {
                 if let Some(shape) = self.shape(shape) {
                     built.shapes.push_stated(shape);
                 }

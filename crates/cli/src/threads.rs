@@ -1,0 +1,29 @@
+//! The threads of the program.
+
+use std::num::NonZero;
+use std::thread::available_parallelism;
+
+use crate::failure::Failure;
+
+/// Threads that may be asked for on any machine. The time to start and to wake threads grows faster
+/// than their number, and beyond the number of cores they do not help.
+const ALWAYS_ALLOWED: usize = 256;
+
+/// Threads for each core that may be asked for.
+const PER_CORE: usize = 4;
+
+/// Starts the threads that everything runs on: as many as asked for, or one for each core.
+pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = threads.map(usize::from) {
+        let cores = available_parallelism().map_or(1, NonZero::get);
+        let most = ALWAYS_ALLOWED.max(PER_CORE * cores);
+        if threads > most {
+            return Err(Failure::Usage(format!(
+                "cannot start {threads} threads: this machine has {cores} cores, and may have {most} threads"
+            )));
+        }
+        builder = builder.num_threads(threads);
+    }
+    builder.build_global().map_err(|error| Failure::Input(format!("cannot start threads: {error}")))
+}

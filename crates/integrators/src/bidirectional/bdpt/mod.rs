@@ -1,0 +1,165 @@
+//! Bidirectional path tracing: paths from both ends, connected in all ways.
+//!
+//! For each sample of a pixel a light subpath and a camera subpath are made. Every vertex of the
+//! one is connected to every vertex of the other; the camera subpath also looks for lights, by
+//! chance and by choice, and the light subpath for the camera. A path of k edges is thus found by
+//! up to k + 1 strategies, each of which makes other paths likely: light that is focused by glass,
+//! light that comes around a door, light that a mirror shows. Their estimates are weighted by the
+//! balance heuristic, so that each path counts once, and where a strategy is bad another is good.
+//! How the weights are found without a second look is said in `bidirectional/partial.rs`.
+//!
+//! What remains hard is light that passes specular surfaces on both sides of the only vertex that
+//! could be connected: a caustic seen in a mirror, the ground under water. Small lights make it
+//! noisy, lights at a point make it black; merging helps there (`vcm`).
+//!
+//! With `techniques` there is a picture for each strategy: what it finds unweighted, and what it
+//! contributes. Arranged by the length of paths they are the pyramid of [Veach 1997 fig. 10.3]. Of
+//! paths with more than 8 scattering events there are none.
+//!
+//! Unbiased up to `max_depth`, except with `regularize`. Sources: [Veach 1997 ch. 10];
+//! [Lafortune 1993].
+
+pub(crate) mod techniques;
+
+use film::Film;
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::{Scene, View};
+use spectrum::SampledSpectrum;
+
+use techniques::Techniques;
+
+use crate::bidirectional::{Balance, Bidirectional, Found, Lights, OnTheWay};
+use crate::transport::pixel_samples::PixelSamples;
+use crate::{Cancelled, Control, Integrator};
+
+/// Settings of [`Bdpt`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BdptSettings {
+    /// Most scattering events; default 5.
+    pub max_depth: u32,
+    /// Roughen surfaces after the first rough one of each subpath; default false.
+    pub regularize: bool,
+    /// Whether each strategy's picture is kept as it would be without the others; default false.
+    pub unweighted: bool,
+    /// Whether each strategy's contribution is kept; default false.
+    pub weighted: bool,
+}
+
+impl Default for BdptSettings {
+    fn default() -> Self {
+        Self { max_depth: 5, regularize: false, unweighted: false, weighted: false }
+    }
+}
+
+/// Bidirectional path tracing.
+#[derive(Debug)]
+pub struct Bdpt {
+    settings: BdptSettings,
+    sampler: Sampler,
+    light_sampler: Sampler,
+    lights: Lights,
+    techniques: Techniques,
+}
+
+impl Bdpt {
+    /// With a sampler for each end.
+    pub fn new(settings: BdptSettings, sampler: Sampler, light_sampler: Sampler) -> Self {
+        let techniques = Techniques::new(settings.max_depth, settings.unweighted, settings.weighted);
+        Self { settings, sampler, light_sampler, lights: Lights::none(), techniques }
+    }
+
+    /// What the strategies' pictures of so many pixels take beside the main one, in bytes.
+    pub fn technique_bytes(&self, pixels: usize) -> usize {
+        self.techniques.bytes(pixels)
+    }
+}
+
+impl Integrator for Bdpt {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.lights = Lights::of(scene);
+        control.check()
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        view: &View,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let pixel_count = film.pixel_bounds().area();
+        let paths = Bidirectional {
+            scene,
+            view,
+            lights: &self.lights,
+            balance: Balance::connecting(pixel_count as f32),
+            max_depth: self.settings.max_depth,
+            regularize: self.settings.regularize,
+        };
+        let filter = film.filter().clone();
+        let techniques = self.techniques.open(film);
+        let (tiles, splatter) = film.tiles_and_splatter();
+        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        // On films of splats a sample of a pixel counts as one of all paths.
+        let per_sample = pixel_count as f32 / filter.integral();
+        pixels.add(tiles, control, |sample, tracer| {
+            let lambda = &sample.lambda;
+            let mut light_sampler = self.light_sampler.clone();
+            light_sampler.start_pixel_sample(sample.pixel, pass, 0);
+            let mut light_subpath = Vec::new();
+            tracer.with_sampler(&mut light_sampler, |tracer| {
+                paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
+                    let u = tracer.sampler.get_2d();
+                    if let Some(seen) = paths.see(vertex, u, splatter.reach(), tracer) {
+                        seen.splat(&splatter, &seen.found.weighted(), lambda);
+                        techniques.add(&seen.found, |splatter, l| seen.splat(splatter, l, lambda));
+                    }
+                    light_subpath.push(*vertex);
+                });
+            });
+            splatter.add_paths(1);
+            techniques.add_path();
+
+            let mut l = SampledSpectrum::ZERO;
+            let mut add = |found: &Found| {
+                l += found.weighted();
+                let scale = sample.filter_weight * per_sample;
+                techniques
+                    .add(found, |splatter, l| splatter.add_to_pixel(sample.pixel, &(*l * scale), lambda));
+            };
+            if let Some(camera_ray) = &sample.camera_ray {
+                paths.camera_subpath(camera_ray, lambda, tracer, |on_the_way, tracer| match on_the_way {
+                    OnTheWay::Light(found) => add(&found),
+                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                        if let Some(found) = paths.direct(vertex, lambda, tracer) {
+                            add(&found);
+                        }
+                        for light in &light_subpath {
+                            if vertex.depth + light.depth <= paths.max_depth
+                                && let Some(found) = paths.connect(vertex, light, tracer)
+                            {
+                                add(&found);
+                            }
+                        }
+                    }
+                    OnTheWay::Vertex(_) => (),
+                });
+            }
+            l
+        })
+    }
+
+    fn films(&self) -> Vec<(String, &Film)> {
+        self.techniques.films().collect()
+    }
+
+    fn set_films(&mut self, films: Vec<(String, Film)>) {
+        self.techniques.set_films(films);
+    }
+}

@@ -1,0 +1,33 @@
+//! The vertices of light subpaths that merging keeps.
+
+use math::{Point3, Vector3};
+use spectrum::SampledSpectrum;
+
+use super::{Partial, Vertex};
+
+/// A vertex of a light subpath, as far as merging needs it: a photon that knows its part of the
+/// weights.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightVertex {
+    /// Position.
+    pub p: Point3,
+    /// Unit direction to the vertex before.
+    pub wo: Vector3,
+    /// Power that arrives along `wo`, over the subpath's density, if the surface is there for every
+    /// ray.
+    pub beta: SampledSpectrum,
+    /// For the weights.
+    pub partial: Partial,
+    /// Scattering events on the subpath, that at the photon included.
+    pub depth: u16,
+    /// Whether only the first wavelength is left.
+    pub hero_only: bool,
+}
+
+impl From<&Vertex> for LightVertex {
+    fn from(vertex: &Vertex) -> Self {
+        let &Vertex { p, wo, partial, depth, hero_only, .. } = vertex;
+        let (beta, depth) = (vertex.photon_beta(), depth.min(u16::MAX.into()) as u16);
+        Self { p: p.p, wo, beta, partial, depth, hero_only }
+    }
+}

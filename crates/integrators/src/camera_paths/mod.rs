@@ -1,0 +1,17 @@
+//! Algorithms that follow rays from the camera alone.
+
+mod ambient_occlusion;
+mod path;
+mod pixel_loop;
+mod random_walk;
+mod ray_casting;
+mod simple_path;
+mod whitted;
+
+pub use ambient_occlusion::AmbientOcclusion;
+pub use path::{Path, PathSettings};
+pub use pixel_loop::{PixelLoop, RayIntegrator};
+pub use random_walk::RandomWalk;
+pub use ray_casting::RayCasting;
+pub use simple_path::SimplePath;
+pub use whitted::Whitted;

@@ -1,0 +1,124 @@
+//! Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
+//!
+//! At each vertex one ray goes to a light and one onwards, weighted by the power heuristic
+//! (`transport/direct.rs`); from the second vertex on Russian roulette ends paths that carry little
+//! (`transport/roulette.rs`).
+//!
+//! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
+//! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
+
+use math::RayDifferential;
+use scattering::{Bsdf, each_bxdf};
+use scene::light_sampler::LightSamplerKind;
+use scene::{Interfaces, Scene, View};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use crate::transport::direct::{DirectLighting, light_context};
+use crate::transport::path_state::{PathState, Scattered};
+use crate::{Cancelled, Control, RayIntegrator, Tracer};
+
+/// Settings of [`Path`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathSettings {
+    /// Most scattering events; default 5.
+    pub max_depth: u32,
+    /// Roughen surfaces after the first rough bounce; default false.
+    pub regularize: bool,
+    /// How a light is chosen; by default through the tree of lights.
+    pub light_sampler: LightSamplerKind,
+    /// What interfaces do to the light of delta lights; by default they stop it.
+    pub interfaces: Interfaces,
+}
+
+impl Default for PathSettings {
+    fn default() -> Self {
+        Self {
+            max_depth: 5,
+            regularize: false,
+            light_sampler: LightSamplerKind::Bvh,
+            interfaces: Interfaces::Stop,
+        }
+    }
+}
+
+/// Path tracing.
+#[derive(Clone, Debug)]
+pub struct Path {
+    settings: PathSettings,
+    direct: DirectLighting,
+}
+
+impl Path {
+    /// Knows no lights until it is prepared for a scene.
+    pub fn new(settings: PathSettings) -> Self {
+        Self { settings, direct: DirectLighting::none() }
+    }
+
+    /// The radiance along the ray of paths that scatter at least `min_depth` times.
+    pub(crate) fn li_from(
+        &self,
+        min_depth: u32,
+        tracer: &mut Tracer,
+        ray: RayDifferential,
+        lambda: &mut SampledWavelengths,
+    ) -> SampledSpectrum {
+        let (scene, direct) = (tracer.scene, &self.direct);
+        let mut l = SampledSpectrum::ZERO;
+        let mut path = PathState::new(ray, 0);
+        let mut rough_before = false;
+        loop {
+            let Some((mut surface, t)) = tracer.intersect(&path.ray.ray) else {
+                if path.depth >= min_depth {
+                    l += path.beta * direct.escaped(scene, &path.ray, path.origin.as_ref(), lambda);
+                }
+                return l;
+            };
+            if path.depth >= min_depth {
+                l += path.beta * direct.emitted(scene, &surface, path.origin.as_ref(), lambda);
+            }
+            let Some(mut bsdf) = tracer.bsdf(&mut surface, &path.ray, lambda) else {
+                path.pass_through(&surface, t);
+                continue;
+            };
+            if path.depth == self.settings.max_depth {
+                return l;
+            }
+            path.depth += 1;
+            if self.settings.regularize && rough_before {
+                bsdf.regularize();
+            }
+
+            let context = light_context(&surface, bsdf.flags());
+            let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
+                let bsdf = Bsdf { bxdf, frame: bsdf.frame };
+                if bsdf.flags().is_non_specular() {
+                    l += path.beta * direct.sample(tracer, (&surface, &context), &bsdf, lambda);
+                }
+                Scattered::sample(&surface, &bsdf, tracer.sampler)
+            });
+            let Some(scattered) = scattered else { return l };
+            rough_before |= !scattered.sample.flags.is_specular();
+            path.scatter(&surface, context, &scattered);
+            if !path.survives(tracer.sampler) {
+                return l;
+            }
+        }
+    }
+}
+
+impl RayIntegrator for Path {
+    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
+        let PathSettings { light_sampler, interfaces, .. } = self.settings;
+        self.direct = DirectLighting::new(scene, light_sampler, interfaces);
+        control.check()
+    }
+
+    fn li(
+        &self,
+        tracer: &mut Tracer,
+        ray: RayDifferential,
+        lambda: &mut SampledWavelengths,
+    ) -> SampledSpectrum {
+        self.li_from(0, tracer, ray, lambda)
+    }
+}

@@ -1,0 +1,41 @@
+//! Ray casting: what the camera's own rays show, and nothing more.
+//!
+//! L = L_e + Σ f(ω_o, ω_i) L_i |cos θ_i| / p(ω_i), one direction ω_i for each light, as if nothing
+//! stood between the surface and the light. Shadows, reflections, refractions and indirect light
+//! are missing; smooth metal and glass are black. It shows what a picture lacks without secondary
+//! rays. Light is otherwise right: area lights are sampled over their surfaces. Source:
+//! [Appel 1968], without his shadows.
+
+use math::RayDifferential;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use crate::transport::direct::{Shadows, all_lights};
+use crate::transport::path_state::pass_through;
+use crate::{RayIntegrator, Tracer};
+
+/// Ray casting. It has no settings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RayCasting;
+
+impl RayIntegrator for RayCasting {
+    fn li(
+        &self,
+        tracer: &mut Tracer,
+        mut ray: RayDifferential,
+        lambda: &mut SampledWavelengths,
+    ) -> SampledSpectrum {
+        let mut l = SampledSpectrum::ZERO;
+        loop {
+            let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
+                return l + tracer.scene.escaped(&ray.ray, lambda);
+            };
+            l += tracer.scene.emitted(&surface, surface.surface.wo, lambda);
+            match tracer.bsdf(&mut surface, &ray, lambda) {
+                Some(bsdf) => {
+                    return l + all_lights(tracer, &surface, &bsdf, Shadows::Ignored, lambda);
+                }
+                None => ray = pass_through(&ray, &surface, t),
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Path tracing taken apart: light sampling and BSDF sampling, each of which can be switched off.
+//!
+//! At each surface, direct light comes either from one point on one light (chosen uniformly),
+//! divided by its density, or from the path happening to meet the light: never from both, so that
+//! no weights are needed. Only what no light sample can find, seen directly or after a specular
+//! bounce, is always counted when met. The path goes on in a direction of the BSDF's density, or a
+//! uniform one.
+//!
+//! Unbiased up to its depth, with two exceptions: without light sampling, point and distant lights
+//! are never met; without BSDF sampling, smooth metal and glass are black.
+//!
+//! Settings: `max_depth`, most scattering events, default 5; `sample_lights` and `sample_bsdf`,
+//! default true. Source: [Pharr 2023 §13.2].
+
+use math::{RayDifferential, Vector3};
+use sampling::warp;
+use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scene::light_sampler::LightSamplerKind;
+use scene::{Interfaces, SurfaceInteraction};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use crate::transport::direct::{light_context, scattered};
+use crate::transport::path_state::pass_through;
+use crate::{RayIntegrator, Tracer};
+
+/// Path tracing taken apart.
+#[derive(Clone, Copy, Debug)]
+pub struct SimplePath {
+    /// Most scattering events.
+    pub max_depth: u32,
+    /// Sample a light at each surface.
+    pub sample_lights: bool,
+    /// Sample directions by the BSDF instead of uniformly.
+    pub sample_bsdf: bool,
+}
+
+impl Default for SimplePath {
+    fn default() -> Self {
+        Self { max_depth: 5, sample_lights: true, sample_bsdf: true }
+    }
+}
+
+/// Where a path goes on.
+struct Onward {
+    wi: Vector3,
+    /// f·|cos|/pdf.
+    weight: SampledSpectrum,
+    specular: bool,
+}
+
+impl RayIntegrator for SimplePath {
+    fn li(
+        &self,
+        tracer: &mut Tracer,
+        mut ray: RayDifferential,
+        lambda: &mut SampledWavelengths,
+    ) -> SampledSpectrum {
+        let (mut l, mut beta) = (SampledSpectrum::ZERO, SampledSpectrum::ONE);
+        let mut depth = 0;
+        let mut specular_bounce = true;
+        while !beta.is_black() {
+            let count_emission = specular_bounce || !self.sample_lights;
+            let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
+                if count_emission {
+                    l += beta * tracer.scene.escaped(&ray.ray, lambda);
+                }
+                return l;
+            };
+            if count_emission {
+                l += beta * tracer.scene.emitted(&surface, surface.surface.wo, lambda);
+            }
+            let Some(bsdf) = tracer.bsdf(&mut surface, &ray, lambda) else {
+                ray = pass_through(&ray, &surface, t);
+                // No light sample gets through here: what the ray meets beyond it alone finds.
+                specular_bounce = true;
+                continue;
+            };
+            if depth == self.max_depth {
+                return l;
+            }
+            depth += 1;
+            let onward = each_bxdf!(bsdf.bxdf, bxdf => {
+                let bsdf = Bsdf { bxdf, frame: bsdf.frame };
+                if self.sample_lights {
+                    l += beta * one_light(tracer, &surface, &bsdf, lambda);
+                }
+                if self.sample_bsdf {
+                    by_bsdf(tracer, &surface, &bsdf)
+                } else {
+                    Some(uniform(tracer, &surface, &bsdf))
+                }
+            });
+            let Some(Onward { wi, weight, specular }) = onward else { return l };
+            beta *= weight;
+            specular_bounce = specular;
+            ray = surface.spawn_ray(wi).into();
+        }
+        l
+    }
+}
+
+/// Light that comes straight from one light, for all of them.
+fn one_light<B: Scatter>(
+    tracer: &mut Tracer,
+    surface: &SurfaceInteraction,
+    bsdf: &Bsdf<B>,
+    lambda: &SampledWavelengths,
+) -> SampledSpectrum {
+    let context = light_context(surface, bsdf.flags());
+    let lights = tracer.scene.light_sampler(LightSamplerKind::Uniform);
+    let Some((light, pmf)) = lights.sample(&context, tracer.sampler.get_1d()) else {
+        return SampledSpectrum::ZERO;
+    };
+    let Some(sample) = tracer.scene.sample_light(light, &context, tracer.sampler.get_2d(), lambda, false)
+    else {
+        return SampledSpectrum::ZERO;
+    };
+    let l = scattered(surface, bsdf, &sample);
+    if l.is_black() || !tracer.sees(&surface.surface, &sample, Interfaces::Stop) {
+        return SampledSpectrum::ZERO;
+    }
+    l / (pmf * sample.pdf)
+}
+
+/// A direction of the BSDF's density.
+fn by_bsdf<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Option<Onward> {
+    let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
+    let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, Directions::All)?;
+    let cos_theta = sample.wi.dot(surface.surface.shading.n).abs();
+    let weight = sample.f * (cos_theta / sample.pdf);
+    Some(Onward { wi: sample.wi, weight, specular: sample.flags.is_specular() })
+}
+
+/// A uniform direction, on those sides of the surface to which it scatters at all.
+fn uniform<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Onward {
+    let (s, u) = (&surface.surface, tracer.sampler.get_2d());
+    let (mut wi, mut pdf) = (warp::sample_uniform_sphere(u), warp::uniform_sphere_pdf());
+    if !bsdf.flags().contains(BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION) {
+        // Directions on the other side are turned over: the density doubles.
+        pdf *= 2.0;
+        let same_side = s.wo.dot(s.n) * wi.dot(s.n) > 0.0;
+        if same_side != bsdf.flags().is_reflective() {
+            wi = -wi;
+        }
+    }
+    let cos_theta = wi.dot(s.shading.n).abs();
+    Onward { wi, weight: bsdf.f(s.wo, wi, TransportMode::Radiance) * (cos_theta / pdf), specular: false }
+}

@@ -1,0 +1,125 @@
+//! Light tracing: particles from the lights, as nature has it.
+//!
+//! A light subpath leaves a light, chosen in proportion to power, and goes from surface to surface
+//! as the BSDFs say. No ray of it would ever hit a pinhole, so each of its vertices x is connected
+//! to the camera: if nothing stands between them, the pixel of the film that x is seen in receives
+//!
+//! ```text
+//! β·f(x)·|cos θ|·W_e / p_lens
+//! ```
+//!
+//! where β is the flux that arrived over the density of the subpath, W_e the camera's importance
+//! and p_lens the density of the point on the lens. With n subpaths, 1/n of the sum over all is the
+//! picture.
+//!
+//! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and
+//! costs nothing extra. It fails where the camera looks into a mirror or through glass: no vertex
+//! can be connected through a specular surface, so mirrors and glass stay black, whatever they
+//! would show. And it wastes: most rays reach nothing that the camera sees, which is what made
+//! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen
+//! along one camera ray for each pixel, since those far away are nowhere on a subpath.
+//!
+//! Unbiased for what it can see. A plane without end lies in the dark where light from infinity
+//! does not come (`endless.rs`). Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use film::Film;
+use geometry::RayStats;
+use sampling::Sampler;
+use scene::{Scene, View};
+use spectrum::SampledSpectrum;
+
+use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay};
+use crate::transport::pixel_samples::PixelSamples;
+use crate::{Cancelled, Control, Integrator};
+
+/// Light tracing.
+#[derive(Debug)]
+pub struct LightTracing {
+    max_depth: u32,
+    sampler: Sampler,
+    light_sampler: Sampler,
+    lights: Lights,
+    /// Rays of light subpaths, those to the camera among them.
+    rays: AtomicU64,
+    /// Of these, how many ended on the film.
+    reached: AtomicU64,
+}
+
+impl LightTracing {
+    /// With paths of at most `max_depth` scattering events, and a sampler for each end.
+    pub fn new(max_depth: u32, sampler: Sampler, light_sampler: Sampler) -> Self {
+        let [rays, reached] = [0; 2].map(AtomicU64::new);
+        Self { max_depth, sampler, light_sampler, lights: Lights::none(), rays, reached }
+    }
+}
+
+impl Integrator for LightTracing {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.lights = Lights::of(scene);
+        control.check()
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        view: &View,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let paths = Bidirectional {
+            scene,
+            view,
+            lights: &self.lights,
+            balance: Balance::connecting(film.pixel_bounds().area() as f32),
+            max_depth: self.max_depth,
+            regularize: false,
+        };
+        let seen = Bidirectional { max_depth: 0, ..paths };
+        let filter = film.filter().clone();
+        let (tiles, splatter) = film.tiles_and_splatter();
+        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        pixels.add(tiles, control, |sample, tracer| {
+            let lambda = &sample.lambda;
+            let mut light_sampler = self.light_sampler.clone();
+            light_sampler.start_pixel_sample(sample.pixel, pass, 0);
+            let (mut reached, rays_before) = (0, tracer.stats.rays);
+            tracer.with_sampler(&mut light_sampler, |tracer| {
+                paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
+                    let u = tracer.sampler.get_2d();
+                    if let Some(seen) = paths.see(vertex, u, splatter.reach(), tracer) {
+                        seen.splat(&splatter, &seen.found.l, lambda);
+                        reached += 1;
+                    }
+                });
+            });
+            splatter.add_paths(1);
+            self.rays.fetch_add(tracer.stats.rays - rays_before, Ordering::Relaxed);
+            self.reached.fetch_add(reached, Ordering::Relaxed);
+            let mut l = SampledSpectrum::ZERO;
+            if let Some(camera_ray) = &sample.camera_ray {
+                seen.camera_subpath(camera_ray, lambda, tracer, |on_the_way, _| {
+                    if let OnTheWay::Light(found) = on_the_way {
+                        l += found.l;
+                    }
+                });
+            }
+            l
+        })
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        let [reached, rays] = [&self.reached, &self.rays].map(|count| count.load(Ordering::Relaxed));
+        let share = 100.0 * reached as f64 / rays.max(1) as f64;
+        vec![(
+            "reached",
+            format!("{share:.2} % of the rays from lights ended on the film, {reached} of {rays}"),
+        )]
+    }
+}

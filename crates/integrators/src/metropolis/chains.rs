@@ -1,0 +1,245 @@
+//! The chains of a pass: where they start, and what all of them add to the film.
+
+use film::Splatter;
+use geometry::RayStats;
+use rayon::prelude::*;
+use sampling::sampler::PrimarySample;
+use sampling::{Sampler, hash, hash_float};
+use scene::{Scene, View};
+
+use super::chain::{Acceptance, Chain, Steps, Streams};
+use super::settings::MltSettings;
+use super::target::{Contribution, Target};
+use crate::transport::Tracer;
+use crate::{Cancelled, Control};
+
+/// Runs chains, and remembers how they fared.
+#[derive(Debug)]
+pub(super) struct Chains {
+    settings: MltSettings,
+    seed: u32,
+    b0: Option<f32>,
+    passes: u32,
+    /// Sum of the b of these passes.
+    b_sum: f64,
+    /// Steps of the last of them.
+    mutations: usize,
+    acceptance: Acceptance,
+}
+
+/// The number of the pass whose starting points tell b₀: no other has it.
+const BEFORE_ALL: u32 = u32::MAX;
+
+/// A share of the time that goes into the choice of starts: with fewer candidates, chains start too
+/// often at the same one.
+const MUTATIONS_PER_CANDIDATE: usize = 4;
+
+/// Shorter chains than this leave too little of the place where they start.
+const FEWEST_MUTATIONS: usize = 256;
+
+/// Points that a thread evaluates in a row.
+const ROW: usize = 256;
+
+/// A target in a view of a scene.
+pub(super) struct Targeted<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub target: &'a dyn Target,
+}
+
+impl Targeted<'_> {
+    /// What is found at the point that the streams are.
+    fn contribution(
+        &self,
+        [first, others @ ..]: &mut Streams,
+        stats: &mut RayStats,
+        control: &Control,
+    ) -> Contribution {
+        let mut tracer = Tracer::new(self.scene, self.view, control, first, stats);
+        self.target.contribution(&mut tracer, others)
+    }
+}
+
+impl Chains {
+    pub fn new(settings: MltSettings, seed: u32) -> Self {
+        Self {
+            settings,
+            seed,
+            b0: None,
+            passes: 0,
+            b_sum: 0.0,
+            mutations: 0,
+            acceptance: Acceptance::default(),
+        }
+    }
+
+    /// Among how many points the chains of a pass choose, and how many chains.
+    fn starts(&self, mutations: usize) -> (usize, usize) {
+        let MltSettings { bootstrap_samples, chains, .. } = self.settings;
+        let candidates = (bootstrap_samples as usize).min(mutations / MUTATIONS_PER_CANDIDATE);
+        (candidates.max(1), (chains as usize).min(mutations / FEWEST_MUTATIONS).max(1))
+    }
+
+    /// Takes as many steps as `mutations` says, with the chains of a pass.
+    pub fn run(
+        &mut self,
+        pass: u32,
+        target: &Targeted,
+        mutations: usize,
+        splatter: &Splatter,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let mut stats = RayStats::default();
+        let (count, chains) = self.starts(mutations);
+        let mut bootstrap = |pass| {
+            let (candidates, more) = self.bootstrap(pass, count, target, control)?;
+            stats += more;
+            Ok((mean(&candidates), candidates))
+        };
+        let b0 = match self.b0 {
+            Some(b0) => b0,
+            None => bootstrap(BEFORE_ALL)?.0,
+        };
+        let (b, candidates) = bootstrap(pass)?;
+        self.b0 = Some(b0);
+
+        let steps = Steps { large: self.settings.large_step_probability, b, b0 };
+        let starts = resample(&candidates, chains, hash_float(&[self.seed, pass]));
+        let chain = |(k, &start): (usize, &u32)| {
+            let mut stats = RayStats::default();
+            let mut evaluate = |streams: &mut Streams| {
+                let contribution = target.contribution(streams, &mut stats, control);
+                (contribution, contribution.c())
+            };
+            let mut streams = self.streams();
+            start_at(&mut streams, pass, start);
+            let mut chain = Chain::new(streams, hash(&[self.seed, pass, k as u32]), &mut evaluate);
+            control.check()?;
+            let length = mutations * (k + 1) / chains - mutations * k / chains;
+            for _ in 0..length {
+                let (contribution, worth) = chain.step(&steps, &mut evaluate);
+                // Before what a cancelled path has found is splatted.
+                control.check()?;
+                contribution.splat(worth, splatter);
+                splatter.add_paths(1);
+            }
+            let ((contribution, worth), acceptance) = chain.end();
+            contribution.splat(worth, splatter);
+            control.count(&stats);
+            Ok((stats, acceptance))
+        };
+        let nothing = || (RayStats::default(), Acceptance::default());
+        let (more, acceptance) =
+            starts.par_iter().enumerate().map(chain).try_reduce(nothing, |mut all, one| {
+                all.0 += one.0;
+                all.1 += one.1;
+                Ok(all)
+            })?;
+        self.passes += 1;
+        self.mutations = mutations;
+        self.b_sum += f64::from(b);
+        self.acceptance += acceptance;
+        stats += more;
+        Ok(stats)
+    }
+
+    /// The importance of the points among which a pass chooses.
+    fn bootstrap(
+        &self,
+        pass: u32,
+        count: usize,
+        target: &Targeted,
+        control: &Control,
+    ) -> Result<(Vec<f32>, RayStats), Cancelled> {
+        let mut candidates = vec![0.0; count];
+        let row = |(row, candidates): (usize, &mut [f32])| {
+            let (mut streams, mut stats) = (self.streams(), RayStats::default());
+            for (i, c) in candidates.iter_mut().enumerate() {
+                start_at(&mut streams, pass, (row * ROW + i) as u32);
+                *c = target.contribution(&mut streams, &mut stats, control).c();
+                control.check()?;
+            }
+            control.count(&stats);
+            Ok(stats)
+        };
+        let rows = candidates.par_chunks_mut(ROW).enumerate();
+        let stats = rows.map(row).try_reduce(RayStats::default, |mut sum, stats| {
+            sum += stats;
+            Ok(sum)
+        })?;
+        Ok((candidates, stats))
+    }
+
+    fn streams(&self) -> Streams {
+        let MltSettings { mutations_per_pixel, sigma, .. } = self.settings;
+        [0, 1, 2].map(|stream| {
+            let seed = hash(&[self.seed, stream]) as u32;
+            Sampler::PrimarySample(PrimarySample::new(mutations_per_pixel, sigma, seed))
+        })
+    }
+
+    /// How the chains fared.
+    pub fn summary(&self) -> Vec<(&'static str, String)> {
+        if self.passes == 0 {
+            return Vec::new();
+        }
+        let Acceptance { proposed, accepted } = self.acceptance;
+        let share = |kind: usize| 100.0 * accepted[kind] as f64 / proposed[kind].max(1) as f64;
+        let (candidates, chains) = self.starts(self.mutations);
+        let kib = (size_of::<f32>() * candidates + size_of::<u32>() * chains).div_ceil(1024);
+        vec![
+            (
+                "b",
+                format!("{:.6e}, the mean light of independent paths", self.b_sum / f64::from(self.passes)),
+            ),
+            ("accepted", format!("{:.1} % of small steps, {:.1} % of large ones", share(0), share(1))),
+            ("starts", format!("{chains} of {candidates} paths in each pass, in {kib} KiB")),
+        ]
+    }
+}
+
+/// Sets the samplers to a uniform point.
+fn start_at(streams: &mut Streams, pass: u32, index: u32) {
+    streams.iter_mut().for_each(|stream| stream.start_pixel_sample([index as i32, pass as i32], 0, 0));
+}
+
+fn mean(values: &[f32]) -> f32 {
+    (values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len() as f64) as f32
+}
+
+/// Chooses `count` of the candidates in proportion to their weights, and evenly: they lie on a
+/// line, each as long as its weight, and places at equal distances choose, the first of them at `u`
+/// of the distance. If no weight is above 0 any will do.
+fn resample(weights: &[f32], count: usize, u: f32) -> Vec<u32> {
+    let distance = weights.iter().map(|&weight| f64::from(weight)).sum::<f64>() / count as f64;
+    let (mut end, mut place) = (0.0, f64::from(u) * distance);
+    let mut chosen = Vec::with_capacity(count);
+    for (i, &weight) in weights.iter().enumerate() {
+        end += f64::from(weight);
+        while chosen.len() < count && place < end {
+            chosen.push(i as u32);
+            place += distance;
+        }
+    }
+    chosen.resize(count, chosen.last().copied().unwrap_or(0));
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_are_chosen_as_often_as_they_weigh() {
+        let weights = [0.0, 3.0, 0.5, 0.0, 1.5, 0.0];
+        for u in [0.0, 0.3, 0.999] {
+            let chosen = resample(&weights, 100, u);
+            for (i, weight) in weights.iter().enumerate() {
+                let count = chosen.iter().filter(|&&chosen| chosen == i as u32).count() as f32;
+                assert!((count - 20.0 * weight).abs() <= 1.0, "{i}: {count}");
+                assert!(*weight > 0.0 || count == 0.0);
+            }
+        }
+        assert_eq!(resample(&[0.0; 4], 3, 0.5).len(), 3);
+    }
+}

@@ -1,0 +1,246 @@
+//! What chains look for: paths, as functions of a point of primary sample space.
+
+use film::Splatter;
+use math::{Bounds2, Point2};
+use sampling::Sampler;
+use scene::camera::{CameraRayDifferential, CameraSample, FilmPlaces};
+use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
+
+use crate::Path;
+use crate::bidirectional::Bidirectional;
+use crate::transport::Tracer;
+use crate::transport::pixel_samples::camera_ray;
+
+/// Light that arrives at a place on the film.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contribution {
+    /// Positions in pixels.
+    places: FilmPlaces,
+    /// The light.
+    l: SampledSpectrum,
+    /// At these wavelengths.
+    lambda: SampledWavelengths,
+}
+
+impl Contribution {
+    /// Importance: the mean of the three numbers that an eye makes of the light, so that no colour
+    /// counts for nothing.
+    pub fn c(&self) -> f32 {
+        let xyz = xyz_from(&self.l, &self.lambda);
+        let c = (xyz.x + xyz.y + xyz.z) / 3.0;
+        if c.is_finite() { c.max(0.0) } else { 0.0 }
+    }
+
+    /// Adds the light, times a factor.
+    pub fn splat(&self, factor: f32, splatter: &Splatter) {
+        if factor > 0.0 && !self.l.is_black() {
+            let l = self.l * factor;
+            self.places.within(splatter.reach()).for_each(|film| splatter.add(film, &l, &self.lambda));
+        }
+    }
+}
+
+/// The film positions that reach a pixel: the pixels, and around them the filter's radius.
+#[derive(Clone, Copy)]
+pub(super) struct FilmDomain(Bounds2);
+
+/// The camera's end of a path.
+struct CameraEnd {
+    film: Point2,
+    lambda: SampledWavelengths,
+    time: f32,
+    camera_ray: Option<CameraRayDifferential>,
+}
+
+impl FilmDomain {
+    pub fn new(splatter: &Splatter) -> Self {
+        Self(splatter.reach())
+    }
+
+    /// The area of all positions, in pixels: what light of a path from the camera is worth, since
+    /// positions have one over it for density.
+    pub fn area(&self) -> f32 {
+        self.0.area()
+    }
+
+    /// The camera's dimensions: wavelengths (1), film (2), time (1), lens (2).
+    fn sample(&self, tracer: &mut Tracer) -> CameraEnd {
+        let Tracer { scene, view, sampler, .. } = tracer;
+        let u = sampler.get_1d();
+        let u = if view.options.disable_wavelength_jitter { 0.5 } else { u };
+        let film = self.0.lerp(sampler.get_2d());
+        let (time, lens) = (sampler.get_1d(), sampler.get_2d());
+        let sample = CameraSample { film, lens, time, filter_weight: 1.0 };
+        CameraEnd {
+            film,
+            lambda: SampledWavelengths::sample_visible(u),
+            time: view.camera.sample_time(time),
+            camera_ray: camera_ray(scene, view, &sample),
+        }
+    }
+}
+
+/// What a point of primary sample space stands for.
+pub(super) trait Target: Sync {
+    /// The light that is found there; its mean over the cube is the picture. The tracer has the
+    /// first stream of random numbers.
+    fn contribution(&self, tracer: &mut Tracer, others: &mut [Sampler; 2]) -> Contribution;
+}
+
+/// Path tracing: the whole of a camera path with all the light that it finds.
+pub(super) struct CameraPaths<'a> {
+    pub film: FilmDomain,
+    pub path: &'a Path,
+}
+
+impl Target for CameraPaths<'_> {
+    fn contribution(&self, tracer: &mut Tracer, _: &mut [Sampler; 2]) -> Contribution {
+        let CameraEnd { film, mut lambda, camera_ray, .. } = self.film.sample(tracer);
+        let l = camera_ray.map_or(SampledSpectrum::ZERO, |camera_ray| {
+            let l = self.path.li_from(1, tracer, camera_ray.ray, &mut lambda);
+            l * (camera_ray.weight * self.film.area())
+        });
+        Contribution { places: film.into(), l, lambda }
+    }
+}
+
+/// Bidirectional path tracing: one path, made by one strategy.
+///
+/// The first dimensions choose the number of scattering events ([`Depths`]), and then one of the
+/// strategies, all with the same probability; what is found is divided by the probability of both.
+/// Camera subpath, light subpath and connection have streams of their own, lest a longer subpath of
+/// one kind shift the dimensions of the other.
+pub(super) struct ConnectedPaths<'a> {
+    pub film: FilmDomain,
+    pub paths: Bidirectional<'a>,
+}
+
+impl Target for ConnectedPaths<'_> {
+    fn contribution(&self, tracer: &mut Tracer, others: &mut [Sampler; 2]) -> Contribution {
+        let greatest = self.paths.max_depth;
+        let (depth, probability) = Depths { greatest }.choose(tracer.sampler.get_1d());
+        let strategies = depth + 2;
+        let s = choose(tracer.sampler.get_1d(), strategies);
+        let end = self.film.sample(tracer);
+        let lambda = end.lambda;
+        let (places, l) = self
+            .find(s, strategies - s, &end, tracer, others)
+            .unwrap_or((end.film.into(), SampledSpectrum::ZERO));
+        Contribution { places, l: l * (strategies as f32 / probability), lambda }
+    }
+}
+
+impl ConnectedPaths<'_> {
+    /// What the strategy (s, t) finds, and where it arrives on the film.
+    fn find(
+        &self,
+        s: u32,
+        t: u32,
+        end: &CameraEnd,
+        tracer: &mut Tracer,
+        [light, connection]: &mut [Sampler; 2],
+    ) -> Option<(FilmPlaces, SampledSpectrum)> {
+        let (paths, lambda) = (&self.paths, &end.lambda);
+        let mut light_vertex = |tracer: &mut Tracer| {
+            let vertex =
+                tracer.with_sampler(light, |tracer| paths.light_vertex(s - 1, end.time, lambda, tracer))?;
+            vertex.is_connectible().then_some(vertex)
+        };
+        if t == 1 {
+            let vertex = light_vertex(tracer)?;
+            let on_film = paths.see(&vertex, connection.get_2d(), self.film.0, tracer)?;
+            return Some((on_film.places, on_film.found.weighted()));
+        }
+        let camera_ray = end.camera_ray.as_ref()?;
+        let l = if s == 0 {
+            paths.lights_met(t - 2, camera_ray, lambda, tracer)
+        } else {
+            let vertex = paths.camera_vertex(t - 1, camera_ray, lambda, tracer)?;
+            if !vertex.is_connectible() {
+                return None;
+            }
+            let found = match s {
+                1 => tracer.with_sampler(connection, |tracer| paths.direct(&vertex, lambda, tracer))?,
+                _ => paths.connect(&vertex, &light_vertex(tracer)?, tracer)?,
+            };
+            found.weighted()
+        };
+        Some((end.film.into(), l * self.film.area()))
+    }
+}
+
+/// One of `count` numbers from 0 on, all as likely.
+fn choose(u: f32, count: u32) -> u32 {
+    ((u * count as f32) as u32).min(count - 1)
+}
+
+/// How many scattering events a path has, from 1 to the greatest number d_max.
+///
+/// Light that is scattered often is faint, so paths are the less likely the longer they are. That
+/// there are d or more events has, if there may be any number of them, the probability
+///
+/// ```text
+/// T(d) = (8/(7 + d))²        and so, up to d_max,   p(d) = (T(d) − T(d + 1)) / (1 − T(d_max + 1))
+/// ```
+///
+/// The first few numbers are nearly as likely as each other. Because p falls as d⁻³, slower than
+/// light does in any room, what is found over p does not grow without bound; and yet a path has a
+/// length on average, of 8.5 events, whatever d_max is.
+#[derive(Clone, Copy, Debug)]
+struct Depths {
+    /// d_max, above 0.
+    greatest: u32,
+}
+
+impl Depths {
+    const SCALE: f64 = 8.0;
+
+    /// The probability of `depth` or more events, if there may be any number.
+    fn at_least(depth: f64) -> f64 {
+        (Self::SCALE / (Self::SCALE - 1.0 + depth)).powi(2)
+    }
+
+    /// The number that `u` in [0, 1) chooses, and its probability.
+    fn choose(self, u: f32) -> (u32, f32) {
+        let greatest = f64::from(self.greatest);
+        let all = 1.0 - Self::at_least(greatest + 1.0);
+        let rest = 1.0 - f64::from(u) * all;
+        let depth = (Self::SCALE / rest.sqrt() - (Self::SCALE - 1.0)).floor().clamp(1.0, greatest);
+        let probability = (Self::at_least(depth) - Self::at_least(depth + 1.0)) / all;
+        (depth as u32, probability as f32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depths_have_the_probability_that_is_claimed_for_them() {
+        for greatest in [1, 2, 5, 100, 70_000, 2_000_000_000] {
+            const CELLS: usize = 40;
+            let (count, depths) = (100_000, Depths { greatest });
+            let (mut observed, mut expected) = ([0; CELLS], [0.0; CELLS]);
+            for i in 0..count {
+                let (depth, probability) = depths.choose((i as f32 + 0.5) / count as f32);
+                assert!((1..=greatest).contains(&depth) && probability > 0.0);
+                let cell = (depth as usize - 1).min(CELLS - 1);
+                observed[cell] += 1;
+                expected[cell] = f64::from(probability) * f64::from(count);
+            }
+            let rest: f64 = expected[..CELLS - 1].iter().sum();
+            expected[CELLS - 1] = f64::from(count) - rest;
+            for (observed, expected) in observed.iter().zip(expected) {
+                assert!((f64::from(*observed) - expected).abs() < 2.0, "{greatest}: {observed} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_path_is_endless() {
+        for greatest in [1_000_000, u32::MAX - 2] {
+            let (depth, probability) = Depths { greatest }.choose(math::ONE_MINUS_EPSILON);
+            assert!(depth < 1 << 15 && probability > 0.0, "{depth} {probability}");
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! What methods that merge have in common: photons shot anew in each pass, and a radius that
+//! shrinks from pass to pass.
+//!
+//! The light that a surface at x scatters towards the camera is estimated from the n light subpaths
+//! of a pass by all their vertices within the radius r, as if they had arrived at x itself:
+//!
+//! ```text
+//! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p/α_p
+//! ```
+//!
+//! where α_p, mostly 1, is the probability with which a ray meets the surface at the photon's
+//! place. Of a leaf that a texture cuts out in part it is the part that remains: as few photons
+//! stay there, while x is given and has all the light that comes by.
+//!
+//! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and
+//! walls without thickness, through which light leaks), while noise goes with 1/r²; both vanish if
+//! pass i has the radius of [Knaus 2011]
+//!
+//! ```text
+//! r_{i+1}² = r_i² · (i + α)/(i + 1)        so that r_i² ~ i^(α − 1)
+//! ```
+//!
+//! and the picture is the mean of all passes: after N of them its bias is about N^(α − 1), its
+//! variance N^(−α) of that of the first. The radius depends on nothing but the pass's number, so
+//! passes can be made in any order, anywhere, and again.
+//!
+//! Photons can be merged with a path from the camera only if both know of the same wavelengths, at
+//! the same time. So all paths of a pass have one choice of both, spread evenly over the passes:
+//! each step goes on by an irrational part of the range. For wavelengths that is a quarter of the
+//! golden ratio, because four of them, a quarter apart, are taken at once.
+//!
+//! Sources: [Knaus 2011]; [Hachisuka 2009].
+
+use geometry::RayStats;
+use rayon::prelude::*;
+use sampling::Sampler;
+use scene::View;
+
+use crate::bidirectional::{Bidirectional, LightVertex, Vertex};
+use crate::photons::photon_grid::PhotonGrid;
+use crate::transport::Tracer;
+use crate::transport::shutter_sample::ShutterSample;
+use crate::{Cancelled, Control};
+
+/// Light subpaths that are followed between two looks at whether to go on.
+const BATCH: usize = 1024;
+
+/// Photons of passes, and the radius that they count within.
+#[derive(Clone, Debug)]
+pub(crate) struct Merging {
+    /// The radius of the first pass.
+    radius: f32,
+    /// How slowly the radius shrinks, in (0, 1].
+    alpha: f32,
+    seed: u32,
+    last: LastPass,
+}
+
+/// What the summary tells.
+#[derive(Clone, Debug, Default)]
+struct LastPass {
+    passes: u32,
+    radius: f32,
+    paths: usize,
+    photons: usize,
+    bytes: usize,
+}
+
+/// What is kept of the vertices of light subpaths, in the order of the paths.
+#[derive(Clone, Debug)]
+pub(crate) struct LightSubpaths<V> {
+    /// That of all.
+    pub vertices: Vec<V>,
+    /// Where that of each path ends.
+    ends: Vec<usize>,
+}
+
+impl<V> Default for LightSubpaths<V> {
+    fn default() -> Self {
+        Self { vertices: Vec::new(), ends: Vec::new() }
+    }
+}
+
+impl<V> LightSubpaths<V> {
+    /// What is kept of one path, if there are as many.
+    pub fn get(&self, path: usize) -> Option<&[V]> {
+        let &end = self.ends.get(path)?;
+        let start = if path == 0 { 0 } else { self.ends[path - 1] };
+        Some(&self.vertices[start..end])
+    }
+
+    /// Memory taken, in bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.vertices) + size_of_val(&*self.ends)
+    }
+}
+
+impl Merging {
+    /// With the radius of the first pass.
+    pub fn new(radius: f32, alpha: f32, seed: u32) -> Self {
+        Self { radius, alpha, seed, last: LastPass::default() }
+    }
+
+    /// Changes the radius of the first pass.
+    pub fn begin_with(&mut self, radius: f32) {
+        self.radius = radius;
+    }
+
+    /// What chooses the wavelengths and times of passes.
+    pub fn seed(&self) -> u32 {
+        self.seed
+    }
+
+    /// The radius of a pass, which are counted from 0.
+    pub fn radius(&self, pass: u32) -> f32 {
+        let alpha = f64::from(self.alpha);
+        let shrunk: f64 = (1..=pass).map(|i| (f64::from(i) + alpha) / (f64::from(i) + 1.0)).product();
+        (f64::from(self.radius) * shrunk.sqrt()) as f32
+    }
+
+    /// The wavelengths and the time of a pass.
+    pub fn shutter(&self, view: &View, pass: u32) -> ShutterSample {
+        ShutterSample::of_pass(view, self.seed, pass)
+    }
+
+    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `sampler` begins
+    /// a path's sample.
+    pub fn shoot<V: Send>(
+        &self,
+        paths: &Bidirectional,
+        count: usize,
+        pass: u32,
+        sampler: impl Fn(usize) -> Sampler + Sync,
+        keep: impl Fn(&Vertex, &mut Sampler) -> Option<V> + Sync,
+        control: &Control,
+    ) -> Result<(LightSubpaths<V>, RayStats), Cancelled> {
+        let shutter = self.shutter(paths.view, pass);
+        let time = shutter.time(paths.view);
+        let batch = |first: usize| {
+            control.check()?;
+            let (mut subpaths, mut stats) = (LightSubpaths::default(), RayStats::default());
+            for path in first..count.min(first + BATCH) {
+                let mut sampler = sampler(path);
+                let mut tracer = Tracer::new(paths.scene, paths.view, control, &mut sampler, &mut stats);
+                paths.light_subpath(time, &shutter.lambda, &mut tracer, |vertex, tracer| {
+                    subpaths.vertices.extend(keep(vertex, tracer.sampler));
+                });
+                tracer.finish()?;
+                subpaths.ends.push(subpaths.vertices.len());
+            }
+            control.count(&stats);
+            Ok((subpaths, stats))
+        };
+        let batches = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
+        let batches: Vec<(LightSubpaths<V>, RayStats)> = batches.map(batch).collect::<Result<_, _>>()?;
+        let mut stats = RayStats::default();
+        let mut all = LightSubpaths {
+            vertices: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.vertices.len()).sum()),
+            ends: Vec::with_capacity(count),
+        };
+        for (batch, of_batch) in batches {
+            let before = all.vertices.len();
+            all.ends.extend(batch.ends.iter().map(|end| before + end));
+            all.vertices.extend(batch.vertices);
+            stats += of_batch;
+        }
+        Ok((all, stats))
+    }
+
+    /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in
+    /// which they will be looked for.
+    pub fn sort(&mut self, photons: Vec<LightVertex>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
+        let radius = self.radius(pass);
+        let grid = PhotonGrid::new(photons, radius);
+        let bytes = bytes + grid.bytes();
+        self.last = LastPass { passes: pass + 1, radius, paths, photons: grid.len(), bytes };
+        grid
+    }
+
+    /// What the integrators tell of it.
+    pub fn summary(&self) -> Vec<(&'static str, String)> {
+        let &LastPass { passes, radius, paths, photons, bytes } = &self.last;
+        if passes == 0 {
+            return Vec::new();
+        }
+        let mebibytes = bytes as f64 / f64::from(1 << 20);
+        vec![
+            ("photons", format!("{photons} from {paths} paths in a pass, {mebibytes:.1} MiB")),
+            ("radius", format!("{} in pass 1, {radius} in pass {passes}", self.radius)),
+        ]
+    }
+}

@@ -1,0 +1,178 @@
+//! Photons where they have arrived, and how densely they lie around a point.
+//!
+//! What n subpaths have left on a surface estimates the flux that arrives there: the density of
+//! flux at a point is
+//!
+//! ```text
+//! 1/n Σ K(dᵢ/r)/r² · βᵢ
+//! ```
+//!
+//! over the photons i at the distances dᵢ < r, K being a [`Kernel`]. The radius r is the distance
+//! of the photon that comes after the `nearest` nearest, so that where photons lie densely little
+//! is blurred; but at most `radius`.
+//!
+//! A given radius has a bias, that of the blur: on a plane inside which the density is linear there
+//! is none, elsewhere it falls with r². At edges of surfaces the disk hangs over and finds too
+//! little; corners are darkened within r of them. Neighbours that count do not include the one that
+//! makes the radius: on an even density of photons that fell independently (k − 1)/πr² with the
+//! k-th photon's distance has the right mean, where k/πr² has too much by 1/(k − 1), and the
+//! largest radius changes nothing about that.
+//!
+//! Sources: [Jensen 2001a ch. 6, 7]; [Silverman 1986 §5.2].
+
+mod kd_tree;
+mod kernel;
+
+use math::Point3;
+use rayon::prelude::*;
+use spectrum::SampledSpectrum;
+
+pub use kernel::Kernel;
+
+use crate::photons::photon::Photon;
+use crate::{Cancelled, Control};
+use kd_tree::{KdTree, Neighbour};
+
+/// Photons of one kind.
+#[derive(Debug, Default)]
+pub(crate) struct PhotonMap {
+    tree: KdTree,
+    /// In the order of the tree's points.
+    photons: Vec<Photon>,
+    /// Subpaths that left them.
+    paths: u32,
+}
+
+/// Which photons make an estimate, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Neighbourhood {
+    /// How many of the nearest.
+    pub nearest: usize,
+    /// The farthest that they may be away.
+    pub radius: f32,
+    /// How they are weighed.
+    pub kernel: Kernel,
+}
+
+impl PhotonMap {
+    /// Of photons that so many subpaths have left; those that are not finite are left out.
+    pub fn build(photons: Vec<Photon>, paths: u32, control: &Control) -> Result<Self, Cancelled> {
+        let places = photons.iter().map(|photon| if photon.is_finite() { photon.p } else { Point3::NAN });
+        let (tree, order) = KdTree::build(places, control)?;
+        let photons = order.into_par_iter().map(|i| photons[i as usize]).collect();
+        Ok(Self { tree, photons, paths })
+    }
+
+    /// How many photons there are.
+    pub fn len(&self) -> usize {
+        self.photons.len()
+    }
+
+    /// Bytes that it takes.
+    pub fn memory(&self) -> usize {
+        self.tree.memory() + size_of_val(&*self.photons)
+    }
+
+    /// The density at `p` of what `weigh` makes of the photons that `accept` takes, and the radius
+    /// within which they were; `None` where there are none, or all of them lie in one point.
+    pub fn density(
+        &self,
+        p: Point3,
+        neighbourhood: &Neighbourhood,
+        accept: impl Fn(&Photon) -> bool,
+        weigh: impl Fn(&Photon) -> SampledSpectrum,
+    ) -> Option<(SampledSpectrum, f32)> {
+        let &Neighbourhood { nearest, radius, kernel } = neighbourhood;
+        let found = self.tree.nearest(p, nearest + 1, radius, |i| accept(&self.photons[i as usize]));
+        let farthest = found.iter().fold(0.0, |farthest: f32, found| farthest.max(found.distance_squared));
+        let radius_squared = if found.len() > nearest { farthest } else { radius * radius };
+        if found.is_empty() || radius_squared == 0.0 {
+            return None;
+        }
+        let sum: SampledSpectrum = found
+            .iter()
+            .map(|&Neighbour { distance_squared, index }| {
+                weigh(&self.photons[index as usize]) * kernel.evaluate(distance_squared / radius_squared)
+            })
+            .sum();
+        Some((sum / (radius_squared * self.paths as f32), radius_squared.sqrt()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use math::Vec3;
+    use testkit::{Moments, Random, t_test};
+
+    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, so many or those of
+    /// them that `stays`.
+    fn photons(count: usize, seed: u64, stays: impl Fn(Point3, f32) -> bool) -> PhotonMap {
+        let mut random = Random::new(seed);
+        let photons = (0..count).filter_map(|_| {
+            let p = Point3::new(2.0 * random.get_1d() - 1.0, 2.0 * random.get_1d() - 1.0, 0.0);
+            let photon =
+                Photon { p, n: Vec3::Z, wi: Vec3::Z, beta: SampledSpectrum::ONE, depth: 2, hero_only: false };
+            stays(p, random.get_1d()).then_some(photon)
+        });
+        PhotonMap::build(photons.collect(), 2, &Control::default()).expect("nobody cancels it")
+    }
+
+    fn square(count: usize, seed: u64) -> PhotonMap {
+        photons(count, seed, |_, _| true)
+    }
+
+    fn density(map: &PhotonMap, neighbourhood: &Neighbourhood) -> f64 {
+        map.density(Point3::ZERO, neighbourhood, |_| true, |photon| photon.beta)
+            .map_or(0.0, |(density, _)| density[0].into())
+    }
+
+    #[test]
+    fn an_even_density_is_found_without_bias_however_many_photons_count() {
+        for kernel in [Kernel::Cone, Kernel::Epanechnikov] {
+            // The nearest k alone, the radius alone, and now the one and now the other.
+            for (nearest, radius) in [(3, 0.9), (5, 0.9), (1000, 0.5), (12, 0.35)] {
+                let neighbourhood = Neighbourhood { nearest, radius, kernel };
+                let found: Moments =
+                    (0..6000).map(|seed| density(&square(120, seed), &neighbourhood)).collect();
+                t_test(&found, 120.0 / 4.0 / 2.0, 8)
+                    .unwrap_or_else(|difference| panic!("{neighbourhood:?}: {difference}"));
+            }
+        }
+    }
+
+    #[test]
+    fn where_the_density_bends_the_error_goes_with_the_square_of_the_radius() {
+        // Of (1 + x²)/2 the kernel finds (1 + r² E[x²])/2 at x = 0, E[x²] being its second moment.
+        for (kernel, moment) in [(Kernel::Cone, 0.15), (Kernel::Epanechnikov, 1.0 / 6.0)] {
+            for radius in [0.9f32, 0.45] {
+                let neighbourhood = Neighbourhood { nearest: 1000, radius, kernel };
+                let bent = |seed| photons(100, seed, |p, u| 2.0 * u < 1.0 + p.x * p.x);
+                let found: Moments = (0..20_000).map(|seed| density(&bent(seed), &neighbourhood)).collect();
+                let expected = 100.0 / 4.0 / 2.0 * 0.5 * (1.0 + f64::from(radius).powi(2) * moment);
+                t_test(&found, expected, 4)
+                    .unwrap_or_else(|difference| panic!("{neighbourhood:?}: {difference}"));
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_found_where_nothing_is_or_all_is_in_one_point() {
+        let neighbourhood = Neighbourhood { nearest: 5, radius: 0.1, kernel: Kernel::Epanechnikov };
+        assert_eq!(density(&PhotonMap::default(), &neighbourhood), 0.0);
+        let mut photon = square(1, 1).photons[0];
+        photon.p = Point3::ZERO;
+        let map = PhotonMap::build(vec![photon; 9], 1, &Control::default()).expect("nobody cancels it");
+        assert_eq!(density(&map, &neighbourhood), 0.0);
+    }
+
+    #[test]
+    fn photons_that_are_no_numbers_are_left_out() {
+        let mut photons = square(40, 2).photons;
+        photons[3].p.y = f32::NAN;
+        photons[8].beta[2] = f32::INFINITY;
+        let map = PhotonMap::build(photons, 2, &Control::default()).expect("nobody cancels it");
+        assert_eq!(map.len(), 38);
+        assert!(map.memory() >= 38 * 68);
+    }
+}

@@ -1,0 +1,208 @@
+//! Photons leave the lights.
+//!
+//! Light subpaths start at lights in proportion to their power and go on as the BSDFs say, so that
+//! all photons carry about the same power and lie where there is light. The first surface of a
+//! subpath that is not purely specular tells what its photons are: direct light if nothing lies
+//! between, a caustic if only specular surfaces do, and indirect light from there on.
+
+use geometry::RayStats;
+use rayon::prelude::*;
+use sampling::sampler::PaddedSobol;
+use sampling::{Randomize, Sampler};
+
+use crate::bidirectional::{Bidirectional, Vertex, Walk};
+use crate::transport::Tracer;
+use crate::transport::shutter_sample::ShutterSample;
+use crate::{Cancelled, Control};
+
+/// Subpaths that one thread follows at a time.
+const CHUNK: u32 = 2048;
+
+/// Which photons a map keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Those that have met specular surfaces alone, and at least one.
+    Caustic,
+    /// Those that have been scattered by a surface that is not specular.
+    Indirect,
+    /// All.
+    All,
+}
+
+impl Kind {
+    /// Whether to keep a photon, the first of its subpath or not.
+    fn keeps(self, vertex: &Vertex, first: bool) -> bool {
+        match self {
+            Self::Caustic => first && vertex.depth > 1,
+            Self::Indirect => !first,
+            Self::All => true,
+        }
+    }
+
+    /// The sampler's pixel: one for each kind of map.
+    fn pixel(self) -> i32 {
+        match self {
+            Self::Caustic => 1,
+            Self::Indirect | Self::All => 0,
+        }
+    }
+}
+
+/// What emits photons.
+pub(super) struct Emission<'a> {
+    pub paths: &'a Bidirectional<'a>,
+    pub shutter: ShutterSample,
+    pub seed: u32,
+    /// Which photons, of all that the seed has.
+    pub generation: u32,
+}
+
+impl Emission<'_> {
+    /// What `keep` makes of the photons of so many subpaths, in their order.
+    pub fn emit<T: Send>(
+        &self,
+        kind: Kind,
+        paths: u32,
+        control: &Control,
+        keep: impl Fn(&Vertex, &mut Tracer) -> T + Sync,
+    ) -> Result<(Vec<T>, RayStats), Cancelled> {
+        // Arranged for all subpaths of the generation at once, which makes their order in one
+        // coordinate no hint at the next.
+        let sampler = Sampler::PaddedSobol(PaddedSobol::new(paths, Randomize::FastOwen, self.seed));
+        let chunks: Vec<_> = (0..paths.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                control.check()?;
+                let (mut kept, mut stats) = (Vec::new(), RayStats::default());
+                let mut sampler = sampler.clone();
+                let start = chunk * CHUNK;
+                for path in start..paths.min(start.saturating_add(CHUNK)) {
+                    sampler.start_pixel_sample([self.generation as i32, kind.pixel()], path, 0);
+                    let Bidirectional { scene, view, .. } = *self.paths;
+                    let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
+                    self.follow(kind, &mut tracer, |vertex, tracer| kept.push(keep(vertex, tracer)));
+                    tracer.finish()?;
+                }
+                control.count(&stats);
+                Ok((kept, stats))
+            })
+            .collect::<Result<_, _>>()?;
+        let mut all = Vec::with_capacity(chunks.iter().map(|(kept, _)| kept.len()).sum());
+        let mut sum = RayStats::default();
+        for (kept, stats) in chunks {
+            all.extend(kept);
+            sum += stats;
+        }
+        Ok((all, sum))
+    }
+
+    /// Follows a subpath as far as it may leave photons.
+    fn follow(&self, kind: Kind, tracer: &mut Tracer, mut visit: impl FnMut(&Vertex, &mut Tracer)) {
+        let time = self.shutter.time(self.paths.view);
+        let Some(mut walk) = Walk::from_light(self.paths, time, self.shutter.lambda, tracer) else {
+            return;
+        };
+        let mut first = true;
+        while walk.depth < self.paths.max_depth {
+            let Some(mut surface) = walk.meet(tracer) else { return };
+            let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
+            if vertex.is_connectible() {
+                if kind.keeps(&vertex, first) {
+                    visit(&vertex, tracer);
+                }
+                if kind == Kind::Caustic {
+                    return;
+                }
+                first = false;
+            }
+            if !walk.leave(&vertex, &surface, tracer.sampler) {
+                return;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bidirectional::{Balance, Lights};
+    use crate::photons::photon::Photon;
+    use description::{
+        AreaLightDesc, MaterialKind, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+    };
+    use scene::{Scene, View};
+    use spectrum::SampledWavelengths;
+    use testkit::{Moments, t_test, welch_test};
+
+    /// The inside of a ball that shines and reflects half, and perhaps a ball of glass in it.
+    fn furnace(with_glass: bool) -> (Scene, View) {
+        let mut desc = SceneDesc::default();
+        let ball = |radius: f32| {
+            ShapeDesc::from(ShapeKind::Sphere { radius, z_min: -radius, z_max: radius, phi_max: 360.0 })
+        };
+        let material = Some(desc.materials.push(MaterialKind::Diffuse { reflectance: 0.5.into() }.into()));
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::Constant(1.0))));
+        desc.shapes.push(ShapeDesc { material, area_light, reverse_orientation: true, ..ball(1.0) });
+        if with_glass {
+            let eta = SpectrumDesc::Constant(1.5);
+            let glass = MaterialKind::Dielectric { eta, roughness: RoughnessDesc::default() };
+            let material = Some(desc.materials.push(glass.into()));
+            desc.shapes.push(ShapeDesc { material, ..ball(0.6) });
+        }
+        let scene = scene::compile(&desc).expect("a scene").scene;
+        let view = View::compile(&desc, scene.world_from_render()).expect("a view").view;
+        (scene, view)
+    }
+
+    const PATHS: u32 = 30_000;
+
+    fn emit((scene, view): &(Scene, View), kind: Kind, max_depth: u32) -> Vec<Photon> {
+        let lights = Lights::of(scene);
+        let balance = Balance::connecting(1.0);
+        let paths = Bidirectional { scene, view, lights: &lights, balance, max_depth, regularize: false };
+        let shutter = ShutterSample::new(view, 0.3, 0.0);
+        let emission = Emission { paths: &paths, shutter, seed: 5, generation: 2 };
+        let keep = |vertex: &Vertex, _: &mut Tracer| Photon::at(vertex);
+        emission.emit(kind, PATHS, &Control::default(), keep).expect("nobody cancels it").0
+    }
+
+    /// What each subpath has left of `photons`, of which it has left one at most, over the power of
+    /// the lights.
+    fn shares<'a>((scene, _): &(Scene, View), photons: impl Iterator<Item = &'a Photon>) -> Moments {
+        let power = scene.light(scene::light::LightId(0)).phi(&SampledWavelengths::sample_visible(0.3))[0];
+        let mut shares: Vec<f64> = photons.map(|photon| f64::from(photon.beta[0] / power)).collect();
+        shares.resize(PATHS as usize, 0.0);
+        shares.into_iter().collect()
+    }
+
+    #[test]
+    fn surfaces_receive_what_surfaces_have_left_of_the_power_of_lights() {
+        let furnace = furnace(false);
+        let photons = emit(&furnace, Kind::All, 6);
+        assert!(photons.iter().all(|photon| (1..=6).contains(&photon.depth)));
+        for depth in 1..=6 {
+            let found = shares(&furnace, photons.iter().filter(|photon| photon.depth == depth));
+            let expected = 0.5f64.powi(depth as i32 - 1);
+            if (found.mean - expected).abs() > 1e-6 {
+                t_test(&found, expected, 6)
+                    .unwrap_or_else(|difference| panic!("depth {depth}: {difference}"));
+            }
+        }
+    }
+
+    #[test]
+    fn photons_are_direct_or_of_a_caustic_or_indirect() {
+        let furnace = furnace(true);
+        let [all, indirect, caustic] =
+            [Kind::All, Kind::Indirect, Kind::Caustic].map(|kind| emit(&furnace, kind, 8));
+        // The maps of all and of indirect light have the same subpaths.
+        let mut rest = indirect.iter().peekable();
+        let first: Vec<_> = all.iter().filter(|photon| rest.next_if_eq(photon).is_none()).collect();
+        assert!(rest.next().is_none() && !indirect.is_empty());
+        assert!(caustic.iter().all(|photon| photon.depth > 1));
+        let direct = shares(&furnace, first.iter().copied().filter(|photon| photon.depth == 1));
+        let expected = shares(&furnace, first.iter().copied().filter(|photon| photon.depth > 1));
+        assert!(direct.mean > 0.3 && expected.mean > 0.3);
+        welch_test(&shares(&furnace, caustic.iter()), &expected, 1).unwrap_or_else(|e| panic!("{e}"));
+    }
+}

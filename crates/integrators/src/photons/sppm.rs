@@ -1,0 +1,168 @@
+//! Stochastic progressive photon mapping: photons in pass after pass, within ever smaller
+//! distances.
+//!
+//! A pass shoots photons and keeps those that have been scattered at least once before they come to
+//! a diffuse surface ([`merging`](crate::photons::merging)). Then each pixel follows a path from the camera,
+//! past mirrors, glass and what is glossy, to the first diffuse surface. There the path ends: light
+//! straight from the lights is found by choosing a point on one, all other light by merging with
+//! the photons within the radius. On the way it looks for lights as path tracing does, by choice
+//! and by chance, weighted by the balance heuristic; at the end by choice alone, so that nothing
+//! counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
+//!
+//! It shines where light is focused and then seen through glass or in a mirror, which no path from
+//! the eye finds; any number of pixels share a photon. It is slow where photons are rare: in large
+//! scenes of which the camera sees a corner. Caustics on glossy surfaces are left to chance.
+//!
+//! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every
+//! pixel has a radius of its own, which shrinks by what the pixel has found so far, as (N +
+//! γM)/(N + M) with γ = 2/3. Here all have the radius that [Knaus 2011] give a pass by its number,
+//! with α = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt
+//! to where photons are dense. What is won is that a pass depends on no pass before it: a picture
+//! can be interrupted, continued and merged from shards to the same bits, and neither threads nor
+//! order matter. Edges of paths are counted as everywhere: `max_depth` holds for the sum of both
+//! ends.
+//!
+//! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
+//! [Pharr 2016 §16.2].
+
+use film::Film;
+use geometry::RayStats;
+use sampling::sampler::PaddedSobol;
+use sampling::{Randomize, Sampler};
+use scene::{Scene, View};
+use spectrum::SampledSpectrum;
+
+use crate::bidirectional::LightVertex;
+use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
+use crate::photons::merging::Merging;
+use crate::transport::pixel_samples::PixelSamples;
+use crate::{Cancelled, Control, Integrator};
+
+/// How slowly the radius shrinks.
+const ALPHA: f32 = 2.0 / 3.0;
+
+/// The first radius, if it is not told, over that of the scene times √n for n light subpaths in a
+/// pass: the more photons, the nearer they are. About thirty count for a point of a room, so that
+/// few are black.
+const SPACING: f32 = 5.0;
+
+/// It is no larger part of the scene's than this.
+const LARGEST_SHARE: f32 = 0.05;
+
+/// Settings of [`Sppm`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SppmSettings {
+    /// Most scattering events; default 5.
+    pub max_depth: u32,
+    /// Light subpaths in a pass, above 0; by default as many as pixels.
+    pub photons_per_iteration: Option<u32>,
+    /// Distance in the scene within which photons count in the first pass, above 0; by default 5/√n
+    /// of the scene's radius for n light subpaths, and no more than 0.05 of it.
+    pub radius: Option<f32>,
+}
+
+impl Default for SppmSettings {
+    fn default() -> Self {
+        Self { max_depth: 5, photons_per_iteration: None, radius: None }
+    }
+}
+
+/// Stochastic progressive photon mapping.
+#[derive(Debug)]
+pub struct Sppm {
+    settings: SppmSettings,
+    sampler: Sampler,
+    lights: Lights,
+    merging: Merging,
+}
+
+impl Sppm {
+    /// With a sampler for what begins at the camera, and a seed for photons.
+    pub fn new(settings: SppmSettings, sampler: Sampler, photon_seed: u32) -> Self {
+        let merging = Merging::new(settings.radius.unwrap_or(1.0), ALPHA, photon_seed);
+        Self { settings, sampler, lights: Lights::none(), merging }
+    }
+}
+
+impl Integrator for Sppm {
+    fn passes(&self) -> u32 {
+        self.sampler.samples_per_pixel()
+    }
+
+    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.lights = Lights::of(scene);
+        control.check()
+    }
+
+    fn pass(
+        &mut self,
+        pass: u32,
+        scene: &Scene,
+        view: &View,
+        film: &mut Film,
+        control: &Control,
+    ) -> Result<RayStats, Cancelled> {
+        let pixel_count = film.pixel_bounds().area();
+        let photon_paths = self.settings.photons_per_iteration.map_or(pixel_count, |count| count as usize);
+        if self.settings.radius.is_none() {
+            let share = (SPACING / (photon_paths as f32).sqrt()).min(LARGEST_SHARE);
+            self.merging.begin_with(share * scene.sphere().radius);
+        }
+        let paths = Bidirectional {
+            scene,
+            view,
+            lights: &self.lights,
+            balance: Balance::at_the_end(photon_paths, self.merging.radius(pass)),
+            max_depth: self.settings.max_depth,
+            regularize: false,
+        };
+        let photon = |vertex: &Vertex, _: &mut Sampler| {
+            (vertex.can_merge() && vertex.is_diffuse()).then(|| LightVertex::from(vertex))
+        };
+        // Each path takes a sample of one sequence, so that all the photons of a pass are well
+        // spread.
+        let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());
+        let sampler = |path| {
+            let mut sampler = Sampler::PaddedSobol(sampler.clone());
+            sampler.start_pixel_sample([pass as i32, 0], path as u32, 0);
+            sampler
+        };
+        let (subpaths, mut stats) =
+            self.merging.shoot(&paths, photon_paths, pass, sampler, photon, control)?;
+        let photons = self.merging.sort(subpaths.vertices, photon_paths, 0, pass);
+        let shutter = self.merging.shutter(view, pass);
+        let filter = film.filter().clone();
+        let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
+        stats += pixels.add_at(Some(&shutter), film.tiles_mut(), control, |sample, tracer| {
+            let mut l = SampledSpectrum::ZERO;
+            let Some(camera_ray) = &sample.camera_ray else { return l };
+            let lambda = &sample.lambda;
+            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |on_the_way, tracer| {
+                match on_the_way {
+                    OnTheWay::Light(found) => l += found.weighted(),
+                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                        let direct = paths.direct(vertex, lambda, tracer);
+                        if !vertex.is_diffuse() {
+                            l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
+                            return;
+                        }
+                        l += direct.map_or(SampledSpectrum::ZERO, |found| found.l);
+                        let depths = paths.max_depth - vertex.depth;
+                        photons.within(vertex.p.p, |photon| {
+                            if u32::from(photon.depth) <= depths + 1 {
+                                l += paths.merged(vertex, photon);
+                            }
+                        });
+                    }
+                    OnTheWay::Vertex(_) => (),
+                }
+            });
+            l
+        })?;
+        Ok(stats)
+    }
+
+    fn summary(&self) -> Vec<(&'static str, String)> {
+        self.merging.summary()
+    }
+}

@@ -1,0 +1,178 @@
+//! Direct lighting: next-event estimation, and light that rays hit by chance.
+//!
+//! At a vertex one ray goes to a sampled point on a light and one onwards. Light that both can find,
+//! of densities p_l (of the choice of the light times that of its point) and p_b (of the BSDF) per
+//! solid angle, is counted by both with the weights of the power heuristic, w_l = p_l²/(p_l² + p_b²)
+//! and w_b = 1 − w_l [Veach 1997 §9.2]. What one alone can find (delta lights, specular
+//! scattering) counts fully. Lights may leave directions to the BSDF (`allow_incomplete`): their
+//! density is then zero there.
+
+use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
+use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scene::light::{LightId, LightLiSample, LightSampleContext};
+use scene::light_sampler::{LightSampler, LightSamplerKind};
+use scene::{Interfaces, Scene, SurfaceInteraction};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::Tracer;
+use super::path_state::Origin;
+
+/// Direct lighting by one sample of one light, weighted against BSDF sampling.
+#[derive(Clone, Debug)]
+pub(crate) struct DirectLighting {
+    lights: LightSampler,
+    interfaces: Interfaces,
+}
+
+impl DirectLighting {
+    /// By the lights of a scene. `interfaces` is what surfaces of material `interface` do to the
+    /// light of delta lights; that of others passes them.
+    pub fn new(scene: &Scene, kind: LightSamplerKind, interfaces: Interfaces) -> Self {
+        Self { lights: scene.light_sampler(kind), interfaces }
+    }
+
+    /// By no lights.
+    pub fn none() -> Self {
+        Self { lights: LightSampler::default(), interfaces: Interfaces::Stop }
+    }
+
+    /// The weight of light from `light` that a ray along `wi` hits. Without an `origin` no light
+    /// sample could have found it.
+    fn weight(&self, scene: &Scene, origin: Option<&Origin>, light: LightId, wi: Vector3) -> f32 {
+        let Some(Origin { context, pdf }) = origin else { return 1.0 };
+        let pmf = self.lights.pmf(context, light);
+        power_heuristic(*pdf, pmf * scene.light(light).pdf_li(context, wi, true))
+    }
+
+    /// The weighted radiance along a ray that leaves the scene.
+    pub fn escaped(
+        &self,
+        scene: &Scene,
+        ray: &RayDifferential,
+        origin: Option<&Origin>,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let lights = scene.infinite_lights().iter();
+        lights
+            .map(|&id| scene.light(id).le(&ray.ray, lambda) * self.weight(scene, origin, id, ray.ray.d))
+            .sum()
+    }
+
+    /// The weighted radiance that a surface itself sends back along a ray.
+    pub fn emitted(
+        &self,
+        scene: &Scene,
+        surface: &SurfaceInteraction,
+        origin: Option<&Origin>,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let Some(light) = surface.area_light else { return SampledSpectrum::ZERO };
+        let wo = surface.surface.wo;
+        let l = scene.emitted(surface, wo, lambda);
+        if l.is_black() { l } else { l * self.weight(scene, origin, light, -wo) }
+    }
+
+    /// Next-event estimation: what a surface scatters to `wo` of direct light.
+    #[doc(alias = "SampleLd")]
+    pub fn sample<B: Scatter>(
+        &self,
+        tracer: &mut Tracer,
+        (surface, context): (&SurfaceInteraction, &LightSampleContext),
+        bsdf: &Bsdf<B>,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let scene = tracer.scene;
+        let (u, u_light) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
+        let Some((light, pmf)) = self.lights.sample(context, u) else { return SampledSpectrum::ZERO };
+        let Some(sample) = scene.sample_light(light, context, u_light, lambda, true) else {
+            return SampledSpectrum::ZERO;
+        };
+        let l = scattered(surface, bsdf, &sample);
+        let interfaces = match self.interfaces {
+            Interfaces::Stop => Interfaces::before(scene.light(light)),
+            Interfaces::Pass => Interfaces::Pass,
+        };
+        if l.is_black() || !tracer.sees(&surface.surface, &sample, interfaces) {
+            return SampledSpectrum::ZERO;
+        }
+        let p_l = pmf * sample.pdf;
+        if scene.light(light).is_delta() {
+            return l / p_l;
+        }
+        let p_b = bsdf.pdf(surface.surface.wo, sample.wi, TransportMode::Radiance, Directions::All);
+        l * (power_heuristic(p_l, p_b) / p_l)
+    }
+}
+
+/// Whether surfaces cast shadows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shadows {
+    /// Every surface does.
+    Cast,
+    /// None does.
+    Ignored,
+}
+
+/// What a surface scatters to `wo` of direct light, by one sample of every light.
+pub(crate) fn all_lights(
+    tracer: &mut Tracer,
+    surface: &SurfaceInteraction,
+    bsdf: &Bsdf,
+    shadows: Shadows,
+    lambda: &SampledWavelengths,
+) -> SampledSpectrum {
+    if !bsdf.flags().is_non_specular() {
+        return SampledSpectrum::ZERO;
+    }
+    let scene = tracer.scene;
+    let context = light_context(surface, bsdf.flags());
+    each_bxdf!(bsdf.bxdf, bxdf => {
+        let bsdf = Bsdf { bxdf, frame: bsdf.frame };
+        let mut sum = SampledSpectrum::ZERO;
+        for light in (0..scene.lights().len() as u32).map(LightId) {
+            let (u, interfaces) = (tracer.sampler.get_2d(), Interfaces::before(scene.light(light)));
+            let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
+            let l = scattered(surface, &bsdf, &sample);
+            if !l.is_black()
+                && (shadows == Shadows::Ignored || tracer.sees(&surface.surface, &sample, interfaces))
+            {
+                sum += l / sample.pdf;
+            }
+        }
+        sum
+    })
+}
+
+/// What a surface scatters to `wo` of the light of a light sample: f·|cos|·L, before visibility and
+/// density.
+pub(crate) fn scattered<B: Scatter>(
+    surface: &SurfaceInteraction,
+    bsdf: &Bsdf<B>,
+    light: &LightLiSample,
+) -> SampledSpectrum {
+    let cos_theta = light.wi.dot(surface.surface.shading.n).abs();
+    bsdf.f(surface.surface.wo, light.wi, TransportMode::Radiance) * light.l * cos_theta
+}
+
+/// The context for sampling lights from a surface that scatters as `flags` say.
+pub(crate) fn light_context(surface: &SurfaceInteraction, flags: BxdfFlags) -> LightSampleContext {
+    on_its_side(surface.light_context(), surface.surface.wo, flags)
+}
+
+/// A point seen from `wo` that scatters to one side only is offset to that side by its error, lest a
+/// light that intersects its surface be sampled from behind.
+pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
+    let side = match (flags.is_reflective(), flags.is_transmissive()) {
+        (true, false) => wo,
+        (false, true) => -wo,
+        _ => return context,
+    };
+    LightSampleContext { p: Point3Error::exact(offset_ray_origin(context.p, context.n, side)), ..context }
+}
+
+/// The weight of a sample of density `p` that another technique finds with density `other`.
+fn power_heuristic(p: f32, other: f32) -> f32 {
+    // The ratio, because squares of large densities overflow.
+    let ratio = other / p;
+    if p == 0.0 { 0.0 } else { 1.0 / (1.0 + ratio * ratio) }
+}

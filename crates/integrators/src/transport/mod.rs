@@ -1,0 +1,21 @@
+//! What algorithms share: following rays, the state of a path, direct lighting, Russian roulette.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `tracer` | scene, view, random numbers and statistics of a sample; cancellation |
+//! | `pixel_samples` | camera rays of all pixels of a pass |
+//! | `shutter_sample` | wavelengths and time of a sample |
+//! | `path_state` | a path from the camera between two vertices |
+//! | `direct` | next-event estimation and its weights |
+//! | `roulette` | Russian roulette |
+//! | `visibility` | shadow rays |
+
+pub(crate) mod direct;
+pub(crate) mod path_state;
+pub(crate) mod pixel_samples;
+pub(crate) mod roulette;
+pub(crate) mod shutter_sample;
+mod tracer;
+mod visibility;
+
+pub use tracer::Tracer;

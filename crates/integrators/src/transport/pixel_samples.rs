@@ -1,0 +1,132 @@
+//! One sample of every pixel: camera rays, and what comes along them, added to the film.
+//!
+//! Pass i takes sample i of every pixel. The dimensions of the sampler are used in a fixed order:
+//! wavelengths (1), position in the pixel's filter (2), time (1), position on the lens (2), and then
+//! whatever the algorithm asks for. [Pharr 2023 §1.3.4, §5.4.1]
+
+use film::{FilmTile, Filter};
+use geometry::RayStats;
+use math::Vec2;
+use rayon::prelude::*;
+use sampling::Sampler;
+use scene::camera::{CameraRayDifferential, CameraSample, differential_scale};
+use scene::{Scene, View};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::Tracer;
+use super::shutter_sample::ShutterSample;
+use crate::{Cancelled, Control};
+
+/// One sample of each pixel.
+#[derive(Clone, Copy)]
+pub(crate) struct PixelSamples<'a> {
+    /// The index of the sample.
+    pub index: u32,
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub filter: &'a Filter,
+    pub sampler: &'a Sampler,
+}
+
+/// A sample of a pixel.
+pub(crate) struct PixelSample {
+    pub pixel: [i32; 2],
+    /// The wavelengths at which radiance is estimated.
+    pub lambda: SampledWavelengths,
+    /// The time, in the scene's units.
+    pub time: f32,
+    /// The camera ray; `None` where no light reaches that point of the film.
+    pub camera_ray: Option<CameraRayDifferential>,
+    /// Weight in the pixel.
+    pub filter_weight: f32,
+}
+
+impl PixelSamples<'_> {
+    /// Adds to each pixel of the tiles the radiance that `radiance` estimates, at the wavelengths
+    /// as it leaves them. The tracer's sampler continues after the dimensions of the camera sample.
+    /// After a cancellation the film has all samples that were finished, and no parts of others.
+    pub fn add(
+        &self,
+        tiles: Vec<FilmTile>,
+        control: &Control,
+        radiance: impl Fn(&mut PixelSample, &mut Tracer) -> SampledSpectrum + Sync,
+    ) -> Result<RayStats, Cancelled> {
+        self.add_at(None, tiles, control, radiance)
+    }
+
+    /// The same; all samples share `shutter`, if there is one.
+    pub fn add_at(
+        &self,
+        shutter: Option<&ShutterSample>,
+        tiles: Vec<FilmTile>,
+        control: &Control,
+        radiance: impl Fn(&mut PixelSample, &mut Tracer) -> SampledSpectrum + Sync,
+    ) -> Result<RayStats, Cancelled> {
+        let tile = |mut tile: FilmTile| {
+            let mut sampler = self.sampler.clone();
+            let mut stats = RayStats::default();
+            let bounds = tile.bounds();
+            let done = (bounds.min[1]..bounds.max[1]).try_for_each(|y| {
+                control.check()?;
+                for x in bounds.min[0]..bounds.max[0] {
+                    let mut sample = self.begin(shutter, [x, y], &mut sampler);
+                    let mut tracer = Tracer::new(self.scene, self.view, control, &mut sampler, &mut stats);
+                    let l = radiance(&mut sample, &mut tracer);
+                    tracer.finish()?;
+                    tile.add_sample([x, y], &l, &sample.lambda, sample.filter_weight);
+                }
+                Ok(())
+            });
+            control.count(&stats);
+            done.map(|()| stats)
+        };
+        tiles.into_par_iter().map(tile).try_reduce(RayStats::default, |mut sum, stats| {
+            sum += stats;
+            Ok(sum)
+        })
+    }
+
+    /// Starts the sampler for a sample of a pixel and takes what the camera needs of it.
+    pub fn begin(
+        &self,
+        shutter: Option<&ShutterSample>,
+        pixel: [i32; 2],
+        sampler: &mut Sampler,
+    ) -> PixelSample {
+        sampler.start_pixel_sample(pixel, self.index, 0);
+        let wavelength = sampler.get_1d();
+        let place = self.filter.sample(sampler.get_pixel_2d());
+        let (time, lens) = (sampler.get_1d(), sampler.get_2d());
+        let shutter = shutter.copied().unwrap_or_else(|| ShutterSample::new(self.view, wavelength, time));
+        let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
+        let (film, lens, filter_weight) = if self.view.options.disable_pixel_jitter {
+            (center, Vec2::splat(0.5), 1.0)
+        } else {
+            (center + place.offset, lens, place.weight)
+        };
+        let sample = CameraSample { film, lens, time: shutter.u, filter_weight };
+        let camera_ray = camera_ray(self.scene, self.view, &sample);
+        PixelSample {
+            pixel,
+            lambda: shutter.lambda,
+            time: shutter.time(self.view),
+            camera_ray,
+            filter_weight,
+        }
+    }
+}
+
+/// The camera ray of a sample, with differentials where something in the scene needs them; `None`
+/// where no light reaches that point of the film.
+pub(crate) fn camera_ray(scene: &Scene, view: &View, sample: &CameraSample) -> Option<CameraRayDifferential> {
+    let camera = &view.camera;
+    let camera_ray = if scene.needs_footprints(view) {
+        camera.generate_ray_differential(sample)
+    } else {
+        camera.generate_ray(sample).map(|r| CameraRayDifferential { ray: r.ray.into(), weight: r.weight })
+    };
+    camera_ray.map(|mut camera_ray| {
+        camera_ray.ray.scale(differential_scale(view.samples_per_pixel));
+        camera_ray
+    })
+}

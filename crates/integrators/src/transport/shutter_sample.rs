@@ -1,0 +1,42 @@
+//! Wavelengths and time of a sample.
+
+use sampling::hash;
+use scene::View;
+use spectrum::SampledWavelengths;
+
+/// The wavelengths at which a path is followed, and its time.
+#[derive(Clone, Copy)]
+pub(crate) struct ShutterSample {
+    /// The wavelengths.
+    pub lambda: SampledWavelengths,
+    /// Sample value in [0, 1) for the time within the shutter's.
+    pub u: f32,
+}
+
+impl ShutterSample {
+    /// From two sample values in [0, 1), unless the view's options fix them.
+    pub fn new(view: &View, wavelength: f32, shutter: f32) -> Self {
+        let wavelength = if view.options.disable_wavelength_jitter { 0.5 } else { wavelength };
+        let u = if view.options.disable_pixel_jitter { 0.5 } else { shutter };
+        Self { lambda: SampledWavelengths::sample_visible(wavelength), u }
+    }
+
+    /// The one that all paths of a pass share. Over the passes both are spread evenly: each step
+    /// advances by an irrational part of the range. For wavelengths that is a quarter of the golden
+    /// ratio, because four of them, a quarter apart, are taken at once.
+    pub fn of_pass(view: &View, seed: u32, pass: u32) -> Self {
+        // Parts of 2³²: a quarter of the golden ratio, and √2 − 1.
+        const STEPS: [u32; 2] = [0x678d_de6e, 0x6a09_e667];
+        let [wavelength, shutter] = [0, 1].map(|i| {
+            let start = hash(&[seed, i]) as u32;
+            let bits = start.wrapping_add(pass.wrapping_mul(STEPS[i as usize]));
+            (bits >> 8) as f32 / (1 << 24) as f32
+        });
+        Self::new(view, wavelength, shutter)
+    }
+
+    /// The time, in the scene's units.
+    pub fn time(&self, view: &View) -> f32 {
+        view.camera.sample_time(self.u)
+    }
+}

@@ -1,0 +1,191 @@
+//! Emitting shapes, and the rows of the table of lights that they become.
+//!
+//! The lights of a group are counted within it, those of what is placed in it included, in the
+//! order in which its members were added. An emitting geometry becomes one row for each path of
+//! instances through which it is seen.
+
+use super::Compiler;
+use crate::light::{AreaEmission, AreaLight, EmissionId, Light, LightTable, SceneSphere};
+use crate::material::Material;
+use crate::scene::InstanceEntry;
+use crate::texture::FloatTextureId;
+use description::{AreaLightDesc, Origin, ShapeDesc, ShapeKind, Span, Stated};
+use geometry::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, World};
+
+/// The most lights of a scene, primitives and instances counted: the tables with which one is
+/// chosen take about 150 bytes for each.
+const MAX_LIGHTS: u32 = 1 << 28;
+
+/// What emits in a group.
+#[derive(Default)]
+pub(super) struct Emitters {
+    members: Vec<Member>,
+    /// How many lights there are in the group.
+    len: u32,
+}
+
+enum Member {
+    Geometry(GeometryId, Emitter),
+    Instance(InstanceId, GroupId),
+}
+
+/// What an emitting geometry emits, through whichever instances it is seen.
+#[derive(Clone)]
+pub(super) struct Emitter {
+    emission: EmissionId,
+    alpha: Option<FloatTextureId>,
+    invisible: bool,
+    /// Of every primitive, if it is asked for.
+    power: Option<f32>,
+    primitives: u32,
+}
+
+impl Compiler<'_> {
+    /// What every area light emits, on whatever shape; `None` where that makes no sense.
+    pub(super) fn area_emissions(&mut self) {
+        let desc = self.desc;
+        for (_, light) in desc.area_lights.iter() {
+            let emission = self.area_emission(light, &light.origin);
+            self.area_emissions.push(emission);
+        }
+    }
+
+    fn area_emission(&mut self, desc: &AreaLightDesc, origin: &Origin) -> Option<AreaEmission> {
+        let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
+        let mut image = None;
+        if let Some(handle) = desc.image {
+            let (pixels, scale) = self.emission_image(handle, desc.scale, origin.parameter("filename"))?;
+            radiance.scale = scale;
+            image = Some(pixels);
+        }
+        Some(AreaEmission { radiance, image, two_sided: desc.two_sided })
+    }
+
+    /// What a shape of `geometry` emits, if it can.
+    pub(super) fn emitter(
+        &mut self,
+        shape: &Stated<ShapeDesc>,
+        geometry: &Geometry,
+        alpha: Option<FloatTextureId>,
+    ) -> Option<Emitter> {
+        let handle = shape.area_light?;
+        let span = shape.origin.span;
+        if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
+            let message = "solids and surfaces given by formulas do not emit; drawn without light";
+            self.warn("not-drawn", message, span);
+            return None;
+        }
+        let material = self.material_id(shape.material);
+        if matches!(self.materials[material.0 as usize].material, Material::Interface) {
+            self.warn("light-ignored", "a shape of material `interface` does not emit", span);
+            return None;
+        }
+        self.area_emissions[handle.index()].as_ref()?;
+        let Some(first) = geometry.shape(0) else {
+            self.warn("light-ignored", "curves do not emit; drawn without light", span);
+            return None;
+        };
+        if first.bounds().is_none() {
+            let message = "an infinite plane cannot emit: its power would be infinite";
+            self.error("infinite-light", message, span);
+            return None;
+        }
+        let invisible = alpha.and_then(|id| self.constant_alpha(id)).is_some_and(|alpha| alpha <= 0.0);
+        Some(Emitter {
+            emission: EmissionId(handle.index() as u32),
+            alpha,
+            invisible,
+            power: self.desc.area_lights[handle].power,
+            primitives: geometry.len() as u32,
+        })
+    }
+
+    /// Adds what a geometry of a group emits; the number of its first light in the group.
+    pub(super) fn add_emitter(
+        &mut self,
+        group: GroupId,
+        geometry: GeometryId,
+        emitter: Emitter,
+        span: Span,
+    ) -> Option<u32> {
+        let first = self.count_lights(group, emitter.primitives, span)?;
+        self.emitters[group.0 as usize].members.push(Member::Geometry(geometry, emitter));
+        Some(first)
+    }
+
+    /// A new group of the world.
+    pub(super) fn add_group(&mut self) -> GroupId {
+        self.emitters.push(Emitters::default());
+        self.world.add_group()
+    }
+
+    /// Places an instance in a group of the world, with the lights in it.
+    pub(super) fn add_instance(&mut self, group: GroupId, instance: Instance, span: Span) {
+        let placed = instance.group;
+        let id = self.world.add_instance(group, instance);
+        let first_light = match self.emitters[placed.0 as usize].len {
+            0 => None,
+            len => self.count_lights(group, len, span),
+        };
+        if first_light.is_some() {
+            self.emitters[group.0 as usize].members.push(Member::Instance(id, placed));
+        }
+        self.instances.push(InstanceEntry { first_light: first_light.unwrap_or(0) });
+    }
+
+    fn count_lights(&mut self, group: GroupId, count: u32, span: Span) -> Option<u32> {
+        let first = self.emitters[group.0 as usize].len;
+        match first.checked_add(count).filter(|&len| len <= MAX_LIGHTS) {
+            Some(len) => {
+                self.emitters[group.0 as usize].len = len;
+                Some(first)
+            }
+            None => {
+                self.error("too-large", format!("there are {MAX_LIGHTS} emitting primitives at most"), span);
+                None
+            }
+        }
+    }
+
+    /// All lights: of what emits in `world`, then those without a surface. `sphere` is the extent
+    /// of the scene.
+    pub(super) fn light_table(&mut self, world: &World, sphere: SceneSphere) -> LightTable {
+        let emissions = std::mem::take(&mut self.area_emissions).into_iter().map(|emission| {
+            // Of what makes no sense nothing emits; it keeps its place.
+            emission.unwrap_or_else(AreaEmission::black)
+        });
+        let mut table = LightTable::new(emissions.collect());
+        self.add_rows(GroupId::TOP, InstancePath::TOP, world, &mut table);
+        for light in self.lights(sphere) {
+            table.push(light, 1);
+        }
+        table
+    }
+
+    fn add_rows(&self, group: GroupId, path: InstancePath, world: &World, table: &mut LightTable) {
+        for member in &self.emitters[group.0 as usize].members {
+            match member {
+                &Member::Instance(id, placed) => self.add_rows(placed, path.into(id), world, table),
+                Member::Geometry(geometry, emitter) => {
+                    let &Emitter { emission, alpha, invisible, power, primitives } = emitter;
+                    let mut light = AreaLight {
+                        geometry: *geometry,
+                        instance: path,
+                        emission,
+                        alpha,
+                        invisible,
+                        scales: None,
+                    };
+                    light.scales = power.map(|power| {
+                        let scale = |primitive| {
+                            let area = light.area(world, primitive);
+                            table.emissions()[emission.0 as usize].scale_for_power(power, area)
+                        };
+                        (0..primitives).map(scale).collect()
+                    });
+                    table.push(Light::Area(light), primitives);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! The lights of a scene: the table, and one light of it.
+//!
+//! A row stands for one light, or for one light per primitive of an emitting geometry; the ids of
+//! its lights follow each other. A million emitting triangles are one row.
+
+use super::{
+    AreaEmission, EmissionId, Light, LightBounds, LightId, LightLeSample, LightLiSample, LightModel,
+    LightSampleContext, each_light,
+};
+use crate::texture::Textures;
+use geometry::World;
+use math::{Normal3, Point2, Point3, Ray, Vector3};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// The rows, and what they share.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LightTable {
+    rows: Vec<Light>,
+    /// The id of each row's first light.
+    first: Vec<u32>,
+    len: u32,
+    emissions: Vec<AreaEmission>,
+    infinite: Vec<LightId>,
+}
+
+impl LightTable {
+    /// A table without lights.
+    pub fn new(emissions: Vec<AreaEmission>) -> Self {
+        Self { emissions, ..Self::default() }
+    }
+
+    /// Adds a row that stands for `count` lights.
+    pub fn push(&mut self, light: Light, count: u32) {
+        if each_light!(&light, light => light.is_infinite()) {
+            self.infinite.push(LightId(self.len));
+        }
+        self.rows.push(light);
+        self.first.push(self.len);
+        self.len += count;
+    }
+
+    /// What area lights emit.
+    pub fn emissions(&self) -> &[AreaEmission] {
+        &self.emissions
+    }
+
+    /// The lights that rays leaving the scene meet.
+    pub fn infinite(&self) -> &[LightId] {
+        &self.infinite
+    }
+}
+
+/// The lights of a scene with the tables that they refer to.
+#[derive(Clone, Copy, Debug)]
+pub struct Lights<'a> {
+    pub(crate) table: &'a LightTable,
+    pub(crate) world: &'a World,
+    pub(crate) textures: &'a Textures,
+}
+
+impl<'a> Lights<'a> {
+    /// How many lights there are; their ids are 0 … `len` − 1.
+    pub fn len(self) -> usize {
+        self.table.len as usize
+    }
+
+    /// Whether there is no light.
+    pub fn is_empty(self) -> bool {
+        self.table.len == 0
+    }
+
+    /// The rows of the table, each with the id of its first light.
+    pub fn rows(self) -> impl ExactSizeIterator<Item = (LightId, &'a Light)> {
+        self.table.first.iter().map(|&id| LightId(id)).zip(&self.table.rows)
+    }
+
+    /// A light by its id.
+    #[inline]
+    pub fn get(self, id: LightId) -> LightRef<'a> {
+        let LightTable { rows, first, len, .. } = self.table;
+        let row = if rows.len() == *len as usize {
+            id.0 as usize
+        } else {
+            first.partition_point(|&first| first <= id.0) - 1
+        };
+        LightRef { id, light: &rows[row], part: LightPart { primitive: id.0 - first[row], lights: self } }
+    }
+
+    /// All lights in the order of their ids.
+    pub fn iter(self) -> impl ExactSizeIterator<Item = LightRef<'a>> {
+        (0..self.table.len).map(move |id| self.get(LightId(id)))
+    }
+}
+
+/// Which of the lights of a row is asked, and the tables that it refers to.
+#[derive(Clone, Copy, Debug)]
+pub struct LightPart<'a> {
+    /// The primitive of an emitting geometry; 0 of other lights.
+    pub primitive: u32,
+    lights: Lights<'a>,
+}
+
+impl<'a> LightPart<'a> {
+    /// The geometry that emits.
+    pub(super) fn world(&self) -> &'a World {
+        self.lights.world
+    }
+
+    /// The textures that cut surfaces out.
+    pub(super) fn textures(&self) -> &'a Textures {
+        self.lights.textures
+    }
+
+    /// What is emitted.
+    pub(super) fn emission(&self, id: EmissionId) -> &'a AreaEmission {
+        &self.lights.table.emissions[id.0 as usize]
+    }
+}
+
+/// One light of a scene. Its methods are those of [`LightModel`].
+#[derive(Clone, Copy, Debug)]
+pub struct LightRef<'a> {
+    id: LightId,
+    light: &'a Light,
+    part: LightPart<'a>,
+}
+
+impl<'a> LightRef<'a> {
+    /// Its id.
+    pub fn id(&self) -> LightId {
+        self.id
+    }
+
+    /// The row of the table that it belongs to.
+    pub fn row(&self) -> &'a Light {
+        self.light
+    }
+
+    /// See [`LightModel::is_delta`].
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        each_light!(self.light, light => light.is_delta())
+    }
+
+    /// See [`LightModel::is_infinite`].
+    #[inline]
+    pub fn is_infinite(&self) -> bool {
+        each_light!(self.light, light => light.is_infinite())
+    }
+
+    /// See [`LightModel::is_distant`].
+    #[inline]
+    pub fn is_distant(&self) -> bool {
+        each_light!(self.light, light => light.is_distant())
+    }
+
+    /// See [`LightModel::phi`].
+    pub fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+        each_light!(self.light, light => light.phi(&self.part, lambda))
+    }
+
+    /// See [`LightModel::sample_li`].
+    pub fn sample_li(
+        &self,
+        context: &LightSampleContext,
+        u: Point2,
+        lambda: &SampledWavelengths,
+        allow_incomplete: bool,
+    ) -> Option<LightLiSample> {
+        each_light!(self.light, light => light.sample_li(&self.part, context, u, lambda, allow_incomplete))
+    }
+
+    /// See [`LightModel::pdf_li`].
+    pub fn pdf_li(&self, context: &LightSampleContext, wi: Vector3, allow_incomplete: bool) -> f32 {
+        each_light!(self.light, light => light.pdf_li(&self.part, context, wi, allow_incomplete))
+    }
+
+    /// See [`LightModel::sample_le`].
+    pub fn sample_le(
+        &self,
+        u_position: Point2,
+        u_direction: Point2,
+        time: f32,
+        lambda: &SampledWavelengths,
+    ) -> Option<LightLeSample> {
+        each_light!(self.light, light => light.sample_le(&self.part, u_position, u_direction, time, lambda))
+    }
+
+    /// See [`LightModel::pdf_le`].
+    pub fn pdf_le(&self, p: Point3, n: Normal3, w: Vector3, time: f32) -> (f32, f32) {
+        each_light!(self.light, light => light.pdf_le(&self.part, p, n, w, time))
+    }
+
+    /// See [`LightModel::pdf_le_infinite`].
+    pub fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
+        each_light!(self.light, light => light.pdf_le_infinite(ray))
+    }
+
+    /// See [`LightModel::le`].
+    pub fn le(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
+        each_light!(self.light, light => light.le(ray, lambda))
+    }
+
+    /// See [`LightModel::radiance`].
+    pub fn radiance(
+        &self,
+        n: Normal3,
+        uv: Point2,
+        w: Vector3,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        each_light!(self.light, light => light.radiance(&self.part, n, uv, w, lambda))
+    }
+
+    /// See [`LightModel::bounds`].
+    pub fn bounds(&self) -> Option<LightBounds> {
+        each_light!(self.light, light => light.bounds(&self.part))
+    }
+}

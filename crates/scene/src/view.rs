@@ -1,0 +1,91 @@
+//! A view of a scene: the camera and what else decides which samples are taken.
+//!
+//! A [`Scene`](crate::Scene) knows none of it, so that another camera, another number of samples or
+//! a preview in larger pixels costs a new view and rebuilds nothing.
+
+use crate::camera::{self, Camera};
+use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc};
+use math::DMat4;
+
+/// Options of the format that concern all algorithms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ViewOptions {
+    /// All samples of a pixel go through its centre.
+    pub disable_pixel_jitter: bool,
+    /// All samples have the same wavelengths.
+    pub disable_wavelength_jitter: bool,
+    /// Textures are evaluated at points.
+    pub disable_texture_filtering: bool,
+    /// Every BSDF is replaced by a diffuse one of the same albedo.
+    pub force_diffuse: bool,
+}
+
+/// How a scene is rendered, apart from the film and the algorithm.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The camera, placed in the scene's render space.
+    pub camera: Camera,
+    /// Samples per pixel, at least 1, by which textures are filtered: the more samples, the less
+    /// each has to cover.
+    pub samples_per_pixel: u32,
+    /// Options that concern all algorithms.
+    pub options: ViewOptions,
+}
+
+/// What [`View::compile`] returns.
+#[derive(Clone, Debug)]
+pub struct CompiledView {
+    /// The view.
+    pub view: View,
+    /// What is rendered other than described.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl View {
+    /// Compiles camera, resolution, number of samples and options of a description; the rest of it is
+    /// not looked at. `world_from_render` is the render space of the scene to be viewed:
+    /// [`Scene::world_from_render`](crate::Scene::world_from_render), or, before it is compiled,
+    /// [`world_from_render`]. Returns all errors and warnings if there is an error.
+    pub fn compile(desc: &SceneDesc, world_from_render: DMat4) -> Result<CompiledView, Vec<Diagnostic>> {
+        let mut diagnostics = Vec::new();
+        let camera = camera::compile(&desc.camera, &desc.film, world_from_render, &mut diagnostics);
+        let Some(camera) = camera else { return Err(diagnostics) };
+        let options = ViewOptions {
+            disable_pixel_jitter: desc.options.disable_pixel_jitter,
+            disable_wavelength_jitter: desc.options.disable_wavelength_jitter,
+            disable_texture_filtering: desc.options.disable_texture_filtering,
+            force_diffuse: desc.options.force_diffuse,
+        };
+        let view = Self { camera, samples_per_pixel: samples_per_pixel(desc), options };
+        Ok(CompiledView { view, warnings: diagnostics })
+    }
+
+    /// The same view in pixels `n` times as wide and high: film position x shows what n·x showed.
+    pub fn coarser(&self, n: u32) -> Self {
+        Self { camera: self.camera.coarser(n), ..self.clone() }
+    }
+}
+
+/// The render space that [`compile`](crate::compile()) gives the scene of a description, as its
+/// transform to world space.
+pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
+    camera::world_from_render(&desc.camera.camera_from_world, desc.options.render_space)
+}
+
+/// How many samples a description gives a pixel: of Metropolis, mutations; else those of the sampler,
+/// of which Sobol' sequences over the whole image round up to a power of two.
+pub fn samples_per_pixel(desc: &SceneDesc) -> u32 {
+    if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
+        return mlt.mutations_per_pixel.max(1) as u32;
+    }
+    let samples = desc.sampler.pixel_samples.max(1) as u32;
+    match desc.sampler.kind {
+        SamplerKind::Sobol { .. } | SamplerKind::ZSobol { .. } | SamplerKind::Pmj02Bn => {
+            samples.next_power_of_two()
+        }
+        SamplerKind::Independent
+        | SamplerKind::Stratified { .. }
+        | SamplerKind::Halton { .. }
+        | SamplerKind::PaddedSobol { .. } => samples,
+    }
+}
