@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use alhazen::compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
-use alhazen::image::{Image, replace_file};
+use alhazen::image::{self, replace_file};
 use alhazen::import::{Files, import};
 use alhazen::integrators::Control;
 use alhazen::system_clock;
@@ -28,7 +28,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     start_threads(arguments.changes.threads)?;
     let reference = match &arguments.reference {
         Some(path) => {
-            let picture = Image::open(path).map_err(|error| about_file(path, error))?;
+            let picture = image::open(path).map_err(|error| about_file(path, error))?;
             ReferenceSource::Picture { name: path.display().to_string(), picture }
         }
         None => ReferenceSource::Render {

@@ -218,6 +218,48 @@ fn lights_without_sense_are_errors() {
 }
 
 #[test]
+fn materials_without_sense_are_errors() {
+    let material = |kind: MaterialKind, name| {
+        with(|desc| {
+            desc.materials.push_stated(with_parameter(kind.into(), name, 4));
+        })
+    };
+    let message = "an index of refraction must be above 0";
+    for eta in [
+        0.0.into(),
+        SpectrumDesc::from(-1.5),
+        SpectrumDesc::rgb(0.0, 0.0, 0.0),
+        SpectrumDesc::Samples([(400.0, 1.5), (700.0, 0.0)].into()),
+    ] {
+        let roughness = RoughnessDesc::default();
+        let glass = MaterialKind::Dielectric { eta: eta.clone(), roughness };
+        check(&material(glass, "eta"), Severity::Error, "invalid-value", message, 4);
+        let thin = MaterialKind::ThinDielectric { eta };
+        check(&material(thin, "eta"), Severity::Error, "invalid-value", message, 4);
+    }
+    let rough = |value: f32| {
+        let roughness = RoughnessDesc { u: value.into(), v: 0.5.into(), remap: true };
+        MaterialKind::Conductor(ConductorDesc { roughness, ..ConductorDesc::default() })
+    };
+    let message = "roughness cannot be negative, as -0.1 is";
+    for name in ["roughness", "uroughness"] {
+        check(&material(rough(-0.1), name), Severity::Error, "invalid-value", message, 4);
+    }
+    let message = "roughness goes from 0 to 1; 2 is rougher than that";
+    check(&material(rough(2.0), "uroughness"), Severity::Warning, "roughness-range", message, 4);
+    let leaf = |scale| MaterialKind::DiffuseTransmission {
+        reflectance: 0.25.into(),
+        transmittance: 0.25.into(),
+        scale,
+    };
+    let message = "NaN is no factor on a reflectance";
+    check(&material(leaf(f32::NAN), "scale"), Severity::Error, "invalid-value", message, 4);
+    let message = "the values of a spectrum must be at most 1e30";
+    let bright = MaterialKind::Diffuse { reflectance: SpectrumDesc::Constant(1e35).into() };
+    check(&material(bright, "reflectance"), Severity::Error, "invalid-value", message, 4);
+}
+
+#[test]
 fn an_interface_does_not_emit() {
     let desc = with(|desc| {
         let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));

@@ -1,6 +1,7 @@
 //! The statements of a scene, each with its graphics state. Names are not resolved yet: a file may
 //! use a material before its definition.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use description::{ColorSpaceDesc, Span, Spanned, TransformDesc};
@@ -100,6 +101,8 @@ pub(crate) struct Statements {
     pub(crate) spectrum_textures: Vec<TextureStatement>,
     /// The order of float and spectrum textures among each other: `true` for a spectrum texture.
     pub(crate) texture_order: Vec<bool>,
+    /// Where each texture is named; `true` for a spectrum texture.
+    pub(crate) texture_names: HashMap<(bool, String), Span>,
     pub(crate) materials: Vec<MaterialStatement>,
     pub(crate) media: Vec<MediumStatement>,
     pub(crate) lights: Vec<LightStatement>,

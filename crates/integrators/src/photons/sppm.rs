@@ -2,12 +2,12 @@
 //! distances.
 //!
 //! A pass shoots photons and keeps those that have been scattered at least once before they come to
-//! a diffuse surface ([`merging`](crate::photons::merging)). Then each pixel follows a path from the camera,
-//! past mirrors, glass and what is glossy, to the first diffuse surface. There the path ends: light
-//! straight from the lights is found by choosing a point on one, all other light by merging with
-//! the photons within the radius. On the way it looks for lights as path tracing does, by choice
-//! and by chance, weighted by the balance heuristic; at the end by choice alone, so that nothing
-//! counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
+//! a diffuse surface ([`merging`](crate::photons::merging)). Then each pixel follows a path from
+//! the camera, past mirrors, glass and what is glossy, to the first diffuse surface. There the path
+//! ends: light straight from the lights is found by choosing a point on one, all other light by
+//! merging with the photons within the radius. On the way it looks for lights as path tracing does,
+//! by choice and by chance, weighted by the balance heuristic; at the end by choice alone, so that
+//! nothing counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
 //!
 //! It shines where light is focused and then seen through glass or in a mirror, which no path from
 //! the eye finds; any number of pixels share a photon. It is slow where photons are rare: in large
@@ -33,7 +33,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
@@ -137,10 +137,10 @@ impl Integrator for Sppm {
             let mut l = SampledSpectrum::ZERO;
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;
-            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |on_the_way, tracer| {
-                match on_the_way {
-                    OnTheWay::Light(found) => l += found.weighted(),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |encounter, tracer| {
+                match encounter {
+                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let direct = paths.direct(vertex, lambda, tracer);
                         if !vertex.is_diffuse() {
                             l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
@@ -154,7 +154,7 @@ impl Integrator for Sppm {
                             }
                         });
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 }
             });
             l

@@ -1,14 +1,15 @@
 //! Vertex connection and merging: bidirectional path tracing and progressive photon mapping as one.
 //!
 //! A pass has two steps. First, light subpaths are made, one for each pixel, and leave their
-//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel makes a camera subpath and
-//! connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and vertices of the
-//! camera subpath are merged with the photons within the radius. Merging is one more family of
-//! strategies: a path whose vertex x is made from both ends is found if the two ends come within r
-//! of each other, so the density of such a path is that of its two subpaths, times π r² (the chance
-//! to meet, if all is smooth), times the number n of photon paths. (Where a texture cuts x out in
-//! part, both ends must meet it, and the part that remains is one more factor of η.) With that, the
-//! balance heuristic weighs merging against connecting as it weighs connections against each other:
+//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel makes a camera
+//! subpath and connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and
+//! vertices of the camera subpath are merged with the photons within the radius. Merging is one
+//! more family of strategies: a path whose vertex x is made from both ends is found if the two ends
+//! come within r of each other, so the density of such a path is that of its two subpaths, times π
+//! r² (the chance to meet, if all is smooth), times the number n of photon paths. (Where a texture
+//! cuts x out in part, both ends must meet it, and the part that remains is one more factor of η.)
+//! With that, the balance heuristic weighs merging against connecting as it weighs connections
+//! against each other:
 //!
 //! ```text
 //! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
@@ -34,8 +35,9 @@
 //! it is with merges everywhere.
 //!
 //! What camera rays alone find, light that comes by specular surfaces all the way, has more of them
-//! ([`glints`](crate::photons::glints)). In the mirror room at 96 × 64 pixels nine tenths of the error were
-//! such glints, and five rays instead of one take a third of it or more for a seventh more time.
+//! ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at 96 × 64 pixels nine
+//! tenths of the error were such glints, and five rays instead of one take a third of it or more
+//! for a seventh more time.
 //!
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
 //! third of the variance; behind a door, light seeps under it then.
@@ -55,9 +57,9 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
-use crate::photons::glints::{Glints, Look};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
+use crate::photons::specular_paths::{SpecularChain, SpecularPaths};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -93,7 +95,7 @@ pub struct Vcm {
     settings: VcmSettings,
     sampler: Sampler,
     light_sampler: Sampler,
-    glints: Glints,
+    specular_paths: SpecularPaths,
     photon_seed: u32,
     lights: Lights,
     merging: Merging,
@@ -103,8 +105,16 @@ impl Vcm {
     /// With a sampler for each end of what is connected, and a seed for photons and glints.
     pub fn new(settings: VcmSettings, sampler: Sampler, light_sampler: Sampler, photon_seed: u32) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
-        let glints = Glints::new(sampler.samples_per_pixel(), !photon_seed);
-        Self { settings, sampler, light_sampler, glints, photon_seed, lights: Lights::none(), merging }
+        let specular_paths = SpecularPaths::new(sampler.samples_per_pixel(), !photon_seed);
+        Self {
+            settings,
+            sampler,
+            light_sampler,
+            specular_paths,
+            photon_seed,
+            lights: Lights::none(),
+            merging,
+        }
     }
 }
 
@@ -115,7 +125,7 @@ impl Integrator for Vcm {
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
-        self.glints.prepare(scene);
+        self.specular_paths.prepare(scene);
         let radius = self.settings.radius.unwrap_or(SHARE_OF_SCENE * scene.sphere().radius);
         self.merging = Merging::new(radius, self.settings.alpha, self.photon_seed);
         control.check()
@@ -174,22 +184,22 @@ impl Integrator for Vcm {
                 &made
             });
             for (vertex, u) in light_subpath {
-                if let Some(seen) = paths.see(vertex, *u, splatter.reach(), tracer) {
+                if let Some(seen) = paths.connect_to_camera(vertex, *u, splatter.reach(), tracer) {
                     seen.splat(&splatter, &seen.found.weighted(), lambda);
                 }
             }
             splatter.add_paths(1);
 
-            let (mut l, mut look) = (SampledSpectrum::ZERO, Look::default());
+            let (mut l, mut chain) = (SampledSpectrum::ZERO, SpecularChain::default());
             let Some(camera_ray) = &sample.camera_ray else { return l };
-            paths.camera_subpath(camera_ray, lambda, tracer, |on_the_way, tracer| {
-                if let OnTheWay::Vertex(vertex) = on_the_way {
-                    look.meet(vertex);
+            paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| {
+                if let Encounter::Vertex(vertex) = encounter {
+                    chain.visit(vertex);
                 }
-                match on_the_way {
-                    OnTheWay::Light(found) if look.take(&found) => (),
-                    OnTheWay::Light(found) => l += found.weighted(),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                match encounter {
+                    Encounter::Light(found) if chain.add(&found) => (),
+                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let depths = paths.max_depth - vertex.depth;
                         if let Some(found) = paths.direct(vertex, lambda, tracer) {
                             l += found.weighted();
@@ -208,10 +218,10 @@ impl Integrator for Vcm {
                             });
                         }
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 }
             });
-            l + self.glints.seen(&look, sample, &pixels, &shutter, &paths, tracer)
+            l + self.specular_paths.radiance(&chain, sample, &pixels, &shutter, &paths, tracer)
         })?;
         Ok(stats)
     }

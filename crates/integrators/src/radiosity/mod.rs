@@ -79,7 +79,7 @@ use bands::Bands;
 pub(crate) use described::{settings, warnings};
 pub use settings::{FormFactors, RadiositySettings};
 use shooting::Solution;
-use show::{Interpolation, Shown};
+use show::{Interpolation, SolutionRadiance};
 
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
@@ -186,7 +186,7 @@ impl Integrator for Radiosity {
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
-        let shown = Shown { interpolation: &state.interpolation, solution: &state.solution };
+        let shown = SolutionRadiance { interpolation: &state.interpolation, solution: &state.solution };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
