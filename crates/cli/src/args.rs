@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use alhazen::Overrides;
 use alhazen::compare::Contender;
+use alhazen::{Overrides, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::merge::Merge;
+use crate::resume::Resume;
 
 /// Renders scenes by following light.
 #[derive(Debug, Parser)]
@@ -17,7 +20,8 @@ pub struct Cli {
     pub command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
+/// Ends the help of every command.
+pub const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
      wrong, 130 interrupted.";
 
 /// The commands.
@@ -27,9 +31,19 @@ pub enum Command {
     ///
     /// Pictures are written when they are done, and before that now and then as they stand: first,
     /// of more than 65536 pixels, as a sketch in larger pixels, then after about a second, then
-    /// whenever twice as much time has gone by. Ctrl-C ends the render after the samples in flight,
-    /// and writes the picture as it stands; a second Ctrl-C ends the program at once.
+    /// whenever twice as much time has gone by, but at least every minute. Ctrl-C ends the render
+    /// after the samples in flight, and writes the picture as it stands; a second Ctrl-C ends the
+    /// program at once, with the picture that was written last.
     Render(Box<Render>),
+    /// Go on with a render that was saved by --checkpoint.
+    ///
+    /// The film file knows the scene and the options; the files of the scene must not have changed.
+    /// The picture has the same bits as that of a render that was not interrupted. The film file is
+    /// saved again as by --checkpoint.
+    Resume(Resume),
+    /// Merge the film files of all shards of a render, and write the picture: it has the same bits
+    /// as that of a render that was not split.
+    Merge(Merge),
     /// Render a scene by several algorithms, and report how far each is from a reference.
     ///
     /// All get the same time, or the same number of samples. The report has the pictures beside the
@@ -53,6 +67,8 @@ impl Command {
     pub fn json(&self) -> bool {
         match self {
             Self::Render(render) => render.json,
+            Self::Resume(resume) => resume.json,
+            Self::Merge(merge) => merge.json,
             Self::Compare(compare) => compare.json,
             Self::Scene(Scene::Check(check)) => check.json,
             Self::Image(Image::Info(info)) => info.json,
@@ -78,9 +94,25 @@ pub struct Render {
     /// The algorithm; see the list below. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub integrator: Option<String>,
-    /// Samples per pixel. [default: the scene's]
+    /// Samples per pixel. [default: the scene's, or no limit where there is one of time or noise]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
+    /// What else ends the render.
+    #[command(flatten)]
+    pub limits: RenderLimits,
+    /// Save the render here while it runs, so that `alhazen resume` can go on with it: the film,
+    /// which samples it holds, the scene's path and the options. The file is replaced whole, so that
+    /// it is valid at any moment.
+    #[arg(long, value_name = "FILE.film")]
+    pub checkpoint: Option<PathBuf>,
+    /// How often --checkpoint saves, unless a pass takes longer.
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]
+    pub every: Duration,
+    /// Render one of N equal parts of the samples per pixel, counted from 1, into the film file of
+    /// --checkpoint; `alhazen merge` makes the picture of all. A picture of the part alone is written
+    /// to --output only.
+    #[arg(long, value_name = "K/N", value_parser = shard, requires = "checkpoint", conflicts_with = "noise")]
+    pub shard: Option<Shard>,
     /// Other changes to the scene.
     #[command(flatten)]
     pub changes: Changes,
@@ -101,6 +133,22 @@ impl Render {
             ..self.changes.overrides()
         }
     }
+}
+
+/// What ends a render beside its number of samples per pixel: whichever comes first.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct RenderLimits {
+    /// Render for so long: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do not
+    /// count; of a render that is resumed, the time before does. No pass (one sample of each pixel)
+    /// is begun that would probably end later.
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub time: Option<Duration>,
+    /// Render until the noise of the picture, its estimated relative standard error, is not above
+    /// this: 0.02 is 2 %. It is the root of the mean, over pixels and channels, of variance / (value²
+    /// + (mean / 10)²), measured by the difference of two pictures of half the samples each, from 16
+    /// samples per pixel on. The second picture doubles the memory of the film.
+    #[arg(long, value_name = "NOISE", value_parser = noise)]
+    pub noise: Option<f64>,
 }
 
 /// Options that change a scene, and how it is rendered, for one algorithm as for many.
@@ -283,9 +331,22 @@ pub struct Convert {
     /// How values are stored: `natural` keeps what the picture has where the format can.
     #[arg(long, value_enum, default_value_t = Depth::Natural)]
     pub depth: Depth,
+    /// Convert an image of the sphere of directions, such as an environment map, to another
+    /// projection. It is read as the one whose shape it has.
+    #[arg(long, value_enum)]
+    pub projection: Option<Projection>,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
     pub json: bool,
+}
+
+/// How an image shows the sphere of directions; +z is up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Projection {
+    /// The square octahedral mapping of the pbrt-v4 format.
+    EqualArea,
+    /// Longitude along the rows, from +x towards +y; twice as wide as high.
+    LatitudeLongitude,
 }
 
 /// How values are stored.
@@ -336,7 +397,8 @@ fn key_value(text: &str) -> Result<(String, String), String> {
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
-fn time(text: &str) -> Result<Duration, String> {
+/// A duration as it is written on the command line.
+pub fn time(text: &str) -> Result<Duration, String> {
     let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[number.len()..].trim() {
         "" | "s" => Some(1.0),
@@ -350,6 +412,20 @@ fn time(text: &str) -> Result<Duration, String> {
         .filter(|&seconds| seconds > 0.0)
         .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
         .ok_or_else(|| "it is written 30s, 1.5min or 2h".into())
+}
+
+fn noise(text: &str) -> Result<f64, String> {
+    let noise = text.parse().ok().filter(|&noise: &f64| noise > 0.0 && noise.is_finite());
+    noise.ok_or_else(|| "it is a number above 0: 0.02".into())
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let numbers = text
+        .split_once('/')
+        .and_then(|(index, count)| Some(Shard { index: index.parse().ok()?, count: count.parse().ok()? }));
+    numbers
+        .filter(|shard| (1..=shard.count).contains(&shard.index))
+        .ok_or_else(|| "it is written 3/8, from 1/8 to 8/8".into())
 }
 
 fn resolution(text: &str) -> Result<[i32; 2], String> {

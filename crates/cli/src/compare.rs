@@ -2,23 +2,24 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use alhazen::compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{Image, replace_file};
 use alhazen::import::{Files, import};
-use alhazen::integrators::{Control, Progress};
+use alhazen::integrators::Control;
+use alhazen::system_clock;
 use serde_json::Value;
 
 use crate::args::Compare;
 use crate::bar::Bar;
 use crate::console::{say, warn};
 use crate::diagnostics;
+use crate::drive::scene_failure;
 use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
 use crate::numbers::count;
 use crate::output;
-use crate::render::{named_after, scene_failure};
+use crate::results::named_after;
 use crate::threads::start_threads;
 
 /// Renders a scene by several algorithms and writes the report.
@@ -35,7 +36,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
             samples_per_pixel: arguments.reference_spp,
         },
     };
-    let interrupt = Interrupt::listen()?;
+    let interrupt = Interrupt::listen(arguments.json)?;
     let talkative = !arguments.quiet && !arguments.json;
 
     let mut imported = import(&arguments.scene, &Files);
@@ -70,19 +71,16 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
 
-    let mut bar: Option<Arc<Bar>> = None;
-    let outcome = laboratory.compare(|name| {
-        if let Some(bar) = bar.take() {
-            bar.finish();
+    let control = Control::new(interrupt.cancel(), system_clock());
+    let mut current: Option<(String, Bar)> = None;
+    let outcome = laboratory.compare(&control, &mut |name, progress| {
+        if current.as_ref().is_none_or(|(before, _)| before != name) {
+            let finished = current.replace((name.to_owned(), Bar::named(talkative, name)));
+            finished.iter().for_each(|(_, bar)| bar.finish());
         }
-        let new = Arc::new(Bar::named(talkative, name));
-        bar = Some(Arc::clone(&new));
-        let progress = Box::new(move |progress: &Progress| new.show(progress));
-        Control { cancel: interrupt.cancel(), progress: Some(progress), ..Control::default() }
+        current.iter().for_each(|(_, bar)| bar.show(progress));
     });
-    if let Some(bar) = bar {
-        bar.finish();
-    }
+    current.iter().for_each(|(_, bar)| bar.finish());
     let Ok(mut comparison) = outcome else {
         let message = "interrupted before anything could be compared; there is no report";
         if arguments.json {

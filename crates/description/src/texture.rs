@@ -172,6 +172,10 @@ pub struct ImageTextureDesc {
     pub image: Handle<ImageDesc>,
     /// Where on the image a point lies.
     pub mapping: MappingDesc,
+    /// Which channel gives the numbers of a texture of numbers. `None`: with the filters `Bilinear`
+    /// and `Trilinear` the opacity, or the mean of red, green and blue where the image is opaque;
+    /// with `Point` and `Ewa` the first channel.
+    pub channel: Option<ImageChannel>,
     /// How pixels are joined.
     pub filter: TextureFilter,
     /// Most elongated footprint that `Ewa` follows.
@@ -190,6 +194,7 @@ impl ImageTextureDesc {
         Self {
             image,
             mapping: MappingDesc::default(),
+            channel: None,
             filter: TextureFilter::Bilinear,
             max_anisotropy: 8.0,
             wrap: WrapMode::Repeat,
@@ -197,6 +202,19 @@ impl ImageTextureDesc {
             invert: false,
         }
     }
+}
+
+/// A channel of an image. A grey image has its one value as red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ImageChannel {
+    /// Red.
+    Red,
+    /// Green.
+    Green,
+    /// Blue.
+    Blue,
+    /// Opacity.
+    Alpha,
 }
 
 /// How pixels are joined.
@@ -214,7 +232,7 @@ pub enum TextureFilter {
 }
 
 /// What lies beyond an image.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum WrapMode {
     /// The image again.
     #[default]

@@ -14,6 +14,7 @@ pub mod flip;
 mod image;
 mod metadata;
 pub mod metrics;
+mod projection;
 mod pyramid;
 mod resample;
 mod wrap;
@@ -26,6 +27,7 @@ pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};
 pub use metadata::{Attribute, Chromaticities, ImageMetadata, Window};
+pub use projection::Projection;
 pub use pyramid::{Pyramid, TextureFilter};
 
 pub use wrap::WrapMode;

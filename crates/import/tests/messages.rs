@@ -16,6 +16,7 @@ fn messages(text: &str) -> Vec<String> {
         .with("empty.pbrt", "")
         .with("bad.ply", "ply\nformat ascii 1.0\nelement vertex 99999999\nproperty float x\nend_header\n0\n")
         .with("bad.png", "no image")
+        .with("good.pfm", "Pf\n1 1\n-1\n\0\0\0\0")
         .with("bad.spd", "400 1 500")
         .with("bad.dat", "1 2 x 4");
     let deep = |i: u32| format!("Include \"deep{}.pbrt\"", i + 1);
@@ -212,6 +213,14 @@ const IN_WORLD: &[(&str, &str)] = &[
     (
         r#"Texture "t" "spectrum" "imagemap" "string filename" "bad.png""#,
         "1:53 error[unreadable-image] cannot read the image `bad.png`: ",
+    ),
+    (
+        r#"Texture "t" "float" "imagemap" "string filename" "good.pfm" "string channel" "x""#,
+        "1:78 error[unknown-choice] `channel` cannot be `x`",
+    ),
+    (
+        r#"Texture "t" "spectrum" "imagemap" "string filename" "good.pfm" "string channel" "r""#,
+        "1:64 error[unknown-parameter] `imagemap` has no parameter `channel`",
     ),
     (
         r#"Shape "plymesh" "string filename" "bad.ply""#,

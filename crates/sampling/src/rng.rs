@@ -1,7 +1,7 @@
 //! Pseudo-random numbers: O'Neill's PCG32 (XSH-RR), with a 64-bit state and 2⁶³ sequences
 //! [O'Neill 2014].
 
-use crate::{mix_bits, unit_interval};
+use crate::hash::{mix_bits, unit_interval};
 
 const MULTIPLIER: u64 = 0x5851_f42d_4c95_7f2d;
 

@@ -8,6 +8,7 @@ use alhazen_scene::light::{LightId, LightSampleContext};
 use common::lights::*;
 use common::*;
 use description::{SceneDesc, ShapeDesc, ShapeKind, TransformDesc};
+use image::Projection;
 use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Moments, Random, welch_test};
@@ -86,12 +87,18 @@ fn samples_have_the_density_that_is_claimed() {
 fn samples_of_skies_have_the_density_that_is_claimed() {
     let from = references()[0];
     let light_from_render = Transform::from_f64(placement()).unwrap().inverse();
-    for case in infinite_lights() {
+    let cases = infinite_lights();
+    for case in &cases {
+        let (projection, bins) = if case.name.starts_with("panorama") {
+            (Projection::LatitudeLongitude, [16, 8])
+        } else {
+            (Projection::EqualArea, [8, 8])
+        };
         for incomplete in [false, true] {
             let light = case.light();
             let sample = |u| {
                 let sample = seen_sample(&case.scene, light, &from, u, incomplete)?;
-                Some(math::equal_area_sphere_to_square(light_from_render.vector(sample.wi)).to_array())
+                Some(projection.position(light_from_render.vector(sample.wi)).to_array())
             };
             if case.name == "sky" && incomplete {
                 assert!(sample([0.5; 2]).is_none() && light.pdf_li(&from, Vec3::Z, true) == 0.0);
@@ -99,10 +106,11 @@ fn samples_of_skies_have_the_density_that_is_claimed() {
             }
             // A cell of the square for each pixel: within it the density is constant.
             let density = |p: [f32; 2]| {
-                let w = light_from_render.inverse().vector(math::equal_area_square_to_sphere(p.into()));
-                4.0 * PI as f64 * light.pdf_li(&from, w.normalize(), incomplete) as f64
+                let w = light_from_render.inverse().vector(projection.direction(p.into()));
+                let solid_angle = 4.0 * PI as f64 * projection.solid_angle_density(p.into()) as f64;
+                solid_angle * light.pdf_li(&from, w.normalize(), incomplete) as f64
             };
-            Chi2 { bins: [8, 8], samples: 50_000, tests: 8, ..Chi2::default() }
+            Chi2 { bins, samples: 50_000, tests: 2 * cases.len(), ..Chi2::default() }
                 .rectangle([[0.0, 1.0]; 2], sample, density)
                 .unwrap_or_else(|e| panic!("{}, incomplete {incomplete}: {e}", case.name));
         }

@@ -162,9 +162,9 @@ fn images_that_serve_for_nothing_are_errors() {
     let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
     error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
     error(
-        &image_sky(rgb_image(4, 2, |_, _| [1.0; 3]), None),
+        &image_sky(rgb_image(4, 3, |_, _| [1.0; 3]), None),
         "image-shape",
-        "an infinite light wants a square image in the equal-area octahedral mapping, not 4 × 2",
+        "the image of an infinite light is square (equal-area octahedral) or twice as wide as high (latitude–longitude), not 4 × 3",
     );
     error(
         &image_sky(rgb_image(4, 4, |x, _| [if x == 2 { f32::NAN } else { 1.0 }; 3]), None),

@@ -10,7 +10,7 @@
 //! corners, or an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is
 //! sampled by solid angle ([Ureña et al. 2013]) and warped to follow the cosine there.
 
-use super::{ShapeHit, ShapeSample, ShapeSampleContext};
+use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{

@@ -5,7 +5,7 @@
 //! v has (1 − v)² of it ([Pharr 2016 §3.5]).
 
 use super::quadric::{Local, Quadric, first_hit, phi, revolved_roots, swept, unrounded};
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 

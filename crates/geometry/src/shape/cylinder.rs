@@ -4,7 +4,7 @@
 //! ([Pharr 2023 §6.3]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 

@@ -5,7 +5,7 @@
 //! concentrically, parts by uniform angle and uniform square of the radius ([Pharr 2023 §6.4]).
 
 use super::quadric::{Local, Quadric, between, phi, swept};
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 use sampling::warp::sample_uniform_disk_concentric;

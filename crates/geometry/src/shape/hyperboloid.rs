@@ -11,7 +11,7 @@
 //! ([Pharr 2016 §3.5]; [Press 2007 §9.4]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Point3, Ray, Transform, Vec2};
 

@@ -17,13 +17,16 @@ mod bilinear_patch;
 mod cone;
 mod cylinder;
 mod disk;
+mod extent;
 mod hyperboloid;
 mod implicit;
 mod level;
+mod mesh;
 mod moving_triangle;
 mod paraboloid;
 mod plane;
 mod quadric;
+mod sample;
 mod solid;
 mod sphere;
 mod triangle;
@@ -34,80 +37,18 @@ pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use hyperboloid::Hyperboloid;
 pub use implicit::{Formula, FormulaError, Implicit};
+pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub(crate) use quadric::first_root;
+pub use sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DirectionCone, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
-
-/// Where a ray meets a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShapeHit {
-    /// How far along the ray, in lengths of its direction.
-    pub t: f32,
-    /// The shape's parameters there.
-    pub uv: Vec2,
-}
-
-/// A point chosen on a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShapeSample {
-    /// Position, and how far it may be from the surface.
-    pub p: Point3Error,
-    /// Unit normal, on the side that the shape's orientation (or its shading normals) make the
-    /// outside.
-    pub n: Normal3,
-    /// Texture coordinates.
-    pub uv: Vec2,
-    /// Density: per area from [`Shape::sample`], per solid angle from [`Shape::sample_from`].
-    pub pdf: f32,
-}
-
-/// The point from which a shape is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShapeSampleContext {
-    /// Where, and how far that may be from the surface it lies on.
-    pub p: Point3Error,
-    /// Geometric normal there; zero where there is no surface.
-    pub n: Normal3,
-    /// Shading normal there; zero where there is no surface, or where light from all sides counts.
-    pub ns: Normal3,
-    /// Moment in the shutter's time.
-    pub time: f32,
-}
-
-impl ShapeSampleContext {
-    /// The ray that leaves along `w`.
-    #[inline]
-    pub fn spawn_ray(&self, w: Vector3) -> Ray {
-        Ray::spawn(self.p, self.n, w, self.time)
-    }
-
-    /// How many areas at `p` with normal `n` make one solid angle here: dA/dω = d²/|cos θ|.
-    fn area_per_solid_angle(&self, p: Vec3, n: Normal3) -> f32 {
-        let toward = p - self.p.p;
-        let distance2 = toward.length_squared();
-        distance2 * distance2.sqrt() / n.dot(toward).abs()
-    }
-
-    /// Turns a sample by area into one by solid angle; `None` when it is seen edge-on or from
-    /// itself.
-    fn seen(&self, sample: ShapeSample) -> Option<ShapeSample> {
-        let pdf = sample.pdf * self.area_per_solid_angle(sample.p.p, sample.n);
-        (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
-    }
-
-    /// Weights of the corners of the unit square that make samples follow the cosine at this point,
-    /// given directions to the corners; never quite zero.
-    fn cosine_weights(&self, corners: [Vector3; 4]) -> [f32; 4] {
-        corners.map(|w| (w.dot(self.ns) / w.length()).abs().max(0.01))
-    }
-}
+use math::{Bounds3, DirectionCone, Normal3, Point3, Ray, Vec2, Vec3, Vector3};
 
 /// Any shape.
 #[derive(Clone, Debug)]
@@ -258,7 +199,7 @@ impl Shape {
         };
         match special {
             Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
-            None => reference.seen(self.sample(u)?),
+            None => reference.by_solid_angle(self.sample(u)?),
         }
     }
 

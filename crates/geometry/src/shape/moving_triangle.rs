@@ -6,8 +6,9 @@
 //! follow the same way. All triangles at a vertex compute the same point, so that no ray slips
 //! between them. What moves has no one area and is not sampled.
 
-use super::{ShapeHit, ShapeSample, Triangle};
-use crate::mesh::TriangleMesh;
+use super::mesh::TriangleMesh;
+use super::sample::{ShapeHit, ShapeSample};
+use super::triangle::Triangle;
 use crate::surface::SurfacePoint;
 use crate::watertight::Sheared;
 use math::{Bounds3, Point3, Ray, Vec2, Vec3, gamma};

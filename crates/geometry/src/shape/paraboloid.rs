@@ -6,7 +6,7 @@
 //! ([Pharr 2016 §3.5]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 

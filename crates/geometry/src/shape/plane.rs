@@ -3,7 +3,7 @@
 //! p(u, v) = (u, v, 0). It has neither bounds nor a finite area, so that it cannot be sampled.
 
 use super::quadric::{Local, Quadric};
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 

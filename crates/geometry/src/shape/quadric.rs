@@ -5,8 +5,8 @@
 //! rounding, which the point's bounds cover: neither the distance of the ray's origin nor the
 //! shape's transform makes them grow.
 
+use super::sample::ShapeSample;
 use crate::placement::{Placement, ROUNDING};
-use crate::shape::ShapeSample;
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec2};
 
@@ -214,10 +214,10 @@ pub(super) fn first_hit(
     roots: [f64; 2],
     t_max: f32,
     parameters: impl Fn(f64) -> Option<Vec2>,
-) -> Option<crate::shape::ShapeHit> {
+) -> Option<super::sample::ShapeHit> {
     roots.into_iter().filter(|&t| t > 0.0 && (t as f32) < t_max).find_map(|t| {
         let uv = parameters(t)?;
-        Some(crate::shape::ShapeHit { t: t as f32, uv })
+        Some(super::sample::ShapeHit { t: t as f32, uv })
     })
 }
 

@@ -8,7 +8,7 @@
 //! 1/(2π(1 − cos θ_max)). All else is sampled by area ([Pharr 2023 §6.2]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
-use super::{ShapeHit, ShapeSample, ShapeSampleContext};
+use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::Placement;
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};

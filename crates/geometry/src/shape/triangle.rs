@@ -4,7 +4,7 @@
 //! ([Arvo 1995]), warped so that the samples follow the cosine at that point; where that solid
 //! angle is too small or too near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
 
-use super::{ShapeHit, ShapeSample, ShapeSampleContext};
+use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
 use crate::watertight::Sheared;

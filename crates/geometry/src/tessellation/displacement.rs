@@ -6,8 +6,8 @@
 //! and no crack opens ([Rivara 1984]). Normals are then those of the moved surface: at each vertex
 //! the mean of its triangles' normals.
 
-use super::{MOST_TRIANGLES, MeshArrays};
-use crate::mesh::MeshError;
+use super::arrays::{MAX_TRIANGLES, MeshArrays};
+use crate::shape::MeshError;
 use math::{Normal3, Point3, Transform, Vec2};
 use std::collections::HashMap;
 
@@ -71,7 +71,7 @@ impl Dicer<'_> {
     fn dice(mut self) -> Result<MeshArrays, MeshError> {
         let mut pending = std::mem::take(&mut self.mesh.indices);
         // Edges are never shorter than nothing, or than NaN.
-        if !(self.edge_length > 0.0 && self.least(&pending) <= MOST_TRIANGLES as f64) {
+        if !(self.edge_length > 0.0 && self.least(&pending) <= MAX_TRIANGLES as f64) {
             return Err(MeshError::TooLarge);
         }
         while let Some(corners) = pending.pop() {
@@ -79,8 +79,7 @@ impl Dicer<'_> {
                 self.mesh.indices.push(corners);
                 continue;
             };
-            if self.mesh.indices.len() + pending.len() > MOST_TRIANGLES || self.middles.len() > MOST_TRIANGLES
-            {
+            if self.mesh.indices.len() + pending.len() > MAX_TRIANGLES || self.middles.len() > MAX_TRIANGLES {
                 return Err(MeshError::TooLarge);
             }
             let [a, b, c] = [0, 1, 2].map(|i| corners[(longest + i) % 3]);

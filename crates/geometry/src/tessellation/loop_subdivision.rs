@@ -15,8 +15,8 @@
 //! Connectivity is kept by half-edges: number 3f + k leads from corner k of triangle f to the next;
 //! its twin leads back. Twins of a level follow from those of the level before.
 
-use super::{MOST_TRIANGLES, MeshArrays};
-use crate::mesh::MeshError;
+use super::arrays::{MAX_TRIANGLES, MeshArrays};
+use crate::shape::MeshError;
 use math::{DVec3, Point3};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -31,7 +31,7 @@ pub fn loop_subdivision(
     levels: u32,
 ) -> Result<MeshArrays, MeshError> {
     let triangles = 4usize.checked_pow(levels).and_then(|parts| parts.checked_mul(indices.len()));
-    if triangles.is_none_or(|n| n > MOST_TRIANGLES) {
+    if triangles.is_none_or(|n| n > MAX_TRIANGLES) {
         return Err(MeshError::TooLarge);
     }
     let mut mesh = Mesh::new(positions, indices)?;

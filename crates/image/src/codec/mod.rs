@@ -211,7 +211,8 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Writes a file that appears whole or not at all: it is written beside its final place and then
-/// moved there. A symbolic link is followed. What is no file, such as a pipe, is written as it is.
+/// moved there. Symbolic links are followed: their target is replaced, and they stay. What is no
+/// file, such as a pipe, is written as it is.
 pub fn replace_file_with<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,

@@ -9,20 +9,7 @@ use math::{Normal3, Point3, Ray, Vector3};
 use scene::light::{LightId, LightSampleContext};
 
 use super::Bidirectional;
-
-/// Densities at the light's end of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct LightEnd {
-    /// Density per solid angle with which the surface chooses the point, or direction, on the
-    /// light.
-    pub direct: f32,
-    /// Density per area and solid angle with which the light sends the ray.
-    pub emission: f32,
-    /// |cos| at the light's surface; 1 where it has none.
-    pub cos_theta: f32,
-    /// Whether rays cannot meet the light.
-    pub is_delta: bool,
-}
+use super::partial::LightEnd;
 
 /// A point on a light and its normal there, zero where it has none; `None` if the light is
 /// infinitely far away.

@@ -7,8 +7,8 @@ use sampling::sampler::PrimarySample;
 use sampling::{Sampler, hash, hash_float};
 use scene::{Scene, View};
 
-use super::MltSettings;
 use super::chain::{Acceptance, Chain, Steps, Streams};
+use super::settings::MltSettings;
 use super::target::{Contribution, Target};
 use crate::transport::Tracer;
 use crate::{Cancelled, Control};

@@ -25,8 +25,8 @@ use std::f32::consts::{PI, TAU};
 
 use super::form_factor::Received;
 use super::mesh::Mesh;
-use super::show::{first_solid, seen_side};
 use super::subdivide::Cut;
+use super::surfaces::{first_solid, seen_side};
 use crate::{Cancelled, Control};
 
 /// An element seen through this many pixels at least is cut by what they show.

@@ -51,16 +51,17 @@ mod domain;
 mod element;
 mod form_factor;
 mod hemicube;
+mod light_samples;
 mod mesh;
 mod ply;
 mod primitives;
+mod settings;
 mod shooting;
 mod show;
 mod subdivide;
+mod surfaces;
 #[cfg(test)]
 mod tests;
-
-use std::path::PathBuf;
 
 use film::{Film, FilmTile};
 use geometry::RayStats;
@@ -71,67 +72,14 @@ use scene::light_sampler::{LightSampler, LightSamplerKind};
 use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
+use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{ByProduct, Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, OutputFile};
 use bands::Bands;
 pub(crate) use described::{settings, warnings};
+pub use settings::{FormFactors, RadiositySettings};
 use shooting::Solution;
-use show::{Interpolation, Look};
-
-/// How form factors are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FormFactors {
-    /// By the closed form for polygons, with rays for what lies between.
-    Analytic,
-    /// By a hemicube.
-    Hemicube {
-        /// Pixels along an edge.
-        resolution: u32,
-    },
-}
-
-/// Settings of [`Radiosity`]; see there for units and defaults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RadiositySettings {
-    /// Most scattering events.
-    pub max_depth: u32,
-    /// How form factors are found.
-    pub form_factors: FormFactors,
-    /// Longest side of a patch, in scene units; a tenth of the scene's radius if `None`.
-    pub patch_size: Option<f32>,
-    /// How often an element may be quartered.
-    pub subdivision: u32,
-    /// The change of light across an element, in parts of what is there, above which it is
-    /// quartered.
-    pub gradient: f32,
-    /// Most elements.
-    pub max_patches: u32,
-    /// Share of light that need not be sent.
-    pub tolerance: f32,
-    /// Passes in which light is sent, one at least.
-    pub steps: u32,
-    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
-    pub gather: u32,
-    /// File for the elements with their radiosity as vertex colours.
-    pub mesh_out: Option<PathBuf>,
-}
-
-impl Default for RadiositySettings {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            form_factors: FormFactors::Analytic,
-            patch_size: None,
-            subdivision: 3,
-            gradient: 0.1,
-            max_patches: 50_000,
-            tolerance: 0.002,
-            steps: 8,
-            gather: 0,
-            mesh_out: None,
-        }
-    }
-}
+use show::{Interpolation, Shown};
 
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
@@ -139,6 +87,8 @@ pub struct Radiosity {
     sampler: Sampler,
     color_space: &'static RgbColorSpace,
     state: Option<State>,
+    /// Whether the last pass has put a draft on the film.
+    draft_is_shown: bool,
 }
 
 /// What is known of a scene.
@@ -202,21 +152,22 @@ impl State {
 impl Radiosity {
     /// With a mesh whose colours are those of `color_space`, if one is kept.
     pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
-        Self { settings, sampler, color_space, state: None }
+        Self { settings, sampler, color_space, state: None, draft_is_shown: false }
     }
 }
 
 impl Integrator for Radiosity {
     fn passes(&self) -> u32 {
-        self.settings.steps + self.sampler.samples_per_pixel()
+        self.sampler.samples_per_pixel()
     }
 
-    fn samples_per_pixel(&self) -> u32 {
-        self.sampler.samples_per_pixel()
+    fn drafts(&self) -> u32 {
+        self.settings.steps
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.state = Some(State::new(scene, view, &self.settings, control)?);
+        self.draft_is_shown = false;
         Ok(())
     }
 
@@ -235,8 +186,7 @@ impl Integrator for Radiosity {
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
-        let look =
-            Look { interpolation: &state.interpolation, view, solution: &state.solution, scene, control };
+        let shown = Shown { interpolation: &state.interpolation, solution: &state.solution };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
@@ -246,34 +196,36 @@ impl Integrator for Radiosity {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
                     let mut l = Bands::ZERO;
                     if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
-                        l = look.radiance(ray, &mut sampler, &mut stats)? * weight;
+                        let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
+                        l = shown.radiance(&mut tracer, ray) * weight;
+                        tracer.finish()?;
                     }
                     tile.add_groups(
                         [x, y],
                         l.groups(),
-                        look.solution.wavelengths.groups(),
+                        shown.solution.wavelengths.groups(),
                         sample.filter_weight,
                     );
                 }
             }
             Ok(stats)
         };
-        // A better solution makes a new picture, which takes the place of the old one when it is
-        // whole.
-        let mut better = (pass <= steps).then(|| film.blank());
+        // A better solution makes a new picture, which takes the place of a draft when it is whole.
+        let mut better = (pass < steps || self.draft_is_shown).then(|| film.blank());
         let tiles = better.as_mut().unwrap_or(film).tiles_mut();
         let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
         drawn.into_iter().for_each(|some| stats += some);
         if let Some(better) = better {
             *film = better;
         }
+        self.draft_is_shown = pass < steps;
         Ok(stats)
     }
 
-    fn by_products(&self) -> Vec<ByProduct> {
+    fn files(&self) -> Vec<OutputFile> {
         let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
         let file = self.settings.mesh_out.iter().zip(mesh);
-        file.map(|(path, mesh)| ByProduct::File(path.clone(), mesh.clone())).collect()
+        file.map(|(path, mesh)| OutputFile { path: path.clone(), contents: mesh.clone() }).collect()
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

@@ -4,10 +4,10 @@
 use rayon::prelude::*;
 use scene::{Scene, View};
 
-use super::RadiositySettings;
 use super::bands::Wavelengths;
 use super::element::{Element, Patch, Place};
 use super::mesh::Mesh;
+use super::settings::RadiositySettings;
 use crate::{Cancelled, Control};
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.

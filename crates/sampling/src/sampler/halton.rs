@@ -7,7 +7,7 @@
 //! number of samples is as good as any other, and beyond it the sequence goes on.
 //! [`Randomize::FastOwen`] is taken for [`Randomize::Owen`], as the short cut is for base 2.
 
-use super::Randomize;
+use super::randomize::Randomize;
 use crate::low_discrepancy::{
     DigitPermutations, PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, radical_inverse,
 };

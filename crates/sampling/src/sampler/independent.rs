@@ -1,7 +1,7 @@
 //! Uniform random numbers without any arrangement: the yardstick for the others.
 
-use super::hash;
 use crate::Rng;
+use crate::hash::hash;
 use math::Vec2;
 
 /// Uniform random numbers, any number of them.

@@ -5,7 +5,7 @@
 //! A number of samples that is no power of two is taken as it is; strata are then not filled
 //! evenly. Beyond it the sequence goes on.
 
-use super::{Randomize, pixel_hash, shuffled};
+use super::randomize::{Randomize, pixel_hash, shuffled};
 use math::Vec2;
 
 /// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel. A number of

@@ -6,8 +6,8 @@
 //! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
 //! sequence goes on.
 
-use super::Randomize;
-use crate::hash;
+use super::randomize::Randomize;
+use crate::hash::hash;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_bits};
 use math::Vec2;
 use std::sync::Arc;

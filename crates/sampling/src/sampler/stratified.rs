@@ -3,7 +3,7 @@
 //! own.
 
 use super::independent::pixel_rng;
-use super::{pixel_hash, shuffled};
+use super::randomize::{pixel_hash, shuffled};
 use crate::Rng;
 use math::{ONE_MINUS_EPSILON, Vec2};
 

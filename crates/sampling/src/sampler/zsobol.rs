@@ -7,7 +7,7 @@
 //! power of two is rounded up to one. Beyond it, each further round has scrambles and permutations
 //! of its own.
 
-use super::Randomize;
+use super::randomize::Randomize;
 use crate::{hash, mix_bits};
 use math::Vec2;
 

@@ -85,14 +85,14 @@ impl Compiler<'_> {
             MaterialKind::Conductor(conductor) => self.conductor(conductor, origin),
             MaterialKind::Dielectric { eta, roughness } => Material::Dielectric(DielectricMaterial {
                 eta: self.index_of_refraction(eta, origin),
-                roughness: self.roughness(roughness),
+                roughness: self.roughness(roughness, origin),
             }),
             MaterialKind::ThinDielectric { eta } => Material::ThinDielectric(ThinDielectricMaterial {
                 eta: self.index_of_refraction(eta, origin),
             }),
             MaterialKind::Mix { materials, amount } => Material::Mix(MixMaterial {
                 materials: materials.map(|handle| MaterialId(handle.index() as u32)),
-                amount: self.float_texture(amount),
+                amount: self.float_texture(amount, origin.parameter("amount")),
             }),
             MaterialKind::Interface => Material::Interface,
             MaterialKind::CoatedDiffuse(coated) => {
@@ -161,10 +161,19 @@ impl Compiler<'_> {
                 ConductorIndex::Reflectance(self.albedo(reflectance, "reflectance", origin))
             }
         };
-        Material::Conductor(ConductorMaterial { index, roughness: self.roughness(&desc.roughness) })
+        Material::Conductor(ConductorMaterial { index, roughness: self.roughness(&desc.roughness, origin) })
     }
 
-    fn roughness(&mut self, desc: &RoughnessDesc) -> Roughness {
-        Roughness { u: self.float_texture(&desc.u), v: self.float_texture(&desc.v), remap: desc.remap }
+    fn roughness(&mut self, desc: &RoughnessDesc, origin: &Origin) -> Roughness {
+        let [u, v] = [(&desc.u, "uroughness"), (&desc.v, "vroughness")].map(|(roughness, name)| {
+            let given = |name| origin.parameters.iter().find(|(given, _)| *given == name);
+            let span = given(name).or(given("roughness")).map_or(origin.span, |&(_, span)| span);
+            let texture = self.float_texture(roughness, span);
+            if let Some(value) = self.textures.textures().constant(texture).filter(|&value| value < 0.0) {
+                self.error("invalid-value", format!("roughness cannot be negative, but is {value}"), span);
+            }
+            texture
+        });
+        Roughness { u, v, remap: desc.remap }
     }
 }

@@ -100,9 +100,18 @@ pub fn sky(illuminance: Option<f32>) -> LightKind {
     LightKind::Infinite { radiance: InfiniteRadiance::Constant(white()), illuminance, portal: None }
 }
 
+/// A sky given by an equal-area image of `size` × `size` pixels.
 pub fn image_sky(size: u32, illuminance: Option<f32>, pixel: impl FnMut(u32, u32) -> [f32; 3]) -> SceneDesc {
+    image_sky_of([size, size], illuminance, pixel)
+}
+
+pub fn image_sky_of(
+    [width, height]: [u32; 2],
+    illuminance: Option<f32>,
+    pixel: impl FnMut(u32, u32) -> [f32; 3],
+) -> SceneDesc {
     let mut desc = free(sky(illuminance));
-    let image = desc.images.push(rgb_image(size, size, pixel));
+    let image = desc.images.push(rgb_image(width, height, pixel));
     for (_, light) in desc.lights.iter_mut() {
         let LightKind::Infinite { radiance, .. } = &mut light.kind else { continue };
         *radiance = InfiniteRadiance::Image(image);
@@ -195,6 +204,9 @@ pub fn infinite_lights() -> Vec<Case> {
         ("image sky", image_sky(8, None, colours)),
         ("image sky with a sun", image_sky(8, None, sun)),
         ("image sky of one colour", image_sky(8, None, |_, _| [0.5; 3])),
+        ("panorama", image_sky_of([16, 8], None, colours)),
+        ("panorama with a sun", image_sky_of([16, 8], None, sun)),
+        ("panorama of one colour", image_sky_of([16, 8], None, |_, _| [0.5; 3])),
     ];
     cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
 }

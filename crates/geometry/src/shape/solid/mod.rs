@@ -11,15 +11,12 @@
 //! There is no way to choose a point evenly on such a surface, so that it has no area to be sampled
 //! by.
 
-mod extent;
 mod part;
 
-pub(super) use extent::{Crossing, Extent};
-
+use super::extent::{Crossing, Span};
 use super::implicit::Formula;
-use super::{ShapeHit, ShapeSample};
+use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
-use extent::Span;
 use math::{Bounds3, Point3, Ray, Transform, Vec2};
 use part::{Part, Profile};
 

@@ -4,11 +4,11 @@
 //! paraboloid, hyperboloid, closed by flat ends. Without a profile it is all that lies between the
 //! heights. The body of a formula is where F < 0 in its box, closed by the sides of the box.
 
-use super::super::implicit::{Body, Formula, Root, reach};
-use super::super::level::Level;
-use super::super::quadric::{Quadric, revolved_roots, unrounded};
-use super::extent::{Crossing, Extent, Span};
 use crate::placement::ROUNDING;
+use crate::shape::extent::{Crossing, Extent, Span};
+use crate::shape::implicit::{Body, Formula, Root, reach};
+use crate::shape::level::Level;
+use crate::shape::quadric::{Quadric, revolved_roots, unrounded};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DMat3, DVec3, Ray, Transform};
 

@@ -1,8 +1,8 @@
 //! Textures of numbers and of spectra, by one reader over both.
 
 use description::{
-    Arena, EncodingDesc, Handle, ImageTextureDesc, MappingDesc, Parameter, SceneDesc, SpectrumDesc, Stated,
-    TextureDesc, TextureFilter, TextureKind, WrapMode,
+    Arena, EncodingDesc, Handle, ImageChannel, ImageTextureDesc, MappingDesc, Parameter, SceneDesc,
+    SpectrumDesc, Stated, TextureDesc, TextureFilter, TextureKind, WrapMode,
 };
 use math::Vec3;
 
@@ -18,6 +18,8 @@ trait TextureValue: Clone {
     fn constant(value: f32) -> Self;
     fn value(reader: &mut Reader, name: &'static str, default: f32) -> Self;
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self>;
+    /// Which channel of an image counts; for numbers only.
+    fn channel(reader: &mut Reader) -> Option<ImageChannel>;
     /// Members of the set that only this kind has.
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>>;
 }
@@ -48,6 +50,16 @@ impl TextureValue for f32 {
 
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self> {
         reader.float_parameter(name, default)
+    }
+
+    fn channel(reader: &mut Reader) -> Option<ImageChannel> {
+        let channels = [
+            ("r", Some(ImageChannel::Red)),
+            ("g", Some(ImageChannel::Green)),
+            ("b", Some(ImageChannel::Blue)),
+            ("a", Some(ImageChannel::Alpha)),
+        ];
+        reader.choice("channel", None, &channels)
     }
 
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>> {
@@ -90,6 +102,10 @@ impl TextureValue for SpectrumDesc {
 
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self> {
         reader.spectrum_parameter(name, default)
+    }
+
+    fn channel(_: &mut Reader) -> Option<ImageChannel> {
+        None
     }
 
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>> {
@@ -152,7 +168,7 @@ fn kind<V: TextureValue>(reader: &mut Reader) -> Option<TextureKind<V>> {
                 .map(|(name, default)| V::value(reader, name, default)),
             mapping: mapping(reader),
         },
-        "imagemap" => TextureKind::Image(image(reader)?),
+        "imagemap" => TextureKind::Image(image::<V>(reader)?),
         "checkerboard" => {
             let dimension = reader.integer("dimension", 2, 2..=3);
             // A texture of numbers alternates 1 and 0 by default, as one of spectra does.
@@ -190,7 +206,7 @@ fn octaves(reader: &mut Reader) -> (i32, f32) {
     (reader.integer("octaves", 8, 1..=64), reader.float("roughness", 0.5))
 }
 
-fn image(reader: &mut Reader) -> Option<ImageTextureDesc> {
+fn image<V: TextureValue>(reader: &mut Reader) -> Option<ImageTextureDesc> {
     let encoding = encoding(reader);
     let mapping = mapping(reader);
     let filter = reader.choice(
@@ -216,13 +232,14 @@ fn image(reader: &mut Reader) -> Option<ImageTextureDesc> {
     );
     let max_anisotropy = reader.positive("maxanisotropy", 8.0);
     let (scale, invert) = (reader.float("scale", 1.0), reader.boolean("invert", false));
+    let channel = V::channel(reader);
     let Some(image) = reader.image("filename", encoding) else {
         if !reader.has("filename") {
             reader.missing("filename");
         }
         return None;
     };
-    Some(ImageTextureDesc { image, mapping, filter, max_anisotropy, wrap, scale, invert })
+    Some(ImageTextureDesc { image, mapping, channel, filter, max_anisotropy, wrap, scale, invert })
 }
 
 fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {

@@ -31,7 +31,7 @@ use techniques::Techniques;
 
 use crate::bidirectional::{Balance, Bidirectional, Found, Lights, OnTheWay};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{ByProduct, Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator};
 
 /// Settings of [`Bdpt`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,7 +155,11 @@ impl Integrator for Bdpt {
         })
     }
 
-    fn by_products(&self) -> Vec<ByProduct> {
-        self.techniques.pictures()
+    fn films(&self) -> Vec<(String, &Film)> {
+        self.techniques.films().collect()
+    }
+
+    fn set_films(&mut self, films: Vec<(String, Film)>) {
+        self.techniques.set_films(films);
     }
 }

@@ -9,7 +9,6 @@
 use film::{Film, SPLAT_BYTES, Splatter};
 use spectrum::SampledSpectrum;
 
-use crate::ByProduct;
 use crate::bidirectional::Found;
 
 /// Paths of more scattering events are not seen apart: the number of strategies grows with the
@@ -49,16 +48,22 @@ impl Techniques {
         }
     }
 
-    /// The films' pictures.
-    pub fn pictures(&self) -> Vec<ByProduct> {
-        let films = [(&self.unweighted, ""), (&self.weighted, "-weighted")];
-        let pictures =
-            films.into_iter().flat_map(|(films, suffix)| {
-                films.iter().flatten().zip(strategies(self.max_depth)).map(move |(film, (s, t))| {
-                    ByProduct::Picture(format!("s{s}-t{t}{suffix}"), film.develop())
-                })
-            });
-        pictures.collect()
+    /// The films with their names, once there are any.
+    pub fn films(&self) -> impl Iterator<Item = (String, &Film)> {
+        let kinds = [(&self.unweighted, ""), (&self.weighted, "-weighted")];
+        kinds.into_iter().flat_map(|(films, suffix)| {
+            let named = films.iter().flatten().zip(strategies(self.max_depth));
+            named.map(move |(film, (s, t))| (format!("s{s}-t{t}{suffix}"), film))
+        })
+    }
+
+    /// Goes on with these films, which [`films`](Self::films) has given.
+    pub fn set_films(&mut self, films: Vec<(String, Film)>) {
+        let mut films = films.into_iter().map(|(_, film)| film);
+        let count = strategies(self.max_depth).count();
+        for kind in self.unweighted.iter_mut().chain(&mut self.weighted) {
+            *kind = films.by_ref().take(count).collect();
+        }
     }
 }
 

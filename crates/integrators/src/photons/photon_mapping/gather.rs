@@ -17,12 +17,14 @@
 //! later: rays leave the diffuse surface along directions of its BSDF, and where each meets a
 //! surface that is not purely specular the map tells all that it reflects.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use math::{RayDifferential, Vec2};
 use scattering::{Bsdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Maps, PhotonMappingSettings, Reach};
+use super::settings::PhotonMappingSettings;
 use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
@@ -33,14 +35,48 @@ use crate::transport::path_state::{PathState, Scattered, throughput};
 /// Photons count where the cosine between their surface's normal and the point's is at least this.
 const SAME_SURFACE: f32 = 0.7;
 
+/// The photons of a pass.
+#[derive(Debug, Default)]
+pub(super) struct PhotonMaps {
+    pub caustic: PhotonMap,
+    pub global: PhotonMap,
+}
+
+/// The mean of the radii of estimates, which does not depend on the order of threads.
+#[derive(Debug)]
+pub(super) struct MeanRadius {
+    pub largest: f32,
+    sum: AtomicU64,
+    count: AtomicU64,
+}
+
+impl MeanRadius {
+    /// A unit in parts of the largest radius: sums of integers do not depend on their order.
+    const UNIT: f32 = 1.0 / 4096.0;
+
+    pub fn new(largest: f32) -> Self {
+        Self { largest, sum: AtomicU64::new(0), count: AtomicU64::new(0) }
+    }
+
+    fn add(&self, radius: f32) {
+        self.sum.fetch_add((radius / (self.largest * Self::UNIT)) as u64, Ordering::Relaxed);
+        self.count.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub fn mean(&self) -> f64 {
+        let (sum, count) = (self.sum.load(Ordering::Relaxed), self.count.load(Ordering::Relaxed));
+        sum as f64 / count.max(1) as f64 * f64::from(self.largest * Self::UNIT)
+    }
+}
+
 /// Gathers light along rays.
 pub(super) struct Gather<'a> {
     /// What finds direct light.
     pub direct: &'a DirectLighting,
-    pub maps: &'a Maps,
+    pub maps: &'a PhotonMaps,
     pub settings: &'a PhotonMappingSettings,
     pub neighbourhood: Neighbourhood,
-    pub reach: &'a Reach,
+    pub mean_radius: &'a MeanRadius,
 }
 
 /// What is still to be found along a ray.
@@ -207,7 +243,7 @@ impl Gather<'_> {
         let Some((l, radius)) = map.density(s.p.p, &self.neighbourhood, accept, weigh) else {
             return SampledSpectrum::ZERO;
         };
-        self.reach.add(radius);
+        self.mean_radius.add(radius);
         l
     }
 }

@@ -33,9 +33,9 @@
 
 mod emission;
 mod gather;
+mod settings;
 
 use std::ops::AddAssign;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use film::Film;
 use geometry::RayStats;
@@ -46,51 +46,16 @@ use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
 use crate::photons::photon::Photon;
-use crate::photons::photon_map::{Kernel, Neighbourhood, PhotonMap};
+use crate::photons::photon_map::{Neighbourhood, PhotonMap};
 use crate::transport::Tracer;
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, Integrator};
+pub use settings::PhotonMappingSettings;
+
 use emission::{Emission, Kind};
-use gather::Gather;
-
-/// Settings of [`PhotonMapping`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PhotonMappingSettings {
-    /// Most scattering events of a path; default 5.
-    pub max_depth: u32,
-    /// Light subpaths for the global map in each pass; default 200 000.
-    pub photons: u32,
-    /// Light subpaths for the caustic map in each pass; default 100 000.
-    pub caustic_photons: u32,
-    /// How many of the nearest photons make an estimate; default 50.
-    pub nearest: u32,
-    /// The farthest that they may be away, in scene units; by default 3 % of the radius of the
-    /// sphere around the scene.
-    pub radius: Option<f32>,
-    /// How they are weighed.
-    pub kernel: Kernel,
-    /// Rays of a final gather; default 0, for none.
-    pub gather: u32,
-    /// Whether the picture shows the photons themselves.
-    pub show_photons: bool,
-}
-
-impl Default for PhotonMappingSettings {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            photons: 200_000,
-            caustic_photons: 100_000,
-            nearest: 50,
-            radius: None,
-            kernel: Kernel::default(),
-            gather: 0,
-            show_photons: false,
-        }
-    }
-}
+use gather::{Gather, MeanRadius, PhotonMaps};
 
 /// Photon mapping.
 #[derive(Debug)]
@@ -102,14 +67,7 @@ pub struct PhotonMapping {
     direct: DirectLighting,
     radius: f32,
     tally: Tally,
-    reach: Reach,
-}
-
-/// The photons of a pass.
-#[derive(Debug, Default)]
-struct Maps {
-    caustic: PhotonMap,
-    global: PhotonMap,
+    mean_radius: MeanRadius,
 }
 
 /// What the maps have held.
@@ -136,39 +94,12 @@ impl AddAssign for Tally {
     }
 }
 
-/// The radii of estimates, in parts of the largest.
-#[derive(Debug)]
-struct Reach {
-    largest: f32,
-    sum: AtomicU64,
-    count: AtomicU64,
-}
-
-impl Reach {
-    /// One part: fine enough for a mean, and whole numbers, whose sum has no order.
-    const PART: f32 = 1.0 / 4096.0;
-
-    fn new(largest: f32) -> Self {
-        Self { largest, sum: AtomicU64::new(0), count: AtomicU64::new(0) }
-    }
-
-    fn add(&self, radius: f32) {
-        self.sum.fetch_add((radius / (self.largest * Self::PART)) as u64, Ordering::Relaxed);
-        self.count.fetch_add(1, Ordering::Relaxed);
-    }
-
-    fn mean(&self) -> f64 {
-        let (sum, count) = (self.sum.load(Ordering::Relaxed), self.count.load(Ordering::Relaxed));
-        sum as f64 / count.max(1) as f64 * f64::from(self.largest * Self::PART)
-    }
-}
-
 impl PhotonMapping {
     /// With a sampler for the camera's rays, and a seed for photons.
     pub fn new(settings: PhotonMappingSettings, sampler: Sampler, photon_seed: u32) -> Self {
         let (lights, direct) = (Lights::none(), DirectLighting::none());
-        let (tally, reach) = (Tally::default(), Reach::new(1.0));
-        Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, reach }
+        let (tally, mean_radius) = (Tally::default(), MeanRadius::new(1.0));
+        Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, mean_radius }
     }
 
     /// How the global map's photons are used tells which ones it needs.
@@ -177,7 +108,7 @@ impl PhotonMapping {
     }
 
     /// Emits the photons of a pass.
-    fn maps(&self, emission: &Emission, control: &Control) -> Result<(Maps, RayStats), Cancelled> {
+    fn maps(&self, emission: &Emission, control: &Control) -> Result<(PhotonMaps, RayStats), Cancelled> {
         let map = |kind, paths| {
             let (photons, stats) = emission.emit(kind, paths, control, |vertex, _| Photon::at(vertex))?;
             Ok((PhotonMap::build(photons, paths, control)?, stats))
@@ -185,7 +116,7 @@ impl PhotonMapping {
         let (caustic, mut stats) = map(Kind::Caustic, self.settings.caustic_photons)?;
         let (global, global_stats) = map(self.global_kind(), self.settings.photons)?;
         stats += global_stats;
-        Ok((Maps { caustic, global }, stats))
+        Ok((PhotonMaps { caustic, global }, stats))
     }
 
     /// Draws the photons as dots, a white one that has lost nothing at white.
@@ -228,7 +159,7 @@ impl Integrator for PhotonMapping {
         self.lights = Lights::of(scene);
         self.direct = DirectLighting::new(scene, LightSamplerKind::Bvh, Interfaces::Stop);
         self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
-        self.reach = Reach::new(self.radius);
+        self.mean_radius = MeanRadius::new(self.radius);
         control.check()
     }
 
@@ -264,8 +195,8 @@ impl Integrator for PhotonMapping {
             radius: self.radius,
             kernel: settings.kernel,
         };
-        let (direct, reach) = (&self.direct, &self.reach);
-        let gather = Gather { direct, maps: &maps, settings, neighbourhood, reach };
+        let (direct, mean_radius) = (&self.direct, &self.mean_radius);
+        let gather = Gather { direct, maps: &maps, settings, neighbourhood, mean_radius };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
         stats += pixels.add_at(Some(&shutter), film.tiles_mut(), control, |sample, tracer| {
@@ -288,7 +219,7 @@ impl Integrator for PhotonMapping {
             return vec![("photons", photons)];
         }
         let mebibytes = largest_memory as f64 / f64::from(1 << 20);
-        let (mean, largest) = (self.reach.mean(), self.reach.largest);
+        let (mean, largest) = (self.mean_radius.mean(), self.mean_radius.largest);
         vec![
             ("photons", format!("{photons}; {mebibytes:.1} MiB")),
             ("radius", format!("{mean:.3} in the mean, {largest:.3} at most")),

@@ -1,6 +1,6 @@
 //! Triangles that share vertices.
 
-use crate::shape::Triangle;
+use super::triangle::Triangle;
 use lanes::prefetch;
 use math::{Bounds3, Normal3, Point3, Transform, Vec2, Vector3};
 use std::fmt;
