@@ -46,7 +46,8 @@ const FIRST_ESTIMATE: u32 = 16;
 pub struct Progress {
     /// Passes done, drafts included.
     pub pass: u32,
-    /// Passes to do in all: an estimate where the limit is time or noise.
+    /// Passes to do in all: an estimate where the limit is time or noise, `u32::MAX` where it is not
+    /// known yet.
     pub passes: u32,
     /// Pixel samples taken by this session.
     pub samples: u64,
@@ -270,7 +271,7 @@ impl Session {
         let passes = [by_time, by_noise].into_iter().flatten().fold(planned, f64::min).max(done).ceil();
         Progress {
             pass: self.drafts + self.state.done.count(),
-            passes: self.integrator.drafts() + passes as u32,
+            passes: self.integrator.drafts().saturating_add(passes as u32),
             samples: u64::from(self.passes) * self.state.film.pixel_bounds().area() as u64,
             stats: self.stats,
             elapsed: self.elapsed,
