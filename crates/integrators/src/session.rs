@@ -325,8 +325,8 @@ struct Stopwatch<'a> {
 /// sixteenth more are done. It depends on nothing else, so that a render that was resumed ends as
 /// one that was not.
 fn is_estimated_after(passes: u32) -> bool {
-    let step = (1 << passes.max(1).ilog2().saturating_sub(4)).max(2);
-    passes >= FIRST_ESTIMATE && passes % step == 0
+    let step = (1_u32 << passes.max(1).ilog2().saturating_sub(4)).max(2);
+    passes >= FIRST_ESTIMATE && passes.is_multiple_of(step)
 }
 
 /// The noise of the mean of two independent pictures of so many passes each.
