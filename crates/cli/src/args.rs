@@ -212,7 +212,7 @@ pub struct Compare {
     pub integrators: Vec<Contender>,
     /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each
     /// algorithm renders two pictures, from different seeds, so that noise and bias can be told
-    /// apart. Samplers `stratified` and `paddedsobol` are as uneven as `independent` here.
+    /// apart.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Samples per pixel of each picture.
