@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use description::schema::Settings;
 use description::{CameraKind, Diagnostic, SceneDesc};
 use film::Film;
 use image::{Attribute, Image, ImageMetadata};
@@ -12,7 +13,7 @@ use integrators::{ByProduct, Cancelled, Control, Integrator, RenderReport};
 use scene::{Scene, View};
 
 use crate::sketch::Sketch;
-use crate::{OverrideError, Overrides, integrator_name, sampler_name};
+use crate::{OverrideError, Overrides};
 
 /// Everything that one render needs, and the film that holds what it has found so far.
 pub struct Job {
@@ -168,8 +169,8 @@ fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Header {
         (ImageMetadata::SOFTWARE, Attribute::Text(concat!("alhazen ", env!("CARGO_PKG_VERSION")).into())),
         (ImageMetadata::WORLD_TO_CAMERA, Attribute::Matrix(transform)),
         ("camera", Attribute::Text(camera)),
-        ("integrator", Attribute::Text(integrator_name(&desc.integrator).into())),
-        ("sampler", Attribute::Text(sampler_name(&desc.sampler.kind).into())),
+        ("integrator", Attribute::Text(desc.integrator.name().into())),
+        ("sampler", Attribute::Text(desc.sampler.name().into())),
         ("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32)),
         ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
     ])

@@ -19,15 +19,12 @@ pub use spectrum;
 
 pub mod compare;
 mod job;
-mod names;
 mod overrides;
 mod picture;
 mod settings;
 mod sketch;
-mod values;
 
 pub use job::{CompiledJob, Header, Job, RenderError, render_file};
-pub use names::{INTEGRATORS, integrator_name, sampler_name};
 pub use overrides::{OverrideError, Overrides};
 pub use picture::write_picture;
-pub use settings::{SETTINGS, Setting};
+pub use settings::{Group, PARTS, Part, integrator_names};

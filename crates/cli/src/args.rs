@@ -7,6 +7,8 @@ use alhazen::Overrides;
 use alhazen::compare::Contender;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::help;
+
 /// Renders scenes by following light.
 #[derive(Debug, Parser)]
 #[command(name = "alhazen", version = env!("ALHAZEN_VERSION"), subcommand_required = true)]
@@ -320,15 +322,7 @@ pub struct Man {
 }
 
 fn render_long_help() -> String {
-    let mut text = String::from("Algorithms:\n");
-    for name in alhazen::INTEGRATORS {
-        text += &format!("  {name}\n");
-    }
-    text += "\nSettings:\n";
-    for setting in &alhazen::SETTINGS {
-        text += &format!("  {:<18} {}\n", setting.name, setting.help);
-    }
-    text + "\n" + EXIT_CODES
+    help::settings() + "\n" + EXIT_CODES
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {

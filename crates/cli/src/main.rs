@@ -6,6 +6,7 @@ mod compare;
 mod console;
 mod diagnostics;
 mod failure;
+mod help;
 mod image;
 mod inspect;
 mod interrupt;

@@ -5,11 +5,12 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use alhazen::description::schema::Settings;
 use alhazen::description::{IntegratorDesc, RadiosityDesc, SceneDesc};
 use alhazen::image::{Image, replace_file};
 use alhazen::import::{Files, Imported, import};
 use alhazen::integrators::{ByProduct, Control, FilmSink, Progress};
-use alhazen::{Header, Job, integrator_name, write_picture};
+use alhazen::{Header, Job, write_picture};
 
 use crate::args::Render;
 use crate::bar::Bar;
@@ -104,7 +105,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         outputs: &outputs,
         beside: &beside,
         notes: &job.summary(),
-        integrator: integrator_name(&imported.desc.integrator),
+        integrator: imported.desc.integrator.name(),
         samples_per_pixel: job.samples_per_pixel(),
         film: job.film(),
         progress: last,
@@ -159,8 +160,8 @@ pub fn scene_failure(imported: Imported) -> Failure {
 /// Where the picture goes if the command line does not say: where the scene's film says, else to
 /// the scene's name with the extension of OpenEXR, in the current folder.
 fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
-    let said = &desc.film.filename;
-    let path = if said.span.is_none() { named_after(scene, "exr") } else { PathBuf::from(&said.value) };
+    let is_stated = desc.film.origin.states("filename");
+    let path = if is_stated { PathBuf::from(&desc.film.filename) } else { named_after(scene, "exr") };
     output::check(&path).map_err(|problem| {
         Failure::Input(format!("{problem}\nThe scene names this output; `-o FILE` names another."))
     })?;

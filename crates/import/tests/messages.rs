@@ -72,7 +72,7 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Sampler "sobol" "integer pixelsamples" 0"#,
-        "1:17 error[parameter-value] `pixelsamples` must be at least 1",
+        "1:17 error[parameter-value] `pixelsamples` is a whole number of 1 or more, not 0",
     ),
     (
         r#"Sampler "sobol" "integer seed" 1 "integer seed" 2"#,

@@ -9,9 +9,10 @@ use scene::{Scene, View};
 use super::measure::{measure, reference_noise};
 use super::twins::Twins;
 use super::{
-    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup, said,
+    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
+    settings,
 };
-use crate::settings::settings_of;
+use crate::settings::listed;
 use crate::{OverrideError, Overrides};
 
 /// The samples per pixel that samplers are made for where time is the limit.
@@ -95,7 +96,7 @@ impl Laboratory {
             budget: plan.budget,
             seed: desc.sampler.seed.unwrap_or(desc.options.seed),
             threads: plan.threads,
-            filter: said::filter(&desc.filter),
+            filter: listed(&desc.filter.value),
             changes: changes(&plan.overrides),
         };
         let reference = match plan.reference {
@@ -279,8 +280,8 @@ fn run(
     let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
     Some(Run {
         name: entry.name.clone(),
-        settings: settings_of(&entry.desc.integrator),
-        sampler: said::sampler(&entry.desc.sampler.kind),
+        settings: listed(&entry.desc.integrator.value).split_off(1),
+        sampler: settings::of_sampler(&entry.desc.sampler.kind),
         notes: twins.notes(),
         checkpoints,
         pictures,

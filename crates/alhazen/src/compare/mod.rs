@@ -22,7 +22,7 @@ mod json;
 mod laboratory;
 mod measure;
 mod page;
-mod said;
+mod settings;
 mod twins;
 
 use std::fmt;
@@ -34,7 +34,7 @@ use image::Image;
 pub use contender::Contender;
 pub use laboratory::Laboratory;
 pub use measure::{Bias, Measure, Parts, ReferenceNoise};
-pub use said::Settings;
+pub use settings::Settings;
 
 use crate::Overrides;
 

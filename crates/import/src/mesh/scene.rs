@@ -8,7 +8,7 @@ use std::sync::Arc;
 use description::{
     AreaLightDesc, CameraDesc, CameraKind, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance,
     Diagnostic, Handle, ImageTextureDesc, InfiniteRadiance, IntegratorDesc, LensDesc, LightDesc, LightKind,
-    LightSamplerDesc, MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind,
+    MaterialDesc, MaterialKind, PathDesc, RoughnessDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind,
     SourceMap, Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
 };
 use math::{DMat4, DVec3};
@@ -179,9 +179,8 @@ fn look_at_all(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     }
     .into();
     desc.film.resolution = [640, 480];
-    desc.integrator =
-        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh }.into();
-    desc.sampler.pixel_samples = 64;
+    desc.integrator = IntegratorDesc::Path(PathDesc::default()).into();
+    desc.sampler.kind.set_samples_per_pixel(64);
     let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(0.5));
     desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
     let sun = LightKind::Distant {

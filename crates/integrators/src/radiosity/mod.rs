@@ -74,7 +74,7 @@ use spectrum::RgbColorSpace;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{ByProduct, Cancelled, Control, Integrator};
 use bands::Bands;
-pub(crate) use described::{settings, warnings};
+pub(crate) use described::warnings;
 use shooting::Solution;
 use show::{Interpolation, Look};
 

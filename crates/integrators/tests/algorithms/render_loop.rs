@@ -7,8 +7,9 @@ use std::sync::{Arc, Mutex};
 
 use alhazen_integrators::{Cancelled, Control, PixelLoop, Progress, RayIntegrator, Tracer, build, render};
 use description::{
-    IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc,
-    SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
+    AmbientOcclusionDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc, PathDesc,
+    PhotonMappingDesc, PhotonMappingShow, RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc,
+    SimplePathDesc, SppmDesc, VcmDesc, WhittedDesc,
 };
 use film::Film;
 use geometry::RayStats;
@@ -24,9 +25,12 @@ fn balls() -> SceneDesc {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [40, 24];
     desc.film.save_fp16 = false;
-    desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent, pixel_samples: 4, seed: Some(1) };
-    desc.integrator.value =
-        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh };
+    desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 4 }, seed: Some(1) };
+    desc.integrator.value = IntegratorDesc::Path(PathDesc {
+        max_depth: 5,
+        regularize: false,
+        light_sampler: LightSamplerDesc::Bvh,
+    });
     white_sky(&mut desc);
     let material = diffuse(&mut desc, 0.5);
     desc.shapes.push(ShapeDesc { material, ..at(sphere(1.0), v(-1.0, 0.0, 3.0)) });
@@ -59,10 +63,13 @@ fn threads_never_change_a_bit() {
     let integrators = [
         balls().integrator.value,
         IntegratorDesc::RayCasting,
-        IntegratorDesc::Whitted { max_depth: 5 },
-        IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY },
-        IntegratorDesc::RandomWalk { max_depth: 5 },
-        IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+        IntegratorDesc::Whitted(WhittedDesc { max_depth: 5 }),
+        IntegratorDesc::AmbientOcclusion(AmbientOcclusionDesc {
+            cos_sample: true,
+            max_distance: f32::INFINITY,
+        }),
+        IntegratorDesc::RandomWalk(RandomWalkDesc { max_depth: 5 }),
+        IntegratorDesc::SimplePath(SimplePathDesc { max_depth: 5, sample_lights: true, sample_bsdf: true }),
         IntegratorDesc::PhotonMapping(photons.clone()),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 2, ..photons.clone() }),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { show: PhotonMappingShow::Photons, ..photons }),
@@ -105,7 +112,7 @@ fn a_render_stopped_between_passes_is_one_of_fewer_passes() {
     let (stopped, result) = picture(&balls(), 2, &control);
     assert_eq!(result, Err(Cancelled));
     let mut short = balls();
-    short.sampler.pixel_samples = 2;
+    short.sampler.kind.set_samples_per_pixel(2);
     // Differentials follow the number of samples; without textures they do not matter.
     assert!(bits(&stopped) == bits(&picture(&short, 2, &Control::default()).0));
 }
@@ -170,7 +177,7 @@ fn what_has_not_begun_has_nothing_to_tell() {
 #[test]
 fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
     let mut desc = balls();
-    desc.integrator = IntegratorDesc::LightTracing { max_depth: 3 }.into();
+    desc.integrator = IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 3 }).into();
     let ((scene, view), mut film) = (viewed(&desc), empty_film(&desc));
     let mut integrator = build(&desc).unwrap().integrator;
     let report = render(&mut *integrator, &scene, &view, &mut film, &Control::default()).unwrap();
