@@ -48,7 +48,7 @@ settings! {
 
 settings! {
     /// Settings of Whitted's ray tracing.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WhittedDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -57,7 +57,7 @@ settings! {
 
 settings! {
     /// Settings of ambient occlusion.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct AmbientOcclusionDesc {
         /// Sample directions by the cosine (less noise) instead of uniformly.
         cos_sample: bool = true => ["cossample"];
@@ -69,7 +69,7 @@ settings! {
 
 settings! {
     /// Settings of the random walk.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct RandomWalkDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -78,7 +78,7 @@ settings! {
 
 settings! {
     /// Settings of the simple path tracer.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SimplePathDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -106,7 +106,7 @@ choices! {
 
 settings! {
     /// Settings of path tracing.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PathDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -119,7 +119,7 @@ settings! {
 
 settings! {
     /// Settings of the simple path tracer for media.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SimpleVolPathDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -128,7 +128,7 @@ settings! {
 
 settings! {
     /// Settings of light tracing.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct LightTracingDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -137,7 +137,7 @@ settings! {
 
 settings! {
     /// Settings of bidirectional path tracing.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BdptDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -164,7 +164,7 @@ choices! {
 
 settings! {
     /// Settings of Metropolis light transport.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct MltDesc {
         /// The sampling technique whose paths the chains mutate.
         technique: MltTechnique = MltTechnique::Bdpt => ["technique"];
@@ -209,7 +209,7 @@ choices! {
 
 settings! {
     /// Settings of photon mapping.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PhotonMappingDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -232,7 +232,7 @@ settings! {
 
 settings! {
     /// Settings of stochastic progressive photon mapping.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SppmDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
@@ -248,7 +248,7 @@ settings! {
 
 settings! {
     /// Settings of vertex connection and merging.
-    #[derive(Clone, Debug, PartialEq)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct VcmDesc {
         /// Most scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];

@@ -2,23 +2,20 @@
 
 use description::schema::Settings;
 use description::{
-    BdptDesc, Diagnostic, FormFactorsDesc, HaltonRandomization, IntegratorDesc, LightSamplerDesc, MltDesc,
-    PathDesc, PhotonKernel, PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, Randomization, SamplerKind,
-    SceneDesc, SimplePathDesc, SppmDesc, VcmDesc,
+    BdptDesc, Diagnostic, HaltonRandomization, IntegratorDesc, LightSamplerDesc, PathDesc, Randomization,
+    SamplerKind, SceneDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
 use scene::Interfaces;
-use scene::light_sampler::LightSamplerKind;
 use scene::texture::color_space;
 
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::light_paths::endless;
 use crate::radiosity;
 use crate::{
-    AmbientOcclusion, Bdpt, BdptSettings, FormFactors, Integrator, Kernel, LightTracing, Mlt, MltSettings,
-    Path, PathSettings, PhotonMapping, PhotonMappingSettings, PixelLoop, Radiosity, RadiositySettings,
-    RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, SppmSettings, Vcm, VcmSettings, Whitted,
+    AmbientOcclusion, Bdpt, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping, PixelLoop,
+    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, Whitted,
 };
 
 /// What [`build`] gives.
@@ -113,69 +110,61 @@ impl Builder<'_> {
     }
 
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
-        match &self.desc.integrator.value {
+        let color_space = color_space(self.desc.film.color_space);
+        match self.desc.integrator.value.clone() {
             IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
-            IntegratorDesc::Whitted(desc) => pixels(Whitted { max_depth: desc.max_depth }, sampler),
+            IntegratorDesc::Whitted(desc) => pixels(Whitted(desc), sampler),
             IntegratorDesc::AmbientOcclusion(desc) => {
-                let color_space = color_space(self.desc.film.color_space);
-                pixels(AmbientOcclusion::new(desc.cos_sample, desc.max_distance, color_space), sampler)
+                pixels(AmbientOcclusion::new(desc, color_space), sampler)
             }
-            IntegratorDesc::RandomWalk(desc) => pixels(RandomWalk { max_depth: desc.max_depth }, sampler),
-            &IntegratorDesc::SimplePath(SimplePathDesc { max_depth, sample_lights, sample_bsdf }) => {
-                pixels(SimplePath { max_depth, sample_lights, sample_bsdf }, sampler)
-            }
+            IntegratorDesc::RandomWalk(desc) => pixels(RandomWalk(desc), sampler),
+            IntegratorDesc::SimplePath(desc) => pixels(SimplePath(desc), sampler),
             IntegratorDesc::Path(desc) => self.path(desc, Interfaces::Stop, sampler),
             IntegratorDesc::VolPath(desc) => self.path(desc, Interfaces::Pass, sampler),
-            IntegratorDesc::SimpleVolPath(desc) => self.instead_of("simplevolpath", desc.max_depth, sampler),
+            IntegratorDesc::SimpleVolPath(desc) => self.instead(desc.max_depth, sampler),
             IntegratorDesc::LightTracing(desc) => {
                 self.diagnostics.extend(endless::warnings(self.desc, "light-tracing"));
                 let light_sampler = self.light_sampler(&sampler);
-                Box::new(LightTracing::new(desc.max_depth, sampler, light_sampler))
+                Box::new(LightTracing::new(desc, sampler, light_sampler))
             }
-            &IntegratorDesc::Bdpt(BdptDesc {
-                max_depth,
-                regularize,
-                visualize_strategies,
-                visualize_weights,
-            }) => {
-                let settings = BdptSettings {
-                    max_depth,
-                    regularize,
-                    unweighted: visualize_strategies,
-                    weighted: visualize_weights,
-                };
+            IntegratorDesc::Bdpt(desc) => {
                 let light_sampler = self.light_sampler(&sampler);
-                let bdpt = Bdpt::new(settings, sampler, light_sampler);
-                self.techniques(&settings, &bdpt);
+                let bdpt = Bdpt::new(desc, sampler, light_sampler);
+                self.techniques(&desc, &bdpt);
                 Box::new(bdpt)
             }
-            IntegratorDesc::Mlt(desc) => self.mlt(desc, sampler),
+            IntegratorDesc::Mlt(desc) => {
+                let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
+                Box::new(Mlt::new(desc, sampler, seed))
+            }
             IntegratorDesc::PhotonMapping(desc) => {
                 self.diagnostics.extend(endless::warnings(self.desc, "photon-mapping"));
-                let settings = self.photon_mapping(desc);
-                Box::new(PhotonMapping::new(settings, sampler, self.photon_seed(None)))
+                Box::new(PhotonMapping::new(desc, sampler, self.photon_seed(None)))
             }
-            &IntegratorDesc::Vcm(VcmDesc { max_depth, radius, alpha }) => {
-                let settings = VcmSettings { max_depth, radius, alpha, ..VcmSettings::default() };
+            IntegratorDesc::Vcm(desc) => {
                 let light_sampler = self.light_sampler(&sampler);
-                Box::new(Vcm::new(settings, sampler, light_sampler, self.photon_seed(None)))
+                let seed = self.photon_seed(None);
+                Box::new(Vcm::new(desc, [sampler, light_sampler], seed, MAX_PHOTON_PATHS))
             }
-            &IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed }) => {
+            IntegratorDesc::Sppm(desc) => {
                 self.diagnostics.extend(endless::warnings(self.desc, "sppm"));
-                let settings = SppmSettings { max_depth, photons_per_iteration, radius };
-                Box::new(Sppm::new(settings, sampler, self.photon_seed(seed)))
+                Box::new(Sppm::new(desc, sampler, self.photon_seed(desc.seed)))
             }
-            IntegratorDesc::Radiosity(desc) => self.radiosity(desc, sampler),
-            IntegratorDesc::Function(_) => self.instead_of("function", 5, sampler),
+            IntegratorDesc::Radiosity(desc) => {
+                self.diagnostics.extend(radiosity::warnings(self.desc));
+                Box::new(Radiosity::new(desc, sampler, color_space))
+            }
+            IntegratorDesc::Function(_) => self.instead(PathDesc::default().max_depth, sampler),
         }
     }
 
     /// Tells which strategies' pictures are left out, and refuses those that take too much memory.
-    fn techniques(&mut self, settings: &BdptSettings, bdpt: &Bdpt) {
-        if !(settings.unweighted || settings.weighted) {
+    fn techniques(&mut self, settings: &BdptDesc, bdpt: &Bdpt) {
+        if !(settings.visualize_strategies || settings.visualize_weights) {
             return;
         }
-        let parameter = if settings.unweighted { "visualizestrategies" } else { "visualizeweights" };
+        let parameter =
+            if settings.visualize_strategies { "visualizestrategies" } else { "visualizeweights" };
         if settings.max_depth > MAX_DEPTH {
             let message = format!(
                 "of paths with more than {MAX_DEPTH} scattering events no pictures of strategies are made"
@@ -194,79 +183,22 @@ impl Builder<'_> {
         }
     }
 
-    fn photon_mapping(&mut self, desc: &PhotonMappingDesc) -> PhotonMappingSettings {
-        PhotonMappingSettings {
-            max_depth: desc.max_depth,
-            photons: desc.photons,
-            caustic_photons: desc.caustic_photons,
-            nearest: desc.nearest,
-            radius: desc.radius,
-            kernel: match desc.kernel {
-                PhotonKernel::Cone => Kernel::Cone,
-                PhotonKernel::Epanechnikov => Kernel::Epanechnikov,
-            },
-            gather: desc.gather,
-            show_photons: desc.show == PhotonMappingShow::Photons,
-        }
-    }
-
-    fn mlt(&mut self, desc: &MltDesc, sampler: Sampler) -> Box<dyn Integrator> {
-        let settings = MltSettings {
-            technique: desc.technique,
-            max_depth: desc.max_depth,
-            regularize: desc.regularize,
-            bootstrap_samples: desc.bootstrap_samples,
-            chains: desc.chains,
-            mutations_per_pixel: desc.mutations_per_pixel,
-            large_step_probability: desc.large_step_probability,
-            sigma: desc.sigma,
-        };
-        let seed = self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32;
-        Box::new(Mlt::new(settings, sampler, seed))
-    }
-
-    fn radiosity(&mut self, desc: &RadiosityDesc, sampler: Sampler) -> Box<dyn Integrator> {
-        self.diagnostics.extend(radiosity::warnings(self.desc));
-        let settings = RadiositySettings {
-            max_depth: desc.max_depth,
-            form_factors: match desc.form_factors {
-                FormFactorsDesc::Analytic => FormFactors::Analytic,
-                FormFactorsDesc::Hemicube => FormFactors::Hemicube { resolution: desc.hemicube_resolution },
-            },
-            patch_size: desc.patch_size,
-            subdivision: desc.subdivision,
-            gradient: desc.gradient,
-            max_patches: desc.max_patches,
-            tolerance: desc.tolerance,
-            steps: desc.steps,
-            gather: desc.gather,
-            mesh_out: desc.mesh_out.as_ref().map(Into::into),
-        };
-        Box::new(Radiosity::new(settings, sampler, color_space(self.desc.film.color_space)))
-    }
-
-    /// Path tracing where the author asked for something else.
-    fn instead_of(&mut self, name: &str, max_depth: u32, sampler: Sampler) -> Box<dyn Integrator> {
+    /// Path tracing instead of what the author asked for.
+    fn instead(&mut self, max_depth: u32, sampler: Sampler) -> Box<dyn Integrator> {
+        let name = self.desc.integrator.name();
         let message = format!("integrator `{name}` is not drawn yet; drawn as `path`");
         let span = self.desc.integrator.origin.span;
         self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
-        self.path(&PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass, sampler)
+        self.path(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass, sampler)
     }
 
-    fn path(&mut self, desc: &PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
-        let light_sampler = match desc.light_sampler {
-            LightSamplerDesc::Uniform => LightSamplerKind::Uniform,
-            LightSamplerDesc::Power => LightSamplerKind::Power,
-            LightSamplerDesc::Bvh => LightSamplerKind::Bvh,
-            LightSamplerDesc::Exhaustive => {
-                let message = "light sampler `exhaustive` is not drawn yet; drawn with `bvh`";
-                let span = self.desc.integrator.origin.parameter("lightsampler");
-                self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
-                LightSamplerKind::Bvh
-            }
-        };
-        let PathDesc { max_depth, regularize, .. } = *desc;
-        pixels(Path::new(PathSettings { max_depth, regularize, light_sampler, interfaces }), sampler)
+    fn path(&mut self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
+        if desc.light_sampler == LightSamplerDesc::Exhaustive {
+            let message = "light sampler `exhaustive` is not drawn yet; drawn with `bvh`";
+            let span = self.desc.integrator.origin.parameter("lightsampler");
+            self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
+        }
+        pixels(Path::new(desc, interfaces), sampler)
     }
 }
 

@@ -44,8 +44,8 @@ use scene::light_sampler::{LightSampler, LightSamplerKind, PowerLightSampler};
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
+pub use bdpt::Bdpt;
 pub(crate) use bdpt::techniques;
-pub use bdpt::{Bdpt, BdptSettings};
 pub(crate) use connect::Found;
 pub(crate) use light_vertex::LightVertex;
 pub(crate) use partial::{Balance, Merges, Partial};

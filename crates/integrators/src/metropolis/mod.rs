@@ -49,11 +49,10 @@ mod chain;
 mod chains;
 mod target;
 
-use description::MltTechnique;
+use description::{MltDesc, MltTechnique, PathDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
-use scene::light_sampler::LightSamplerKind;
 use scene::{Interfaces, Scene, View};
 use spectrum::SampledSpectrum;
 
@@ -62,35 +61,12 @@ use target::{CameraPaths, ConnectedPaths, FilmDomain, Target};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, Path, PathSettings, RayIntegrator};
-
-/// Settings of [`Mlt`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MltSettings {
-    /// What makes paths; default `Bdpt`.
-    pub technique: MltTechnique,
-    /// Most scattering events; default 5.
-    pub max_depth: u32,
-    /// Roughen surfaces after the first rough one of each subpath; default false.
-    pub regularize: bool,
-    /// Most paths among which the chains of a pass choose their starts, above 0; default 100,000.
-    /// No more are looked at than a quarter of the pass's mutations.
-    pub bootstrap_samples: u32,
-    /// Most chains of a pass, above 0; default 1000. None has fewer than 256 mutations, but where
-    /// the picture is smaller.
-    pub chains: u32,
-    /// Passes, each of as many mutations as there are pixels; default 100.
-    pub mutations_per_pixel: u32,
-    /// Probability of a large step, from 0 to 1; default 0.3.
-    pub large_step_probability: f32,
-    /// Standard deviation of a small step in each coordinate, above 0; default 0.01.
-    pub sigma: f32,
-}
+use crate::{Cancelled, Control, Integrator, Path, RayIntegrator};
 
 /// Metropolis light transport.
 #[derive(Debug)]
 pub struct Mlt {
-    settings: MltSettings,
+    settings: MltDesc,
     /// Of the camera rays that see lights.
     sampler: Sampler,
     /// Paths that do not scatter.
@@ -108,14 +84,10 @@ enum Technique {
 
 impl Mlt {
     /// With a sampler of the camera rays that see lights.
-    pub fn new(settings: MltSettings, sampler: Sampler, seed: u32) -> Self {
+    pub fn new(settings: MltDesc, sampler: Sampler, seed: u32) -> Self {
         let path = |max_depth| {
-            Path::new(PathSettings {
-                max_depth,
-                regularize: settings.regularize,
-                light_sampler: LightSamplerKind::Bvh,
-                interfaces: Interfaces::Stop,
-            })
+            let regularize = settings.regularize;
+            Path::new(PathDesc { max_depth, regularize, ..PathDesc::default() }, Interfaces::Stop)
         };
         let technique = match settings.technique {
             MltTechnique::Path => Technique::Path(path(settings.max_depth)),
@@ -146,7 +118,7 @@ impl Integrator for Mlt {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
-        let MltSettings { max_depth, regularize, .. } = self.settings;
+        let MltDesc { max_depth, regularize, .. } = self.settings;
         let filter = film.filter().clone();
         let mutations = film.pixel_bounds().area();
         let (tiles, splatter) = film.tiles_and_splatter();

@@ -40,7 +40,7 @@
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
 //! third of the variance; behind a door, light seeps under it then.
 //!
-//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 180 bytes for each of
+//! At most [`MAX_PHOTON_PATHS`] paths of a pass leave photons, which bounds memory: 180 bytes for each of
 //! at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they are
 //! sorted. In larger pictures the other pixels make their light subpaths when they need them.
 //!
@@ -48,6 +48,7 @@
 //! consistent. Depth of field and motion are right, because all paths of a pass have one time.
 //! Sources: [Georgiev 2012]; [Georgiev 2012b]; [Hachisuka 2012]; [Grittmann 2021].
 
+use description::VcmDesc;
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -66,31 +67,14 @@ use crate::{Cancelled, Control, Integrator};
 /// times the bias, squared, in 64 passes.
 const SHARE_OF_SCENE: f32 = 0.003;
 
-/// Settings of [`Vcm`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VcmSettings {
-    /// Most scattering events; default 5.
-    pub max_depth: u32,
-    /// Distance in the scene within which vertices are merged in the first pass, above 0; by
-    /// default 0.003 of the scene's radius.
-    pub radius: Option<f32>,
-    /// How slowly the radius shrinks, in (0, 1]: its square goes with i^(α − 1) over the passes i;
-    /// default 0.75.
-    pub alpha: f32,
-    /// Most light subpaths that leave photons in a pass, above 0; default 2¹⁹.
-    pub photon_paths: usize,
-}
-
-impl Default for VcmSettings {
-    fn default() -> Self {
-        Self { max_depth: 5, radius: None, alpha: 0.75, photon_paths: 1 << 19 }
-    }
-}
+/// Most light subpaths of a pass that leave photons, which bounds memory.
+pub const MAX_PHOTON_PATHS: usize = 1 << 19;
 
 /// Vertex connection and merging.
 #[derive(Debug)]
 pub struct Vcm {
-    settings: VcmSettings,
+    settings: VcmDesc,
+    photon_paths: usize,
     sampler: Sampler,
     light_sampler: Sampler,
     glints: Glints,
@@ -100,11 +84,18 @@ pub struct Vcm {
 }
 
 impl Vcm {
-    /// With a sampler for each end of what is connected, and a seed for photons and glints.
-    pub fn new(settings: VcmSettings, sampler: Sampler, light_sampler: Sampler, photon_seed: u32) -> Self {
+    /// With a sampler for each end of what is connected, a seed for photons and glints, and the most
+    /// light subpaths of a pass that leave photons, above 0; [`MAX_PHOTON_PATHS`] is usual.
+    pub fn new(
+        settings: VcmDesc,
+        [sampler, light_sampler]: [Sampler; 2],
+        photon_seed: u32,
+        photon_paths: usize,
+    ) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
         let glints = Glints::new(sampler.samples_per_pixel(), !photon_seed);
-        Self { settings, sampler, light_sampler, glints, photon_seed, lights: Lights::none(), merging }
+        let lights = Lights::none();
+        Self { settings, photon_paths, sampler, light_sampler, glints, photon_seed, lights, merging }
     }
 }
 
@@ -131,7 +122,7 @@ impl Integrator for Vcm {
     ) -> Result<RayStats, Cancelled> {
         let bounds = film.pixel_bounds();
         let pixel_count = bounds.area();
-        let photon_paths = pixel_count.min(self.settings.photon_paths);
+        let photon_paths = pixel_count.min(self.photon_paths);
         let paths = Bidirectional {
             scene,
             view,

@@ -25,20 +25,6 @@
 //! as their elements are large. `max_depth` counts as in all algorithms: light that was scattered
 //! more often is missing.
 //!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `max_depth` | most scattering events, up to 100 | 5 |
-//! | `form_factors` | `analytic` or `hemicube` | analytic |
-//! | `hemicube_resolution` | pixels along an edge of the hemicube | 128 |
-//! | `patch_size` | longest side of a patch, in scene units | a tenth of the scene's radius |
-//! | `subdivision` | how often an element may be quartered | 3 |
-//! | `gradient` | change of light across an element, in parts of what is there, above which it is quartered | 0.1 |
-//! | `max_patches` | most elements, and twice the number of primitives that are cut | 50 000 |
-//! | `tolerance` | share of light that need not be sent | 0.002 |
-//! | `steps` | passes in which light is sent | 8 |
-//! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
-//! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
-//!
 //! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering
 //! event more, and again 2 kB if it is cut. Where there are more primitives than half of
 //! `max_patches`, [lights and the largest](primitives) are cut; the rest is lit, as what has no
@@ -60,8 +46,7 @@ mod subdivide;
 #[cfg(test)]
 mod tests;
 
-use std::path::PathBuf;
-
+use description::RadiosityDesc;
 use film::{Film, FilmTile};
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -78,64 +63,9 @@ pub(crate) use described::warnings;
 use shooting::Solution;
 use show::{Interpolation, Look};
 
-/// How form factors are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FormFactors {
-    /// By the closed form for polygons, with rays for what lies between.
-    Analytic,
-    /// By a hemicube.
-    Hemicube {
-        /// Pixels along an edge.
-        resolution: u32,
-    },
-}
-
-/// Settings of [`Radiosity`]; see there for units and defaults.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RadiositySettings {
-    /// Most scattering events.
-    pub max_depth: u32,
-    /// How form factors are found.
-    pub form_factors: FormFactors,
-    /// Longest side of a patch, in scene units; a tenth of the scene's radius if `None`.
-    pub patch_size: Option<f32>,
-    /// How often an element may be quartered.
-    pub subdivision: u32,
-    /// The change of light across an element, in parts of what is there, above which it is
-    /// quartered.
-    pub gradient: f32,
-    /// Most elements.
-    pub max_patches: u32,
-    /// Share of light that need not be sent.
-    pub tolerance: f32,
-    /// Passes in which light is sent, one at least.
-    pub steps: u32,
-    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
-    pub gather: u32,
-    /// File for the elements with their radiosity as vertex colours.
-    pub mesh_out: Option<PathBuf>,
-}
-
-impl Default for RadiositySettings {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            form_factors: FormFactors::Analytic,
-            patch_size: None,
-            subdivision: 3,
-            gradient: 0.1,
-            max_patches: 50_000,
-            tolerance: 0.002,
-            steps: 8,
-            gather: 0,
-            mesh_out: None,
-        }
-    }
-}
-
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
-    settings: RadiositySettings,
+    settings: RadiosityDesc,
     sampler: Sampler,
     color_space: &'static RgbColorSpace,
     state: Option<State>,
@@ -159,7 +89,7 @@ impl State {
     fn new(
         scene: &Scene,
         view: &View,
-        settings: &RadiositySettings,
+        settings: &RadiosityDesc,
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let solution = Solution::new(scene, view, settings, control)?;
@@ -178,7 +108,7 @@ impl State {
         color_space: &RgbColorSpace,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
-        let RadiositySettings { steps, tolerance, gather, .. } = self.solution.settings;
+        let RadiosityDesc { steps, tolerance, gather, .. } = self.solution.settings;
         let mut stats = RayStats::default();
         while self.sent < steps.min(pass + 1) {
             let share = tolerance.powf((self.sent + 1) as f32 / steps as f32);
@@ -201,7 +131,7 @@ impl State {
 
 impl Radiosity {
     /// With a mesh whose colours are those of `color_space`, if one is kept.
-    pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
+    pub fn new(settings: RadiosityDesc, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
         Self { settings, sampler, color_space, state: None }
     }
 }
@@ -273,7 +203,7 @@ impl Integrator for Radiosity {
     fn by_products(&self) -> Vec<ByProduct> {
         let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
         let file = self.settings.mesh_out.iter().zip(mesh);
-        file.map(|(path, mesh)| ByProduct::File(path.clone(), mesh.clone())).collect()
+        file.map(|(path, mesh)| ByProduct::File(path.into(), mesh.clone())).collect()
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Integrator, Vcm, VcmSettings, build, render};
+use alhazen_integrators::{Cancelled, Control, Integrator, Vcm, build, render};
 use description::{
     BdptDesc, CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc,
     ScreenDesc, ShapeDesc, SpectrumDesc, SppmDesc, TextureDesc, TextureKind, TransformDesc, VcmDesc,
@@ -206,9 +206,8 @@ fn pixels_whose_light_subpaths_leave_no_photons_see_the_same() {
         let mut film = film::compile(&desc).unwrap().film;
         let sampler = Sampler::Independent(Independent::new(8, seed));
         let light_sampler = Sampler::Independent(Independent::new(8, seed + 100));
-        let settings =
-            VcmSettings { max_depth: 3, radius: Some(0.4), photon_paths: 7, ..VcmSettings::default() };
-        let mut vcm = Vcm::new(settings, sampler, light_sampler, seed);
+        let settings = VcmDesc { max_depth: 3, radius: Some(0.4), ..VcmDesc::default() };
+        let mut vcm = Vcm::new(settings, [sampler, light_sampler], seed, 7);
         render(&mut vcm, &scene, &view, &mut film, &Control::default()).unwrap();
         assert!(vcm.summary()[0].1.contains("from 7 paths"));
         means.push(mean(&film));

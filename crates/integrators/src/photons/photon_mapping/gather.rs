@@ -17,12 +17,13 @@
 //! later: rays leave the diffuse surface along directions of its BSDF, and where each meets a
 //! surface that is not purely specular the map tells all that it reflects.
 
+use description::PhotonMappingDesc;
 use math::{RayDifferential, Vec2};
 use scattering::{Bsdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Maps, PhotonMappingSettings, Reach};
+use super::{Maps, Reach};
 use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
@@ -38,7 +39,7 @@ pub(super) struct Gather<'a> {
     /// What finds direct light.
     pub direct: &'a DirectLighting,
     pub maps: &'a Maps,
-    pub settings: &'a PhotonMappingSettings,
+    pub settings: &'a PhotonMappingDesc,
     pub neighbourhood: Neighbourhood,
     pub reach: &'a Reach,
 }

@@ -37,6 +37,7 @@ mod gather;
 use std::ops::AddAssign;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use description::{PhotonMappingDesc, PhotonMappingShow};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -46,7 +47,7 @@ use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
 use crate::photons::photon::Photon;
-use crate::photons::photon_map::{Kernel, Neighbourhood, PhotonMap};
+use crate::photons::photon_map::{Neighbourhood, PhotonMap};
 use crate::transport::Tracer;
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
@@ -55,47 +56,10 @@ use crate::{Cancelled, Control, Integrator};
 use emission::{Emission, Kind};
 use gather::Gather;
 
-/// Settings of [`PhotonMapping`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PhotonMappingSettings {
-    /// Most scattering events of a path; default 5.
-    pub max_depth: u32,
-    /// Light subpaths for the global map in each pass; default 200 000.
-    pub photons: u32,
-    /// Light subpaths for the caustic map in each pass; default 100 000.
-    pub caustic_photons: u32,
-    /// How many of the nearest photons make an estimate; default 50.
-    pub nearest: u32,
-    /// The farthest that they may be away, in scene units; by default 3 % of the radius of the
-    /// sphere around the scene.
-    pub radius: Option<f32>,
-    /// How they are weighed.
-    pub kernel: Kernel,
-    /// Rays of a final gather; default 0, for none.
-    pub gather: u32,
-    /// Whether the picture shows the photons themselves.
-    pub show_photons: bool,
-}
-
-impl Default for PhotonMappingSettings {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            photons: 200_000,
-            caustic_photons: 100_000,
-            nearest: 50,
-            radius: None,
-            kernel: Kernel::default(),
-            gather: 0,
-            show_photons: false,
-        }
-    }
-}
-
 /// Photon mapping.
 #[derive(Debug)]
 pub struct PhotonMapping {
-    settings: PhotonMappingSettings,
+    settings: PhotonMappingDesc,
     sampler: Sampler,
     photon_seed: u32,
     lights: Lights,
@@ -165,7 +129,7 @@ impl Reach {
 
 impl PhotonMapping {
     /// With a sampler for the camera's rays, and a seed for photons.
-    pub fn new(settings: PhotonMappingSettings, sampler: Sampler, photon_seed: u32) -> Self {
+    pub fn new(settings: PhotonMappingDesc, sampler: Sampler, photon_seed: u32) -> Self {
         let (lights, direct) = (Lights::none(), DirectLighting::none());
         let (tally, reach) = (Tally::default(), Reach::new(1.0));
         Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, reach }
@@ -251,9 +215,9 @@ impl Integrator for PhotonMapping {
         };
         let shutter = ShutterSample::of_pass(view, self.photon_seed, pass);
         // Photons that are shown stay, and their colours become right over the passes.
-        let generation = if settings.show_photons { 0 } else { pass };
+        let generation = if settings.show == PhotonMappingShow::Photons { 0 } else { pass };
         let emission = Emission { paths: &paths, shutter, seed: self.photon_seed, generation };
-        if settings.show_photons {
+        if settings.show == PhotonMappingShow::Photons {
             let (tally, stats) = self.draw(&emission, film, control)?;
             self.tally += tally;
             return Ok(stats);
@@ -284,7 +248,7 @@ impl Integrator for PhotonMapping {
         }
         let (global, caustic) = (global / passes, caustic / passes);
         let photons = format!("{global} in the global map of a pass, {caustic} in its caustic map");
-        if self.settings.show_photons {
+        if self.settings.show == PhotonMappingShow::Photons {
             return vec![("photons", photons)];
         }
         let mebibytes = largest_memory as f64 / f64::from(1 << 20);
