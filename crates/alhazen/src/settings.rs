@@ -24,24 +24,24 @@ pub struct Group {
 
 /// The parts of a scene that have settings.
 pub static PARTS: [Part; 7] = [
-    Part { name: "integrator", members: members::<IntegratorDesc>, of: |desc| parts(&mut desc.integrator) },
-    Part { name: "sampler", members: members::<SamplerDesc>, of: |desc| parts(&mut desc.sampler) },
-    Part { name: "filter", members: members::<FilterDesc>, of: |desc| parts(&mut desc.filter) },
-    Part { name: "film", members: members::<FilmDesc>, of: |desc| parts(&mut desc.film) },
-    Part { name: "camera", members: members::<CameraDesc>, of: |desc| parts(&mut desc.camera) },
+    Part { name: "integrator", members: members::<IntegratorDesc>, of: |desc| split(&mut desc.integrator) },
+    Part { name: "sampler", members: members::<SamplerDesc>, of: |desc| split(&mut desc.sampler) },
+    Part { name: "filter", members: members::<FilterDesc>, of: |desc| split(&mut desc.filter) },
+    Part { name: "film", members: members::<FilmDesc>, of: |desc| split(&mut desc.film) },
+    Part { name: "camera", members: members::<CameraDesc>, of: |desc| split(&mut desc.camera) },
     Part {
         name: "accelerator",
         members: members::<AcceleratorDesc>,
-        of: |desc| parts(&mut desc.accelerator),
+        of: |desc| split(&mut desc.accelerator),
     },
-    Part { name: "options", members: members::<OptionsDesc>, of: |desc| parts(&mut desc.options) },
+    Part { name: "options", members: members::<OptionsDesc>, of: |desc| split(&mut desc.options) },
 ];
 
 fn members<T: Settings + Clone>() -> Vec<Group> {
     T::members().iter().map(|desc| Group { member: desc.member(), settings: desc.settings() }).collect()
 }
 
-fn parts<T: Settings>(stated: &mut Stated<T>) -> (&mut dyn Settings, &mut Origin) {
+fn split<T: Settings>(stated: &mut Stated<T>) -> (&mut dyn Settings, &mut Origin) {
     (&mut stated.value, &mut stated.origin)
 }
 

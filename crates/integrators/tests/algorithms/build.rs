@@ -43,7 +43,7 @@ fn what_is_drawn_is_drawn_without_a_word() {
 #[test]
 fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
     let found = warnings(IntegratorDesc::SimpleVolPath(SimpleVolPathDesc { max_depth: 5 }));
-    assert_eq!(messages(&found), ["integrator `simplevolpath` is not drawn yet; drawn as `path`"]);
+    assert_eq!(messages(&found), ["integrator `simple-vol-path` is not drawn yet; drawn as `path`"]);
     let light_sampler = LightSamplerDesc::Exhaustive;
     let found = warnings(IntegratorDesc::Path(PathDesc { max_depth: 5, regularize: false, light_sampler }));
     assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
