@@ -2,42 +2,26 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
-use description::schema::Settings;
-use description::{CameraKind, Diagnostic, SceneDesc};
+use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc};
 use film::Film;
-use image::{Attribute, Image, ImageMetadata};
+use image::Image;
 use import::{AssetSource, Imported};
-use integrators::{ByProduct, Cancelled, Control, Integrator, RenderReport};
-use scene::{Scene, View};
+use integrators::{Cancelled, Control, Limits, Session, SessionState, Stop};
+use scene::View;
 
 use crate::sketch::Sketch;
-use crate::{OverrideError, Overrides};
+use crate::{Header, OverrideError, Overrides};
 
-/// Everything that one render needs, and the film that holds what it has found so far.
+/// Everything that one render needs: a [`Session`] and what to write about it.
 pub struct Job {
-    scene: Scene,
-    view: View,
-    film: Film,
-    integrator: Box<dyn Integrator>,
+    /// The render. Its passes are the samples of each pixel.
+    pub session: Session,
     header: Header,
     sketch: Option<Sketch>,
-}
-
-/// What the header of a picture says: the scene's camera, and settings.
-#[derive(Clone, Debug)]
-pub struct Header(Vec<(&'static str, Attribute)>);
-
-impl Header {
-    /// The picture on a film, with this in its header.
-    pub fn picture(&self, film: &Film) -> Image {
-        let mut picture = film.develop();
-        for (name, value) in &self.0 {
-            picture.metadata.set(name, value.clone());
-        }
-        picture
-    }
+    planned: u32,
+    /// Whether samples depend on how many are planned.
+    is_arranged: bool,
 }
 
 /// What [`Job::compile`] gives.
@@ -53,71 +37,86 @@ impl Job {
     /// it.
     pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
         let view = View::compile(desc, scene::world_from_render(desc));
-        let compiled = (view, scene::compile(desc), film::compile(desc), integrators::build(desc));
-        let (view, scene, film, built) = match compiled {
-            (Ok(view), Ok(scene), Ok(film), Ok(built)) => (view, scene, film, built),
-            (view, scene, film, built) => {
-                let said = [
-                    view.map_or_else(|errors| errors, |view| view.warnings),
-                    scene.map_or_else(|errors| errors, |scene| scene.warnings),
-                    film.map_or_else(|errors| errors, |film| film.warnings),
-                    built.map_or_else(|errors| errors, |built| built.warnings),
-                ];
-                return Err(said.concat());
-            }
+        let parts = (scene::compile(desc), view, film::compile(desc), integrators::build(desc));
+        let (Ok(scene), Ok(view), Ok(film), Ok(built)) = parts else {
+            let (scene, view, film, built) = parts;
+            let diagnostics = [
+                scene.map_or_else(|errors| errors, |scene| scene.warnings),
+                view.map_or_else(|errors| errors, |view| view.warnings),
+                film.map_or_else(|errors| errors, |film| film.warnings),
+                built.map_or_else(|errors| errors, |built| built.warnings),
+            ];
+            return Err(diagnostics.concat());
         };
-        let warnings = [view.warnings, scene.warnings, film.warnings, built.warnings].concat();
-        let (scene, view, film, integrator) = (scene.scene, view.view, film.film, built.integrator);
-        let header = header(desc, integrator.samples_per_pixel());
+        let warnings = [scene.warnings, view.warnings, film.warnings, built.warnings].concat();
+        let (scene, view, film) = (Arc::new(scene.scene), view.view, film.film);
+        let header = Header::of(desc);
         let sketch = Sketch::new(desc, &film);
-        Ok(CompiledJob { job: Self { scene, view, film, integrator, header, sketch }, warnings })
+        let planned = built.integrator.passes();
+        let is_arranged = is_arranged(desc, scene.needs_footprints(&view));
+        let session = Session::new(scene, view, built.integrator, SessionState::new(film));
+        Ok(CompiledJob { job: Self { session, header, sketch, planned, is_arranged }, warnings })
     }
 
-    /// A first look at the picture, before it is rendered and without any part in it: in pixels so
-    /// large that a render takes many times as long, repeated to the size of the picture. `None`
-    /// where the picture has so few pixels itself, or if it was cancelled.
-    pub fn sketch(&self, cancel: &Arc<AtomicBool>) -> Option<Image> {
-        self.sketch.as_ref()?.draw(&self.scene, &self.view, &self.film, &self.header, cancel)
+    /// A preview of the picture before it is rendered: in a resolution so low that a render takes
+    /// many times as long, enlarged to the size of the picture. `None` where the picture has so few
+    /// pixels itself, or if it was cancelled.
+    pub fn sketch(&self, control: &Control) -> Option<Image> {
+        self.sketch.as_ref()?.draw(&self.session, &self.header, control)
     }
 
-    /// Renders all passes. Where the render is cancelled, the film has what was found until then.
-    pub fn render(&mut self, control: &Control) -> Result<RenderReport, Cancelled> {
-        integrators::render(self.integrator.as_mut(), &self.scene, &self.view, &mut self.film, control)
+    /// Renders all passes that are planned. Where the render is cancelled, the film has what was
+    /// found until then.
+    pub fn render(&mut self, control: &Control) -> Result<Stop, Cancelled> {
+        let passes = 0..self.planned;
+        self.session.run(passes, &Limits::default(), control, &mut |_| ())
+    }
+
+    /// Goes on with a render of the same job that was saved. The error says why it cannot be of the
+    /// same job.
+    pub fn resume(&mut self, state: SessionState, films: Vec<(String, Film)>) -> Result<(), String> {
+        let [ours, theirs] = [&self.session.state().film, &state.film]
+            .map(|film| (film.full_resolution(), film.pixel_bounds()));
+        if ours != theirs {
+            return Err("its pixels are not those of the render that it describes".into());
+        }
+        self.session.resume(state, films);
+        Ok(())
     }
 
     /// The picture as it stands, with the scene's camera and settings in its header.
     pub fn picture(&self) -> Image {
-        self.header.picture(&self.film)
+        self.header.picture(self.session.state())
     }
 
-    /// The header of its pictures.
+    /// What the headers of its pictures say.
     pub fn header(&self) -> &Header {
         &self.header
     }
 
-    /// What has been made beside the picture.
-    pub fn by_products(&self) -> Vec<ByProduct> {
-        self.integrator.by_products()
+    /// The samples per pixel that are planned. There may be more: samplers go on beyond the plan.
+    pub fn planned(&self) -> u32 {
+        self.planned
     }
 
-    /// What the algorithm tells of itself: names, and what there is to say.
-    pub fn summary(&self) -> Vec<(&'static str, String)> {
-        self.integrator.summary()
+    /// Whether the first samples of a pixel are others if more are planned: so it is with samplers
+    /// that arrange a number of samples, with algorithms that use one of those for paths from the
+    /// lights, and with textures, whose filter is the narrower the more samples there are. A render
+    /// that goes beyond its plan is then another one, and as right, as one for which more samples
+    /// were planned from the beginning.
+    pub fn is_arranged(&self) -> bool {
+        self.is_arranged
     }
+}
 
-    /// How many passes make the picture.
-    pub fn passes(&self) -> u32 {
-        self.integrator.passes()
-    }
-
-    /// How many of these passes a pixel of the finished picture is the mean of.
-    pub fn samples_per_pixel(&self) -> u32 {
-        self.integrator.samples_per_pixel()
-    }
-
-    /// The film as it stands.
-    pub fn film(&self) -> &Film {
-        &self.film
+fn is_arranged(desc: &SceneDesc, needs_footprints: bool) -> bool {
+    use SamplerKind::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified, ZSobol};
+    match desc.integrator.value {
+        IntegratorDesc::Bdpt(_) | IntegratorDesc::Vcm(_) => true,
+        _ => match desc.sampler.kind {
+            Independent { .. } | Halton { .. } | Sobol { .. } => needs_footprints,
+            Stratified { .. } | PaddedSobol { .. } | ZSobol { .. } | Pmj02Bn { .. } => true,
+        },
     }
 }
 
@@ -154,24 +153,4 @@ pub fn render_file(
     let mut job = compiled.job;
     job.render(control).map_err(|Cancelled| RenderError::Cancelled)?;
     Ok(job.picture())
-}
-
-/// Camera and settings as attributes of a picture.
-fn header(desc: &SceneDesc, samples_per_pixel: u32) -> Header {
-    let camera = match &desc.camera.kind {
-        CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
-        CameraKind::Orthographic { .. } => "orthographic".into(),
-        CameraKind::Spherical { .. } => "spherical".into(),
-        CameraKind::Realistic(_) => "realistic".into(),
-    };
-    let transform = desc.camera.camera_from_world.start.as_mat4();
-    Header(vec![
-        (ImageMetadata::SOFTWARE, Attribute::Text(concat!("alhazen ", env!("CARGO_PKG_VERSION")).into())),
-        (ImageMetadata::WORLD_TO_CAMERA, Attribute::Matrix(transform)),
-        ("camera", Attribute::Text(camera)),
-        ("integrator", Attribute::Text(desc.integrator.name().into())),
-        ("sampler", Attribute::Text(desc.sampler.name().into())),
-        ("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32)),
-        ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
-    ])
 }

@@ -1,22 +1,21 @@
-//! A first look at a picture: one pass in pixels so large that it costs a small part of a pass,
-//! enlarged to the size of the picture.
+//! A preview before the first pass: one sample per pixel in a lower resolution, enlarged to the
+//! size of the picture.
 //!
-//! A sketch is made by the scene's own algorithm with its own settings, on a film that has n times
-//! fewer pixels along each side. So it shows what the picture will show, with the noise of one
-//! sample in squares of n × n pixels. What an algorithm does however many pixels there are, such as
-//! sending photons, it does n² times less; `whitted` follows no more than five events, and
-//! `radiosity` cuts its patches no further. Film, statistics and integrator of the picture know
-//! nothing of it.
+//! A sketch is a [`Session`] of its own: of the same scene and algorithm, with a view and a film
+//! that have n times fewer pixels along each side. So it shows what the picture will show, with the
+//! noise of one sample in squares of n × n pixels. Work that does not depend on the number of
+//! pixels, such as tracing photons, is divided by n²; `whitted` follows no more than five
+//! scattering events, and `radiosity` does not subdivide its patches. Film, statistics and
+//! integrator of the picture are not touched.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 use description::{BdptDesc, IntegratorDesc, RadiosityDesc, SceneDesc};
 use film::Film;
 use image::{Image, Pixels, Window};
-use integrators::Control;
+use integrators::{Control, Limits, Session, SessionState};
 use math::Bounds2i;
-use scene::{Scene, View};
+use scene::View;
 
 use crate::{Header, Overrides};
 
@@ -57,22 +56,16 @@ impl Sketch {
         Some(Self { n: n as u32, desc: small })
     }
 
-    /// Renders it as the picture of `film`; `None` if it was cancelled.
-    pub fn draw(
-        &self,
-        scene: &Scene,
-        view: &View,
-        film: &Film,
-        header: &Header,
-        cancel: &Arc<AtomicBool>,
-    ) -> Option<Image> {
-        let mut integrator = integrators::build(&self.desc).ok()?.integrator;
-        let mut small = film::compile(&self.desc).ok()?.film;
-        let control = Control { cancel: Arc::clone(cancel), ..Control::default() };
-        let view = View { samples_per_pixel: 1, ..view.coarser(self.n) };
-        integrator.prepare(scene, &view, &control).ok()?;
-        integrator.pass(0, scene, &view, &mut small, &control).ok()?;
-        Some(enlarged(&header.picture(&small), self.n, film))
+    /// Renders it, of what `session` renders; `None` if it was cancelled.
+    pub fn draw(&self, session: &Session, header: &Header, control: &Control) -> Option<Image> {
+        let integrator = integrators::build(&self.desc).ok()?.integrator;
+        let film = film::compile(&self.desc).ok()?.film;
+        let view = View { samples_per_pixel: 1, ..session.view().coarser(self.n) };
+        let state = SessionState::new(film);
+        let mut sketch = Session::new(Arc::clone(session.scene()), view, integrator, state);
+        sketch.run(0..1, &Limits::default(), control, &mut |_| ()).ok()?;
+        let samples = session.integrator().passes();
+        Some(enlarged(&header.picture_of(&sketch.state().film, samples), self.n, &session.state().film))
     }
 }
 

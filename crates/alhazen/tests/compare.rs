@@ -5,14 +5,14 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use alhazen::compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{Image, metrics};
 use alhazen::import::{MemoryAssets, import};
 use alhazen::integrators::{Cancelled, Control};
-use alhazen::{Overrides, render_file};
+use alhazen::{Overrides, render_file, system_clock};
 use serde_json::Value;
 
 /// Two walls that light each other, and a lamp.
@@ -66,7 +66,8 @@ fn laboratory(plan: Plan) -> Result<Laboratory, PlanError> {
 }
 
 fn compared(plan: Plan) -> Comparison {
-    laboratory(plan).unwrap().compare(|_| Control::default()).unwrap()
+    let control = Control::new(Arc::default(), system_clock());
+    laboratory(plan).unwrap().compare(&control, &mut |_, _| ()).unwrap()
 }
 
 fn difference(comparison: &Comparison, run: &Run, picture: usize) -> metrics::Difference {
@@ -216,12 +217,11 @@ fn a_given_reference_has_to_fit() {
 
 #[test]
 fn a_cancelled_comparison_is_of_what_was_done() {
-    let cancelled = Arc::new(AtomicBool::new(true));
     let from = |stage: &'static str| {
         let plan = Plan { reference: rendered(2), ..plan(&["path", "whitted"], Budget::Samples(2)) };
-        laboratory(plan).unwrap().compare(|name| Control {
-            cancel: if name == stage { Arc::clone(&cancelled) } else { Arc::default() },
-            ..Control::default()
+        let control = Control::default();
+        laboratory(plan).unwrap().compare(&control, &mut |name, _| {
+            control.cancel.fetch_or(name == stage, Ordering::Relaxed);
         })
     };
     for nothing in ["reference by path", "path"] {

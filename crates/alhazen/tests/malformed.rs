@@ -23,7 +23,7 @@ fn draws(path: &Path, assets: &dyn AssetSource) -> bool {
     small.apply(&mut imported.desc).expect("the changes make sense");
     let Ok(compiled) = Job::compile(&imported.desc) else { return false };
     let mut job = compiled.job;
-    job.render(&Control::default()).is_ok() && job.film().sample_count() > 0
+    job.render(&Control::default()).is_ok() && job.session.state().film.sample_count() > 0
 }
 
 /// Draws all files of some folders that have one of the extensions, each in its time; gives how

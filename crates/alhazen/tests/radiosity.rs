@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use alhazen::image::Image;
 use alhazen::import::{Files, import, read_ply};
-use alhazen::integrators::{ByProduct, Control};
+use alhazen::integrators::{Control, Limits, OutputFile, Session};
 use alhazen::scene::View;
 use alhazen::{Job, Overrides};
 
@@ -93,10 +93,11 @@ fn every_pass_is_better_than_the_last() {
     let mut distances = Vec::new();
     for passes in 1..=4 {
         let mut job = job("cornell-box.pbrt", &overrides);
-        let mut control = Control::default();
-        let cancel = Arc::clone(&control.cancel);
-        control.progress = Some(Box::new(move |p| cancel.store(p.pass == passes, Ordering::Relaxed)));
-        assert!(job.render(&control).is_err());
+        let control = Control::default();
+        let mut cancel = |session: &Session| {
+            control.cancel.store(session.progress().pass == passes, Ordering::Relaxed);
+        };
+        assert!(job.session.run(0..1, &Limits::default(), &control, &mut cancel).is_err());
         distances.push(distance(&job.picture(), &last));
     }
     assert!(distances.is_sorted_by(|a, b| a > b), "{distances:?}");
@@ -123,17 +124,16 @@ fn a_pass_can_be_stopped() {
 fn a_gather_of_endless_rays_can_be_stopped() {
     let settings = [("gather", "2147483647"), ("steps", "1"), ("tolerance", "0.9"), ("patchsize", "3")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 4, 1, &settings));
-    let mut control = Control::default();
-    let cancel = Arc::clone(&control.cancel);
+    let control = Control::default();
     // Once light was sent, the gather begins.
-    control.progress = Some(Box::new(move |_| {
-        let cancel = Arc::clone(&cancel);
+    let mut brake = |_: &Session| {
+        let cancel = Arc::clone(&control.cancel);
         std::thread::spawn(move || {
             std::thread::sleep(Duration::from_millis(200));
             cancel.store(true, Ordering::Relaxed);
         });
-    }));
-    assert!(job.render(&control).is_err());
+    };
+    assert!(job.session.run(0..1, &Limits::default(), &control, &mut brake).is_err());
 }
 
 /// The part before a wall of a floor without end, which has no patches, below a lamp at a point.
@@ -195,6 +195,7 @@ fn a_pass_depends_on_its_number_alone() {
         film
     };
     let values = |film: &alhazen::film::Film| film.develop().values().map(f32::to_bits).collect::<Vec<_>>();
+    // A better draft takes the place of the one before, and the first sample that of the last.
     for passes in [0..=1, 0..=2] {
         let last = [*passes.end()];
         assert_eq!(values(&picture(&passes.collect::<Vec<_>>())), values(&picture(&last)));
@@ -209,18 +210,19 @@ fn a_pass_depends_on_its_number_alone() {
 fn the_light_is_saved_as_a_mesh() {
     let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
-    assert!(job.by_products().is_empty(), "nothing is known before the first pass");
-    assert_eq!((job.passes(), job.samples_per_pixel()), (9, 1), "passes that send light are no samples");
+    assert!(job.session.integrator().files().is_empty(), "nothing is known before the first pass");
+    let passes = (job.session.integrator().drafts(), job.planned());
+    assert_eq!(passes, (8, 1), "passes that send light are no samples");
     job.render(&Control::default()).unwrap();
-    let summary = job.summary();
+    let summary = job.session.integrator().summary();
     let told = |name: &str| summary.iter().find(|(known, _)| *known == name).unwrap().1.clone();
     assert!(told("elements").parse::<u32>().unwrap() > told("patches").parse::<u32>().unwrap());
     assert!(told("patch memory").ends_with(" MiB"));
-    assert_eq!(job.film().sample_count(), 16 * 16, "one for each pixel, at all wavelengths");
-    let products = job.by_products();
-    let [ByProduct::File(path, bytes)] = &products[..] else { panic!("one file") };
+    assert_eq!(job.session.state().film.sample_count(), 16 * 16, "one for each pixel, at all wavelengths");
+    let files = job.session.integrator().files();
+    let [OutputFile { path, contents }] = &files[..] else { panic!("one file") };
     assert_eq!(path, Path::new("somewhere/room.ply"));
-    let mesh = read_ply(bytes).unwrap();
+    let mesh = read_ply(contents).unwrap();
     assert!(mesh.quads.is_empty() && mesh.triangles.len() > 1000);
     // In the world's coordinates, within the room.
     let inside = mesh.positions.iter().all(|p| {

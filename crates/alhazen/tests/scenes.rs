@@ -50,7 +50,7 @@ fn every_scene_is_without_fault_and_shows_something() {
         assert_eq!(values, without_extents(desc), "{name} without extents");
         assert!(values.iter().all(|value| value.is_finite()), "{name} has values that are no numbers");
         assert!(values.iter().any(|&value| value > 0.01), "{name} is black");
-        assert_eq!(job.film().rejected().count, 0, "{name} has samples that are no numbers");
+        assert_eq!(job.session.state().film.rejected().count, 0, "{name} has samples that are no numbers");
     }
 }
 
@@ -58,8 +58,8 @@ fn every_scene_is_without_fault_and_shows_something() {
 fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
     desc.accelerator = AcceleratorDesc::None.into();
     let mut job = Job::compile(&desc).expect("a scene").job;
-    let outcome = job.render(&Control::default()).expect("nobody cancels it");
-    assert_eq!(outcome.stats.extents, 0);
+    job.render(&Control::default()).expect("nobody cancels it");
+    assert_eq!(job.session.progress().stats.extents, 0);
     job.picture().values().collect()
 }
 

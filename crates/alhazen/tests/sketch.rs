@@ -5,8 +5,7 @@
 mod common;
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
 
 use alhazen::image::{Image, Window};
 use alhazen::import::{Files, import};
@@ -43,7 +42,7 @@ fn of_depth(depth: &str, overrides: Overrides) -> Overrides {
 }
 
 fn sketch(job: &mut Job) -> Option<Image> {
-    job.sketch(&Arc::new(AtomicBool::new(false)))
+    job.sketch(&Control::default())
 }
 
 /// The mean of each of 3 × 3 parts.
@@ -131,9 +130,10 @@ fn a_sketch_leaves_no_trace_in_the_picture() {
         let rendered = |with_sketch: bool| {
             let mut job = job(integrator, whole());
             assert!(!with_sketch || sketch(&mut job).is_some());
-            let report = job.render(&Control::default()).unwrap();
+            job.render(&Control::default()).unwrap();
             let bits: Vec<u32> = job.picture().values().map(f32::to_bits).collect();
-            (bits, report.stats, report.samples, job.summary())
+            let progress = job.session.progress();
+            (bits, progress.stats, progress.samples, job.session.integrator().summary())
         };
         assert!(rendered(true) == rendered(false), "{integrator}");
     }
@@ -145,5 +145,7 @@ fn there_is_no_sketch_of_a_small_picture_or_a_render_that_was_stopped() {
     assert!(sketch(&mut job("path", small)).is_none());
     let few = Overrides { resolution: Some([4000, 4000]), pixel: Some([3999, 7]), ..Overrides::default() };
     assert!(sketch(&mut job("path", few)).is_none());
-    assert!(job("path", whole()).sketch(&Arc::new(AtomicBool::new(true))).is_none());
+    let cancelled = Control::default();
+    cancelled.cancel.store(true, Ordering::Relaxed);
+    assert!(job("path", whole()).sketch(&cancelled).is_none());
 }

@@ -1,24 +1,25 @@
-//! `alhazen compare`: one scene by several algorithms, and a report of how they did.
+//! `alhazen compare`: one scene rendered by several algorithms, and a report of their errors.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use alhazen::compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
-use alhazen::image::{Image, replace_file};
+use alhazen::image::{self, replace_file};
 use alhazen::import::{Files, import};
-use alhazen::integrators::{Control, Progress};
+use alhazen::integrators::Control;
+use alhazen::system_clock;
 use serde_json::Value;
 
 use crate::args::Compare;
 use crate::bar::Bar;
 use crate::console::{say, warn};
 use crate::diagnostics;
+use crate::drive::scene_failure;
 use crate::failure::{Failure, about_file};
 use crate::interrupt::{self, Interrupt};
 use crate::numbers::count;
 use crate::output;
-use crate::render::{named_after, scene_failure};
+use crate::results::named_after;
 use crate::threads::start_threads;
 
 /// Renders a scene by several algorithms and writes the report.
@@ -27,7 +28,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     start_threads(arguments.changes.threads)?;
     let reference = match &arguments.reference {
         Some(path) => {
-            let picture = Image::open(path).map_err(|error| about_file(path, error))?;
+            let picture = image::open(path).map_err(|error| about_file(path, error))?;
             ReferenceSource::Picture { name: path.display().to_string(), picture }
         }
         None => ReferenceSource::Render {
@@ -35,7 +36,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
             samples_per_pixel: arguments.reference_spp,
         },
     };
-    let interrupt = Interrupt::listen()?;
+    let interrupt = Interrupt::listen(arguments.json)?;
     let talkative = !arguments.quiet && !arguments.json;
 
     let mut imported = import(&arguments.scene, &Files);
@@ -70,19 +71,16 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
 
-    let mut bar: Option<Arc<Bar>> = None;
-    let outcome = laboratory.compare(|name| {
-        if let Some(bar) = bar.take() {
-            bar.finish();
+    let control = Control::new(interrupt.cancel(), system_clock());
+    let mut current: Option<(String, Bar)> = None;
+    let outcome = laboratory.compare(&control, &mut |name, progress| {
+        if current.as_ref().is_none_or(|(before, _)| before != name) {
+            let finished = current.replace((name.to_owned(), Bar::named(talkative, name)));
+            finished.iter().for_each(|(_, bar)| bar.finish());
         }
-        let new = Arc::new(Bar::named(talkative, name));
-        bar = Some(Arc::clone(&new));
-        let progress = Box::new(move |progress: &Progress| new.show(progress));
-        Control { cancel: interrupt.cancel(), progress: Some(progress), ..Control::default() }
+        current.iter().for_each(|(_, bar)| bar.show(progress));
     });
-    if let Some(bar) = bar {
-        bar.finish();
-    }
+    current.iter().for_each(|(_, bar)| bar.finish());
     let Ok(mut comparison) = outcome else {
         let message = "interrupted before anything could be compared; there is no report";
         if arguments.json {
@@ -105,7 +103,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     } else if talkative {
         say(summary(&comparison, &report))?;
     } else if interrupted {
-        warn("interrupted; the report is of what had been done")?;
+        warn("interrupted; the report covers what was rendered")?;
     }
     Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }
@@ -117,7 +115,7 @@ struct Report {
 }
 
 impl Report {
-    /// The files that the command line asks for, once it is sure that they can be written.
+    /// The files that the command line asks for, checked to be writable.
     fn new(arguments: &Compare) -> Result<Self, Failure> {
         let page = arguments.output.clone().unwrap_or_else(|| named_after(&arguments.scene, "html"));
         let is_page = page.extension().is_some_and(|extension| {
@@ -149,7 +147,7 @@ fn summary(comparison: &Comparison, report: &Report) -> String {
     let [x0, x1, y0, y1] = setup.pixel_bounds;
     let mut lines = Vec::new();
     if comparison.interrupted() {
-        lines.push("interrupted; the report is of what had been done".into());
+        lines.push("interrupted; the report covers what was rendered".into());
     }
     lines.push(format!(
         "{}: {} × {} pixels, {} for each picture",
@@ -197,7 +195,7 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
     ]
 }
 
-/// Rows of columns as wide as what stands in them; the first to the left, numbers to the right.
+/// Rows with columns as wide as their contents: the first aligned left, numbers right.
 fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
     let widths: [usize; N] =
         std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use alhazen::image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use alhazen::image::{
-    Image, ImageError, SampleDepth, WriteOptions, false_color::false_color, info as image_info, metrics,
-    read, write,
+    Image, ImageError, Projection, SampleDepth, WriteOptions, false_color::false_color, info as image_info,
+    metrics, read, write,
 };
 use serde_json::json;
 
-use crate::args::{Convert, Depth, Diff, Info, Metric};
+use crate::args::{self, Convert, Depth, Diff, Info, Metric};
 use crate::console::say;
 use crate::failure::{Failure, about_file};
 use crate::inspect::{FileInfo, Pixel};
@@ -42,7 +42,7 @@ pub fn info(arguments: &Info) -> Result<(), Failure> {
     }
 }
 
-/// Tells how far one picture is from another.
+/// Measures the difference of two pictures.
 pub fn diff(arguments: &Diff) -> Result<(), Failure> {
     if let Some(path) = &arguments.output {
         output::check(path).map_err(Failure::Usage)?;
@@ -97,7 +97,14 @@ pub fn diff(arguments: &Diff) -> Result<(), Failure> {
 /// Writes a picture in another format.
 pub fn convert(arguments: &Convert) -> Result<(), Failure> {
     output::check(&arguments.output).map_err(Failure::Usage)?;
-    let image = open(&arguments.input)?;
+    let mut image = open(&arguments.input)?;
+    if let Some(projection) = arguments.projection {
+        let projection = match projection {
+            args::Projection::EqualArea => Projection::EqualArea,
+            args::Projection::LatitudeLongitude => Projection::LatitudeLongitude,
+        };
+        image = image.reproject(projection).map_err(|error| about_file(&arguments.input, error))?;
+    }
     let depth = match arguments.depth {
         Depth::Natural => SampleDepth::Natural,
         Depth::U8 => SampleDepth::U8,

@@ -1,30 +1,45 @@
-//! Ctrl-C. While a picture is being rendered, the first one asks the render to stop, so that the
-//! picture can be written; at any other time, and the second time, it ends the program. A request
-//! to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
+//! Ctrl-C. While a picture is being rendered, the first one cancels the render, so that the picture
+//! can be written; at any other time, and the second time, it ends the program with what has been
+//! written before. A request to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
 
-use std::sync::Arc;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
+use serde_json::{Value, json};
+
+use crate::console::{say, warn};
 use crate::failure::Failure;
 
 /// The exit code of a program that was interrupted.
 pub const EXIT_CODE: u8 = 130;
 
 /// The state of interruption.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     rendering: Arc<AtomicBool>,
     cancel: Arc<AtomicBool>,
+    written: Arc<Mutex<Written>>,
+}
+
+/// What has been written so far.
+#[derive(Debug, Default)]
+struct Written {
+    outputs: Vec<PathBuf>,
+    passes: u32,
 }
 
 impl Interrupt {
-    /// Starts to listen; once per program.
-    pub fn listen() -> Result<Self, Failure> {
-        let interrupt = Self { rendering: Arc::default(), cancel: Arc::default() };
-        let Self { rendering, cancel } = interrupt.clone();
+    /// Starts to listen; once per program. A program that is ended at once says so as JSON on
+    /// standard output, or as text on standard error.
+    pub fn listen(as_json: bool) -> Result<Self, Failure> {
+        let interrupt = Self::default();
+        let handler = interrupt.clone();
         ctrlc::set_handler(move || {
-            let first = !cancel.swap(true, Ordering::SeqCst);
-            if !(first && rendering.load(Ordering::SeqCst)) {
+            let first = !handler.cancel.swap(true, Ordering::SeqCst);
+            if !(first && handler.rendering.load(Ordering::SeqCst)) {
+                // The program ends whether or not anybody hears of it.
+                let _ = if as_json { say(handler.to_json()) } else { warn(handler.message()) };
                 std::process::exit(EXIT_CODE.into());
             }
         })
@@ -40,5 +55,25 @@ impl Interrupt {
     /// The flag that becomes true when the render is to stop.
     pub fn cancel(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.cancel)
+    }
+
+    /// Takes note of pictures of so many passes that have been written.
+    pub fn note_written(&self, outputs: &[PathBuf], passes: u32) {
+        let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        *written = Written { outputs: outputs.to_vec(), passes };
+    }
+
+    fn to_json(&self) -> Value {
+        let Written { outputs, passes } = &*self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        let outputs: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
+        json!({ "status": "interrupted", "outputs": outputs, "passes": passes })
+    }
+
+    fn message(&self) -> String {
+        let Written { outputs, passes } = &*self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        match &outputs[..] {
+            [] => "interrupted; no picture has been written".into(),
+            [first, ..] => format!("interrupted; {} is the picture after {passes} passes", first.display()),
+        }
     }
 }

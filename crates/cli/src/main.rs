@@ -2,18 +2,23 @@
 
 mod args;
 mod bar;
+mod checkpoint;
 mod compare;
 mod console;
 mod diagnostics;
+mod drive;
 mod failure;
 mod help;
 mod image;
 mod inspect;
 mod interrupt;
 mod manual;
+mod merge;
 mod numbers;
 mod output;
 mod render;
+mod results;
+mod resume;
 mod scene;
 mod summary;
 mod threads;
@@ -33,6 +38,8 @@ fn main() -> ExitCode {
     let done = |()| ExitCode::SUCCESS;
     let result = match &cli.command {
         Command::Render(arguments) => render::render(arguments),
+        Command::Resume(arguments) => resume::resume(arguments),
+        Command::Merge(arguments) => merge::merge(arguments).map(done),
         Command::Compare(arguments) => compare::compare(arguments),
         Command::Scene(args::Scene::Check(arguments)) => scene::check(arguments).map(done),
         Command::Image(args::Image::Info(arguments)) => image::info(arguments).map(done),

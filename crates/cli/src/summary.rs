@@ -4,32 +4,29 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use alhazen::film::Film;
-use alhazen::integrators::Progress;
+use alhazen::integrators::{Cancelled, Progress, Session, Stop};
 use serde_json::{Value, json};
 
 use crate::numbers::{bytes, count, duration};
 
 /// What a render has done.
 pub struct Summary<'a> {
-    /// Whether it was stopped before its end.
-    pub interrupted: bool,
+    /// Why it ended.
+    pub outcome: Result<Stop, Cancelled>,
     /// The scene file.
     pub scene: &'a Path,
     /// The pictures.
     pub outputs: &'a [PathBuf],
     /// What was written beside them.
     pub beside: &'a [PathBuf],
-    /// What the algorithm tells of itself.
+    /// The film file that the render can go on from.
+    pub checkpoint: Option<&'a Path>,
+    /// What there is to say about the render, by the algorithm or others.
     pub notes: &'a [(&'static str, String)],
     /// The algorithm's name.
     pub integrator: &'static str,
-    /// Samples per pixel of the whole picture.
-    pub samples_per_pixel: u32,
-    /// The film with what came in.
-    pub film: &'a Film,
-    /// How far the render came.
-    pub progress: Progress,
+    /// The render.
+    pub session: &'a Session,
     /// Threads that rendered.
     pub threads: usize,
     /// How long each stage took.
@@ -57,24 +54,43 @@ impl Seconds {
 }
 
 impl Summary<'_> {
+    fn progress(&self) -> Progress {
+        self.session.progress()
+    }
+
+    /// The noise of the picture, where it was estimated.
+    fn noise(&self) -> Option<f64> {
+        self.session.state().noise()
+    }
+
     /// The summary as one JSON object; `warnings` are those about the scene.
     pub fn to_json(&self, warnings: Value) -> Value {
-        let bounds = self.film.pixel_bounds();
-        let [width, height] = self.film.full_resolution();
-        let stats = self.progress.stats;
-        let rejected = self.film.rejected();
+        let (progress, state) = (self.progress(), self.session.state());
+        let bounds = state.film.pixel_bounds();
+        let [width, height] = state.film.full_resolution();
+        let stats = progress.stats;
+        let (samples, rejected) = state.with_film(|film| (film.sample_count(), film.rejected()));
+        let path = |path: &Path| path.display().to_string();
         json!({
-            "status": if self.interrupted { "interrupted" } else { "done" },
-            "scene": self.scene.display().to_string(),
-            "outputs": self.outputs.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
-            "by_products": self.beside.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "status": if self.outcome.is_ok() { "done" } else { "interrupted" },
+            "ended_by": match self.outcome {
+                Ok(Stop::Passes) => "passes",
+                Ok(Stop::Time) => "time",
+                Ok(Stop::Noise) => "noise",
+                Err(Cancelled) => "interrupt",
+            },
+            "scene": path(self.scene),
+            "outputs": self.outputs.iter().map(|output| path(output)).collect::<Vec<_>>(),
+            "by_products": self.beside.iter().map(|output| path(output)).collect::<Vec<_>>(),
+            "checkpoint": self.checkpoint.map(path),
             "notes": self.notes.iter().map(|(name, note)| ((*name).to_owned(), json!(note))).collect::<serde_json::Map<_, _>>(),
             "integrator": self.integrator,
-            "samples_per_pixel": self.samples_per_pixel,
+            "samples_per_pixel": state.done.count(),
+            "noise": self.noise(),
             "resolution": [width, height],
             "pixel_bounds": [bounds.min[0], bounds.max[0], bounds.min[1], bounds.max[1]],
-            "passes": self.progress.pass,
-            "samples": self.film.sample_count(),
+            "passes": progress.pass,
+            "samples": samples,
             "non_finite_samples": rejected.count,
             "non_finite_pixels": rejected.pixels().collect::<Vec<_>>(),
             "rays": stats.rays,
@@ -94,28 +110,37 @@ impl Summary<'_> {
         })
     }
 
-    /// What is to say where the render was stopped before its end.
+    /// What is to say where the render was interrupted.
     pub fn interruption(&self) -> Option<String> {
-        let (done, all) = (self.progress.pass, self.progress.passes);
-        self.interrupted
-            .then(|| format!("interrupted after {done} of {all} passes; the picture is written as it stands"))
+        let Progress { pass, passes, .. } = self.progress();
+        let picture = if self.outputs.is_empty() { "" } else { "; the picture is written as it stands" };
+        let goes_on = match self.checkpoint {
+            Some(path) => format!("; `alhazen resume {}` goes on from the last checkpoint", path.display()),
+            None => String::new(),
+        };
+        self.outcome
+            .is_err()
+            .then(|| format!("interrupted after {pass} of {passes} passes{picture}{goes_on}"))
     }
 
     fn rays_per_second(&self) -> f64 {
-        self.progress.stats.rays as f64 / self.progress.elapsed.as_secs_f64().max(1e-9)
+        let Progress { stats, elapsed, .. } = self.progress();
+        stats.rays as f64 / elapsed.as_secs_f64().max(1e-9)
     }
 }
 
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let bounds = self.film.pixel_bounds();
-        let [width, height] = self.film.full_resolution();
+        let (progress, state) = (self.progress(), self.session.state());
+        let bounds = state.film.pixel_bounds();
+        let [width, height] = state.film.full_resolution();
         if let Some(interruption) = self.interruption() {
             writeln!(f, "{interruption}")?;
         }
         write!(f, "{}: {}, ", self.scene.display(), self.integrator)?;
-        let plural = if self.samples_per_pixel == 1 { "" } else { "s" };
-        write!(f, "{} sample{plural} per pixel, {width} × {height} pixels", self.samples_per_pixel)?;
+        let samples_per_pixel = state.done.count();
+        let plural = if samples_per_pixel == 1 { "" } else { "s" };
+        write!(f, "{samples_per_pixel} sample{plural} per pixel, {width} × {height} pixels")?;
         if bounds.area() != width as usize * height as usize {
             let [[x0, y0], [x1, y1]] = [bounds.min, bounds.max];
             write!(f, ", of them x {x0} to {}, y {y0} to {}", x1 - 1, y1 - 1)?;
@@ -123,6 +148,9 @@ impl fmt::Display for Summary<'_> {
         writeln!(f)?;
         for output in self.outputs {
             writeln!(f, "  picture  {}", output.display())?;
+        }
+        if let Some(path) = self.checkpoint {
+            writeln!(f, "  film     {}", path.display())?;
         }
         if let [first, .., last] = self.beside {
             writeln!(
@@ -145,9 +173,14 @@ impl fmt::Display for Summary<'_> {
         if let Some(memory) = self.peak_memory {
             writeln!(f, "  memory   {} at most", bytes(memory))?;
         }
-        let stats = self.progress.stats;
+        match (self.outcome, self.noise()) {
+            (_, None) => (),
+            (Ok(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, low enough")?,
+            (_, Some(noise)) => writeln!(f, "  noise    {noise:.4}")?,
+        }
+        let stats = progress.stats;
         let rays = stats.rays as f64;
-        let samples = self.film.sample_count();
+        let (samples, rejected) = state.with_film(|film| (film.sample_count(), film.rejected()));
         if samples > 0 {
             writeln!(f, "  samples  {}", count(samples as f64))?;
         }
@@ -162,7 +195,6 @@ impl fmt::Display for Summary<'_> {
         for (name, note) in self.notes {
             write!(f, "\n  {name:<8} {note}")?;
         }
-        let rejected = self.film.rejected();
         if rejected.count > 0 {
             let pixels: Vec<_> = rejected.pixels().map(|[x, y]| format!("{x},{y}")).collect();
             let first = if pixels.len() as u64 == rejected.count { "at" } else { "among them at" };

@@ -48,6 +48,26 @@ fn pictures_that_cannot_be_compared_are_wrong_input() {
 }
 
 #[test]
+fn environment_maps_are_converted() {
+    let folder = with_pictures("projection");
+    let convert = ["image", "convert", "a.exr", "square.exr", "--projection", "equal-area"];
+    let json = folder.alhazen(&[&convert[..], &["--json"]].concat()).expect(0).json();
+    assert_eq!((&json["width"], &json["height"]), (&20.into(), &20.into()));
+    // The middle of the square is up, the top row of the original.
+    let up = folder.image("square.exr").rgb(10, 10);
+    assert!(up[1] < 0.1, "{up:?}");
+    let back = ["image", "convert", "square.exr", "back.exr", "--projection", "latitude-longitude"];
+    folder.alhazen(&back).expect(0);
+    let back = folder.image("back.exr");
+    assert_eq!((back.width(), back.height()), (20, 10));
+    let small = Image::from_fn(5, 4, ["R", "G", "B"], |_, _| [0.0; 3]);
+    write(&small, folder.path().join("small.exr"), &WriteOptions::default()).expect("a picture for the test");
+    let refused = ["image", "convert", "small.exr", "none.exr", "--projection", "equal-area"];
+    let finished = folder.alhazen(&refused).expect(1);
+    assert!(finished.err.contains("5 × 4") && finished.err.contains("2:1"), "{finished:?}");
+}
+
+#[test]
 fn pictures_are_converted() {
     let folder = with_pictures("convert");
     for name in ["a.png", "a.pfm", "a.tif"] {
@@ -73,7 +93,7 @@ fn files_are_inspected() {
     write(&picture, folder.path().join("a.exr"), &WriteOptions::default()).expect("a picture for the test");
     let told = folder.alhazen(&["image", "info", "a.exr"]).expect(0).out;
     for part in [
-        "a.exr: Exr, 20 × 10 pixels, ",
+        "a.exr: EXR, 20 × 10 pixels, ",
         "data window     x 100 to 119, y 50 to 59\n",
         "display window  x 0 to 639, y 0 to 479\n",
         "compression     ZIP\n",

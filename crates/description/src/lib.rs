@@ -62,7 +62,7 @@ pub use shape::{
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use texture::{
-    EncodingDesc, FloatParameter, FloatTextureDesc, ImageTextureDesc, MappingDesc, Parameter,
+    EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
     SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, WrapMode,
 };
 pub use transform::TransformDesc;

@@ -1,19 +1,18 @@
-//! A transform and its inverse in double precision, with what rounding does to the points that pass
-//! through.
+//! A transform and its inverse in double precision, with error bounds of transformed points.
 //!
-//! The matrix is the one of the scene, in floats; its inverse is taken again in doubles, so that
-//! the two undo each other to a few parts in 10¹⁶. Going out and coming back then costs only the
-//! rounding to floats, |x|·ε per coordinate, whatever the matrix is.
+//! The matrix is the scene's, in floats; its inverse is computed in doubles, so that the two are
+//! inverse to a few parts in 10¹⁶. A round trip then costs only the rounding to floats, |x|·ε per
+//! coordinate, whatever the matrix.
 
 use math::{DMat3, DMat4, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec3};
 
-/// How large the rounding of a short chain of double operations is beside the numbers that went in.
+/// The relative rounding error of a short chain of double operations.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Where something stands.
+/// The transform between an inner space, such as object space, and the space around it.
 #[derive(Clone, Debug)]
 pub(crate) struct Placement {
-    /// Outer space from the space of the thing placed.
+    /// Outer space from inner space.
     forward: DMat4,
     inverse: DMat4,
 }
@@ -24,16 +23,16 @@ impl Placement {
         Self { forward, inverse: forward.inverse() }
     }
 
-    /// At `center`, turned by an orthonormal matrix.
-    pub fn rigid(turn: DMat3, center: DVec3) -> Self {
-        let back = turn.transpose();
+    /// A rotation, given by an orthonormal matrix, followed by a translation to `center`.
+    pub fn rigid(rotation: DMat3, center: DVec3) -> Self {
+        let back = rotation.transpose();
         Self {
-            forward: DMat4::from_mat3_translation(turn, center),
+            forward: DMat4::from_mat3_translation(rotation, center),
             inverse: DMat4::from_mat3_translation(back, back * -center),
         }
     }
 
-    /// Origin and direction of an outer ray as seen from the thing placed; t keeps its meaning.
+    /// Origin and direction of an outer ray in inner space; t keeps its meaning.
     #[inline]
     pub fn ray_inward(&self, ray: &Ray) -> (DVec3, DVec3) {
         (self.inverse.transform_point3(ray.o.as_dvec3()), self.inverse.transform_vector3(ray.d.as_dvec3()))
@@ -46,18 +45,18 @@ impl Placement {
         Ray::new(o.as_vec3(), d.as_vec3(), ray.time)
     }
 
-    /// An outer point as seen from the thing placed.
+    /// An outer point in inner space.
     #[inline]
     pub fn point_inward(&self, p: DVec3) -> DVec3 {
         self.inverse.transform_point3(p)
     }
 
-    /// Where the origin of what is placed stands.
+    /// The inner origin in outer space.
     pub fn center(&self) -> DVec3 {
         self.forward.w_axis.truncate()
     }
 
-    /// Brings out a point that is within `error` of its surface.
+    /// Transforms an inner point that is within `error` of its surface to outer space.
     #[inline]
     pub fn point(&self, p: DVec3, error: DVec3) -> Point3Error {
         let m = &self.forward;
@@ -70,26 +69,26 @@ impl Placement {
         rounded(m.transform_point3(p), spread(error) + doubles)
     }
 
-    /// How far a ball of `radius` reaches along each axis when it is brought out.
+    /// The half extents in outer space of an inner ball of `radius`.
     pub fn ball_extent(&self, radius: f64) -> DVec3 {
         let row = |axis: usize| self.forward.row(axis).truncate().length();
         DVec3::new(row(0), row(1), row(2)) * radius
     }
 
-    /// Brings out a direction.
+    /// Transforms an inner direction to outer space.
     #[inline]
     pub fn vector(&self, v: DVec3) -> Vec3 {
         self.forward.transform_vector3(v).as_vec3()
     }
 
-    /// Brings out a normal (by the inverse transpose); its length changes.
+    /// Transforms an inner normal to outer space (by the inverse transpose), not normalised.
     #[inline]
     pub fn normal(&self, n: DVec3) -> DVec3 {
         let i = &self.inverse;
         DVec3::new(i.x_axis.truncate().dot(n), i.y_axis.truncate().dot(n), i.z_axis.truncate().dot(n))
     }
 
-    /// Brings out a unit normal and its change: the change of the unit normal that comes out.
+    /// The derivative of the unit normal in outer space, from inner normal and derivative.
     #[inline]
     pub fn normal_change(&self, n: DVec3, dn: DVec3) -> Vec3 {
         let (n, dn) = (self.normal(n), self.normal(dn));
@@ -98,26 +97,26 @@ impl Placement {
         if change.is_finite() { change.as_vec3() } else { Vec3::ZERO }
     }
 
-    /// Brings out a normal and makes it a unit vector; zero where it has no direction.
+    /// The unit normal in outer space; zero where it is undefined.
     #[inline]
     pub fn unit_normal(&self, n: DVec3) -> Normal3 {
         self.normal(n).normalize_or_zero().as_vec3()
     }
 
-    /// By what factor an area at right angles to the unit normal `n` grows when it is brought out:
+    /// The ratio of outer to inner area of a surface element with inner unit normal `n`:
     /// |det M|·|M⁻ᵀn|.
     pub fn area_factor(&self, n: DVec3) -> f64 {
         self.forward.determinant().abs() * self.normal(n).length()
     }
 
-    /// [`Self::area_factor`] where the unit normal outside is `n`: |det M| / |Mᵀn|.
+    /// [`Self::area_factor`] by the outer unit normal: |det M| / |Mᵀn|.
     pub fn area_factor_outside(&self, n: DVec3) -> f64 {
         let m = &self.forward;
         let inward = [m.x_axis, m.y_axis, m.z_axis].map(|axis| axis.truncate().dot(n));
         m.determinant().abs() / DVec3::from(inward).length()
     }
 
-    /// The one factor by which all lengths grow; `None` where they grow differently.
+    /// The factor of a uniform scale; `None` where lengths scale differently.
     pub fn uniform_scale(&self) -> Option<f64> {
         let axes = [self.forward.x_axis, self.forward.y_axis, self.forward.z_axis].map(|a| a.truncate());
         let scale = axes[0].length();
@@ -128,9 +127,9 @@ impl Placement {
     }
 }
 
-/// A point known to within `error`, rounded to floats. A test of the surface mixes the axes, so
-/// that its rounding along one may come from coordinates along another: none is known better than
-/// the largest lets it be, not even a zero.
+/// A point known to within `error`, rounded to floats. Intersection tests mix the axes, so that the
+/// error along one axis may come from coordinates along another: it is at least relative to the
+/// largest coordinate.
 #[inline]
 pub(crate) fn rounded(p: DVec3, error: DVec3) -> Point3Error {
     let q = p.as_vec3();

@@ -1,30 +1,30 @@
-//! Ray against triangle, without gaps between triangles that share an edge.
+//! Watertight ray–triangle intersection: no gaps between triangles that share an edge.
 //!
-//! The triangle is moved and sheared so that the ray becomes the +z axis from the origin. Its edge
-//! functions there, e₀ = x₁y₂ − y₁x₂ and so on, are twice the areas that the origin makes with each
-//! edge; the ray passes inside when none differs in sign from another. Two triangles compute the
-//! function of a shared edge from the same numbers and get opposite signs, so that no ray slips
-//! between ([Woop et al. 2013]; [Pharr 2023 §6.5.3]).
+//! The triangle is translated and sheared so that the ray becomes the +z axis from the origin. Its
+//! edge functions there, e₀ = x₁y₂ − y₁x₂ and so on, are twice the areas that the origin makes with
+//! each edge; the ray passes inside where no two differ in sign. Two triangles compute the function
+//! of a shared edge from the same numbers and get opposite signs, so that no ray passes between
+//! them ([Woop et al. 2013]; [Pharr 2023 §6.5.3]).
 //!
-//! Several triangles are tested at once, a lane for each. What floats cannot tell is decided in
-//! doubles, lane by lane: on which side of an edge the ray passes when an edge function vanishes,
-//! and whether a hit nearer than the rounding error of its distance lies before or behind the
-//! origin. A hit is thus lost neither on edges nor in corners.
+//! Several triangles are tested at once, one per lane. Cases that floats cannot decide are resolved
+//! in doubles, lane by lane: the side of an edge where an edge function vanishes, and whether a hit
+//! closer than the rounding error of its distance is in front of the origin. Hits are thus lost
+//! neither on edges nor in corners.
 
 #![allow(unsafe_code)]
 
 use lanes::{F32x1, Vector};
 use math::{Ray, Vec2, Vec3, difference_of_products, gamma};
 
-/// Edge functions below this may owe their sign to underflow.
+/// The sign of an edge function below this may be due to underflow.
 const VANISHING: f32 = 1e-30;
-/// Sums of edge functions below this may have lost too much of them to tell distances.
+/// A sum of edge functions below this may be too inaccurate for distances.
 const TINY: f32 = 1e-20;
 
-/// A ray made ready for many triangles.
+/// A ray prepared for triangle tests.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sheared {
-    /// The axis that the ray mostly follows comes last.
+    /// A permutation of the axes with the main axis of the ray last.
     axes: [usize; 3],
     /// −d_x/d_z, −d_y/d_z and 1/d_z in permuted axes.
     shear: [f32; 3],
@@ -32,7 +32,7 @@ pub(crate) struct Sheared {
     d: Vec3,
 }
 
-/// The same in every lane, axes permuted.
+/// A ray in every lane, with permuted axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShearedLanes<V> {
     axes: [usize; 3],
@@ -40,11 +40,11 @@ pub(crate) struct ShearedLanes<V> {
     o: [V; 3],
 }
 
-/// What the lanes found: which are hit, and which of these are in doubt and have yet to be decided
-/// by [`Sheared::decide`]. The other arrays tell of the hits without doubt.
+/// The result of each lane: a bit for each hit, and one where it is uncertain, to be resolved by
+/// [`Sheared::resolve`]. Distances and barycentric coordinates are valid for certain hits.
 pub(crate) struct LaneHits<const N: usize> {
     pub hits: u32,
-    pub doubts: u32,
+    pub uncertain: u32,
     pub t: [f32; N],
     pub b1: [f32; N],
     pub b2: [f32; N],
@@ -61,7 +61,7 @@ impl Sheared {
     }
 
     /// # Safety
-    /// The processor must have the instructions that `V` takes.
+    /// The processor must have the instruction set of `V`.
     #[inline(always)]
     pub unsafe fn lanes<const N: usize, V: Vector<N>>(&self) -> ShearedLanes<V> {
         let o = self.o.to_array();
@@ -75,10 +75,10 @@ impl Sheared {
         }
     }
 
-    /// Several rays, one in each lane. All must mostly follow the same axis.
+    /// Several rays, one in each lane. All must have the same main axis.
     ///
     /// # Safety
-    /// The processor must have the instructions that `V` takes.
+    /// The processor must have the instruction set of `V`.
     #[inline(always)]
     pub unsafe fn each<const N: usize, V: Vector<N>>(rays: &[Self; N]) -> ShearedLanes<V> {
         let axes = rays[0].axes;
@@ -95,23 +95,23 @@ impl Sheared {
         ShearedLanes { axes, shear: load(&shear), o: load(&o) }
     }
 
-    /// Where the ray meets the triangle at 0 < t < `t_max`: t, and the barycentric coordinates of
-    /// corners 1 and 2.
+    /// The hit on a triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
+    /// and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
         // SAFETY: every processor computes with single floats.
         let (lane, float) = unsafe { (self.lanes::<1, F32x1>(), |x: f32| F32x1::splat(x)) };
         let found = LaneHits::of(corners.map(|corner| lane.shear(|axis| float(corner[axis]))), float(t_max))?;
-        if found.doubts != 0 {
-            return self.decide(corners).filter(|hit| hit.0 < t_max);
+        if found.uncertain != 0 {
+            return self.resolve(corners).filter(|hit| hit.0 < t_max);
         }
         (found.t[0] < t_max).then(|| (found.t[0], Vec2::new(found.b1[0], found.b2[0])))
     }
 
-    /// A hit in doubt, with the help of doubles.
+    /// Resolves an uncertain hit in doubles.
     #[cold]
     #[inline(never)]
-    pub fn decide(&self, corners: &[Vec3; 3]) -> Option<(f32, Vec2)> {
+    pub fn resolve(&self, corners: &[Vec3; 3]) -> Option<(f32, Vec2)> {
         let [ax, ay, az] = self.axes;
         let [sx, sy, sz] = self.shear;
         let sheared = |p: Vec3| {
@@ -141,7 +141,7 @@ impl Sheared {
         Some((t, Vec2::new(e[1] * inverse, e[2] * inverse)))
     }
 
-    /// t > 0 where the ray meets the triangle's plane, in doubles.
+    /// t > 0 of the hit on the triangle's plane, in doubles.
     fn exact_distance(&self, corners: &[Vec3; 3]) -> Option<f32> {
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let n = (b - a).cross(c - a);
@@ -151,7 +151,7 @@ impl Sheared {
 }
 
 impl<V> ShearedLanes<V> {
-    /// Moves and shears a point in each lane, given by its coordinates.
+    /// Translates and shears a point in each lane, given by its coordinates.
     #[inline(always)]
     pub fn shear<const N: usize>(&self, coordinate: impl Fn(usize) -> V) -> [V; 3]
     where
@@ -175,7 +175,7 @@ impl<const N: usize> LaneHits<N> {
             difference.add(p[1].neg_mul_add(q[0], yx))
         };
         let e = [edge(b, c), edge(c, a), edge(a, b)];
-        // SAFETY: who has vectors has the instructions.
+        // SAFETY: vectors are the proof of the instruction set.
         let (zero, vanishing) = unsafe { (V::splat(0.0), V::splat(VANISHING)) };
         let lowest = e[0].min(e[1]).min(e[2]);
         let highest = e[0].max(e[1]).max(e[2]);
@@ -184,7 +184,7 @@ impl<const N: usize> LaneHits<N> {
             return None;
         }
         let determinant = e[0].add(e[1]).add(e[2]);
-        // SAFETY: who has vectors has the instructions.
+        // SAFETY: vectors are the proof of the instruction set.
         let (one, tiny) = unsafe { (V::splat(1.0), V::splat(TINY)) };
         let inverse = one.div(determinant);
         let sum = e[0].mul_add(a[2], e[1].mul_add(b[2], e[2].mul(c[2])));
@@ -196,21 +196,21 @@ impl<const N: usize> LaneHits<N> {
         }
         let clear = vanishing.le(lowest) | highest.le(zero.sub(vanishing));
         let unsure = !clear | is_tiny;
-        // The error of the sum, not below what `distance_error` says: one size for x and y, and no
-        // edge function is greater than all three together.
+        // A bound of the error of the sum, at least that of `distance_error`: one magnitude for x
+        // and y, and the sum of the edge functions instead of the largest.
         let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
         let (xy, z) = (largest(0).max(largest(1)), largest(2));
-        // SAFETY: who has vectors has the instructions.
+        // SAFETY: vectors are the proof of the instruction set.
         let splat = |x: f32| unsafe { V::splat(x) };
         let (g3, g5, two, three) = (splat(6.0 * gamma(3)), splat(6.0 * gamma(5)), splat(2.0), splat(3.0));
         let of_edges = g5.mul(xy).mul(three.mul_add(xy, two.mul(z)));
         let error = g3.mul_add(determinant.abs(), of_edges).mul(z);
         let certain = error.lt(sum.abs());
         let hits = candidates & (unsure | !(certain & t.lt(zero)));
-        let doubts = hits & (unsure | !certain);
+        let uncertain = hits & (unsure | !certain);
         (hits != 0).then(|| Self {
             hits,
-            doubts,
+            uncertain,
             t: t.store(),
             b1: e[1].mul(inverse).store(),
             b2: e[2].mul(inverse).store(),
@@ -218,7 +218,7 @@ impl<const N: usize> LaneHits<N> {
     }
 }
 
-/// The axis that a direction mostly follows.
+/// The axis of the largest component of a direction.
 #[inline(always)]
 pub(crate) fn main_axis(d: Vec3) -> usize {
     let size = d.abs();
@@ -233,7 +233,7 @@ fn edge(a: [f32; 3], b: [f32; 3]) -> f32 {
 
 fn exact_edge(a: [f32; 3], b: [f32; 3]) -> f32 {
     let e = a[0] as f64 * b[1] as f64 - a[1] as f64 * b[0] as f64;
-    // Rounding to floats must not make nothing of a sign.
+    // Rounding to a float must not lose the sign.
     if e != 0.0 && e as f32 == 0.0 { f32::MIN_POSITIVE.copysign(e as f32) } else { e as f32 }
 }
 

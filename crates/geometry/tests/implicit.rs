@@ -259,6 +259,35 @@ fn far_origins_lose_nothing_but_their_own_rounding() {
     }
 }
 
+/// A box may be as large as it will: rays that start near the surface meet it as in a box of its
+/// own size, by directions of any length.
+#[test]
+fn small_surfaces_in_huge_boxes() {
+    let bounded = ["x^2 + y^2 + z^2 - 1", FORMULAS[2], TORUS, FORMULAS[4], FORMULAS[9], FORMULAS[12]];
+    let rng = &mut Rng::new(12, 0);
+    for text in bounded {
+        let near = surface(text, &Transform::IDENTITY);
+        let rays: Vec<_> =
+            (0..200).map(|i| (direction(rng) * [2.5, 60.0][i % 2], point_in(rng, 1.4))).collect();
+        for half in [1e3, 1e6, 1e9, 1e12, 1e20, 1e30, 1e38] {
+            let huge: Shape =
+                Implicit::new(&Transform::IDENTITY, false, formula(text), &cube_of(half)).into();
+            for &(o, p) in &rays {
+                for length in [1.0, 1e9] {
+                    let d = (p - o) * length;
+                    let (expected, found) = (first(&near, o, p - o), first(&huge, o, d));
+                    let is_same = match (expected, found) {
+                        (Some(a), Some(b)) => (a - b * length).abs() < 1e-5,
+                        (None, None) => true,
+                        _ => false,
+                    };
+                    assert!(is_same, "{text} within {half}, {o} to {p}: {expected:?}, {found:?} of {length}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn poles_are_no_surfaces() {
     let at =

@@ -220,7 +220,7 @@ fn nested(rng: &mut Rng, levels: usize) -> (World, World) {
 #[test]
 fn instances_of_instances_stand_where_all_their_transforms_place_them() {
     let rng = &mut Rng::new(8, 0);
-    for levels in 1..=InstancePath::MOST {
+    for levels in 1..=InstancePath::MAX_DEPTH {
         let (nested, once) = nested(rng, levels);
         let mut hits = 0;
         for _ in 0..1000 {
@@ -280,5 +280,5 @@ fn one_group_stands_in_many_places_of_many() {
 #[test]
 #[should_panic(expected = "too deep")]
 fn instances_too_deep_in_each_other_are_refused() {
-    nested(&mut Rng::new(9, 0), InstancePath::MOST + 1);
+    nested(&mut Rng::new(9, 0), InstancePath::MAX_DEPTH + 1);
 }

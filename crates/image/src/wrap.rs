@@ -14,6 +14,9 @@ pub enum WrapMode {
     /// [Clarberg 2008]: crossing an edge re-enters through the same edge, mirrored about its
     /// middle.
     OctahedralSphere,
+    /// The neighbour on the sphere, for images of latitude and longitude: rows are closed, and
+    /// beyond a pole lies the meridian on the other side.
+    LatitudeLongitude,
 }
 
 impl WrapMode {
@@ -46,6 +49,11 @@ impl WrapMode {
                 let (x, y) = (x.rem_euclid(w), y.rem_euclid(h));
                 if (tile_x + tile_y).rem_euclid(2) == 0 { (x, y) } else { (w - 1 - x, h - 1 - y) }
             }
+            Self::LatitudeLongitude => {
+                let y = y.rem_euclid(2 * h);
+                let (x, y) = if y < h { (x, y) } else { (x + w / 2, 2 * h - 1 - y) };
+                (x.rem_euclid(w), y)
+            }
         };
         Some((x as u32, y as u32))
     }
@@ -68,6 +76,16 @@ mod tests {
         assert_eq!(WrapMode::Clamp.apply(-5, 9, 4, 4), Some((0, 3)));
         assert_eq!(WrapMode::Black.apply(-1, 0, 4, 4), None);
         assert_eq!(WrapMode::Black.apply(0, 4, 4, 4), None);
+    }
+
+    #[test]
+    fn meridians_go_on_beyond_the_poles() {
+        let wrap = WrapMode::LatitudeLongitude;
+        assert_eq!(wrap.apply(-1, 1, 8, 4), Some((7, 1)));
+        assert_eq!(wrap.apply(9, 1, 8, 4), Some((1, 1)));
+        assert_eq!(wrap.apply(1, -1, 8, 4), Some((5, 0)));
+        assert_eq!(wrap.apply(6, 4, 8, 4), Some((2, 3)));
+        assert_eq!(wrap.apply(0, i32::MIN, 1, 1), Some((0, 0)));
     }
 
     #[test]

@@ -2,8 +2,9 @@
 
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{
-    CameraKind, ColorSpaceDesc, FilmKind, IntegratorDesc, LightKind, MaterialKind, MediumKind, Parameter,
-    PathDesc, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc, TextureKind, TransformDesc,
+    CameraKind, ColorSpaceDesc, FilmKind, Handle, ImageChannel, IntegratorDesc, LightKind, MaterialKind,
+    MediumKind, Parameter, PathDesc, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc, TextureKind,
+    TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -333,4 +334,22 @@ fn an_index_of_refraction_is_a_number_or_any_spectrum() {
 fn the_corners_of_a_crop_window_come_in_any_order() {
     let desc = read(r#"Film "rgb" "float cropwindow" [0.75 0.25 0 1] WorldBegin"#);
     assert_eq!(desc.film.crop_window, Some([0.25, 0.75, 0.0, 1.0]));
+}
+
+#[test]
+fn a_texture_of_numbers_may_name_a_channel() {
+    let assets = || MemoryAssets::default().with("a.pfm", "Pf\n1 1\n-1\n\0\0\0\0");
+    for (channel, expected) in [
+        ("", None),
+        (r#""string channel" "r""#, Some(ImageChannel::Red)),
+        (r#""string channel" "g""#, Some(ImageChannel::Green)),
+        (r#""string channel" "b""#, Some(ImageChannel::Blue)),
+        (r#""string channel" "a""#, Some(ImageChannel::Alpha)),
+    ] {
+        let text =
+            format!(r#"WorldBegin Texture "t" "float" "imagemap" "string filename" "a.pfm" {channel}"#);
+        let desc = read_with(assets(), &text).desc;
+        let TextureKind::Image(image) = &desc.float_textures[Handle::new(0)].kind else { panic!() };
+        assert_eq!(image.channel, expected);
+    }
 }

@@ -4,24 +4,24 @@ use std::path::PathBuf;
 
 use film::Film;
 use geometry::RayStats;
-use image::Image;
 use scene::{Scene, View};
 
 use crate::{Cancelled, Control};
 
-/// An algorithm of light transport, run by [`render`](crate::render()).
+/// An algorithm of light transport, run by a [`Session`](crate::Session).
 ///
-/// The result of a pass depends on the scene, the view, the settings, the seed and the number of the
-/// pass alone: not on threads, nor on which passes were done before, as long as their numbers are
-/// lower. It is added to the film; but a pass of an algorithm that converges to one solution may
-/// replace the picture so far ([`Radiosity`](crate::Radiosity)).
+/// What a pass adds to the film depends on the scene, the view, the settings, the seed and the number
+/// of the pass alone: not on threads, nor on which passes were done before. The numbers begin with
+/// those of the [drafts](Self::drafts).
 pub trait Integrator: Send {
-    /// How many passes the picture takes.
+    /// How many passes the picture is planned for: the samples of a pixel that it is the mean of.
+    /// There may be fewer, and more.
     fn passes(&self) -> u32;
 
-    /// How many of these passes a pixel of the finished picture is the mean of.
-    fn samples_per_pixel(&self) -> u32 {
-        self.passes()
+    /// How many passes come before those, each of which puts a better draft in the place of the
+    /// picture. They add nothing to the finished one.
+    fn drafts(&self) -> u32 {
+        0
     }
 
     /// Builds what depends on the scene and the view; called once, before the first pass. `Err` if
@@ -40,8 +40,17 @@ pub trait Integrator: Send {
         control: &Control,
     ) -> Result<RayStats, Cancelled>;
 
-    /// What the passes so far have produced beside the picture.
-    fn by_products(&self) -> Vec<ByProduct> {
+    /// Films that the passes so far have filled beside the picture's, with their names. Their
+    /// pictures stand beside the main one and are called like it with the name added.
+    fn films(&self) -> Vec<(String, &Film)> {
+        Vec::new()
+    }
+
+    /// Goes on with films that [`films`](Self::films) has given; called before the first pass.
+    fn set_films(&mut self, _films: Vec<(String, Film)>) {}
+
+    /// The files that were asked for, as far as the passes so far have made them.
+    fn files(&self) -> Vec<OutputFile> {
         Vec::new()
     }
 
@@ -51,10 +60,10 @@ pub trait Integrator: Send {
     }
 }
 
-/// Something that is produced beside the picture.
-pub enum ByProduct {
-    /// An image, and the suffix of its name after that of the picture.
-    Picture(String, Image),
-    /// The contents of a file that a setting asks for.
-    File(PathBuf, Vec<u8>),
+/// A file that is made beside the picture.
+pub struct OutputFile {
+    /// Where it goes.
+    pub path: PathBuf,
+    /// Its contents.
+    pub contents: Vec<u8>,
 }

@@ -1,7 +1,7 @@
-//! The algorithms of light transport and the one loop that runs them.
+//! The algorithms of light transport and the one driver that runs them.
 //!
-//! An [`Integrator`] fills a film in passes; [`render`] runs the passes, tells of each and stops
-//! when asked to. An algorithm that only has to answer how much light comes along one ray is a
+//! An [`Integrator`] fills a film in passes; a [`Session`] runs the passes until a limit is reached
+//! or it is cancelled. An algorithm that only has to answer how much light comes along one ray is a
 //! [`RayIntegrator`], and [`PixelLoop`] makes an integrator of it. [`build`] chooses the algorithm
 //! that a scene names.
 //!
@@ -34,7 +34,7 @@ mod light_paths;
 mod metropolis;
 mod photons;
 mod radiosity;
-mod render;
+mod session;
 mod transport;
 
 pub use bidirectional::Bdpt;
@@ -42,11 +42,11 @@ pub use build::{Built, build};
 pub use camera_paths::{
     AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
 };
-pub use control::{Cancelled, Control, FilmSink, Progress, ProgressSink};
-pub use integrator::{ByProduct, Integrator};
+pub use control::{Cancelled, Clock, Control};
+pub use integrator::{Integrator, OutputFile};
 pub use light_paths::LightTracing;
 pub use metropolis::Mlt;
 pub use photons::{MAX_PHOTON_PATHS, PhotonMapping, Sppm, Vcm};
 pub use radiosity::Radiosity;
-pub use render::{RenderReport, render};
+pub use session::{Limits, Progress, Session, SessionState, Stop};
 pub use transport::Tracer;

@@ -1,4 +1,4 @@
-//! Hashing: bits without visible relation to the words they come from.
+//! Hash functions and pseudo-random permutations.
 //!
 //! [`mix_bits`] is one of Stafford's variants of MurmurHash3's finaliser, [`hash`] is Appleby's
 //! MurmurHash64A, and [`permutation_element`] evaluates one element of a pseudo-random permutation
@@ -31,14 +31,20 @@ pub fn hash(words: &[u32]) -> u64 {
     h ^ (h >> 47)
 }
 
+/// 32 bits as a binary fraction in [0, 1).
+#[inline]
+pub(crate) fn unit_interval(bits: u32) -> f32 {
+    (bits as f32 * (1.0 / 4_294_967_296.0)).min(math::ONE_MINUS_EPSILON)
+}
+
 /// A number in [0, 1) from a sequence of words.
 #[inline]
 pub fn hash_float(words: &[u32]) -> f32 {
-    crate::unit_interval(hash(words) as u32)
+    unit_interval(hash(words) as u32)
 }
 
-/// Where a pseudo-random permutation of 0..`length`, chosen by `seed`, sends `index`, which must be
-/// below `length`.
+/// The image of `index` under a pseudo-random permutation of 0..`length`, chosen by `seed`. `index`
+/// must be below `length`.
 #[inline]
 pub fn permutation_element(index: u32, length: u32, seed: u32) -> u32 {
     debug_assert!(index < length, "{index} is not an index below {length}");
@@ -71,7 +77,7 @@ mod tests {
     use testkit::Chi2;
 
     #[test]
-    fn permutations_hit_each_element_once() {
+    fn permutations_are_bijective() {
         for length in [1, 2, 3, 7, 64, 1000] {
             for seed in [0, 1, 0xdead_beef] {
                 let mut seen = vec![false; length as usize];
@@ -82,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn each_place_of_a_permutation_is_equally_likely() {
+    fn images_are_uniformly_distributed() {
         for index in 0..5 {
             let mut counts = [0; 5];
             for seed in 0..20_000 {

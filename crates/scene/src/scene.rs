@@ -279,7 +279,7 @@ impl Scene {
     ) -> Option<LightLeSample> {
         let light = self.light(light);
         let sample = light.sample_le(u_position, u_direction, time, lambda)?;
-        if sample.p.is_none() && self.world.is_endless() {
+        if sample.p.is_none() && self.world.is_unbounded() {
             let way_back = Ray { d: -sample.ray.d, ..sample.ray };
             if self.occluded(&way_back, f32::INFINITY, Interfaces::before(light), stats) {
                 return None;

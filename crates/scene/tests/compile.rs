@@ -162,9 +162,9 @@ fn images_that_serve_for_nothing_are_errors() {
     let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
     error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
     error(
-        &image_sky(rgb_image(4, 2, |_, _| [1.0; 3]), None),
+        &image_sky(rgb_image(4, 3, |_, _| [1.0; 3]), None),
         "image-shape",
-        "an infinite light wants a square image in the equal-area octahedral mapping, not 4 × 2",
+        "the image of an infinite light is square (equal-area octahedral) or twice as wide as high (latitude–longitude), not 4 × 3",
     );
     error(
         &image_sky(rgb_image(4, 4, |x, _| [if x == 2 { f32::NAN } else { 1.0 }; 3]), None),
@@ -215,6 +215,48 @@ fn lights_without_sense_are_errors() {
         desc.lights.push_stated(with_parameter(kind.into(), "I", 10));
     });
     check(&unnamed, Severity::Error, "invalid-value", "there is no spectrum named `no-such`", 10);
+}
+
+#[test]
+fn materials_without_sense_are_errors() {
+    let material = |kind: MaterialKind, name| {
+        with(|desc| {
+            desc.materials.push_stated(with_parameter(kind.into(), name, 4));
+        })
+    };
+    let message = "an index of refraction must be above 0";
+    for eta in [
+        0.0.into(),
+        SpectrumDesc::from(-1.5),
+        SpectrumDesc::rgb(0.0, 0.0, 0.0),
+        SpectrumDesc::Samples([(400.0, 1.5), (700.0, 0.0)].into()),
+    ] {
+        let roughness = RoughnessDesc::default();
+        let glass = MaterialKind::Dielectric { eta: eta.clone(), roughness };
+        check(&material(glass, "eta"), Severity::Error, "invalid-value", message, 4);
+        let thin = MaterialKind::ThinDielectric { eta };
+        check(&material(thin, "eta"), Severity::Error, "invalid-value", message, 4);
+    }
+    let rough = |value: f32| {
+        let roughness = RoughnessDesc { u: value.into(), v: 0.5.into(), remap: true };
+        MaterialKind::Conductor(ConductorDesc { roughness, ..ConductorDesc::default() })
+    };
+    let message = "roughness cannot be negative, as -0.1 is";
+    for name in ["roughness", "uroughness"] {
+        check(&material(rough(-0.1), name), Severity::Error, "invalid-value", message, 4);
+    }
+    let message = "roughness goes from 0 to 1; 2 is rougher than that";
+    check(&material(rough(2.0), "uroughness"), Severity::Warning, "roughness-range", message, 4);
+    let leaf = |scale| MaterialKind::DiffuseTransmission {
+        reflectance: 0.25.into(),
+        transmittance: 0.25.into(),
+        scale,
+    };
+    let message = "NaN is no factor on a reflectance";
+    check(&material(leaf(f32::NAN), "scale"), Severity::Error, "invalid-value", message, 4);
+    let message = "the values of a spectrum must be at most 1e30";
+    let bright = MaterialKind::Diffuse { reflectance: SpectrumDesc::Constant(1e35).into() };
+    check(&material(bright, "reflectance"), Severity::Error, "invalid-value", message, 4);
 }
 
 #[test]

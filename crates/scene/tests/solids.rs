@@ -83,6 +83,21 @@ fn a_formula_that_is_none_is_shown_where_it_is_wrong() {
 }
 
 #[test]
+fn a_formula_is_met_in_huge_bounds_or_they_are_an_error() {
+    let within = |half: f32| {
+        let text = "x^2 + y^2 + z^2 - 1".to_owned();
+        let formula = Spanned { value: text, span: span(103, 124) };
+        ShapeKind::Implicit { formula, bounds: [Vec3::splat(-half), Vec3::splat(half)] }
+    };
+    for half in [1e6, 1e9, 1e12, 1e18] {
+        assert_eq!(met(SceneDesc::default(), within(half).into()), Some(-1.0), "{half}");
+    }
+    let wrong = message(SceneDesc::default(), within(3e38).into());
+    assert_eq!((wrong.code, wrong.span()), ("invalid-bounds", span(103, 124)));
+    assert!(wrong.is_error());
+}
+
+#[test]
 fn what_is_no_body_is_no_part_of_a_solid() {
     let disk = ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, phi_max: 360.0 };
     let half = ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 180.0 };

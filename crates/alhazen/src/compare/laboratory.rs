@@ -1,22 +1,21 @@
 //! A plan on its way to a comparison: checked, rendered, measured.
 
+use std::sync::Arc;
+
 use description::{Diagnostic, SceneDesc};
 use image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use image::{Image, Window};
-use integrators::{Cancelled, Control};
+use integrators::{Cancelled, Control, Progress};
 use scene::{Scene, View};
 
 use super::measure::{measure, reference_noise};
-use super::twins::Twins;
+use super::paired_renders::PairedRenders;
 use super::{
     Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
     settings,
 };
 use crate::settings::listed;
 use crate::{OverrideError, Overrides};
-
-/// The samples per pixel that samplers are made for where time is the limit.
-const TIMED_SAMPLES: u32 = 1 << 16;
 
 /// How many times a contender's budget a reference gets that is not told otherwise: its noise is
 /// then a sixteenth of the variance of who rendered it.
@@ -25,7 +24,7 @@ const REFERENCE_FACTOR: u32 = 16;
 /// A plan that makes sense, with its scene compiled.
 pub struct Laboratory {
     setup: Setup,
-    scene: Scene,
+    scene: Arc<Scene>,
     view: View,
     contenders: Vec<Entry>,
     reference: ReferencePlan,
@@ -80,10 +79,7 @@ impl Laboratory {
         // One view for all, so that textures are filtered alike; where time is the limit, for the
         // samples that the scene asks for, as when it is rendered.
         let view = View::compile(&first.desc, scene::world_from_render(&first.desc));
-        let mut view = view.map_err(|errors| first.wrong(errors))?;
-        if let Budget::Time(_) = plan.budget {
-            view.view.samples_per_pixel = scene::samples_per_pixel(scene);
-        }
+        let view = view.map_err(|errors| first.wrong(errors))?;
         warnings.extend(view.warnings);
         let compiled = scene::compile(&first.desc).map_err(|errors| first.wrong(errors))?;
         warnings.extend(compiled.warnings);
@@ -116,8 +112,8 @@ impl Laboratory {
             }
         };
         let warned = Vec::new();
-        let mut laboratory =
-            Self { setup, scene: compiled.scene, view: view.view, contenders, reference, warnings: warned };
+        let (scene, view) = (Arc::new(compiled.scene), view.view);
+        let mut laboratory = Self { setup, scene, view, contenders, reference, warnings: warned };
         for (name, value) in &plan.overrides.settings {
             let takes = |entry: &Entry| entry.overrides.settings.iter().any(|(taken, _)| taken == name);
             if !laboratory.entries().any(takes) {
@@ -126,9 +122,10 @@ impl Laboratory {
             }
         }
         for entry in laboratory.entries() {
-            let twins = Twins::new(&entry.desc, laboratory.setup.seed);
-            let (_, said) = twins.map_err(|errors| entry.wrong(errors))?;
-            warnings.extend(said.into_iter().filter(|said| !warnings.contains(said)).collect::<Vec<_>>());
+            let pair =
+                PairedRenders::new(&entry.desc, (&laboratory.scene, &laboratory.view), laboratory.setup.seed);
+            let (_, more) = pair.map_err(|errors| entry.wrong(errors))?;
+            warnings.extend(more.into_iter().filter(|more| !warnings.contains(more)).collect::<Vec<_>>());
         }
         laboratory.warnings = warnings.iter().map(|warning| warning.message.clone()).collect();
         Ok((laboratory, warnings))
@@ -143,30 +140,34 @@ impl Laboratory {
     }
 
     /// Renders the reference, then all contenders in turn, on the threads of rayon's current pool,
-    /// and measures them. `begin` is told what comes next, and gives what controls it; of the
-    /// passes it hears, one is a pass of both pictures.
+    /// and measures them. `progress` hears what is being rendered: at its beginning and after each
+    /// pass of both pictures.
     ///
     /// After a cancellation the comparison is of what has been done. `Err` means that there is
     /// nothing to compare: no contender has done a pass.
-    pub fn compare(self, mut begin: impl FnMut(&str) -> Control) -> Result<Comparison, Cancelled> {
+    pub fn compare(
+        self,
+        control: &Control,
+        progress: &mut dyn FnMut(&str, &Progress),
+    ) -> Result<Comparison, Cancelled> {
         let Self { setup, scene, view, contenders, reference, warnings } = self;
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
-                let control = begin(&format!("reference by {}", entry.name));
                 // Seeds of its own: a picture judged by its own samples would look better than it
                 // is.
-                render_reference(&entry, half, setup.seed.wrapping_add(2), (&scene, &view), &control)?
+                let pair = paired_renders(&entry, (&scene, &view), setup.seed.wrapping_add(2));
+                render_reference(&entry, half, pair, control, progress)?
             }
         };
         let (mut runs, mut missing) = (Vec::new(), Vec::new());
         let mut interrupted = false;
         for entry in &contenders {
-            let run = if interrupted {
-                None
-            } else {
-                run(entry, &setup, (&scene, &view), &reference, &begin(&entry.name))
+            let mut run = || {
+                let pair = paired_renders(entry, (&scene, &view), setup.seed);
+                run(entry, &setup, pair, &reference, control, progress)
             };
+            let run = if interrupted { None } else { run() };
             interrupted |= run.as_ref().is_none_or(|run| run.interrupted);
             match run {
                 Some(run) => runs.push(run),
@@ -187,11 +188,11 @@ fn entry(
     contender: &Contender,
     budget: Budget,
 ) -> Result<Entry, PlanError> {
-    let samples = match budget {
-        Budget::Time(_) => TIMED_SAMPLES,
-        Budget::Samples(samples) => samples,
+    let samples_per_pixel = match budget {
+        Budget::Time(_) => overrides.samples_per_pixel,
+        Budget::Samples(samples) => Some(samples),
     };
-    let shared = Overrides { samples_per_pixel: Some(samples), ..overrides.clone() };
+    let shared = Overrides { samples_per_pixel, ..overrides.clone() };
     let overrides = contender.overrides(scene, &shared);
     let wrong = |error: OverrideError| PlanError::Plan(error.to_string());
     let mut desc = contender.scene(scene, &overrides).map_err(wrong)?;
@@ -228,13 +229,13 @@ fn fitting(name: &str, picture: &Image, setup: &Setup) -> Result<Image, String> 
 fn render_reference(
     entry: &Entry,
     half: Budget,
-    seed: i32,
-    viewed: (&Scene, &View),
+    mut pair: PairedRenders,
     control: &Control,
+    progress: &mut dyn FnMut(&str, &Progress),
 ) -> Result<Reference, Cancelled> {
-    let mut twins = twins(entry, seed);
-    twins.render(viewed, half, control, |_| ())?;
-    let halves = twins.pictures();
+    let name = format!("reference by {}", entry.name);
+    pair.render(half, control, &mut |now| progress(&name, now), |_| ())?;
+    let halves = pair.pictures();
     let picture = Image::from_fn(halves[0].width(), halves[0].height(), ["R", "G", "B"], |x, y| {
         let [a, b] = [0, 1].map(|half: usize| halves[half].rgb(x, y));
         std::array::from_fn(|c| (a[c] + b[c]) / 2.0)
@@ -243,8 +244,8 @@ fn render_reference(
         source: format!(
             "{}, twice {} passes in {:.1} s",
             entry.name,
-            twins.effort().passes,
-            2.0 * twins.effort().seconds
+            pair.effort().passes,
+            2.0 * pair.effort().seconds
         ),
         by: Some(entry.name.clone()),
         noise: Some(reference_noise(&halves, &picture)),
@@ -258,31 +259,31 @@ fn render_reference(
 fn run(
     entry: &Entry,
     setup: &Setup,
-    viewed: (&Scene, &View),
+    mut pair: PairedRenders,
     reference: &Reference,
     control: &Control,
+    progress: &mut dyn FnMut(&str, &Progress),
 ) -> Option<Run> {
-    let mut twins = twins(entry, setup.seed);
     let mut checkpoints = Vec::new();
-    let outcome = twins.render(viewed, setup.budget, control, |twins| {
-        let effort = twins.effort();
+    let outcome = pair.render(setup.budget, control, &mut |now| progress(&entry.name, now), |pair| {
+        let effort = pair.effort();
         checkpoints.push(Checkpoint {
             passes: effort.passes,
             seconds: effort.seconds,
             rays: effort.rays,
-            measure: measure(&twins.pictures(), &reference.picture, reference.noise),
+            measure: measure(&pair.pictures(), &reference.picture, reference.noise),
         });
     });
     if checkpoints.is_empty() {
         return None;
     }
-    let pictures = twins.pictures();
+    let pictures = pair.pictures();
     let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
     Some(Run {
         name: entry.name.clone(),
         settings: listed(&entry.desc.integrator.value).split_off(1),
         sampler: settings::of_sampler(&entry.desc.sampler.kind),
-        notes: twins.notes(),
+        notes: pair.notes(),
         checkpoints,
         pictures,
         flip,
@@ -290,8 +291,8 @@ fn run(
     })
 }
 
-fn twins(entry: &Entry, seed: i32) -> Twins {
-    let (twins, _) =
-        Twins::new(&entry.desc, seed).expect("invariant: these were built before, with another seed");
-    twins
+fn paired_renders(entry: &Entry, viewed: (&Arc<Scene>, &View), seed: i32) -> PairedRenders {
+    let (pair, _) = PairedRenders::new(&entry.desc, viewed, seed)
+        .expect("invariant: these were built before, with another seed");
+    pair
 }

@@ -22,8 +22,8 @@ mod json;
 mod laboratory;
 mod measure;
 mod page;
+mod paired_renders;
 mod settings;
-mod twins;
 
 use std::fmt;
 use std::time::Duration;

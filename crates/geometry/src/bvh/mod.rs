@@ -1,10 +1,10 @@
-//! A tree of boxes over anything that has bounds.
+//! A bounding volume hierarchy over primitives of any kind.
 //!
-//! Four things are kept apart: how to split is [`build`]'s affair, what a node is [`node`]'s, how
-//! rays pass [`traverse`]'s, and what a leaf tests is left to the caller. A leaf is a range of
-//! *blocks*, each of a fixed number of primitives, so that a caller may test a block at once.
+//! [`build`] makes the tree, [`node`] has its nodes, [`traverse`] passes rays through it; the tests
+//! of leaves are the caller's. A leaf is a range of *blocks*, each of a fixed number of primitives
+//! that are tested at once.
 //!
-//! The tree depends on the primitives alone, never on the number of threads that built it.
+//! The tree depends on the primitives alone, not on the number of threads that build it.
 
 mod build;
 mod node;
@@ -18,11 +18,10 @@ pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};
 pub(crate) use traverse::Leaves;
 
-/// The most nodes above each other that a tree may have, for which rays have room to remember where
-/// to return.
+/// The most levels of nodes of a tree, for which the traversal stack has capacity.
 const MAX_DEPTH: usize = 96;
 
-/// The tree.
+/// A bounding volume hierarchy.
 #[derive(Clone, Debug)]
 pub(crate) struct Bvh {
     nodes: Vec<WideNode>,
@@ -33,17 +32,16 @@ impl Bvh {
     /// Builds a tree, and the blocks of its leaves.
     pub fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> (Self, Vec<P::Block>) {
         let built = build::build(primitives, quality);
-        assert!(built.depth <= MAX_DEPTH, "splits halve sets that are deep");
+        assert!(built.depth <= MAX_DEPTH, "deep sets are split at the median");
         (Self { bounds: built.bounds, nodes: built.nodes }, built.blocks)
     }
 
-    /// New boxes for primitives that have moved. `renew` brings a block up to date and gives its
-    /// box.
-    pub fn refit<B: Send>(&mut self, blocks: &mut [B], renew: impl Fn(&mut B) -> Bounds3 + Sync) {
-        self.bounds = build::refit(&mut self.nodes, blocks, renew);
+    /// Updates all boxes after primitives have moved. `reload` updates a block and returns its box.
+    pub fn refit<B: Send>(&mut self, blocks: &mut [B], reload: impl Fn(&mut B) -> Bounds3 + Sync) {
+        self.bounds = build::refit(&mut self.nodes, blocks, reload);
     }
 
-    /// Bytes of memory taken.
+    /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes)
     }

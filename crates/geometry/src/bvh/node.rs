@@ -1,21 +1,21 @@
-//! Nodes of sixteen children, whose boxes are tested together.
+//! Wide nodes: sixteen children, whose boxes are tested together ([Wald et al. 2008]).
 //!
-//! The idea is that of [Wald et al. 2008]. What a ray waits for on its way down is one answer after
-//! another, each the same time whether of eight boxes or of sixteen, and with sixteen there are
-//! fewer: that pays even where vectors are shorter.
+//! Traversal is bound by latency: each step depends on the one before, and takes the same time for
+//! eight boxes as for sixteen. With sixteen there are fewer steps, which pays even where vectors
+//! are shorter.
 //!
-//! A ray enters a slab at t = p·(1/d) − o/d, which is one fused product; everything but the plane p
-//! is known beforehand. Boxes are widened by what that rounds, and by what the watertight triangle
-//! test may err: that test rounds vertices after moving them to the ray's origin, so that it may
-//! meet a triangle that the exact ray misses by γ(8) times the distance; a box that is not as
-//! generous would let such a ray slip through a closed surface.
+//! A ray enters a slab at t = p·(1/d) − o/d, one fused multiply-add; everything but the plane p is
+//! precomputed. Boxes are widened by the rounding error, and by that of the watertight triangle
+//! test: it rounds vertices after translating them to the ray's origin, so that it may hit a
+//! triangle that the exact ray misses by γ(8) times the distance. Without this margin such a ray
+//! could pass through a closed surface.
 
 #![allow(unsafe_code)]
 
 use lanes::Vector;
 use math::{Bounds3, Ray, Vec3, gamma};
 
-/// Children of a node, and rays that pass together.
+/// Children of a node, and rays of a packet.
 pub(crate) const WIDTH: usize = 16;
 
 /// A child in 32 bits: a node, or a range of blocks of primitives.
@@ -28,7 +28,7 @@ impl Child {
     /// The most blocks that a leaf may hold.
     pub const MAX_BLOCKS: usize = (1 << Self::BLOCK_BITS) - 1;
     /// A leaf without blocks.
-    pub const NOTHING: Self = Self(Self::LEAF);
+    pub const EMPTY: Self = Self(Self::LEAF);
 
     /// The node at an index.
     pub fn node(index: usize) -> Self {
@@ -50,13 +50,13 @@ impl Child {
         self.0 & Self::LEAF != 0
     }
 
-    /// Where the node is.
+    /// The index of the node.
     #[inline(always)]
     pub fn index(self) -> usize {
         self.0 as usize
     }
 
-    /// Which blocks the leaf holds.
+    /// The blocks of the leaf.
     #[inline(always)]
     pub fn blocks(self) -> std::ops::Range<usize> {
         let first = ((self.0 & !Self::LEAF) >> Self::BLOCK_BITS) as usize;
@@ -64,8 +64,7 @@ impl Child {
     }
 }
 
-/// A node: the six planes of each child's box (low x, y, z, high x, y, z), and where the children
-/// are.
+/// A node: the six planes of each child's box (low x, y, z, high x, y, z), and the children.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct WideNode {
@@ -74,33 +73,33 @@ pub(crate) struct WideNode {
     len: u32,
 }
 
-/// A ray made ready for many boxes, the same in every lane.
+/// A ray prepared for slab tests, the same in every lane.
 #[derive(Clone, Copy)]
-pub(crate) struct Slabs<V> {
-    /// Which plane is met first along each axis; the other is met last.
+pub(crate) struct RaySlabs<V> {
+    /// The index of the plane that is crossed first along each axis.
     first: [usize; 3],
     inverse: [V; 3],
-    /// o/d, with the origin moved forth so that boxes seem to begin earlier, and back so that they
-    /// seem to end later.
+    /// o/d, with the origin moved forward for near planes and back for far planes, which widens the
+    /// boxes.
     near: [V; 3],
     far: [V; 3],
 }
 
-impl<V: Vector<WIDTH>> Slabs<V> {
+impl<V: Vector<WIDTH>> RaySlabs<V> {
     /// # Safety
-    /// The processor must have the instructions that `V` takes.
+    /// The processor must have the instruction set of `V`.
     #[inline(always)]
     pub unsafe fn new(ray: &Ray, bounds: &Bounds3) -> Self {
-        let slack = slack(ray.o, bounds);
+        let margin = margin(ray.o, bounds);
         // SAFETY: as the caller promises.
-        unsafe { Self::along(inverse(ray.d), ray.o, slack) }
+        unsafe { Self::along(inverse(ray.d), ray.o, margin) }
     }
 
     /// # Safety
-    /// The processor must have the instructions that `V` takes.
+    /// The processor must have the instruction set of `V`.
     #[inline(always)]
-    unsafe fn along(inverse: Vec3, o: Vec3, slack: f32) -> Self {
-        let shift = Vec3::splat(slack).copysign(inverse);
+    unsafe fn along(inverse: Vec3, o: Vec3, margin: f32) -> Self {
+        let shift = Vec3::splat(margin).copysign(inverse);
         // SAFETY: as the caller promises.
         let splat = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
         Self {
@@ -112,26 +111,27 @@ impl<V: Vector<WIDTH>> Slabs<V> {
     }
 }
 
-/// Rays from one point, and an interval around their directions [Reshetov et al. 2005].
+/// A packet of rays from one point, and an interval around their directions ([Reshetov et al.
+/// 2005]).
 #[derive(Clone, Copy)]
-pub(crate) struct Beam<V> {
-    /// One in each lane.
-    rays: Slabs<V>,
-    /// Two, each in all lanes, whose inverse directions have the least and the greatest size along
-    /// each axis, so that they meet each plane before and after all others.
-    least: Slabs<V>,
-    greatest: Slabs<V>,
+pub(crate) struct PacketSlabs<V> {
+    /// One ray in each lane.
+    rays: RaySlabs<V>,
+    /// The interval as two rays, each in all lanes: their inverse directions have the least and the
+    /// greatest magnitude along each axis, so that they cross each plane before and after all rays.
+    least: RaySlabs<V>,
+    greatest: RaySlabs<V>,
 }
 
-impl<V: Vector<WIDTH>> Beam<V> {
-    /// All rays must come from the same point, and all directions must have the same signs.
+impl<V: Vector<WIDTH>> PacketSlabs<V> {
+    /// All rays must have the same origin, and all directions the same signs.
     ///
     /// # Safety
-    /// The processor must have the instructions that `V` takes.
+    /// The processor must have the instruction set of `V`.
     #[inline(always)]
     pub unsafe fn new(rays: &[(Ray, f32); WIDTH], bounds: &Bounds3) -> Self {
         let o = rays[0].0.o;
-        let slack = slack(o, bounds);
+        let margin = margin(o, bounds);
         let mut lanes = [[0.0; WIDTH]; 3];
         let (mut least, mut greatest) = (Vec3::INFINITY, Vec3::ZERO);
         for (lane, (ray, _)) in rays.iter().enumerate() {
@@ -144,10 +144,10 @@ impl<V: Vector<WIDTH>> Beam<V> {
         }
         // SAFETY: as the caller promises.
         unsafe {
-            let [mut rays, least, greatest] =
-                [greatest, least, greatest].map(|size| Slabs::along(size.copysign(rays[0].0.d), o, slack));
+            let [mut rays, least, greatest] = [greatest, least, greatest]
+                .map(|size| RaySlabs::along(size.copysign(rays[0].0.d), o, margin));
             for axis in 0..3 {
-                let shift = slack.copysign(lanes[axis][0]);
+                let shift = margin.copysign(lanes[axis][0]);
                 rays.inverse[axis] = V::load(&lanes[axis]);
                 rays.near[axis] = rays.inverse[axis].mul(V::splat(o[axis] + shift));
                 rays.far[axis] = rays.inverse[axis].mul(V::splat(o[axis] - shift));
@@ -157,11 +157,11 @@ impl<V: Vector<WIDTH>> Beam<V> {
     }
 }
 
-/// 1/d, along every axis a number.
+/// 1/d, finite along every axis.
 #[inline(always)]
 fn inverse(d: Vec3) -> Vec3 {
-    // A ray along a slab is in it or not for all its length; a direction that is just not along it
-    // says the same within the slack, and has an inverse.
+    // A ray parallel to a slab is inside of it or outside for all its length; a direction that is
+    // almost parallel gives the same answer within the margin, and has an inverse.
     let least = Vec3::splat(d.abs().max_element() * 1e-12);
     Vec3::select(d.abs().cmplt(least), least.copysign(d), d).recip()
 }
@@ -172,9 +172,9 @@ fn first_planes(inverse: Vec3) -> [usize; 3] {
     [0, 1, 2].map(|axis| axis + 3 * (inverse[axis] < 0.0) as usize)
 }
 
-/// How far planes are moved.
+/// The distance that planes are moved by.
 #[inline(always)]
-fn slack(o: Vec3, bounds: &Bounds3) -> f32 {
+fn margin(o: Vec3, bounds: &Bounds3) -> f32 {
     (bounds.min.abs().max(bounds.max.abs()) + o.abs()).max_element() * gamma(8)
 }
 
@@ -188,17 +188,17 @@ impl WideNode {
             [f32::NEG_INFINITY; WIDTH],
             [f32::NEG_INFINITY; WIDTH],
         ],
-        children: [Child::NOTHING; WIDTH],
+        children: [Child::EMPTY; WIDTH],
         len: 0,
     };
 
-    /// How many children there are.
+    /// The number of children.
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.len as usize
     }
 
-    /// The children, filled up with [`Child::NOTHING`].
+    /// The children, filled up with [`Child::EMPTY`].
     #[inline(always)]
     pub fn children(&self) -> &[Child; WIDTH] {
         &self.children
@@ -212,11 +212,12 @@ impl WideNode {
         self.len += 1;
     }
 
-    /// Puts others in the place of all children.
-    pub fn renew_children(&mut self, renewed: impl Fn(Child) -> Child) {
-        self.children = self.children.map(renewed);
+    /// Replaces all children.
+    pub fn replace_children(&mut self, replaced: impl Fn(Child) -> Child) {
+        self.children = self.children.map(replaced);
     }
 
+    /// Replaces the box of a child.
     pub fn set_bounds(&mut self, lane: usize, bounds: &Bounds3) {
         for axis in 0..3 {
             self.planes[axis][lane] = bounds.min[axis];
@@ -237,21 +238,22 @@ impl WideNode {
         Bounds3 { min: corner(0), max: corner(3) }
     }
 
-    /// Where each ray enters the box of a child, and a bit for each that does up to its `t_max`.
+    /// Where each ray of a packet enters the box of a child, and a bit for each that does before
+    /// its `t_max`.
     #[inline(always)]
     pub fn intersect_rays<V: Vector<WIDTH>>(
         &self,
         lane: usize,
-        beam: &Beam<V>,
+        packet: &PacketSlabs<V>,
         t_max: V,
         zero: V,
     ) -> (V, u32) {
-        let rays = &beam.rays;
+        let rays = &packet.rays;
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = rays.first[axis];
             // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; lanes are below
-            // [`WIDTH`]; whoever has `rays` has the instructions.
+            // [`WIDTH`]; `rays` is the proof of the instruction set.
             let [enter, leave] = unsafe {
                 let first_plane = V::splat(*self.planes.get_unchecked(first).get_unchecked(lane));
                 let last_plane =
@@ -267,23 +269,23 @@ impl WideNode {
         (near, near.le(far))
     }
 
-    /// Where the first of the rays may enter each box, and a bit for each box that any may enter up
-    /// to `t_max`.
+    /// A lower bound of where rays of a packet enter each box, and a bit for each box that any may
+    /// enter before `t_max`.
     #[inline(always)]
-    pub fn intersect_beam<V: Vector<WIDTH>>(&self, beam: &Beam<V>, t_max: V, zero: V) -> (V, u32) {
-        let Beam { least, greatest, .. } = beam;
+    pub fn intersect_packet<V: Vector<WIDTH>>(&self, packet: &PacketSlabs<V>, t_max: V, zero: V) -> (V, u32) {
+        let PacketSlabs { least, greatest, .. } = packet;
         let (mut near, mut far) = (zero, t_max);
         for axis in 0..3 {
             let first = least.first[axis];
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `beam` has
-            // the instructions.
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; `packet` is the proof
+            // of the instruction set.
             let [first_plane, last_plane] = unsafe {
                 [
                     V::load(self.planes.get_unchecked(first)),
                     V::load(self.planes.get_unchecked(2 * axis + 3 - first)),
                 ]
             };
-            // Should one of two be no number, then the second is.
+            // Where one of the two is NaN, the second is a number.
             let enter = first_plane
                 .relaxed_mul_sub(least.inverse[axis], least.near[axis])
                 .min(first_plane.relaxed_mul_sub(greatest.inverse[axis], greatest.near[axis]));
@@ -296,16 +298,16 @@ impl WideNode {
         (near, near.le(far))
     }
 
-    /// Where the ray enters each box, and a bit for each box that it enters up to `t_max`.
-    /// Comparisons keep the old value beside a NaN, which numbers beyond floats make.
+    /// Where the ray enters each box, and a bit for each box that it enters before `t_max`. Where
+    /// an overflow gives NaN, minimum and maximum keep the old value.
     #[inline(always)]
-    pub fn intersect<V: Vector<WIDTH>>(&self, ray: &Slabs<V>, t_max: V, zero: V) -> (V, u32) {
+    pub fn intersect<V: Vector<WIDTH>>(&self, ray: &RaySlabs<V>, t_max: V, zero: V) -> (V, u32) {
         let mut near = zero;
         let mut far = t_max;
         for axis in 0..3 {
             let first = ray.first[axis];
-            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; whoever has `ray` has
-            // the instructions.
+            // SAFETY: `first` is `axis` or `axis + 3`, and so is the other; `ray` is the proof of
+            // the instruction set.
             let [enter, leave] = unsafe {
                 let first_plane = V::load(self.planes.get_unchecked(first));
                 let last_plane = V::load(self.planes.get_unchecked(2 * axis + 3 - first));

@@ -1,48 +1,47 @@
-//! Rays on their way through a tree.
+//! Traversal.
 //!
-//! Towards the nearest hit, children are visited front to back: the nearest at once, the others
-//! from a stack, where each waits with the distance of its box, so that it is passed over when
-//! something nearer was hit in the meantime. Towards any hit, order is only a guess of where one is
-//! found soon: near the origin when the ray ends somewhere, for it was made to end at what it may
-//! see; where the builder put leaves with few large primitives when it does not. What waits is
-//! asked for from memory at once.
+//! For the nearest hit, children are visited front to back: the nearest at once, the others from a
+//! stack, where each has the distance of its box, so that it is skipped when a nearer hit has been
+//! found. For any hit, the order is a heuristic: by distance where the ray has an end, since such
+//! rays test visibility of a point; where it has none, the order of the builder, which puts
+//! children with large primitives last, where they are visited first. Children on the stack are
+//! prefetched.
 
 #![allow(unsafe_code)]
 
-use super::node::{Beam, Child, Slabs, WIDTH, WideNode};
+use super::node::{Child, PacketSlabs, RaySlabs, WIDTH, WideNode};
 use super::{Bvh, MAX_DEPTH};
 use lanes::{Simd, Vector, prefetch};
 use math::Ray;
 use std::mem::MaybeUninit;
 use std::ops::Range;
 
-/// What stands in the leaves of a tree.
+/// The tests of leaves.
 pub(crate) trait Leaves {
-    /// What a block is made of.
+    /// Primitives that are tested at once.
     type Block;
 
     /// All blocks.
     fn blocks(&self) -> &[Self::Block];
 
-    /// Tests blocks for hits up to `t_max`, and lowers it to the nearest. Whether to look no
-    /// further.
+    /// Tests blocks for hits before `t_max`, and lowers it to the nearest; returns whether to stop.
     ///
     /// # Safety
-    /// The blocks must be those of a leaf, and the processor must have the instructions that the
-    /// leaves were made ready for.
+    /// The blocks must be those of a leaf, and the processor must have the instruction set that the
+    /// leaves were prepared for.
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool;
 }
 
-/// Each node on the way down leaves at most all children but one waiting, the last one perhaps all;
-/// and below all lies [`Waiting::END`].
+/// Each level of nodes pushes at most all children but one, the last one perhaps all; the bottom of
+/// the stack is [`StackEntry::END`].
 const STACK: usize = MAX_DEPTH * (WIDTH - 1) + 2;
 
-/// A child, and above it the bits of its distance, so that what is nearer is less.
+/// A child in the low bits, and its distance in the high bits, so that entries compare by distance.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Waiting(u64);
+struct StackEntry(u64);
 
-impl Waiting {
-    /// Not a leaf that there can be.
+impl StackEntry {
+    /// The bottom of the stack: no valid leaf.
     const END: Self = Self(u32::MAX as u64);
 
     #[inline(always)]
@@ -61,17 +60,17 @@ impl Waiting {
     }
 }
 
-/// What waits for rays that pass together: in the last bits of the distance, a bit for each ray
-/// that enters the box.
+/// An entry for a ray packet: in the low bits of the distance, a bit for each ray that enters the
+/// box.
 #[derive(Clone, Copy)]
-struct Together(Waiting);
+struct PacketEntry(StackEntry);
 
-impl Together {
+impl PacketEntry {
     const ALL: u32 = (1 << WIDTH) - 1;
 
     #[inline(always)]
     fn new(near: f32, rays: u32, child: Child) -> Self {
-        Self(Waiting::new(f32::from_bits(near.to_bits() & !Self::ALL | rays), child))
+        Self(StackEntry::new(f32::from_bits(near.to_bits() & !Self::ALL | rays), child))
     }
 
     #[inline(always)]
@@ -80,27 +79,27 @@ impl Together {
     }
 
     #[inline(always)]
-    unsafe fn pop(top: &mut *mut Waiting, t_max: f32) -> Self {
+    unsafe fn pop(top: &mut *mut StackEntry, t_max: f32) -> Self {
         loop {
-            // SAFETY: the end lies below everything, and is never passed over.
-            let waiting = unsafe {
+            // SAFETY: the end is the bottom of the stack, and is never skipped.
+            let entry = unsafe {
                 *top = top.sub(1);
                 **top
             };
-            if waiting.near() & !Self::ALL <= t_max.to_bits() {
-                return Self(waiting);
+            if entry.near() & !Self::ALL <= t_max.to_bits() {
+                return Self(entry);
             }
         }
     }
 }
 
 impl Bvh {
-    /// Shows `leaves` the blocks that the ray may meet up to `t_max`, the nearest first, or with
-    /// `ANY` in no order of distance. Returns the number of boxes tested, and whether `leaves`
-    /// broke off. The ray must be finite.
+    /// Passes `leaves` the blocks that the ray may meet before `t_max`, the nearest first, or with
+    /// `ANY` in the order of the builder. Returns the number of boxes tested, and whether `leaves`
+    /// stopped. The ray must be finite.
     ///
     /// # Safety
-    /// The processor must have the instructions of the set.
+    /// The processor must have the instruction set.
     #[inline(always)]
     pub unsafe fn traverse<S: Simd, const ANY: bool>(
         &self,
@@ -109,30 +108,28 @@ impl Bvh {
         leaves: &mut impl Leaves,
     ) -> (u64, bool) {
         let mut extents = 0;
-        // Negative and NaN ends leave nothing to be hit; nor has a ray without length anywhere to
-        // go.
+        // Nothing is before an end that is negative or NaN.
         if self.nodes.is_empty() || t_max.is_nan() || *t_max < 0.0 {
             return (extents, false);
         }
-        // SAFETY: the caller promises the instructions. Children were made by `Child::node` and
-        // `Child::leaf` for nodes and blocks that there are, and the tree is not deeper than what
-        // the stack was measured for: `Bvh::build` saw to both.
+        // SAFETY: the caller promises the instruction set. Children are valid nodes and ranges of
+        // blocks, and the tree is not deeper than the stack allows: `Bvh::build` ensures both.
         unsafe {
-            let slabs = Slabs::<S::F32x16>::new(ray, &self.bounds);
+            let slabs = RaySlabs::<S::F32x16>::new(ray, &self.bounds);
             let nodes = self.nodes.as_ptr();
-            let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
-            let mut top = stack.as_mut_ptr().cast::<Waiting>();
-            *top = Waiting::END;
+            let mut stack = [const { MaybeUninit::<StackEntry>::uninit() }; STACK];
+            let mut top = stack.as_mut_ptr().cast::<StackEntry>();
+            *top = StackEntry::END;
             top = top.add(1);
             let mut next = Child::node(0);
             loop {
                 while !next.is_leaf() {
                     let node = &*nodes.add(next.index());
                     extents += node.len() as u64;
-                    let ahead = |child| self.prefetch(leaves.blocks(), child);
-                    next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, ahead);
+                    let prefetch_child = |child| self.prefetch(leaves.blocks(), child);
+                    next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, prefetch_child);
                 }
-                if next == Waiting::END.child() {
+                if next == StackEntry::END.child() {
                     return (extents, false);
                 }
                 if leaves.test(next.blocks(), t_max) {
@@ -143,15 +140,15 @@ impl Bvh {
         }
     }
 
-    /// Takes rays from one point through the tree together. `test` is given blocks, a bit for each
-    /// ray that enters the box around them, and the end of each ray, which it may lower: below zero
-    /// when the ray is to go no further. Returns the number of boxes tested. The rays must be
-    /// finite and have the same signs.
+    /// Traverses the tree with a packet of rays from one point. `test` is given blocks, a bit for
+    /// each ray that enters the box around them, and the end of each ray, which it may lower: below
+    /// zero to stop the ray. Returns the number of boxes tested. The rays must be finite, and their
+    /// directions must have the same signs.
     ///
     /// # Safety
-    /// The processor must have the instructions of the set.
+    /// The processor must have the instruction set.
     #[inline(always)]
-    pub unsafe fn traverse_together<S: Simd, B>(
+    pub unsafe fn traverse_packet<S: Simd, B>(
         &self,
         blocks: &[B],
         rays: &[(Ray, f32); WIDTH],
@@ -164,16 +161,16 @@ impl Bvh {
         }
         // SAFETY: as in `traverse`.
         unsafe {
-            let beam = Beam::<S::F32x16>::new(rays, &self.bounds);
+            let packet = PacketSlabs::<S::F32x16>::new(rays, &self.bounds);
             let zero = S::F32x16::splat(0.0);
             let mut furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
-            let mut stack = [const { MaybeUninit::<Waiting>::uninit() }; STACK];
-            let mut top = stack.as_mut_ptr().cast::<Waiting>();
-            push(&mut top, Waiting::END);
-            let mut next = Together(Waiting::new(0.0, Child::node(0)));
+            let mut stack = [const { MaybeUninit::<StackEntry>::uninit() }; STACK];
+            let mut top = stack.as_mut_ptr().cast::<StackEntry>();
+            push(&mut top, StackEntry::END);
+            let mut next = PacketEntry(StackEntry::new(0.0, Child::node(0)));
             loop {
                 let child = next.0.child();
-                if child == Waiting::END.child() {
+                if child == StackEntry::END.child() {
                     return extents;
                 }
                 if child.is_leaf() {
@@ -182,107 +179,117 @@ impl Bvh {
                 } else {
                     let node = self.nodes.get_unchecked(child.index());
                     let ends = S::F32x16::load(t_max);
-                    let (near, mut entered) = node.intersect_beam(&beam, S::F32x16::splat(furthest), zero);
+                    let (near, mut entered) =
+                        node.intersect_packet(&packet, S::F32x16::splat(furthest), zero);
                     extents += node.len() as u64;
                     let near = near.store();
                     let floor = top;
                     while entered != 0 {
                         let lane = entered.trailing_zeros() as usize;
                         entered &= entered - 1;
-                        let (_, hits) = node.intersect_rays(lane, &beam, ends, zero);
+                        let (_, hits) = node.intersect_rays(lane, &packet, ends, zero);
                         extents += WIDTH as u64;
                         if hits != 0 {
                             let child = *node.children().get_unchecked(lane);
                             self.prefetch(blocks, child);
-                            sink(&mut top, floor, Together::new(*near.get_unchecked(lane), hits, child).0);
+                            insert(
+                                &mut top,
+                                floor,
+                                PacketEntry::new(*near.get_unchecked(lane), hits, child).0,
+                            );
                         }
                     }
                 }
-                next = Together::pop(&mut top, furthest);
+                next = PacketEntry::pop(&mut top, furthest);
             }
         }
     }
 
-    /// How many lines of a node or block are asked for. What is left of a node comes while these
-    /// are computed with.
-    const AHEAD: usize = 3;
+    /// How many cache lines of a node or block are prefetched. The rest of a node is loaded while
+    /// these are computed with.
+    const PREFETCH_LINES: usize = 3;
 
-    /// Asks for a node or a block.
+    /// Prefetches a node or a block.
     #[inline(always)]
     fn prefetch<B>(&self, blocks: &[B], child: Child) {
         let node = self.nodes.as_ptr().wrapping_add(child.index()).cast::<u8>();
         let block = blocks.as_ptr().wrapping_add(child.blocks().start).cast::<u8>();
         let at = if child.is_leaf() { block } else { node };
-        for line in 0..Self::AHEAD {
+        for line in 0..Self::PREFETCH_LINES {
             prefetch(at.wrapping_add(64 * line));
         }
     }
 }
 
-/// Passes a node: gives the child to be visited next, and leaves others waiting.
+/// Tests the children of a node: returns the one to visit next, and pushes the others.
 #[inline(always)]
 unsafe fn descend<S: Simd, const ANY: bool>(
     node: &WideNode,
-    slabs: &Slabs<S::F32x16>,
+    slabs: &RaySlabs<S::F32x16>,
     t_max: f32,
-    top: &mut *mut Waiting,
-    ahead: impl Fn(Child),
+    top: &mut *mut StackEntry,
+    prefetch_child: impl Fn(Child),
 ) -> Child {
-    // SAFETY: who has slabs has the instructions; the caller promises a stack with room for the
-    // tree.
+    // SAFETY: `slabs` is the proof of the instruction set; the caller promises a stack with
+    // capacity for the tree.
     unsafe {
         let (near, hits) = node.intersect(slabs, S::F32x16::splat(t_max), S::F32x16::splat(0.0));
         if hits == 0 {
             pop(top, t_max)
         } else if ANY {
-            choose_any(node, hits, top, ahead)
+            choose_any(node, hits, top, prefetch_child)
         } else {
-            choose_nearest::<S>(node, near, hits, top, ahead)
+            choose_nearest::<S>(node, near, hits, top, prefetch_child)
         }
     }
 }
 
 #[inline(always)]
-unsafe fn pop(top: &mut *mut Waiting, t_max: f32) -> Child {
+unsafe fn pop(top: &mut *mut StackEntry, t_max: f32) -> Child {
     loop {
-        // SAFETY: the end lies below everything, and is never passed over.
-        let waiting = unsafe {
+        // SAFETY: the end is the bottom of the stack, and is never skipped.
+        let entry = unsafe {
             *top = top.sub(1);
             **top
         };
-        if waiting.near() <= t_max.to_bits() {
-            return waiting.child();
+        if entry.near() <= t_max.to_bits() {
+            return entry.child();
         }
     }
 }
 
 #[inline(always)]
-unsafe fn push(top: &mut *mut Waiting, waiting: Waiting) {
-    // SAFETY: the stack has room for the deepest tree.
+unsafe fn push(top: &mut *mut StackEntry, entry: StackEntry) {
+    // SAFETY: the stack has capacity for the deepest tree.
     unsafe {
-        **top = waiting;
+        **top = entry;
         *top = top.add(1);
     }
 }
 
-/// Pushes, and sinks below those above `floor` that are nearer.
+/// Inserts an entry below those above `floor` that are nearer.
 #[inline(always)]
-unsafe fn sink(top: &mut *mut Waiting, floor: *mut Waiting, waiting: Waiting) {
-    // SAFETY: the stack has room for the deepest tree, and `floor` lies in it.
+unsafe fn insert(top: &mut *mut StackEntry, floor: *mut StackEntry, entry: StackEntry) {
+    // SAFETY: the stack has capacity for the deepest tree, and `floor` is in it.
     unsafe {
         let mut at = *top;
-        while at > floor && *at.sub(1) < waiting {
+        while at > floor && *at.sub(1) < entry {
             *at = *at.sub(1);
             at = at.sub(1);
         }
-        *at = waiting;
+        *at = entry;
         *top = top.add(1);
     }
 }
 
-/// Takes the last child that is hit, and leaves the others waiting.
+/// Takes the last child that is hit, and pushes the others.
 #[inline(always)]
-unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahead: impl Fn(Child)) -> Child {
+unsafe fn choose_any(
+    node: &WideNode,
+    mut hits: u32,
+    top: &mut *mut StackEntry,
+    prefetch_child: impl Fn(Child),
+) -> Child {
     loop {
         // SAFETY: bits of `hits` are lanes.
         let child = unsafe { *node.children().get_unchecked(hits.trailing_zeros() as usize) };
@@ -290,20 +297,20 @@ unsafe fn choose_any(node: &WideNode, mut hits: u32, top: &mut *mut Waiting, ahe
         if hits == 0 {
             return child;
         }
-        ahead(child);
-        // SAFETY: a node leaves at most all children but one waiting.
-        unsafe { push(top, Waiting::new(0.0, child)) };
+        prefetch_child(child);
+        // SAFETY: a node pushes at most all children but one.
+        unsafe { push(top, StackEntry::new(0.0, child)) };
     }
 }
 
-/// Takes the nearest child that is hit, and leaves the others waiting in order.
+/// Takes the nearest child that is hit, and pushes the others in order.
 #[inline(always)]
 unsafe fn choose_nearest<S: Simd>(
     node: &WideNode,
     near: S::F32x16,
     mut hits: u32,
-    top: &mut *mut Waiting,
-    ahead: impl Fn(Child),
+    top: &mut *mut StackEntry,
+    prefetch_child: impl Fn(Child),
 ) -> Child {
     // SAFETY: bits of `hits` are lanes.
     let child = |lane: usize| unsafe { *node.children().get_unchecked(lane) };
@@ -314,14 +321,14 @@ unsafe fn choose_nearest<S: Simd>(
     }
     let near = near.store();
     // SAFETY: bits of `hits` are lanes.
-    let waiting = |lane: usize| unsafe { Waiting::new(*near.get_unchecked(lane), child(lane)) };
-    let a = waiting(lane);
+    let entry = |lane: usize| unsafe { StackEntry::new(*near.get_unchecked(lane), child(lane)) };
+    let a = entry(lane);
     let lane = hits.trailing_zeros() as usize;
     hits &= hits - 1;
-    let b = waiting(lane);
+    let b = entry(lane);
     let (mut nearest, other) = (a.min(b), a.max(b));
-    ahead(other.child());
-    // SAFETY: a node leaves at most all children but one waiting.
+    prefetch_child(other.child());
+    // SAFETY: a node pushes at most all children but one.
     unsafe {
         if hits == 0 {
             push(top, other);
@@ -332,11 +339,11 @@ unsafe fn choose_nearest<S: Simd>(
         while hits != 0 {
             let lane = hits.trailing_zeros() as usize;
             hits &= hits - 1;
-            let c = waiting(lane);
+            let c = entry(lane);
             let other = c.max(nearest);
             nearest = c.min(nearest);
-            ahead(other.child());
-            sink(top, floor, other);
+            prefetch_child(other.child());
+            insert(top, floor, other);
         }
     }
     nearest.child()

@@ -1,29 +1,30 @@
-//! Shapes: what a single primitive can do.
+//! Shapes: single primitives.
 //!
-//! Each shape is met by rays, describes its surface at a hit, and samples itself: by area
-//! ([`Shape::sample`]), or as seen from a point ([`Shape::sample_from`], by solid angle). Every
-//! sample has its density.
+//! Each shape can be intersected with rays, evaluates its surface at a hit, and can be sampled by
+//! area ([`Shape::sample`]) or by solid angle from a point ([`Shape::sample_from`]).
 //!
-//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is
+//! - Quadrics and the plane are in canonical form in object space, where F(M⁻¹·r(t)) = 0 is
 //!   solved; z is their axis.
 //! - Triangles and patches have their vertices in render space.
 //! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on
 //!   other shapes; a [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which
-//!   vertices may assign at will.
-//! - Where a surface covers a direction twice, the density of the direction is that of its nearest
-//!   point; the other is out of sight.
+//!   vertices may assign freely.
+//! - Where a direction from a point meets a shape twice, its density is that of the nearest hit.
 
 mod bilinear_patch;
 mod cone;
 mod cylinder;
 mod disk;
+mod extent;
 mod hyperboloid;
 mod implicit;
 mod level;
+mod mesh;
 mod moving_triangle;
 mod paraboloid;
 mod plane;
 mod quadric;
+mod sample;
 mod solid;
 mod sphere;
 mod triangle;
@@ -34,101 +35,39 @@ pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use hyperboloid::Hyperboloid;
 pub use implicit::{Formula, FormulaError, Implicit};
+pub use mesh::{MeshAttributes, MeshError, TriangleMesh};
 pub use moving_triangle::{MovingMesh, MovingTriangle};
 pub use paraboloid::Paraboloid;
 pub use plane::Plane;
 pub(crate) use quadric::first_root;
+pub use sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
 use crate::surface::SurfacePoint;
-use math::{Bounds3, DirectionCone, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
-
-/// Where a ray meets a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShapeHit {
-    /// How far along the ray, in lengths of its direction.
-    pub t: f32,
-    /// The shape's parameters there.
-    pub uv: Vec2,
-}
-
-/// A point chosen on a shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShapeSample {
-    /// Position, and how far it may be from the surface.
-    pub p: Point3Error,
-    /// Unit normal, on the side that the shape's orientation (or its shading normals) make the
-    /// outside.
-    pub n: Normal3,
-    /// Texture coordinates.
-    pub uv: Vec2,
-    /// Density: per area from [`Shape::sample`], per solid angle from [`Shape::sample_from`].
-    pub pdf: f32,
-}
-
-/// The point from which a shape is seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShapeSampleContext {
-    /// Where, and how far that may be from the surface it lies on.
-    pub p: Point3Error,
-    /// Geometric normal there; zero where there is no surface.
-    pub n: Normal3,
-    /// Shading normal there; zero where there is no surface, or where light from all sides counts.
-    pub ns: Normal3,
-    /// Moment in the shutter's time.
-    pub time: f32,
-}
-
-impl ShapeSampleContext {
-    /// The ray that leaves along `w`.
-    #[inline]
-    pub fn spawn_ray(&self, w: Vector3) -> Ray {
-        Ray::spawn(self.p, self.n, w, self.time)
-    }
-
-    /// How many areas at `p` with normal `n` make one solid angle here: dA/dω = d²/|cos θ|.
-    fn area_per_solid_angle(&self, p: Vec3, n: Normal3) -> f32 {
-        let toward = p - self.p.p;
-        let distance2 = toward.length_squared();
-        distance2 * distance2.sqrt() / n.dot(toward).abs()
-    }
-
-    /// Turns a sample by area into one by solid angle; `None` when it is seen edge-on or from
-    /// itself.
-    fn seen(&self, sample: ShapeSample) -> Option<ShapeSample> {
-        let pdf = sample.pdf * self.area_per_solid_angle(sample.p.p, sample.n);
-        (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..sample })
-    }
-
-    /// Weights of the corners of the unit square that make samples follow the cosine at this point,
-    /// given directions to the corners; never quite zero.
-    fn cosine_weights(&self, corners: [Vector3; 4]) -> [f32; 4] {
-        corners.map(|w| (w.dot(self.ns) / w.length()).abs().max(0.01))
-    }
-}
+use math::{Bounds3, DirectionCone, Normal3, Point3, Ray, Vec2, Vec3, Vector3};
 
 /// Any shape.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// Ball, or a part of it.
+    /// Sphere, or a part of it.
     Sphere(Box<Sphere>),
-    /// Tube without ends.
+    /// Cylinder without caps.
     Cylinder(Box<Cylinder>),
     /// Cone without a base.
     Cone(Box<Cone>),
-    /// Bowl.
+    /// Paraboloid.
     Paraboloid(Box<Paraboloid>),
-    /// What a straight line sweeps.
+    /// Hyperboloid of one sheet.
     Hyperboloid(Box<Hyperboloid>),
-    /// Flat disk or ring.
+    /// Disk or annulus.
     Disk(Box<Disk>),
     /// Infinite plane.
     Plane(Box<Plane>),
-    /// Surface given by a formula.
+    /// Implicit surface of a formula.
     Implicit(Box<Implicit>),
-    /// Bodies combined.
+    /// Constructive solid geometry.
     Solid(Box<Solid>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
@@ -169,18 +108,18 @@ macro_rules! from_shape {
 from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle MovingTriangle);
 
 impl Shape {
-    /// A box around it; `None` when it has no end.
+    /// A box around it; `None` when it is unbounded.
     pub fn bounds(&self) -> Option<Bounds3> {
         each_shape!(self, shape => shape.bounds())
     }
 
-    /// The nearest point where the ray meets it at 0 < t < `t_max`.
+    /// The nearest hit at 0 < t < `t_max`.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
         each_shape!(self, shape => shape.intersect(ray, t_max))
     }
 
-    /// What is known of the surface where `ray` met it.
+    /// The surface at a hit of `ray`.
     pub fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         match self {
             Self::Sphere(shape) => shape.surface(ray, hit),
@@ -198,9 +137,8 @@ impl Shape {
         }
     }
 
-    /// What is known of the surface where a [`ShapeHit`] has these parameters, seen from along its
-    /// normal; `None` of shapes that are not made of points with parameters in a square or
-    /// triangle: planes, formulas and solids.
+    /// The surface at the parameters of a [`ShapeHit`], seen along its normal; `None` for shapes
+    /// that are not parametrised over a square or triangle: planes, implicit surfaces and solids.
     pub fn surface_at(&self, uv: Vec2, time: f32) -> Option<SurfacePoint> {
         let ray = match self {
             Self::Sphere(shape) => shape.ray_to(uv, time),
@@ -209,7 +147,7 @@ impl Shape {
             Self::Paraboloid(shape) => shape.ray_to(uv, time),
             Self::Hyperboloid(shape) => shape.ray_to(uv, time),
             Self::Disk(shape) => shape.ray_to(uv, time),
-            // These look at the parameters alone.
+            // The ray matters for the time alone.
             Self::BilinearPatch(_) | Self::Triangle(_) | Self::MovingTriangle(_) => {
                 Ray::new(Vec3::ZERO, Vec3::Z, time)
             }
@@ -219,19 +157,18 @@ impl Shape {
         Some(SurfacePoint { wo: surface.n, ..surface })
     }
 
-    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where
-    /// a quadric's transform is no similarity, and for bent patches.
+    /// The area; infinite for the plane, 0 where points cannot be sampled uniformly. Approximate
+    /// where a quadric's transform is no similarity, and for curved patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
     }
 
-    /// A point with its density per area; `None` where the shape has no area, or no finite one.
+    /// A point with its density per area; `None` where the area is zero or infinite.
     pub fn sample(&self, u: Vec2) -> Option<ShapeSample> {
         each_shape!(self, shape => shape.sample(u)).filter(|s| s.pdf.is_finite() && s.pdf > 0.0)
     }
 
-    /// The density per area with which [`Shape::sample`] chooses its point `p`, where its unit
-    /// normal is `n`.
+    /// The density per area of [`Shape::sample`] at its point `p` with unit normal `n`.
     #[doc(alias = "pdf")]
     pub fn pdf_area(&self, p: Point3, n: Normal3) -> f32 {
         match self {
@@ -247,8 +184,8 @@ impl Shape {
         }
     }
 
-    /// A point with its density per solid angle around `reference`; `None` where no point can be
-    /// chosen.
+    /// A point with its density per solid angle from `reference`; `None` where no point can be
+    /// sampled.
     pub fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
         let special = match self {
             Self::Sphere(shape) => shape.sample_from(reference, u),
@@ -258,12 +195,12 @@ impl Shape {
         };
         match special {
             Some(sample) => (sample.pdf.is_finite() && sample.pdf > 0.0).then_some(sample),
-            None => reference.seen(self.sample(u)?),
+            None => reference.by_solid_angle(self.sample(u)?),
         }
     }
 
-    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met
-    /// along `wi`; 0 where nothing is.
+    /// The density per solid angle of [`Shape::sample_from`] at the first hit along `wi`; 0 where
+    /// there is none.
     pub fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> f32 {
         let ray = reference.spawn_ray(wi);
         let Some(hit) = self.intersect(&ray, f32::INFINITY) else { return 0.0 };

@@ -1,12 +1,15 @@
-//! Collects what a world is made of, and builds its trees.
+//! Building a world from geometries and instances.
 
+use super::World;
+use super::geometry::{Geometry, GeometryId};
 use super::group::Group;
-use super::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, Placed, World};
+use super::instance::{GroupId, Instance, InstanceId, InstancePath, PreparedInstance};
+use super::tables::Tables;
 use crate::bvh::BuildQuality;
 use lanes::InstructionSet;
 use rayon::prelude::*;
 
-/// A world in the making.
+/// Collects geometries and instances, and builds a world of them.
 #[derive(Clone, Debug)]
 pub struct WorldBuilder {
     groups: Vec<Members>,
@@ -16,7 +19,7 @@ pub struct WorldBuilder {
     extents: bool,
 }
 
-/// What stands in a group.
+/// The contents of a group.
 #[derive(Clone, Debug, Default)]
 struct Members {
     geometries: Vec<GeometryId>,
@@ -24,7 +27,7 @@ struct Members {
 }
 
 impl Default for WorldBuilder {
-    /// A world with the top group alone.
+    /// An empty world: the top group alone.
     fn default() -> Self {
         Self {
             groups: vec![Members::default()],
@@ -36,8 +39,15 @@ impl Default for WorldBuilder {
     }
 }
 
+impl World {
+    /// Starts an empty world.
+    pub fn builder() -> WorldBuilder {
+        WorldBuilder::default()
+    }
+}
+
 impl WorldBuilder {
-    /// Adds an empty group, to be placed by instances.
+    /// Adds an empty group, which instances place.
     pub fn add_group(&mut self) -> GroupId {
         self.groups.push(Members::default());
         GroupId(self.groups.len() as u32 - 1)
@@ -51,28 +61,28 @@ impl WorldBuilder {
         id
     }
 
-    /// Places a group, other than the top group, in the top group or in one that was added after
-    /// it.
+    /// Places a group other than the top group in `group`: the top group, or one that was added
+    /// after it.
     ///
     /// # Panics
-    /// When the group was added after the other one.
+    /// When it would be placed in itself, or in a group that was added before it.
     pub fn add_instance(&mut self, group: GroupId, instance: Instance) -> InstanceId {
-        let placed = instance.group;
-        assert!(placed != GroupId::TOP, "the top group is not placed in any");
-        assert!(group == GroupId::TOP || placed < group, "a group is placed in later ones only");
+        let inner = instance.group;
+        assert!(inner != GroupId::TOP, "the top group is not placed in any");
+        assert!(group == GroupId::TOP || inner < group, "a group is placed in later ones only");
         let id = InstanceId(self.instances.len() as u32);
         self.instances.push(instance);
         self.groups[group.0 as usize].instances.push(id);
         id
     }
 
-    /// How much time the trees are worth.
+    /// Sets the trade-off between build time and tracing time.
     pub fn quality(mut self, quality: BuildQuality) -> Self {
         self.quality = quality;
         self
     }
 
-    /// Whether rays are tested against extents (bounding volumes) before what these hold, as by
+    /// Whether rays are tested against bounding volumes before the primitives in them, as by
     /// default, or against every primitive, which finds the same hits.
     pub fn extents(mut self, used: bool) -> Self {
         self.extents = used;
@@ -82,24 +92,25 @@ impl WorldBuilder {
     /// Builds all trees, in parallel. The result does not depend on the number of threads.
     ///
     /// # Panics
-    /// When instances lie in each other more than [`InstancePath::MOST`] deep.
+    /// When instances are nested more than [`InstancePath::MAX_DEPTH`] deep.
     pub fn build(self) -> World {
         let Self { groups: members, geometries, instances, quality, extents } = self;
-        let instances: Vec<Placed> = instances.into_iter().map(Placed::new).collect();
+        let instances: Vec<_> = instances.into_iter().map(PreparedInstance::new).collect();
         let mut groups: Vec<Option<Group>> = vec![None; members.len()];
         let levels = levels(&members, &instances);
-        // What is placed has fewer levels of instances than what it is placed in, and comes first.
+        // A group has fewer levels of instances than those it is placed in, and is built first.
         for level in 0..=levels[0] {
             let built: Vec<(usize, Group)> = (0..members.len())
                 .into_par_iter()
                 .filter(|&i| levels[i] == level)
                 .map(|i| {
-                    let place = |&id: &InstanceId| {
-                        let placed = &instances[id.0 as usize];
-                        (id, placed, groups[placed.group as usize].as_ref().expect("invariant: built before"))
+                    let placed = |&id: &InstanceId| {
+                        let instance = &instances[id.0 as usize];
+                        let inner = groups[instance.group as usize].as_ref();
+                        (id, instance, inner.expect("invariant: built before"))
                     };
-                    let places: Vec<_> = members[i].instances.iter().map(place).collect();
-                    (i, Group::build(&members[i].geometries, &geometries, &places, quality))
+                    let placed: Vec<_> = members[i].instances.iter().map(placed).collect();
+                    (i, Group::build(&members[i].geometries, &geometries, &placed, quality))
                 })
                 .collect();
             for (i, group) in built {
@@ -112,17 +123,17 @@ impl WorldBuilder {
         }
         let groups = groups.into_iter().flatten().collect();
         let instruction_set = InstructionSet::detect();
-        World { groups, geometries, group_of, instances, instruction_set, extents }
+        World { tables: Tables { groups, geometries, group_of, instances, instruction_set, extents } }
     }
 }
 
-/// How many levels of instances each group has; the top group has as many as there are.
-fn levels(members: &[Members], instances: &[Placed]) -> Vec<usize> {
+/// The number of nested levels of instances in each group; the top group has the most.
+fn levels(members: &[Members], instances: &[PreparedInstance]) -> Vec<usize> {
     let mut levels = vec![0; members.len()];
     for i in (1..members.len()).chain([0]) {
         let inner = members[i].instances.iter().map(|id| levels[instances[id.0 as usize].group as usize] + 1);
         levels[i] = inner.max().unwrap_or(0);
-        assert!(levels[i] <= InstancePath::MOST, "instances lie too deep in each other");
+        assert!(levels[i] <= InstancePath::MAX_DEPTH, "instances are nested too deep");
         levels[0] = levels[0].max(levels[i]);
     }
     levels

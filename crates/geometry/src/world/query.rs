@@ -1,36 +1,36 @@
-//! What is asked of a ray: its nearest hit, or whether it hits anything.
+//! Queries of a ray: its nearest hit, or whether there is any hit.
 //!
-//! The answer does not depend on the order in which hits are offered: of those at the same
-//! distance, the nearest is the one whose instance, geometry and primitive come first.
+//! The answer does not depend on the order in which hits are offered: of hits at the same distance,
+//! the one with the first instance, geometry and primitive is the nearest.
 
-use super::Hit;
+use super::hit::Hit;
 use math::Ray;
 
-/// A question to which hits are offered.
+/// A query that hits are offered to.
 pub(super) trait Query {
-    /// Whether any hit is as good as the nearest.
+    /// Whether any hit answers the query, not only the nearest.
     const ANY: bool;
 
-    /// Whether no more hits are of interest.
+    /// Whether the query wants no more hits.
     fn is_answered(&self) -> bool;
 
-    /// What comes of it.
+    /// The result.
     type Answer;
 
     /// The answer, once all hits were offered.
     fn answer(self) -> Self::Answer;
 
-    /// Hits beyond are of no interest.
+    /// Hits beyond this distance are not wanted.
     fn t_max(&self) -> f32;
 
-    /// Hits from here on are of no interest.
+    /// Hits at or beyond this distance are not wanted.
     fn end(&self) -> f32;
 
-    /// Takes note of a hit; whether the question is answered.
+    /// Considers a hit; returns whether the query wants no more.
     fn offer(&mut self, hit: Hit) -> bool;
 }
 
-/// The nearest hit that the filter keeps.
+/// The nearest hit that the filter accepts.
 pub(super) struct Nearest<'a, F> {
     ray: &'a Ray,
     filter: &'a F,
@@ -80,7 +80,7 @@ impl<F: Fn(&Hit, &Ray) -> bool> Query for Nearest<'_, F> {
     }
 }
 
-/// Whether there is a hit that the filter keeps.
+/// Whether there is a hit that the filter accepts.
 pub(super) struct Any<'a, F> {
     ray: &'a Ray,
     filter: &'a F,

@@ -1,16 +1,18 @@
-//! A world whose geometries move.
+//! Refitting a world whose geometries move.
 
-use super::{Geometry, GeometryId, World};
+use super::World;
+use super::geometry::{Geometry, GeometryId};
+use super::tables::Tables;
 use rayon::prelude::*;
 use std::fmt;
 
-/// Why a geometry cannot take the place of another one.
+/// Why a geometry cannot replace another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RefitError {
     /// The world has no such geometry.
     Unknown(GeometryId),
-    /// One is a mesh and the other is not, they differ in the number of primitives or in the
-    /// vertices of triangles, or a primitive has an end where its successor has none.
+    /// They differ in kind, in the number of primitives, in the vertex indices of triangles, or in
+    /// whether a primitive is bounded.
     Different(GeometryId),
 }
 
@@ -26,42 +28,42 @@ impl fmt::Display for RefitError {
 impl std::error::Error for RefitError {}
 
 impl World {
-    /// Puts geometries in the place of others that have the same primitives elsewhere, as
-    /// [`TriangleMesh::moved`](crate::TriangleMesh::moved) makes them. All trees keep their form,
-    /// so that this takes a fraction of the time of building, and rays find what they would in a
-    /// new world; but they find it the more slowly the further neighbours have moved apart.
-    /// Primitives that were not finite when the world was built stay left out; those that are not
-    /// finite now are left out until they are.
+    /// Replaces geometries by others with the same primitives elsewhere, as
+    /// [`TriangleMesh::moved`](crate::TriangleMesh::moved) makes them. The trees keep their
+    /// topology, so that this takes a fraction of the build time; rays find the same hits as in a
+    /// new world, the more slowly the further neighbours have moved apart. Primitives that were not
+    /// finite when the world was built are never hit; those that are not finite now cannot be hit
+    /// until they are.
     ///
-    /// Where there is an error, nothing is changed.
+    /// On an error, nothing is changed.
     pub fn refit(
         &mut self,
         moved: impl IntoIterator<Item = (GeometryId, Geometry)>,
     ) -> Result<(), RefitError> {
         let moved: Vec<_> = moved.into_iter().collect();
         for (id, new) in &moved {
-            let old = self.geometries.get(id.0 as usize).ok_or(RefitError::Unknown(*id))?;
+            let old = self.tables.geometries.get(id.0 as usize).ok_or(RefitError::Unknown(*id))?;
             if !same_primitives(old, new) {
                 return Err(RefitError::Different(*id));
             }
         }
-        let mut is_stale = vec![false; self.groups.len()];
+        let Tables { groups, geometries, group_of, instances, .. } = &mut self.tables;
+        let mut is_stale = vec![false; groups.len()];
         for (id, new) in moved {
-            is_stale[self.group_of[id.0 as usize].0 as usize] = true;
-            self.geometries[id.0 as usize] = new;
+            is_stale[group_of[id.0 as usize].0 as usize] = true;
+            geometries[id.0 as usize] = new;
         }
-        let Self { groups, geometries, instances, .. } = self;
         let stale = groups.par_iter_mut().zip(&is_stale).filter(|(_, is_stale)| **is_stale);
         stale.for_each(|(group, _)| group.refit_meshes_and_spheres(geometries));
-        let Some((top, placed)) = groups.split_first_mut() else { return Ok(()) };
-        // A group holds only such as come before it, the top group all.
-        for group in 0..placed.len() {
-            let (inner, rest) = placed.split_at_mut(group);
+        let Some((top, inner_groups)) = groups.split_first_mut() else { return Ok(()) };
+        // Groups are placed in later ones, and all in the top group.
+        for group in 0..inner_groups.len() {
+            let (inner, rest) = inner_groups.split_at_mut(group);
             if is_stale[group + 1] || rest[0].has_instances() {
                 rest[0].refit_items(geometries, instances, inner);
             }
         }
-        top.refit_items(geometries, instances, placed);
+        top.refit_items(geometries, instances, inner_groups);
         Ok(())
     }
 }

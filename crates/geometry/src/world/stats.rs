@@ -1,16 +1,16 @@
-//! What rays cost.
+//! Counters of the work done for rays.
 
 use std::ops::AddAssign;
 
-/// Counts of the work done for rays, so that one sees what bounding volumes save.
+/// Numbers of rays and of intersection tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayStats {
     /// Rays traced.
     pub rays: u64,
-    /// Tests of a ray, or of a beam around several, against an extent (a bounding volume).
+    /// Tests of a ray, or of a ray packet, against a bounding volume.
     pub extents: u64,
-    /// Tests of a ray against a primitive. Triangles are tested by fours, which count as four
-    /// however many there are.
+    /// Tests of a ray against a primitive. Triangles are tested in blocks of four, which count as
+    /// four however many lanes are in use.
     pub primitives: u64,
 }
 

@@ -32,14 +32,26 @@
 
 use std::f32::consts::PI;
 
-use super::light_end::LightEnd;
-
 /// What a subpath carries for its weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Partial {
     pub vcm: f32,
     pub vc: f32,
     pub vm: f32,
+}
+
+/// Densities at the light's end of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LightEnd {
+    /// Density per solid angle with which the surface chooses the point, or direction, on the
+    /// light.
+    pub direct: f32,
+    /// Density per area and solid angle with which the light sends the ray.
+    pub emission: f32,
+    /// |cos| at the light's surface; 1 where it has none.
+    pub cos_theta: f32,
+    /// Whether rays cannot meet the light.
+    pub is_delta: bool,
 }
 
 /// Where merging is one of a path's strategies, on one side of a place.

@@ -31,7 +31,7 @@ use sampling::Sampler;
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -94,7 +94,7 @@ impl Integrator for LightTracing {
             tracer.with_sampler(&mut light_sampler, |tracer| {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
                     let u = tracer.sampler.get_2d();
-                    if let Some(seen) = paths.see(vertex, u, splatter.reach(), tracer) {
+                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), tracer) {
                         seen.splat(&splatter, &seen.found.l, lambda);
                         reached += 1;
                     }
@@ -105,8 +105,8 @@ impl Integrator for LightTracing {
             self.reached.fetch_add(reached, Ordering::Relaxed);
             let mut l = SampledSpectrum::ZERO;
             if let Some(camera_ray) = &sample.camera_ray {
-                seen.camera_subpath(camera_ray, lambda, tracer, |on_the_way, _| {
-                    if let OnTheWay::Light(found) = on_the_way {
+                seen.camera_subpath(camera_ray, lambda, tracer, |encounter, _| {
+                    if let Encounter::Light(found) = encounter {
                         l += found.l;
                     }
                 });

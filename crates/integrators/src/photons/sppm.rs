@@ -34,7 +34,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
@@ -120,10 +120,10 @@ impl Integrator for Sppm {
             let mut l = SampledSpectrum::ZERO;
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;
-            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |on_the_way, tracer| {
-                match on_the_way {
-                    OnTheWay::Light(found) => l += found.weighted(),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |encounter, tracer| {
+                match encounter {
+                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let direct = paths.direct(vertex, lambda, tracer);
                         if !vertex.is_diffuse() {
                             l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
@@ -137,7 +137,7 @@ impl Integrator for Sppm {
                             }
                         });
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 }
             });
             l

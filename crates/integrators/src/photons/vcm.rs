@@ -34,7 +34,7 @@
 //! it is with merges everywhere.
 //!
 //! What camera rays alone find, light that comes by specular surfaces all the way, has more of them
-//! ([`glints`](crate::photons::glints)). In the mirror room at 96 × 64 pixels nine tenths of the error were
+//! ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at 96 × 64 pixels nine tenths of the error were
 //! such glints, and five rays instead of one take a third of it or more for a seventh more time.
 //!
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
@@ -56,9 +56,9 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
-use crate::photons::glints::{Glints, Look};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
+use crate::photons::specular_paths::{SpecularChain, SpecularPaths};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -77,7 +77,7 @@ pub struct Vcm {
     photon_paths: usize,
     sampler: Sampler,
     light_sampler: Sampler,
-    glints: Glints,
+    specular_paths: SpecularPaths,
     photon_seed: u32,
     lights: Lights,
     merging: Merging,
@@ -93,9 +93,9 @@ impl Vcm {
         photon_paths: usize,
     ) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
-        let glints = Glints::new(sampler.samples_per_pixel(), !photon_seed);
+        let specular_paths = SpecularPaths::new(sampler.samples_per_pixel(), !photon_seed);
         let lights = Lights::none();
-        Self { settings, photon_paths, sampler, light_sampler, glints, photon_seed, lights, merging }
+        Self { settings, photon_paths, sampler, light_sampler, specular_paths, photon_seed, lights, merging }
     }
 }
 
@@ -106,7 +106,7 @@ impl Integrator for Vcm {
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
-        self.glints.prepare(scene);
+        self.specular_paths.prepare(scene);
         let radius = self.settings.radius.unwrap_or(SHARE_OF_SCENE * scene.sphere().radius);
         self.merging = Merging::new(radius, self.settings.alpha, self.photon_seed);
         control.check()
@@ -165,22 +165,22 @@ impl Integrator for Vcm {
                 &made
             });
             for (vertex, u) in light_subpath {
-                if let Some(seen) = paths.see(vertex, *u, splatter.reach(), tracer) {
+                if let Some(seen) = paths.connect_to_camera(vertex, *u, splatter.reach(), tracer) {
                     seen.splat(&splatter, &seen.found.weighted(), lambda);
                 }
             }
             splatter.add_paths(1);
 
-            let (mut l, mut look) = (SampledSpectrum::ZERO, Look::default());
+            let (mut l, mut chain) = (SampledSpectrum::ZERO, SpecularChain::default());
             let Some(camera_ray) = &sample.camera_ray else { return l };
-            paths.camera_subpath(camera_ray, lambda, tracer, |on_the_way, tracer| {
-                if let OnTheWay::Vertex(vertex) = on_the_way {
-                    look.meet(vertex);
+            paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| {
+                if let Encounter::Vertex(vertex) = encounter {
+                    chain.visit(vertex);
                 }
-                match on_the_way {
-                    OnTheWay::Light(found) if look.take(&found) => (),
-                    OnTheWay::Light(found) => l += found.weighted(),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                match encounter {
+                    Encounter::Light(found) if chain.add(&found) => (),
+                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let depths = paths.max_depth - vertex.depth;
                         if let Some(found) = paths.direct(vertex, lambda, tracer) {
                             l += found.weighted();
@@ -199,10 +199,10 @@ impl Integrator for Vcm {
                             });
                         }
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 }
             });
-            l + self.glints.seen(&look, sample, &pixels, &shutter, &paths, tracer)
+            l + self.specular_paths.radiance(&chain, sample, &pixels, &shutter, &paths, tracer)
         })?;
         Ok(stats)
     }

@@ -88,7 +88,7 @@ pub(crate) struct SamplePoint {
 
 /// Where an element stands.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PatchPart {
     /// The patch that it is a part of.
     pub patch: u32,
     /// The quarter of that patch in which its middle lies.
@@ -125,9 +125,9 @@ impl Element {
         mesh: &Mesh,
         wavelengths: &Wavelengths,
         cell: u32,
-        place: Place,
+        place: PatchPart,
     ) -> Self {
-        let Place { patch, quarter, level } = place;
+        let PatchPart { patch, quarter, level } = place;
         let world = scene.world();
         let leaf = mesh.cell(cell);
         let quarters = leaf.domain().quarters();

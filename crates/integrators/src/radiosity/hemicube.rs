@@ -25,8 +25,8 @@ use std::f32::consts::{PI, TAU};
 
 use super::form_factor::Received;
 use super::mesh::Mesh;
-use super::show::{first_solid, seen_side};
 use super::subdivide::Cut;
+use super::surfaces::{first_solid, seen_side};
 use crate::{Cancelled, Control};
 
 /// An element seen through this many pixels at least is cut by what they show.
@@ -51,7 +51,7 @@ struct Pixel {
 }
 
 /// What a patch sees.
-pub(crate) struct Seen(Vec<Pixel>);
+pub(crate) struct VisiblePixels(Vec<Pixel>);
 
 impl Hemicube {
     /// For the `shot`th shot.
@@ -91,7 +91,7 @@ impl Hemicube {
     }
 
     /// Looks around from the middle of a cell, on one side of it.
-    pub fn look(
+    pub fn cast(
         &self,
         scene: &Scene,
         mesh: &Mesh,
@@ -99,10 +99,10 @@ impl Hemicube {
         side: usize,
         control: &Control,
         stats: &mut RayStats,
-    ) -> Result<Seen, Cancelled> {
+    ) -> Result<VisiblePixels, Cancelled> {
         let cell = mesh.cell(cell);
         let Some(eye) = mesh.surface(scene.world(), cell.primitive, cell.domain().center()) else {
-            return Ok(Seen(Vec::new()));
+            return Ok(VisiblePixels(Vec::new()));
         };
         let frame = Frame::from_z(if side == 0 { eye.n } else { -eye.n });
         let look = |row: u32| {
@@ -119,11 +119,11 @@ impl Hemicube {
         };
         let rows: Vec<_> = (0..self.rows()).into_par_iter().map(look).collect::<Result<_, Cancelled>>()?;
         rows.iter().for_each(|(_, some)| *stats += *some);
-        Ok(Seen(rows.into_iter().flat_map(|(pixels, _)| pixels).collect()))
+        Ok(VisiblePixels(rows.into_iter().flat_map(|(pixels, _)| pixels).collect()))
     }
 }
 
-impl Seen {
+impl VisiblePixels {
     /// What the elements with these indices receive of unit radiosity from a patch of this area.
     pub fn received(&self, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
         let mut all = vec![(Received::default(), 0); cut.elements.len()];

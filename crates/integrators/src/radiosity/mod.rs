@@ -37,12 +37,14 @@ mod domain;
 mod element;
 mod form_factor;
 mod hemicube;
+mod light_samples;
 mod mesh;
 mod ply;
 mod primitives;
 mod shooting;
 mod show;
 mod subdivide;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 
@@ -56,12 +58,13 @@ use scene::light_sampler::{LightSampler, LightSamplerKind};
 use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
+use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{ByProduct, Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, OutputFile};
 use bands::Bands;
 pub(crate) use described::warnings;
 use shooting::Solution;
-use show::{Interpolation, Look};
+use show::{Interpolation, SolutionRadiance};
 
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
@@ -69,6 +72,8 @@ pub struct Radiosity {
     sampler: Sampler,
     color_space: &'static RgbColorSpace,
     state: Option<State>,
+    /// Whether the last pass has put a draft on the film.
+    draft_is_shown: bool,
 }
 
 /// What is known of a scene.
@@ -132,21 +137,22 @@ impl State {
 impl Radiosity {
     /// With a mesh whose colours are those of `color_space`, if one is kept.
     pub fn new(settings: RadiosityDesc, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
-        Self { settings, sampler, color_space, state: None }
+        Self { settings, sampler, color_space, state: None, draft_is_shown: false }
     }
 }
 
 impl Integrator for Radiosity {
     fn passes(&self) -> u32 {
-        self.settings.steps + self.sampler.samples_per_pixel()
+        self.sampler.samples_per_pixel()
     }
 
-    fn samples_per_pixel(&self) -> u32 {
-        self.sampler.samples_per_pixel()
+    fn drafts(&self) -> u32 {
+        self.settings.steps
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.state = Some(State::new(scene, view, &self.settings, control)?);
+        self.draft_is_shown = false;
         Ok(())
     }
 
@@ -165,8 +171,7 @@ impl Integrator for Radiosity {
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
-        let look =
-            Look { interpolation: &state.interpolation, view, solution: &state.solution, scene, control };
+        let shown = SolutionRadiance { interpolation: &state.interpolation, solution: &state.solution };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());
@@ -176,34 +181,36 @@ impl Integrator for Radiosity {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
                     let mut l = Bands::ZERO;
                     if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
-                        l = look.radiance(ray, &mut sampler, &mut stats)? * weight;
+                        let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
+                        l = shown.radiance(&mut tracer, ray) * weight;
+                        tracer.finish()?;
                     }
                     tile.add_groups(
                         [x, y],
                         l.groups(),
-                        look.solution.wavelengths.groups(),
+                        shown.solution.wavelengths.groups(),
                         sample.filter_weight,
                     );
                 }
             }
             Ok(stats)
         };
-        // A better solution makes a new picture, which takes the place of the old one when it is
-        // whole.
-        let mut better = (pass <= steps).then(|| film.blank());
+        // A better solution makes a new picture, which takes the place of a draft when it is whole.
+        let mut better = (pass < steps || self.draft_is_shown).then(|| film.blank());
         let tiles = better.as_mut().unwrap_or(film).tiles_mut();
         let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
         drawn.into_iter().for_each(|some| stats += some);
         if let Some(better) = better {
             *film = better;
         }
+        self.draft_is_shown = pass < steps;
         Ok(stats)
     }
 
-    fn by_products(&self) -> Vec<ByProduct> {
+    fn files(&self) -> Vec<OutputFile> {
         let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
         let file = self.settings.mesh_out.iter().zip(mesh);
-        file.map(|(path, mesh)| ByProduct::File(path.into(), mesh.clone())).collect()
+        file.map(|(path, mesh)| OutputFile { path: path.into(), contents: mesh.clone() }).collect()
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

@@ -32,17 +32,16 @@
 
 use description::{FormFactorsDesc, RadiosityDesc};
 use geometry::RayStats;
-use math::{Normal3, Ray, Vec2};
+use math::Normal3;
 use rayon::prelude::*;
-use sampling::hash_float;
-use scene::light::{Light, LightId, LightLiSample, LightSampleContext};
-use scene::{Interfaces, Scene, View};
-use spectrum::SampledSpectrum;
+use scene::light::{Light, LightId, LightSampleContext};
+use scene::{Scene, View};
 
 use super::bands::{Bands, Wavelengths};
 use super::element::{Albedo, Element, Patch};
 use super::form_factor::{Emitter, Received};
 use super::hemicube::Hemicube;
+use super::light_samples::from_light;
 use super::subdivide::Cut;
 use crate::{Cancelled, Control};
 
@@ -185,7 +184,7 @@ impl Solution {
             }
             FormFactorsDesc::Hemicube => {
                 let hemicube = Hemicube::new(self.settings.hemicube_resolution, self.shots);
-                let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
+                let seen = hemicube.cast(scene, &self.cut.mesh, cell, side, control, stats)?;
                 self.receive(scene, view, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };
@@ -454,67 +453,4 @@ fn each<I: Sync, T: Send>(
     let answers: Vec<_> = asked.par_chunks(64).map(some).collect::<Result<_, Cancelled>>()?;
     answers.iter().for_each(|(_, some)| *stats += *some);
     Ok(answers.into_iter().flat_map(|(answers, _)| answers).collect())
-}
-
-/// The irradiance of both sides of a point from a light, by samples of it.
-fn from_light(
-    scene: &Scene,
-    wavelengths: &Wavelengths,
-    light: LightId,
-    context: &LightSampleContext,
-    stats: &mut RayStats,
-) -> [Bands; 2] {
-    let strata = match scene.light(light).row() {
-        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => 1,
-        Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) => LIGHT_STRATA,
-    };
-    // Every point shifts the samples its own way, lest they all have the same shadows.
-    let place = context.p.p.to_array().map(f32::to_bits);
-    let shift = Vec2::new(hash_float(&place), hash_float(&[place[2], place[0], place[1]]));
-    let mut sides = [Bands::ZERO; 2];
-    for i in 0..strata * strata {
-        let u = (Vec2::new((i % strata) as f32, (i / strata) as f32) + shift) / strata as f32;
-        let Some((l, sample)) = sample_light(scene, wavelengths, light, context, u) else { continue };
-        if arrives(scene, light, context, &sample, stats) {
-            let cos_theta = sample.wi.dot(context.n);
-            sides[usize::from(cos_theta < 0.0)] +=
-                l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
-        }
-    }
-    sides
-}
-
-/// Samples of a light that has an extent, along each axis.
-const LIGHT_STRATA: u32 = 8;
-
-/// A direction to a light, and its radiance there at all wavelengths.
-pub(crate) fn sample_light(
-    scene: &Scene,
-    wavelengths: &Wavelengths,
-    light: LightId,
-    context: &LightSampleContext,
-    u: Vec2,
-) -> Option<(Bands, LightLiSample)> {
-    let mut found = None;
-    let l = wavelengths.sample(|lambda| {
-        let sample = scene.sample_light(light, context, u, lambda, false);
-        found = found.or(sample);
-        sample.map_or(SampledSpectrum::ZERO, |sample| sample.l)
-    });
-    found.map(|sample| (l, sample))
-}
-
-/// Whether a point sees the sample of a light.
-pub(crate) fn arrives(
-    scene: &Scene,
-    light: LightId,
-    context: &LightSampleContext,
-    sample: &LightLiSample,
-    stats: &mut RayStats,
-) -> bool {
-    let (ray, end) = match sample.p {
-        Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
-        None => (context.spawn_ray(sample.wi), f32::INFINITY),
-    };
-    !scene.occluded(&ray, end, Interfaces::before(scene.light(light)), stats)
 }

@@ -14,20 +14,21 @@
 //! take light but pass none on. What is gathered is scattered once more than what the elements
 //! show, so that of their light that part is left out which was scattered as often as it may be.
 
-use geometry::{Hit, RayStats, SurfacePoint};
 use math::{Frame, Ray, RayDifferential, Vec2};
 use rayon::prelude::*;
-use sampling::{Sampler, warp};
+use sampling::warp;
 use scene::light_sampler::LightSampler;
-use scene::{Scene, SurfaceInteraction, View};
+use scene::{Scene, SurfaceInteraction};
 use std::f32::consts::FRAC_1_PI;
 
 use super::bands::Bands;
 use super::element::Albedo;
+use super::light_samples::{arrives, sample_light};
 use super::mesh::{Cell, Corner};
-use super::shooting::{Solution, arrives, sample_light};
+use super::shooting::Solution;
+use super::surfaces::{first_solid, seen_side};
+use crate::transport::Tracer;
 use crate::transport::path_state::pass_through;
-use crate::{Cancelled, Control};
 
 /// A solution interpolated over the surfaces.
 pub(crate) struct Interpolation {
@@ -107,59 +108,45 @@ impl Interpolation {
     }
 }
 
-/// A look at a solution, which may be broken off.
-pub(crate) struct Look<'a> {
+/// The radiance of a solution along rays.
+pub(crate) struct SolutionRadiance<'a> {
     pub interpolation: &'a Interpolation,
-    pub view: &'a View,
     pub solution: &'a Solution,
-    pub scene: &'a Scene,
-    pub control: &'a Control,
 }
 
-impl Look<'_> {
+impl SolutionRadiance<'_> {
     /// The radiance that arrives along a ray.
-    pub fn radiance(
-        &self,
-        mut ray: RayDifferential,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> Result<Bands, Cancelled> {
-        let Self { interpolation, view, solution, scene, .. } = *self;
+    pub fn radiance(&self, tracer: &mut Tracer, mut ray: RayDifferential) -> Bands {
+        let (scene, &Self { interpolation, solution }) = (tracer.scene, self);
         let wavelengths = &solution.wavelengths;
         let mut l = Bands::ZERO;
         loop {
-            let Some(hit) = scene.hit(&ray.ray, f32::INFINITY, stats) else {
-                return Ok(l + wavelengths.sample(|lambda| scene.escaped(&ray.ray, lambda)));
+            let Some(hit) = tracer.hit(&ray.ray) else {
+                return l + wavelengths.sample(|lambda| scene.escaped(&ray.ray, lambda));
             };
             let surface = scene.world().surface(&ray.ray, &hit);
             let mut interaction = scene.interaction(&hit, surface);
             if interaction.area_light.is_some() {
                 l += wavelengths.sample(|lambda| scene.emitted(&interaction, surface.wo, lambda));
             }
-            let Some(albedo) = Albedo::at(scene, view, &mut interaction, &ray, wavelengths) else {
+            let Some(albedo) = Albedo::at(scene, tracer.view, &mut interaction, &ray, wavelengths) else {
                 ray = pass_through(&ray, &interaction, hit.t);
                 continue;
             };
             if solution.settings.max_depth == 0 {
-                return Ok(l);
+                return l;
             }
             let leaf = solution.cut.mesh.leaf(scene.world(), &hit, &surface);
             if let (Some((leaf, uv)), 0) = (leaf, interpolation.gather) {
                 let sides = albedo.scatter(&interpolation.irradiance(solution, leaf, uv));
-                return Ok(l + sides[seen_side(&surface)] * FRAC_1_PI);
+                return l + sides[seen_side(&surface)] * FRAC_1_PI;
             }
-            return Ok(l + self.gathered(&interaction, &albedo, sampler, stats)?);
+            return l + self.gathered(tracer, &interaction, &albedo);
         }
     }
 
     /// What a surface scatters to where it is seen from, by samples.
-    fn gathered(
-        &self,
-        interaction: &SurfaceInteraction,
-        albedo: &Albedo,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> Result<Bands, Cancelled> {
+    fn gathered(&self, tracer: &mut Tracer, interaction: &SurfaceInteraction, albedo: &Albedo) -> Bands {
         let s = &interaction.surface;
         let ns = s.shading.n;
         let toward = if s.wo.dot(ns) < 0.0 { -ns } else { ns };
@@ -167,9 +154,11 @@ impl Look<'_> {
         let samples = self.interpolation.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
-            self.control.check()?;
-            sum += self.direct(interaction, albedo, sampler, stats);
-            let (uc, u) = (sampler.get_1d(), sampler.get_2d());
+            if !tracer.goes_on() {
+                return sum;
+            }
+            sum += self.direct(tracer, interaction, albedo);
+            let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
             let (back, on) = (albedo.reflectance.mean(), albedo.transmittance.mean());
             if back + on == 0.0 {
                 continue;
@@ -182,59 +171,37 @@ impl Look<'_> {
                 wi.z = -wi.z;
                 albedo.transmittance * ((back + on) / on)
             };
-            sum +=
-                weight * found(self.scene, self.solution, interaction.spawn_ray(frame.from_local(wi)), stats);
+            let ray = interaction.spawn_ray(frame.from_local(wi));
+            sum += weight * self.found(tracer, ray);
         }
-        Ok(sum * (samples as f32).recip())
+        sum * (samples as f32).recip()
     }
 
-    /// What a surface scatters of the light that comes straight from the lights, by one sample of
-    /// one.
-    fn direct(
-        &self,
-        interaction: &SurfaceInteraction,
-        albedo: &Albedo,
-        sampler: &mut Sampler,
-        stats: &mut RayStats,
-    ) -> Bands {
-        let Self { interpolation, solution, scene, .. } = *self;
+    /// What a surface scatters of direct light, by one sample of one light.
+    fn direct(&self, tracer: &mut Tracer, interaction: &SurfaceInteraction, albedo: &Albedo) -> Bands {
+        let &Self { interpolation, solution } = self;
         let s = &interaction.surface;
-        let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
+        let (u, u_light) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let context = interaction.light_context();
         let Some((light, pmf)) = interpolation.lights.sample(&context, u) else { return Bands::ZERO };
-        let found = sample_light(scene, &solution.wavelengths, light, &context, u_light);
+        let found = sample_light(tracer.scene, &solution.wavelengths, light, &context, u_light);
         let Some((l, sample)) = found else { return Bands::ZERO };
         let cos_theta = sample.wi.dot(s.shading.n);
         let same_side = (cos_theta > 0.0) == (s.wo.dot(s.shading.n) > 0.0);
         let share = if same_side { albedo.reflectance } else { albedo.transmittance };
-        if share.is_black() || l.is_black() || !arrives(scene, light, &context, &sample, stats) {
+        if share.is_black() || l.is_black() || !arrives(tracer.scene, light, &context, &sample, tracer.stats)
+        {
             return Bands::ZERO;
         }
         share * l * (cos_theta.abs() * FRAC_1_PI / (pmf * sample.pdf))
     }
-}
 
-/// The radiance that elements send back along a ray to be scattered once more, emission apart.
-fn found(scene: &Scene, solution: &Solution, ray: Ray, stats: &mut RayStats) -> Bands {
-    let Some((hit, surface)) = first_solid(scene, ray, stats) else { return Bands::ZERO };
-    let Some((leaf, uv)) = solution.cut.mesh.leaf(scene.world(), &hit, &surface) else { return Bands::ZERO };
-    let quarter = leaf.domain().quarter_of(uv);
-    solution.cut.elements[leaf.element as usize].radiosity(quarter)[seen_side(&surface)] * FRAC_1_PI
-}
-
-/// The side of a surface that a ray has met: the outer (0) or the inner (1).
-pub(crate) fn seen_side(surface: &SurfacePoint) -> usize {
-    usize::from(surface.wo.dot(surface.n) < 0.0)
-}
-
-/// The first hit of a ray that is no mere change of medium.
-pub(crate) fn first_solid(scene: &Scene, mut ray: Ray, stats: &mut RayStats) -> Option<(Hit, SurfacePoint)> {
-    loop {
-        let hit = scene.hit(&ray, f32::INFINITY, stats)?;
-        let surface = scene.world().surface(&ray, &hit);
-        if !scene.is_interface(&hit, &ray) {
-            return Some((hit, surface));
-        }
-        ray = surface.spawn_ray(ray.d);
+    /// The radiance that elements send back along a ray to be scattered once more, emission apart.
+    fn found(&self, tracer: &mut Tracer, ray: Ray) -> Bands {
+        let (scene, cut) = (tracer.scene, &self.solution.cut);
+        let Some((hit, surface)) = first_solid(scene, ray, tracer.stats) else { return Bands::ZERO };
+        let Some((leaf, uv)) = cut.mesh.leaf(scene.world(), &hit, &surface) else { return Bands::ZERO };
+        let quarter = leaf.domain().quarter_of(uv);
+        cut.elements[leaf.element as usize].radiosity(quarter)[seen_side(&surface)] * FRAC_1_PI
     }
 }

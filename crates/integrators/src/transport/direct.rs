@@ -33,8 +33,7 @@ impl DirectLighting {
 
     /// By no lights.
     pub fn none() -> Self {
-        let lights = LightSampler::default();
-        Self { lights, interfaces: Interfaces::Stop }
+        Self { lights: LightSampler::default(), interfaces: Interfaces::Stop }
     }
 
     /// The weight of light from `light` that a ray along `wi` hits. Without an `origin` no light

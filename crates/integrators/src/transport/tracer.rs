@@ -56,7 +56,7 @@ impl<'a> Tracer<'a> {
 
     /// Whether to trace another ray.
     #[inline]
-    pub(super) fn goes_on(&mut self) -> bool {
+    pub(crate) fn goes_on(&mut self) -> bool {
         self.is_cancelled |= self.control.check().is_err();
         !self.is_cancelled
     }

@@ -1,14 +1,14 @@
 //! Beyond the border of a film that shows all directions the picture goes on, also for light that
 //! comes from the other side.
 
-use alhazen_integrators::{Control, build, render};
+use alhazen_integrators::build;
 use description::{
     BdptDesc, CameraKind, FilterDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
     MltTechnique, PathDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, SphericalMapping, VcmDesc,
 };
 use testkit::{Moments, welch_test};
 
-use crate::support::{diffuse, emission, quad, v, viewed, walls};
+use crate::support::{diffuse, emission, finished, quad, v, walls};
 
 const RESOLUTION: [i32; 2] = [12, 8];
 
@@ -34,10 +34,7 @@ fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: u32, seed: i3
     let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
     let kind = SamplerKind::Independent { pixel_samples: samples };
     desc.sampler.value = SamplerDesc { kind, seed: Some(seed) };
-    let ((scene, view), mut film) = (viewed(&desc), film::compile(&desc).unwrap().film);
-    let mut integrator = build(&desc).unwrap().integrator;
-    render(&mut *integrator, &scene, &view, &mut film, &Control::default()).unwrap();
-    let image = film.develop();
+    let image = finished(&desc, build(&desc).unwrap().integrator).state().film.develop();
     let [width, height] = RESOLUTION.map(|n| n as u32);
     let row = |y| (0..width).map(|x| f64::from(image.rgb(x, y)[1])).sum::<f64>() / f64::from(width);
     let column = |x| (0..height).map(|y| f64::from(image.rgb(x, y)[1])).sum::<f64>() / f64::from(height);

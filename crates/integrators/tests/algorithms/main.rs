@@ -6,10 +6,12 @@ mod agreement;
 mod ambient_occlusion;
 mod border;
 mod build;
+mod cancellation;
 mod direct_light;
 mod furnace;
 mod merging;
 mod mlt;
 mod photon_mapping;
-mod render_loop;
+
+mod session;
 mod support;

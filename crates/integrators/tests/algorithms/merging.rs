@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Integrator, Vcm, build, render};
+use alhazen_integrators::{Cancelled, Control, Vcm, build};
 use description::{
     BdptDesc, CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc,
     ScreenDesc, ShapeDesc, SpectrumDesc, SppmDesc, TextureDesc, TextureKind, TransformDesc, VcmDesc,
@@ -15,7 +15,7 @@ use sampling::Sampler;
 use sampling::sampler::Independent;
 use testkit::{Moments, t_test, z_test};
 
-use crate::support::{at, diffuse, emission, mirror, quad, sphere, v, viewed};
+use crate::support::{at, diffuse, emission, finished, mirror, quad, sphere, v, viewed};
 
 /// A scene whose film is small, with one choice of wavelengths.
 fn on_film(resolution: [i32; 2]) -> SceneDesc {
@@ -200,17 +200,14 @@ fn without_a_radius_nothing_is_merged_and_all_is_connected() {
 #[test]
 fn pixels_whose_light_subpaths_leave_no_photons_see_the_same() {
     let (one, rho, desc) = (one(), 0.6, furnace(0.6));
-    let (scene, view) = viewed(&desc);
     let mut means = Moments::default();
     for seed in 0..16 {
-        let mut film = film::compile(&desc).unwrap().film;
         let sampler = Sampler::Independent(Independent::new(8, seed));
         let light_sampler = Sampler::Independent(Independent::new(8, seed + 100));
         let settings = VcmDesc { max_depth: 3, radius: Some(0.4), ..VcmDesc::default() };
-        let mut vcm = Vcm::new(settings, [sampler, light_sampler], seed, 7);
-        render(&mut vcm, &scene, &view, &mut film, &Control::default()).unwrap();
-        assert!(vcm.summary()[0].1.contains("from 7 paths"));
-        means.push(mean(&film));
+        let vcm = finished(&desc, Box::new(Vcm::new(settings, [sampler, light_sampler], seed, 7)));
+        assert!(vcm.integrator().summary()[0].1.contains("from 7 paths"));
+        means.push(mean(&vcm.state().film));
     }
     t_test(&means, one * (1.0 + rho + rho * rho + rho * rho * rho), 1).unwrap();
 }

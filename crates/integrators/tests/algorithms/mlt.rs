@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Integrator, build, render};
+use alhazen_integrators::{Cancelled, Control, Integrator, build};
 use description::{
     IntegratorDesc, LightKind, LightSamplerDesc, MltDesc, MltTechnique, Origin, PathDesc, SamplerDesc,
     SamplerKind, SceneDesc, ShapeDesc, Span, SpectrumDesc, Stated,
@@ -12,7 +12,9 @@ use math::Vec3;
 use scene::{Scene, View};
 use testkit::{Moments, welch_test};
 
-use crate::support::{at, diffuse, emission, glass, mirror, quad, sphere, v, viewed, walls, white_sky};
+use crate::support::{
+    at, diffuse, emission, finished, glass, mirror, quad, sphere, v, viewed, walls, white_sky,
+};
 
 const TECHNIQUES: [MltTechnique; 2] = [MltTechnique::Path, MltTechnique::Bdpt];
 
@@ -39,8 +41,7 @@ fn prepared(desc: &SceneDesc) -> ((Scene, View), Film, Box<dyn Integrator>) {
 }
 
 fn picture(desc: &SceneDesc) -> Film {
-    let ((scene, view), mut film, mut integrator) = prepared(desc);
-    render(&mut *integrator, &scene, &view, &mut film, &Control::default()).unwrap();
+    let film = finished(desc, build(desc).unwrap().integrator).into_state().film;
     assert_eq!(film.rejected().count, 0);
     film
 }

@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use alhazen_integrators::{Cancelled, Control, Path, RandomWalk, RayIntegrator, SimplePath, Tracer};
+use alhazen_integrators::{
+    Cancelled, Control, Integrator, Limits, Path, RandomWalk, RayIntegrator, Session, SessionState,
+    SimplePath, Tracer,
+};
 use description::{
     AreaLightDesc, ConductorDesc, ConductorReflectance, Handle, InfiniteRadiance, LightKind,
     LightSamplerDesc, MaterialDesc, MaterialKind, MeshDesc, PathDesc, RandomWalkDesc, RoughnessDesc,
@@ -28,6 +31,20 @@ pub fn compile(desc: &SceneDesc) -> Scene {
 /// A description in which nothing is wrong, as its camera views it.
 pub fn viewed(desc: &SceneDesc) -> (Scene, View) {
     (compile(desc), View::compile(desc, scene::world_from_render(desc)).unwrap().view)
+}
+
+/// A session of a description before its first pass.
+pub fn session(desc: &SceneDesc, integrator: Box<dyn Integrator>) -> Session {
+    let ((scene, view), film) = (viewed(desc), film::compile(desc).unwrap().film);
+    Session::new(Arc::new(scene), view, integrator, SessionState::new(film))
+}
+
+/// A session that has done all its passes.
+pub fn finished(desc: &SceneDesc, integrator: Box<dyn Integrator>) -> Session {
+    let mut session = session(desc, integrator);
+    let passes = 0..session.integrator().passes();
+    session.run(passes, &Limits::default(), &Control::default(), &mut |_| ()).unwrap();
+    session
 }
 
 pub fn diffuse(desc: &mut SceneDesc, reflectance: f32) -> Option<Handle<MaterialDesc>> {

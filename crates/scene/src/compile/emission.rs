@@ -8,8 +8,8 @@ use super::Compiler;
 use crate::light::{Emission, EmissionImage};
 use crate::texture::{SpectrumType, compile_spectrum};
 use description::{Handle, ImageDesc, Span, SpectrumDesc};
-use image::Image;
-use math::{Vec2, equal_area_square_to_sphere};
+use image::{Image, Projection};
+use math::Vec2;
 use spectrum::RgbColorSpace;
 use std::f32::consts::PI;
 
@@ -57,20 +57,21 @@ fn image_color_space(image: &Image) -> &'static RgbColorSpace {
         .unwrap_or(RgbColorSpace::srgb())
 }
 
-/// Illuminance of an equal-area octahedral sky on a surface that faces +z, as the pbrt-v4 format
-/// counts it: with 2π/n for the solid angle of a pixel, half of what it is. Scenes made for the
-/// format rely on that.
-pub(super) fn upward_illuminance(image: &EmissionImage) -> f32 {
+/// Illuminance of an image of the sphere on a surface that faces +z, as the pbrt-v4 format counts
+/// it: with half of the solid angle of each pixel. Scenes made for the format rely on that.
+pub(super) fn upward_illuminance(image: &EmissionImage, projection: Projection) -> f32 {
     let (width, height) = (image.image.width(), image.image.height());
     let weights = image.color_space.luminance_weights();
     let mut sum = 0f64;
     for y in 0..height {
+        let weight = projection.row_solid_angle(y, height);
         for x in 0..width {
             let uv = Vec2::new((x as f32 + 0.5) / width as f32, (y as f32 + 0.5) / height as f32);
-            let cos_theta = equal_area_square_to_sphere(uv).z;
+            let cos_theta = projection.direction(uv).z;
             if cos_theta > 0.0 {
                 let [r, g, b] = image.image.rgb(x, y);
-                sum += f64::from((r * weights.r + g * weights.g + b * weights.b) * cos_theta);
+                let luminance = r * weights.r + g * weights.g + b * weights.b;
+                sum += f64::from(luminance * cos_theta * weight);
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::light::{
     UniformInfiniteLight,
 };
 use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
+use image::Projection;
 use math::{DMat4, Point3, Transform, Vec3, Vector3};
 use std::f32::consts::PI;
 
@@ -104,15 +105,15 @@ impl Compiler<'_> {
         let span = origin.parameter("filename");
         let (image, mut scale) = self.emission_image(handle, scale, span)?;
         let (width, height) = (image.image.width(), image.image.height());
-        if width != height {
+        let Some(projection) = Projection::of_size(width, height) else {
             let message = format!(
-                "an infinite light wants a square image in the equal-area octahedral mapping, not {width} × {height}"
+                "the image of an infinite light is square (equal-area octahedral) or twice as wide as high (latitude–longitude), not {width} × {height}"
             );
             self.error("image-shape", message, span);
             return None;
-        }
+        };
         if let Some(target) = illuminance {
-            let illuminance = upward_illuminance(&image);
+            let illuminance = upward_illuminance(&image, projection);
             if illuminance <= 0.0 {
                 let message = "an image that is black above cannot be scaled to an illuminance";
                 self.error("image-values", message, span);
@@ -120,7 +121,8 @@ impl Compiler<'_> {
             }
             scale *= target / illuminance;
         }
-        let light = ImageInfiniteLight::new(*placement, image.image, image.color_space, scale, scene);
+        let light =
+            ImageInfiniteLight::new(*placement, (image.image, projection), image.color_space, scale, scene);
         Some(Light::ImageInfinite(Box::new(light)))
     }
 

@@ -17,7 +17,7 @@ mod tessellation;
 use crate::light::{AreaEmission, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, InstanceEntry, Scene};
-use crate::texture::{self, FloatTextureId, SpectrumTextureId, SpectrumType, Textures};
+use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
 use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
@@ -41,7 +41,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     let world_from_render = world_from_render(desc);
     let render_from_world = world_from_render.inverse();
-    let textures = texture::compile(desc, &render_from_world, &mut diagnostics);
+    let textures = TextureCompiler::new(desc, &render_from_world, &mut diagnostics);
     let mut compiler = Compiler {
         desc,
         render_from_world,
@@ -70,6 +70,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
+    let textures = textures.finish();
     let has_filtered_textures = textures.are_filtered();
     let scene = Scene {
         world_from_render,
@@ -90,7 +91,7 @@ struct Compiler<'a> {
     desc: &'a SceneDesc,
     render_from_world: DMat4,
     diagnostics: Vec<Diagnostic>,
-    textures: Textures,
+    textures: TextureCompiler,
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
     materials: Vec<MaterialEntry>,
@@ -109,8 +110,8 @@ impl Compiler<'_> {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
     }
 
-    fn float_texture(&mut self, parameter: &FloatParameter) -> FloatTextureId {
-        self.textures.float_parameter(parameter)
+    fn float_texture(&mut self, parameter: &FloatParameter, span: Span) -> FloatTextureId {
+        self.textures.float_parameter(parameter, span, &mut self.diagnostics)
     }
 
     fn spectrum_texture(

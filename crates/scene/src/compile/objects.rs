@@ -51,11 +51,12 @@ impl Compiler<'_> {
             self.error("endless-instances", format!("the object `{name}` is within itself"), span);
             return None;
         }
-        let built = (objects.open.len() < InstancePath::MOST).then(|| self.object(instance.object, objects));
+        let built =
+            (objects.open.len() < InstancePath::MAX_DEPTH).then(|| self.object(instance.object, objects));
         let Some(Placeable { group, levels }) =
-            built.filter(|object| objects.open.len() + object.levels < InstancePath::MOST)
+            built.filter(|object| objects.open.len() + object.levels < InstancePath::MAX_DEPTH)
         else {
-            let most = InstancePath::MOST;
+            let most = InstancePath::MAX_DEPTH;
             self.error("nested-too-deep", format!("instances lie more than {most} deep in each other"), span);
             return None;
         };

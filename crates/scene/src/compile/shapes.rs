@@ -4,7 +4,7 @@ use super::Compiler;
 use super::curves::are_strands;
 use super::solids::Assembly;
 use crate::scene::GeometryEntry;
-use crate::texture::{FloatTextureId, Texture};
+use crate::texture::FloatTextureId;
 use description::{
     Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind, Span, Spanned,
     Stated, TransformDesc,
@@ -77,16 +77,13 @@ impl Compiler<'_> {
         AnimatedTransform::new(self.render_from_world * t.start, self.render_from_world * t.end, t.times)
     }
 
-    fn alpha(&mut self, shape: &ShapeDesc) -> Option<FloatTextureId> {
-        let texture = self.float_texture(shape.alpha.as_ref()?);
+    fn alpha(&mut self, shape: &Stated<ShapeDesc>) -> Option<FloatTextureId> {
+        let texture = self.float_texture(shape.alpha.as_ref()?, shape.origin.parameter("alpha"));
         self.constant_alpha(texture).is_none_or(|alpha| alpha < 1.0).then_some(texture)
     }
 
     pub(super) fn constant_alpha(&self, texture: FloatTextureId) -> Option<f32> {
-        match self.textures.float_texture(texture) {
-            Texture::Constant(alpha) => Some(*alpha),
-            _ => None,
-        }
+        self.textures.textures().constant(texture)
     }
 
     fn geometries(&mut self, run: &[&Stated<ShapeDesc>], transform: &Transform) -> Vec<Geometry> {
@@ -162,6 +159,13 @@ impl Compiler<'_> {
                 return None;
             }
         };
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+        if reach > Formula::MAX_COORDINATE {
+            let limit = Formula::MAX_COORDINATE;
+            let message = format!("the bounds reach to {reach:e}; beyond {limit:e} numbers overflow");
+            self.error("invalid-bounds", message, text.span);
+            return None;
+        }
         if formula.has_no_zero(bounds) {
             self.warn("empty-shape", "the formula is zero nowhere within its bounds", text.span);
         }

@@ -138,6 +138,10 @@ impl Compiler<'_> {
             let message = "parts of a solid do not move in it; drawn where they start";
             self.warn("not-drawn", message, shape.origin.span);
         }
+        if shape.area_light.is_some() {
+            let message = "parts of a solid do not emit; drawn without light";
+            self.warn("not-drawn", message, shape.origin.span);
+        }
         if shape.alpha.is_some() {
             let message = "parts of a solid have no `alpha`; drawn without it";
             self.warn("not-drawn", message, shape.origin.parameter("alpha"));

@@ -30,8 +30,8 @@ impl Compiler<'_> {
         shape: &Stated<ShapeDesc>,
         transform: &Transform,
     ) -> Option<Geometry> {
-        let height = self.float_texture(height);
-        let (textures, edge_scale) = (&self.textures, self.desc.options.displacement_edge_scale);
+        let height = self.float_texture(height, shape.origin.parameter("displacement"));
+        let (textures, edge_scale) = (self.textures.textures(), self.desc.options.displacement_edge_scale);
         let result =
             displaced(joined(triangles, patches), transform, edge_length * edge_scale, |p, n, uv| {
                 let context = TextureContext {

@@ -269,7 +269,7 @@ impl LightModel for AreaLight {
         let shape = part.world().geometry(self.geometry).shape(part.primitive)?;
         let area = self.area(part.world(), part.primitive);
         Some(LightBounds {
-            bounds: motion_bounds(&*shape, part.world(), &self.instance)?,
+            bounds: motion_bounds(&shape, part.world(), &self.instance)?,
             w: normals.w,
             phi: peak * area * PI,
             cos_theta_o: normals.cos_theta,

@@ -1,17 +1,18 @@
-//! A sky given by an image in the equal-area octahedral mapping, sampled in proportion to its
-//! brightness.
+//! Radiance from infinity given by an image of the sphere, sampled in proportion to its brightness.
 //!
-//! Because the mapping keeps areas, the density per solid angle is that of the square over 4π. With
-//! incomplete sampling allowed, the *compensated* distribution max(0, f − mean) is used: multiple
-//! importance sampling leaves the dim parts to the BSDF, and light samples go where they matter
-//! ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the plain distribution, and
-//! start evenly on the disk that faces them and covers the scene.
+//! The image is in the equal-area or the latitude–longitude [`Projection`]. With p(s, t) the density
+//! over the unit square and j(s, t) the solid angle per area as a part of 4π, the density per solid
+//! angle is p/(4π·j): j = 1 for equal areas and (π/2)·sin θ for latitude and longitude, whose pixels
+//! are sampled in proportion to brightness · sin θ.
+//!
+//! With incomplete sampling allowed, the *compensated* distribution max(0, f − mean) is used:
+//! multiple importance sampling leaves the dim parts to the BSDF, and light samples go where they
+//! matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the plain
+//! distribution, and start evenly on the disk that faces them and covers the scene.
 
 use super::{LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
-use image::{Image, WrapMode};
-use math::{
-    Bounds2, Point2, Ray, Transform, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
-};
+use image::{Image, Projection};
+use math::{Bounds2, Point2, Ray, Transform, Vec3, Vector3};
 use sampling::PiecewiseConstant2d;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
@@ -22,6 +23,7 @@ use std::sync::Arc;
 pub struct ImageInfiniteLight {
     render_from_light: Transform,
     image: Arc<Image>,
+    projection: Projection,
     color_space: &'static RgbColorSpace,
     scale: f32,
     scene: SceneSphere,
@@ -30,29 +32,39 @@ pub struct ImageInfiniteLight {
 }
 
 impl ImageInfiniteLight {
-    /// From a square image with red, green and blue in `color_space`.
+    /// From an image of the sphere in `projection`, with red, green and blue in `color_space`.
     pub fn new(
         render_from_light: Transform,
-        image: Arc<Image>,
+        (image, projection): (Arc<Image>, Projection),
         color_space: &'static RgbColorSpace,
         scale: f32,
         scene: SceneSphere,
     ) -> Self {
         let (width, height) = (image.width(), image.height());
         let mut density = Vec::with_capacity(width as usize * height as usize);
+        let (mut sum, mut weights) = (0.0, 0.0);
         for y in 0..height {
+            let weight = projection.row_solid_angle(y, height);
             for x in 0..width {
-                density.push(Rgb::from(image.rgb(x, y)).clamp_zero().average());
+                let value = Rgb::from(image.rgb(x, y)).clamp_zero().average() * weight;
+                sum += f64::from(value);
+                weights += f64::from(weight);
+                density.push(value);
             }
         }
         let distribution = PiecewiseConstant2d::new(&density, width as usize, Bounds2::UNIT);
-        let mean = (density.iter().map(|&d| d as f64).sum::<f64>() / density.len().max(1) as f64) as f32;
-        density.iter_mut().for_each(|d| *d = (*d - mean).max(0.0));
+        let mean = (sum / weights) as f32;
+        let rows = || (0..height).map(|y| projection.row_solid_angle(y, height));
+        for (row, weight) in density.chunks_exact_mut(width as usize).zip(rows()) {
+            row.iter_mut().for_each(|d| *d = (*d - mean * weight).max(0.0));
+        }
         if density.iter().all(|&d| d == 0.0) {
-            density.fill(1.0);
+            for (row, weight) in density.chunks_exact_mut(width as usize).zip(rows()) {
+                row.fill(weight);
+            }
         }
         let compensated = PiecewiseConstant2d::new(&density, width as usize, Bounds2::UNIT);
-        Self { render_from_light, image, color_space, scale, scene, distribution, compensated }
+        Self { render_from_light, image, projection, color_space, scale, scene, distribution, compensated }
     }
 
     fn distribution(&self, allow_incomplete: bool) -> &PiecewiseConstant2d {
@@ -63,13 +75,16 @@ impl ImageInfiniteLight {
         Spectrum::rgb_illuminant(self.color_space, rgb).sample(lambda) * self.scale
     }
 
-    fn lookup(&self, uv: Point2, lambda: &SampledWavelengths) -> SampledSpectrum {
+    fn lookup(&self, st: Point2, lambda: &SampledWavelengths) -> SampledSpectrum {
         let pixel = |x: f32, resolution: u32| (x * resolution as f32) as i32;
-        let (x, y) = (pixel(uv.x, self.image.width()), pixel(uv.y, self.image.height()));
-        self.spectrum(
-            Rgb::from(self.image.rgb_wrapped(x, y, WrapMode::OctahedralSphere)).clamp_zero(),
-            lambda,
-        )
+        let (x, y) = (pixel(st.x, self.image.width()), pixel(st.y, self.image.height()));
+        let rgb = Rgb::from(self.image.rgb_wrapped(x, y, self.projection.wrap()));
+        self.spectrum(rgb.clamp_zero(), lambda)
+    }
+
+    /// The position in the image of a direction in render space.
+    fn position(&self, w: Vector3) -> Point2 {
+        self.projection.position(self.render_from_light.inverse().vector(w).normalize())
     }
 
     fn sample(
@@ -78,23 +93,25 @@ impl ImageInfiniteLight {
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let (uv, density, _) = self.distribution(allow_incomplete).sample(u);
-        if density == 0.0 {
+        let (st, density, _) = self.distribution(allow_incomplete).sample(u);
+        let solid_angle = 4.0 * PI * self.projection.solid_angle_density(st);
+        if density == 0.0 || solid_angle == 0.0 {
             return None;
         }
-        let wi = self.render_from_light.vector(equal_area_square_to_sphere(uv)).normalize();
+        let wi = self.render_from_light.vector(self.projection.direction(st)).normalize();
         Some(LightLiSample {
-            l: self.lookup(uv, lambda),
+            l: self.lookup(st, lambda),
             wi,
-            pdf: density / (4.0 * PI),
+            pdf: density / solid_angle,
             p: None,
             n: Vec3::ZERO,
         })
     }
 
     fn pdf(&self, wi: Vector3, allow_incomplete: bool) -> f32 {
-        let w = self.render_from_light.inverse().vector(wi).normalize();
-        self.distribution(allow_incomplete).pdf(equal_area_sphere_to_square(w)) / (4.0 * PI)
+        let st = self.position(wi);
+        let solid_angle = 4.0 * PI * self.projection.solid_angle_density(st);
+        if solid_angle == 0.0 { 0.0 } else { self.distribution(allow_incomplete).pdf(st) / solid_angle }
     }
 }
 
@@ -111,16 +128,16 @@ impl LightModel for ImageInfiniteLight {
         let mut sum = SampledSpectrum::ZERO;
         let (width, height) = (self.image.width(), self.image.height());
         for y in 0..height {
+            let weight = self.projection.row_solid_angle(y, height);
             for x in 0..width {
-                sum += self.spectrum(Rgb::from(self.image.rgb(x, y)).clamp_zero(), lambda);
+                sum += self.spectrum(Rgb::from(self.image.rgb(x, y)).clamp_zero(), lambda) * weight;
             }
         }
         sum * (4.0 * PI * PI * self.scene.radius * self.scene.radius / (width * height) as f32)
     }
 
     fn le(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let w = self.render_from_light.inverse().vector(ray.d).normalize();
-        self.lookup(equal_area_sphere_to_square(w), lambda)
+        self.lookup(self.position(ray.d), lambda)
     }
 
     fn sample_li(

@@ -21,6 +21,7 @@ impl Roughness {
             let roughness = textures.float(texture, context);
             if self.remap { TrowbridgeReitz::roughness_to_alpha(roughness) } else { roughness }
         };
-        TrowbridgeReitz::new(alpha(self.u), alpha(self.v))
+        let u = alpha(self.u);
+        TrowbridgeReitz::new(u, if self.v == self.u { u } else { alpha(self.v) })
     }
 }

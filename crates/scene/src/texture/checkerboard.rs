@@ -2,7 +2,7 @@
 //!
 //! In one dimension the pattern is the square wave c(x), +1 where ⌊x⌋ is even and −1 where it is
 //! odd; in several it is the product of one wave for each axis, and the first texture is seen where
-//! that is +1. A wave is averaged over the pixel with a triangle of radius r, 1.5 times the
+//! that is +1. A wave is averaged over the pixel with a triangle filter of radius r, 1.5 times the
 //! distance to the next pixel's coordinate:
 //!
 //! ```text
@@ -15,35 +15,25 @@
 //!
 //! Source: [Pharr 2023 §10.3.3], with the box filter replaced as pbrt-v4 does.
 
-use super::{Mapping2d, Mapping3d, TextureContext};
+use super::{TexCoord2d, TexCoord3d};
 use math::sqr;
 
-/// Where each of two textures is seen.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Checkerboard {
-    /// On squares.
-    Squares(Mapping2d),
-    /// In cubes.
-    Cubes(Mapping3d),
+/// The share of the second texture on squares of the plane, in [0, 1].
+pub(super) fn squares(c: &TexCoord2d) -> f32 {
+    let product = filtered_wave(c.st.x, radius(c.dstdx.x, c.dstdy.x))
+        * filtered_wave(c.st.y, radius(c.dstdx.y, c.dstdy.y));
+    0.5 - 0.5 * product
 }
 
-impl Checkerboard {
-    /// How much of the second texture is seen, in [0, 1].
-    pub fn amount(&self, ctx: &TextureContext) -> f32 {
-        let radius = |dx: f32, dy: f32| 1.5 * dx.abs().max(dy.abs());
-        let product = match self {
-            Self::Squares(mapping) => {
-                let c = mapping.map(ctx);
-                filtered_wave(c.st.x, radius(c.dstdx.x, c.dstdy.x))
-                    * filtered_wave(c.st.y, radius(c.dstdx.y, c.dstdy.y))
-            }
-            Self::Cubes(mapping) => {
-                let c = mapping.map(ctx);
-                (0..3).map(|i| filtered_wave(c.p[i], radius(c.dpdx[i], c.dpdy[i]))).product()
-            }
-        };
-        0.5 - 0.5 * product
-    }
+/// The share of the second texture in cubes of space, in [0, 1].
+pub(super) fn cubes(c: &TexCoord3d) -> f32 {
+    let product: f32 = (0..3).map(|i| filtered_wave(c.p[i], radius(c.dpdx[i], c.dpdy[i]))).product();
+    0.5 - 0.5 * product
+}
+
+/// The filter's radius along a coordinate with these derivatives by film position.
+fn radius(dx: f32, dy: f32) -> f32 {
+    1.5 * dx.abs().max(dy.abs())
 }
 
 /// The wave averaged with a triangle of radius `r` about `x`.

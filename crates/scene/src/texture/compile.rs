@@ -1,74 +1,97 @@
-//! From what the author said of textures to the tables.
+//! From the textures of a description to programs.
 //!
-//! The author's textures come first in the tables and in the author's order, so that a handle is an
-//! id. A texture of spectra comes once for each [`SpectrumType`], as only its use decides what its
-//! colours stand for. A texture that is wrong, or not drawn yet, is reported and replaced by a
-//! stand-in.
+//! All textures become nodes of the graph in the order of the description, in which each refers
+//! only to textures before it. A texture of spectra becomes one node for each [`SpectrumType`], as
+//! only its use decides what its colours stand for. Programs are made for those textures that
+//! parameters of materials and shapes refer to. A texture that is wrong, or not drawn yet, is
+//! reported and replaced by a constant.
 
+use super::graph::{Graph, Index, MAX_OPERATIONS, MAX_OPERATIONS_IN_ALL, NodeId, ProgramError};
+use super::program::{Code, MAX_SLOTS};
 use super::{
-    Bilerp, Checkerboard, FloatImage, FloatTexture, FloatTextureId, ImageLookup, Mapping2d, Mapping3d,
-    SpectrumImage, SpectrumTexture, SpectrumTextureId, SpectrumType, Texture, Textures, compile_spectrum,
-    pyramids::Pyramids,
+    FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage, SpectrumTextureId, SpectrumType,
+    TextureContext, Textures, compile_spectrum, pyramids::Pyramids,
 };
 use description::{
     Arena, Diagnostic, FloatParameter, Handle, ImageDesc, ImageTextureDesc, MappingDesc, Origin, Parameter,
     SceneDesc, Span, SpectrumDesc, SpectrumParameter, Stated, TextureDesc, TextureKind,
 };
 use image::TextureFilter;
-use math::{DMat4, Transform, Vec2};
-use spectrum::{RgbColorSpace, Spectrum};
+use math::{DMat4, Transform, Vec2, Vec3};
+use spectrum::RgbColorSpace;
 
-/// How many textures a texture may depend on in a row; evaluation recurs as deeply.
-const MAX_DEPTH: u32 = 64;
-
-/// All textures of a scene. What is wrong with them, or not drawn, is added to `diagnostics`.
-pub fn compile(desc: &SceneDesc, render_from_world: &DMat4, diagnostics: &mut Vec<Diagnostic>) -> Textures {
-    let types = SpectrumType::ALL;
-    let textures = Textures {
-        float: vec![Texture::Constant(0.0); desc.float_textures.len()],
-        spectrum: vec![Texture::Constant(Spectrum::ZERO); types.len() * desc.spectrum_textures.len()],
-    };
-    let pyramids = Pyramids::new(&desc.images);
-    let mut compiler = Compiler { textures, pyramids, images: &desc.images, render_from_world, diagnostics };
-
-    let mut float_depths = Vec::with_capacity(desc.float_textures.len());
-    for (handle, texture) in desc.float_textures.iter() {
-        let depth = depth(texture, &float_depths, &float_depths, compiler.diagnostics);
-        if depth.is_some() {
-            compiler.textures.float[handle.index()] = compiler.texture(texture, ());
-        }
-        float_depths.push(depth.unwrap_or(0));
-    }
-    let mut spectrum_depths = Vec::with_capacity(desc.spectrum_textures.len());
-    for (handle, texture) in desc.spectrum_textures.iter() {
-        let depth = depth(texture, &spectrum_depths, &float_depths, compiler.diagnostics);
-        if depth.is_some() {
-            for (i, &spectrum_type) in types.iter().enumerate() {
-                let reported = compiler.diagnostics.len();
-                let id = SpectrumDesc::id(handle, spectrum_type);
-                compiler.textures.spectrum[id.0 as usize] = compiler.texture(texture, spectrum_type);
-                if i > 0 {
-                    compiler.diagnostics.truncate(reported);
-                }
-            }
-        }
-        spectrum_depths.push(depth.unwrap_or(0));
-    }
-    compiler.textures
+/// The textures of a scene while it is compiled.
+#[derive(Debug)]
+pub struct TextureCompiler {
+    graph: Graph,
+    /// The nodes of the description's textures, by handle.
+    nodes: Nodes,
 }
 
-impl Textures {
-    /// The texture of a parameter of the scene that these textures were compiled from.
-    pub fn float_parameter(&mut self, parameter: &FloatParameter) -> FloatTextureId {
-        match parameter {
-            Parameter::Value(value) => self.push_float(Texture::Constant(*value)),
-            Parameter::Texture(handle) => f32::id(*handle, ()),
+#[derive(Debug, Default)]
+struct Nodes {
+    float: Vec<NodeId>,
+    /// One for each spectrum type.
+    spectrum: Vec<[NodeId; SpectrumType::ALL.len()]>,
+}
+
+impl TextureCompiler {
+    /// Builds the graph of a description's textures. Errors and what is not drawn are added to
+    /// `diagnostics`.
+    pub fn new(desc: &SceneDesc, render_from_world: &DMat4, diagnostics: &mut Vec<Diagnostic>) -> Self {
+        let mut builder = GraphBuilder {
+            graph: Graph::default(),
+            nodes: Nodes::default(),
+            pyramids: Pyramids::new(&desc.images),
+            mappings: Index::default(),
+            solid_mappings: Index::default(),
+            float_images: Index::default(),
+            spectrum_images: Index::default(),
+            images: &desc.images,
+            render_from_world,
+            diagnostics,
+        };
+        for (_, texture) in desc.float_textures.iter() {
+            let node = builder.texture(texture, ());
+            builder.nodes.float.push(node);
         }
+        for (_, texture) in desc.spectrum_textures.iter() {
+            let start = builder.diagnostics.len();
+            let nodes = SpectrumType::ALL.map(|spectrum_type| {
+                let end = builder.diagnostics.len();
+                let node = builder.texture(texture, spectrum_type);
+                // Each type has the same mistakes.
+                if end > start {
+                    builder.diagnostics.truncate(end);
+                }
+                node
+            });
+            builder.nodes.spectrum.push(nodes);
+        }
+        let mut compiler = Self { graph: builder.graph, nodes: builder.nodes };
+        // Program 0, in place of those that cannot be made.
+        let zero = compiler.graph.number(0.0);
+        compiler.program(zero, Span::NONE, diagnostics);
+        compiler
     }
 
-    /// The texture of a parameter of the scene that these textures were compiled from, given at
-    /// `span`, whose colours stand for a `spectrum_type`. What makes no sense is added to
+    /// The texture of a parameter of the description that was given at `span`. Errors are added to
     /// `diagnostics`.
+    pub fn float_parameter(
+        &mut self,
+        parameter: &FloatParameter,
+        span: Span,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> FloatTextureId {
+        let node = match parameter {
+            Parameter::Value(value) => value.node((), span, &mut self.graph, diagnostics),
+            Parameter::Texture(handle) => self.nodes.float[handle.index()],
+        };
+        FloatTextureId(self.program(node, span, diagnostics))
+    }
+
+    /// The texture of a parameter of the description that was given at `span`, whose colours stand
+    /// for a `spectrum_type`. Errors are added to `diagnostics`.
     pub fn spectrum_parameter(
         &mut self,
         parameter: &SpectrumParameter,
@@ -76,235 +99,269 @@ impl Textures {
         span: Span,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> SpectrumTextureId {
-        match parameter {
+        let node = match parameter {
             Parameter::Value(value) => {
                 let spectrum = compile_spectrum(value, spectrum_type, span, diagnostics);
-                self.push_spectrum(Texture::Constant(spectrum))
+                self.graph.spectrum(spectrum)
             }
-            Parameter::Texture(handle) => SpectrumDesc::id(*handle, spectrum_type),
-        }
+            Parameter::Texture(handle) => self.nodes.spectrum[handle.index()][spectrum_type as usize],
+        };
+        SpectrumTextureId(self.program(node, span, diagnostics))
+    }
+
+    fn program(&mut self, node: NodeId, span: Span, diagnostics: &mut Vec<Diagnostic>) -> u32 {
+        self.graph.program(node).unwrap_or_else(|error| {
+            let message = match error {
+                ProgramError::Operations => {
+                    format!("this texture takes more than {MAX_OPERATIONS} operations")
+                }
+                ProgramError::Slots => {
+                    format!("this texture has more than {MAX_SLOTS} intermediate values at once")
+                }
+                ProgramError::OperationsInAll => {
+                    format!("the textures of the scene take more than {MAX_OPERATIONS_IN_ALL} operations")
+                }
+            };
+            diagnostics.push(Diagnostic::error("texture-size", message, span));
+            0
+        })
+    }
+
+    /// The textures that have programs so far.
+    pub fn textures(&self) -> &Textures {
+        &self.graph.textures
+    }
+
+    /// The textures that have programs.
+    pub fn finish(self) -> Textures {
+        self.graph.textures
     }
 }
 
-/// The texture that gives a sort of values.
-type TextureOf<V> = Texture<<V as Value>::Constant, <V as Value>::Id, <V as Value>::Image>;
-
-/// The two sorts of values that textures give, as the author says them: numbers and spectra.
+/// The two sorts of values that textures give, as descriptions have them: numbers and spectra.
 trait Value: From<f32> + Clone {
     /// What the value stands for.
     type Use: Copy;
-    type Constant: Clone;
-    type Id: Copy;
-    type Image;
-
-    fn constant(&self, usage: Self::Use, span: Span, diagnostics: &mut Vec<Diagnostic>) -> Self::Constant;
-    fn id(handle: Handle<TextureDesc<Self>>, usage: Self::Use) -> Self::Id;
-    fn push(textures: &mut Textures, texture: TextureOf<Self>) -> Self::Id;
-    fn image(lookup: ImageLookup, image: &ImageDesc, usage: Self::Use) -> Self::Image;
     /// Whether images keep their colours.
     const IN_COLOR: bool;
+
+    fn node(
+        &self,
+        usage: Self::Use,
+        span: Span,
+        graph: &mut Graph,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> NodeId;
+    /// The node of a texture, if it comes before the one under way.
+    fn known(handle: Handle<TextureDesc<Self>>, usage: Self::Use, nodes: &Nodes) -> Option<NodeId>;
+    fn image(lookup: ImageLookup, image: &ImageDesc, usage: Self::Use, builder: &mut GraphBuilder) -> Code;
 }
 
 impl Value for f32 {
     type Use = ();
-    type Constant = f32;
-    type Id = FloatTextureId;
-    type Image = FloatImage;
     const IN_COLOR: bool = false;
 
-    fn constant(&self, (): (), span: Span, diagnostics: &mut Vec<Diagnostic>) -> f32 {
+    fn node(&self, (): (), span: Span, graph: &mut Graph, diagnostics: &mut Vec<Diagnostic>) -> NodeId {
         if !self.is_finite() {
             let message = format!("{self} is no value for a texture");
             diagnostics.push(Diagnostic::error("invalid-value", message, span));
         }
-        *self
+        graph.number(*self)
     }
 
-    fn id(handle: Handle<TextureDesc<f32>>, (): ()) -> FloatTextureId {
-        FloatTextureId(handle.index() as u32)
+    fn known(handle: Handle<TextureDesc<f32>>, (): (), nodes: &Nodes) -> Option<NodeId> {
+        nodes.float.get(handle.index()).copied()
     }
 
-    fn push(textures: &mut Textures, texture: FloatTexture) -> FloatTextureId {
-        textures.push_float(texture)
-    }
-
-    fn image(lookup: ImageLookup, _: &ImageDesc, (): ()) -> FloatImage {
-        FloatImage { lookup }
+    fn image(lookup: ImageLookup, _: &ImageDesc, (): (), builder: &mut GraphBuilder) -> Code {
+        let images = &mut builder.graph.textures.float_images;
+        Code::FloatImage(builder.float_images.intern(images, lookup, image_hash(&lookup)))
     }
 }
 
 impl Value for SpectrumDesc {
     type Use = SpectrumType;
-    type Constant = Spectrum;
-    type Id = SpectrumTextureId;
-    type Image = SpectrumImage;
     const IN_COLOR: bool = true;
 
-    fn constant(&self, usage: SpectrumType, span: Span, diagnostics: &mut Vec<Diagnostic>) -> Spectrum {
+    fn node(
+        &self,
+        usage: SpectrumType,
+        span: Span,
+        graph: &mut Graph,
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> NodeId {
         // Which colours are out of range depends on the use, which is not known here.
         let reported = diagnostics.len();
         let spectrum = compile_spectrum(self, usage, span, diagnostics);
         if !diagnostics[reported..].iter().any(Diagnostic::is_error) {
             diagnostics.truncate(reported);
         }
-        spectrum
+        graph.spectrum(spectrum)
     }
 
-    fn id(handle: Handle<TextureDesc<SpectrumDesc>>, usage: SpectrumType) -> SpectrumTextureId {
-        SpectrumTextureId((handle.index() * SpectrumType::ALL.len() + usage as usize) as u32)
+    fn known(
+        handle: Handle<TextureDesc<SpectrumDesc>>,
+        usage: SpectrumType,
+        nodes: &Nodes,
+    ) -> Option<NodeId> {
+        nodes.spectrum.get(handle.index()).map(|nodes| nodes[usage as usize])
     }
 
-    fn push(textures: &mut Textures, texture: SpectrumTexture) -> SpectrumTextureId {
-        textures.push_spectrum(texture)
-    }
-
-    fn image(lookup: ImageLookup, image: &ImageDesc, spectrum_type: SpectrumType) -> SpectrumImage {
+    fn image(
+        lookup: ImageLookup,
+        image: &ImageDesc,
+        spectrum_type: SpectrumType,
+        builder: &mut GraphBuilder,
+    ) -> Code {
         let space = image
             .image
             .metadata
             .chromaticities
             .and_then(|c| RgbColorSpace::from_chromaticities([c.red, c.green, c.blue], c.white));
-        SpectrumImage { lookup, space: space.unwrap_or(RgbColorSpace::srgb()), spectrum_type }
+        let space = space.unwrap_or(RgbColorSpace::srgb());
+        let images = &mut builder.graph.textures.spectrum_images;
+        let image = SpectrumImage { lookup, space, spectrum_type };
+        Code::SpectrumImage(builder.spectrum_images.intern(images, image, image_hash(&lookup)))
     }
 }
 
-/// How many textures `texture` depends on in a row, from the depths of the textures before it.
-/// `None`, with a report, if it refers to itself or a later one, or too deeply.
-fn depth<V>(
-    texture: &Stated<TextureDesc<V>>,
-    same: &[u32],
-    floats: &[u32],
-    diagnostics: &mut Vec<Diagnostic>,
-) -> Option<u32> {
-    fn below<T>(parameter: Option<&Parameter<T>>, depths: &[u32]) -> Option<u32> {
-        match parameter {
-            Some(Parameter::Texture(handle)) => Some(depths.get(handle.index())? + 1),
-            _ => Some(0),
-        }
-    }
-    let (parts, factor) = match &texture.kind {
-        TextureKind::Scale { texture, scale } => ([Some(texture), None], Some(scale)),
-        TextureKind::Mix { textures: [a, b], amount } => ([Some(a), Some(b)], Some(amount)),
-        TextureKind::Checkerboard { textures: [a, b], .. }
-        | TextureKind::DirectionMix { textures: [a, b], .. }
-        | TextureKind::Dots { inside: a, outside: b, .. } => ([Some(a), Some(b)], None),
-        _ => ([None, None], None),
-    };
-    let mut error = |code, message| {
-        diagnostics.push(Diagnostic::error(code, message, texture.origin.span));
-        None
-    };
-    let name = &texture.name;
-    match (below(parts[0], same), below(parts[1], same), below(factor, floats)) {
-        (Some(a), Some(b), Some(c)) if a.max(b).max(c) <= MAX_DEPTH => Some(a.max(b).max(c)),
-        (Some(_), Some(_), Some(_)) => error(
-            "texture-depth",
-            format!("texture `{name}` depends on more than {MAX_DEPTH} others in a row"),
-        ),
-        _ => error("texture-cycle", format!("texture `{name}` refers to itself or to a later one")),
-    }
+fn image_hash(lookup: &ImageLookup) -> [f32; 4] {
+    [lookup.pyramid as f32, lookup.mapping as f32, lookup.scale, f32::from(u8::from(lookup.invert))]
 }
 
-struct Compiler<'a> {
-    textures: Textures,
+struct GraphBuilder<'a> {
+    graph: Graph,
+    nodes: Nodes,
     pyramids: Pyramids<'a>,
+    mappings: Index,
+    solid_mappings: Index,
+    float_images: Index,
+    spectrum_images: Index,
     images: &'a Arena<ImageDesc>,
     render_from_world: &'a DMat4,
     diagnostics: &'a mut Vec<Diagnostic>,
 }
 
-impl Compiler<'_> {
-    fn texture<V: Value>(&mut self, desc: &Stated<TextureDesc<V>>, usage: V::Use) -> TextureOf<V> {
+impl GraphBuilder<'_> {
+    fn error(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
+        self.diagnostics.push(Diagnostic::error(code, message, span));
+    }
+
+    fn texture<V: Value>(&mut self, desc: &Stated<TextureDesc<V>>, usage: V::Use) -> NodeId {
+        let reported = self.diagnostics.len();
+        let node = self.kind(desc, usage);
+        let overflows = self.graph.value(node).is_some_and(|value| !value.is_finite());
+        if overflows && !self.diagnostics[reported..].iter().any(Diagnostic::is_error) {
+            let message = format!("the value of texture `{}` is too large", desc.name);
+            self.error("invalid-value", message, desc.origin.span);
+        }
+        node
+    }
+
+    fn kind<V: Value>(&mut self, desc: &Stated<TextureDesc<V>>, usage: V::Use) -> NodeId {
         let origin = &desc.origin;
         match &desc.kind {
-            TextureKind::Constant(value) => {
-                Texture::Constant(value.constant(usage, origin.parameter("value"), self.diagnostics))
+            TextureKind::Constant(value) => self.value(value, usage, origin.parameter("value")),
+            TextureKind::Scale { texture, scale } => {
+                let texture = self.operand(texture, usage, "tex", desc);
+                let scale = self.operand(scale, (), "scale", desc);
+                self.graph.scale(texture, scale)
             }
-            TextureKind::Scale { texture, scale } => Texture::Scale {
-                texture: self.parameter(texture, usage, origin.parameter("tex")),
-                scale: self.parameter(scale, (), origin.parameter("scale")),
-            },
-            TextureKind::Mix { textures, amount } => Texture::Mix {
-                textures: self.pair(textures, usage, origin),
-                amount: self.parameter(amount, (), origin.parameter("amount")),
-            },
+            TextureKind::Mix { textures, amount } => {
+                let textures = self.pair(textures, ["tex1", "tex2"], usage, desc);
+                let amount = self.operand(amount, (), "amount", desc);
+                self.graph.mix(textures, amount)
+            }
             TextureKind::Checkerboard { textures, mapping } => {
-                let pattern = match mapping {
-                    Some(mapping) => Checkerboard::Squares(self.mapping(mapping, desc)),
-                    None => {
-                        Checkerboard::Cubes(Mapping3d { texture_from_render: self.texture_from_render(desc) })
-                    }
+                let textures = self.pair(textures, ["tex1", "tex2"], usage, desc);
+                let code = match mapping {
+                    Some(mapping) => Code::Squares(self.mapping(mapping, desc)),
+                    None => Code::Cubes(self.solid_mapping(desc)),
                 };
-                Texture::Checkerboard { textures: self.pair(textures, usage, origin), pattern }
+                let amount = self.graph.node(code, &[]);
+                self.graph.mix(textures, amount)
             }
             TextureKind::Image(image) => match self.image(image, desc, usage) {
-                Some(image) => Texture::Image(image),
-                None => self.half::<V>(usage, origin),
+                Some(code) => self.graph.node(code, &[]),
+                None => self.graph.number(0.5),
             },
-            TextureKind::Bilerp { corners, mapping } => {
-                let names = ["v00", "v01", "v10", "v11"];
-                let constant =
-                    |i: usize| corners[i].constant(usage, origin.parameter(names[i]), self.diagnostics);
-                let corners = [0, 1, 2, 3].map(constant);
-                Texture::Bilerp(Bilerp { corners, mapping: self.mapping(mapping, desc) })
+            TextureKind::Bilerp { corners: [v00, v01, v10, v11], mapping } => {
+                let corners = [("v00", v00), ("v01", v01), ("v10", v10), ("v11", v11)]
+                    .map(|(name, value)| self.value(value, usage, origin.parameter(name)));
+                let code = Code::Bilerp(self.mapping(mapping, desc));
+                self.graph.node(code, &corners)
             }
             TextureKind::DirectionMix { textures, .. } => {
-                self.even_mix("directionmix", textures, usage, origin)
+                self.even_mix("directionmix", textures, ["tex1", "tex2"], usage, desc)
             }
             TextureKind::Dots { inside, outside, .. } => {
-                self.even_mix("dots", &[inside.clone(), outside.clone()], usage, origin)
+                let textures = [inside.clone(), outside.clone()];
+                self.even_mix("dots", &textures, ["inside", "outside"], usage, desc)
             }
-            TextureKind::Fbm { .. } => self.middle::<V>("fbm", usage, origin),
-            TextureKind::Wrinkled { .. } => self.middle::<V>("wrinkled", usage, origin),
-            TextureKind::Windy => self.middle::<V>("windy", usage, origin),
-            TextureKind::Marble { .. } => self.middle::<V>("marble", usage, origin),
-            TextureKind::Ptex { .. } => self.middle::<V>("ptex", usage, origin),
+            TextureKind::Fbm { .. } => self.half("fbm", origin),
+            TextureKind::Wrinkled { .. } => self.half("wrinkled", origin),
+            TextureKind::Windy => self.half("windy", origin),
+            TextureKind::Marble { .. } => self.half("marble", origin),
+            TextureKind::Ptex { .. } => self.half("ptex", origin),
         }
     }
 
-    fn parameter<V: Value>(&mut self, parameter: &Parameter<V>, usage: V::Use, span: Span) -> V::Id {
+    fn value<V: Value>(&mut self, value: &V, usage: V::Use, span: Span) -> NodeId {
+        value.node(usage, span, &mut self.graph, self.diagnostics)
+    }
+
+    /// The node of the parameter `name` of the texture `user`.
+    fn operand<V: Value, W>(
+        &mut self,
+        parameter: &Parameter<V>,
+        usage: V::Use,
+        name: &str,
+        user: &Stated<TextureDesc<W>>,
+    ) -> NodeId {
+        let span = user.origin.parameter(name);
         match parameter {
-            Parameter::Value(value) => {
-                let value = value.constant(usage, span, self.diagnostics);
-                V::push(&mut self.textures, Texture::Constant(value))
-            }
-            Parameter::Texture(handle) => V::id(*handle, usage),
+            Parameter::Value(value) => self.value(value, usage, span),
+            Parameter::Texture(handle) => V::known(*handle, usage, &self.nodes).unwrap_or_else(|| {
+                let message = format!("texture `{}` refers to itself or to a later one", user.name);
+                self.error("texture-cycle", message, span);
+                self.graph.number(0.0)
+            }),
         }
     }
 
-    fn pair<V: Value>(&mut self, textures: &[Parameter<V>; 2], usage: V::Use, origin: &Origin) -> [V::Id; 2] {
-        let [first, second] = textures;
-        [
-            self.parameter(first, usage, origin.parameter("tex1")),
-            self.parameter(second, usage, origin.parameter("tex2")),
-        ]
+    fn pair<V: Value>(
+        &mut self,
+        [first, second]: &[Parameter<V>; 2],
+        names: [&str; 2],
+        usage: V::Use,
+        user: &Stated<TextureDesc<V>>,
+    ) -> [NodeId; 2] {
+        [self.operand(first, usage, names[0], user), self.operand(second, usage, names[1], user)]
     }
 
-    /// What stands in for a texture that lies between two others.
+    /// Replaces a texture that lies between two others.
     fn even_mix<V: Value>(
         &mut self,
-        name: &str,
+        kind: &str,
         textures: &[Parameter<V>; 2],
+        names: [&str; 2],
         usage: V::Use,
-        origin: &Origin,
-    ) -> TextureOf<V> {
-        self.not_drawn(name, "an even mix of its values", origin);
-        let amount = self.textures.push_float(Texture::Constant(0.5));
-        Texture::Mix { textures: self.pair(textures, usage, origin), amount }
+        user: &Stated<TextureDesc<V>>,
+    ) -> NodeId {
+        self.not_drawn(kind, "an even mix of its values", &user.origin);
+        let textures = self.pair(textures, names, usage, user);
+        let amount = self.graph.number(0.5);
+        self.graph.mix(textures, amount)
     }
 
-    /// What stands in for a texture that makes its own values.
-    fn middle<V: Value>(&mut self, name: &str, usage: V::Use, origin: &Origin) -> TextureOf<V> {
-        self.not_drawn(name, "the constant 0.5", origin);
-        self.half::<V>(usage, origin)
+    /// Replaces a texture that makes its own values.
+    fn half(&mut self, kind: &str, origin: &Origin) -> NodeId {
+        self.not_drawn(kind, "the constant 0.5", origin);
+        self.graph.number(0.5)
     }
 
-    fn half<V: Value>(&mut self, usage: V::Use, origin: &Origin) -> TextureOf<V> {
-        Texture::Constant(V::from(0.5).constant(usage, origin.span, self.diagnostics))
-    }
-
-    fn not_drawn(&mut self, name: &str, instead: &str, origin: &Origin) {
-        let message = format!("texture `{name}` is not drawn yet; drawn as {instead}");
+    fn not_drawn(&mut self, kind: &str, instead: &str, origin: &Origin) {
+        let message = format!("texture `{kind}` is not drawn yet; drawn as {instead}");
         self.diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
     }
 
@@ -314,26 +371,23 @@ impl Compiler<'_> {
         desc: &ImageTextureDesc,
         texture: &Stated<TextureDesc<V>>,
         usage: V::Use,
-    ) -> Option<V::Image> {
+    ) -> Option<Code> {
         let origin = &texture.origin;
         if !desc.scale.is_finite() {
             let message = format!("{} is no factor for an image", desc.scale);
-            self.diagnostics.push(Diagnostic::error("invalid-value", message, origin.parameter("scale")));
+            self.error("invalid-value", message, origin.parameter("scale"));
         }
         let anisotropy = 1.0..=f32::INFINITY;
         if desc.filter == description::TextureFilter::Ewa && !anisotropy.contains(&desc.max_anisotropy) {
             let message = format!("the greatest anisotropy must be at least 1, not {}", desc.max_anisotropy);
-            self.diagnostics.push(Diagnostic::error(
-                "invalid-value",
-                message,
-                origin.parameter("maxanisotropy"),
-            ));
+            self.error("invalid-value", message, origin.parameter("maxanisotropy"));
         }
-        let pyramid = match self.pyramids.get(desc, V::IN_COLOR) {
+        let image = &self.images[desc.image];
+        let pyramid = match self.pyramids.get(desc, V::IN_COLOR, &mut self.graph.textures.pyramids) {
             Ok(pyramid) => pyramid,
             Err(error) => {
-                let message = format!("{}: {error}", self.images[desc.image].name);
-                self.diagnostics.push(Diagnostic::error("image", message, origin.parameter("filename")));
+                let to_blame = if desc.channel.is_some() { "channel" } else { "filename" };
+                self.error("image", format!("{}: {error}", image.name), origin.parameter(to_blame));
                 return None;
             }
         };
@@ -345,11 +399,12 @@ impl Compiler<'_> {
         };
         let mapping = self.mapping(&desc.mapping, texture);
         let lookup = ImageLookup { mapping, pyramid, filter, scale: desc.scale, invert: desc.invert };
-        Some(V::image(lookup, &self.images[desc.image], usage))
+        Some(V::image(lookup, image, usage, self))
     }
 
-    fn mapping<V>(&mut self, desc: &MappingDesc, texture: &Stated<TextureDesc<V>>) -> Mapping2d {
-        match *desc {
+    /// Index of a map to the plane.
+    fn mapping<V>(&mut self, desc: &MappingDesc, texture: &Stated<TextureDesc<V>>) -> u32 {
+        let mapping = match *desc {
             MappingDesc::Uv { scale, delta } => Mapping2d::Uv { scale: scale.into(), delta: delta.into() },
             MappingDesc::Spherical => {
                 Mapping2d::Spherical { texture_from_render: self.texture_from_render(texture) }
@@ -362,15 +417,28 @@ impl Compiler<'_> {
                 axes,
                 delta: Vec2::from(delta),
             },
-        }
+        };
+        let at = mapping.map(&TextureContext { p: PROBE, uv: PROBE.truncate(), ..Default::default() });
+        self.mappings.intern(&mut self.graph.textures.mappings, mapping, [at.st.x, at.st.y, 0.0, 0.0])
+    }
+
+    /// Index of a map to texture space.
+    fn solid_mapping<V>(&mut self, texture: &Stated<TextureDesc<V>>) -> u32 {
+        let mapping = Mapping3d { texture_from_render: self.texture_from_render(texture) };
+        let at = mapping.map(&TextureContext { p: PROBE, ..Default::default() }).p;
+        let mappings = &mut self.graph.textures.solid_mappings;
+        self.solid_mappings.intern(mappings, mapping, [at.x, at.y, at.z, 0.0])
     }
 
     fn texture_from_render<V>(&mut self, texture: &Stated<TextureDesc<V>>) -> Transform {
         let render_from_texture = *self.render_from_world * texture.world_from_texture;
         Transform::from_f64(render_from_texture).map(|t| t.inverse()).unwrap_or_else(|| {
             let message = "the transform of this texture has no inverse";
-            self.diagnostics.push(Diagnostic::error("singular-transform", message, texture.origin.span));
+            self.error("singular-transform", message, texture.origin.span);
             Transform::IDENTITY
         })
     }
 }
+
+/// A point at which mappings that differ usually have different coordinates, to hash them by.
+const PROBE: Vec3 = Vec3::new(0.625, -1.75, 2.375);

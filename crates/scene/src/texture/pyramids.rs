@@ -1,79 +1,101 @@
 //! The pyramids of a scene's images, each made once.
 
-use description::{Arena, ImageDesc, ImageTextureDesc, TextureFilter};
+use description::{Arena, ImageChannel, ImageDesc, ImageTextureDesc, TextureFilter};
 use image::{Image, ImageError, Pixels, Pyramid, WrapMode};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// What a pyramid depends on: the image, what lies beyond it and, for one of numbers, what they
 /// are.
 type Key = (usize, description::WrapMode, Option<Numbers>);
 
-/// Which numbers stand for an image of several channels. The pbrt-v4 format takes one or the other
-/// with the filter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Which numbers stand for an image of several channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Numbers {
-    /// Opacity where that is not one everywhere, else the mean of red, green and blue: for filters
-    /// that interpolate.
+    /// Opacity where that is not one everywhere, else the mean of red, green and blue: what the
+    /// pbrt-v4 format reads with filters that interpolate.
     OpacityOrMean,
-    /// The first channel: for filters that take single texels.
+    /// The first channel: what the pbrt-v4 format reads with filters that take single texels.
     First,
+    /// The channel that the scene names.
+    Channel(ImageChannel),
 }
 
 /// Makes pyramids of images, and remembers them.
 pub(super) struct Pyramids<'a> {
     images: &'a Arena<ImageDesc>,
-    made: Vec<(Key, Arc<Pyramid>)>,
+    made: HashMap<Key, u32>,
 }
 
 impl<'a> Pyramids<'a> {
     pub fn new(images: &'a Arena<ImageDesc>) -> Self {
-        Self { images, made: Vec::new() }
+        Self { images, made: HashMap::new() }
     }
 
-    /// The pyramid for a texture, of colours or of numbers.
-    pub fn get(&mut self, texture: &ImageTextureDesc, in_color: bool) -> Result<Arc<Pyramid>, ImageError> {
-        let numbers = (!in_color).then_some(match texture.filter {
-            TextureFilter::Point | TextureFilter::Ewa => Numbers::First,
-            TextureFilter::Bilinear | TextureFilter::Trilinear => Numbers::OpacityOrMean,
+    /// The index in `pyramids` of the pyramid for a texture, of colours or of numbers.
+    pub fn get(
+        &mut self,
+        texture: &ImageTextureDesc,
+        in_color: bool,
+        pyramids: &mut Vec<Arc<Pyramid>>,
+    ) -> Result<u32, ImageError> {
+        let numbers = (!in_color).then_some(match (texture.channel, texture.filter) {
+            (Some(channel), _) => Numbers::Channel(channel),
+            (None, TextureFilter::Point | TextureFilter::Ewa) => Numbers::First,
+            (None, TextureFilter::Bilinear | TextureFilter::Trilinear) => Numbers::OpacityOrMean,
         });
         let key = (texture.image.index(), texture.wrap, numbers);
-        if let Some((_, pyramid)) = self.made.iter().find(|(made, _)| *made == key) {
-            return Ok(pyramid.clone());
+        if let Some(&index) = self.made.get(&key) {
+            return Ok(index);
         }
         let image = self.images[texture.image].image.clone();
-        let image = numbers.map_or(image.clone(), |numbers| numbers.of(image));
+        let image = match numbers {
+            Some(numbers) => numbers.of(image)?,
+            None => image,
+        };
         let wrap = match texture.wrap {
             description::WrapMode::Repeat => WrapMode::Repeat,
             description::WrapMode::Black => WrapMode::Black,
             description::WrapMode::Clamp => WrapMode::Clamp,
             description::WrapMode::OctahedralSphere => WrapMode::OctahedralSphere,
         };
-        let pyramid = Arc::new(Pyramid::new(image, wrap)?);
-        self.made.push((key, pyramid.clone()));
-        Ok(pyramid)
+        let index = pyramids.len() as u32;
+        pyramids.push(Arc::new(Pyramid::new(image, wrap)?));
+        self.made.insert(key, index);
+        Ok(index)
     }
 }
 
 impl Numbers {
-    /// The one channel that stands for an image.
-    fn of(self, image: Arc<Image>) -> Arc<Image> {
-        if image.channel_count() == 1 {
-            return image;
-        }
-        // The opacity of a grey image is not looked at.
-        let opacity = image.alpha_index().filter(|_| self == Self::OpacityOrMean && image.is_color());
-        let opacity = opacity.map(|channel| {
-            Image::from_fn(image.width(), image.height(), ["Y"], |x, y| {
-                [decoded_opacity(&image, image.channel(x, y, channel))]
-            })
-        });
-        if let Some(opacity) = opacity.filter(|opacity| opacity.values().any(|value| value != 1.0)) {
-            return Arc::new(opacity);
-        }
-        Arc::new(Image::from_fn(image.width(), image.height(), ["Y"], |x, y| {
-            let [r, g, b] = image.rgb(x, y);
-            [if self == Self::First { r } else { (r + g + b) / 3.0 }]
-        }))
+    /// An image of the one channel that stands for `image`.
+    fn of(self, image: Arc<Image>) -> Result<Arc<Image>, ImageError> {
+        let single = |value: &dyn Fn(u32, u32) -> f32| {
+            Arc::new(Image::from_fn(image.width(), image.height(), ["Y"], |x, y| [value(x, y)]))
+        };
+        let color = |c: usize| single(&|x, y| image.rgb(x, y)[c]);
+        Ok(match (self, image.alpha_index()) {
+            (Self::Channel(ImageChannel::Alpha), Some(alpha)) => single(&|x, y| image.channel(x, y, alpha)),
+            (Self::Channel(ImageChannel::Alpha), None) => {
+                return Err(ImageError::Invalid("there is no channel of opacity".into()));
+            }
+            _ if image.channel_count() == 1 => image,
+            (Self::First | Self::Channel(ImageChannel::Red), _) => color(0),
+            (Self::Channel(ImageChannel::Green), _) => color(1),
+            (Self::Channel(ImageChannel::Blue), _) => color(2),
+            (Self::OpacityOrMean, alpha) => {
+                // The opacity of a grey image does not count.
+                let alpha = alpha.filter(|_| image.is_color());
+                let opacity =
+                    alpha.map(|alpha| single(&|x, y| decoded_opacity(&image, image.channel(x, y, alpha))));
+                match opacity.filter(|opacity| opacity.values().any(|value| value != 1.0)) {
+                    Some(opacity) => opacity,
+                    None => single(&|x, y| {
+                        let [r, g, b] = image.rgb(x, y);
+                        (r + g + b) / 3.0
+                    }),
+                }
+            }
+        })
     }
 }
 

@@ -1,38 +1,38 @@
-//! Top-down by the surface-area heuristic over bins: good trees in little time.
+//! Top-down by the binned surface area heuristic.
 
-use super::bins::{Border, centroids};
+use super::bins::{ObjectSplit, centroids};
 use super::pages;
 use super::partition::partition;
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Grown, Inner, Planted};
+use super::tree::{BinaryTree, Blocks, InnerNode, Subtree};
 
-/// Below this depth, which only sets of wildly different sizes reach, halves are made equal.
+/// Below this depth, which only extremely uneven sets reach, sets are split at the median.
 pub(super) const DEEPEST: usize = 48;
-/// Smaller sets are not worth another thread.
+/// Smaller sets are not split between threads.
 pub(super) const PARALLEL: usize = 4096;
 
-/// Brings references into order and grows a tree over them.
-pub(super) fn plant(mut references: Vec<Reference>, blocks: Blocks) -> Planted {
-    let mut inner = pages::filled(Inner::default(), references.len());
+/// Sorts references and builds a tree over them.
+pub(super) fn build(mut references: Vec<Reference>, blocks: Blocks) -> BinaryTree {
+    let mut inner = pages::filled(InnerNode::default(), references.len());
     let extent = Extent::around(&references);
     let tree = grow(&mut references, &mut inner, 0, extent, blocks, 0);
     let size = tree.as_node(&inner);
-    Planted { references, inner, root: tree.root, size }
+    BinaryTree { references, inner, root: tree.root, size }
 }
 
-/// Brings the references into order and fills in `inner`, which is as long. `first` is the index of
-/// the first reference.
+/// Sorts references and fills in `inner`, which is as long. `first` is the index of the first
+/// reference.
 fn grow(
     references: &mut [Reference],
-    inner: &mut [Inner],
+    inner: &mut [InnerNode],
     first: usize,
     extent: Extent,
     blocks: Blocks,
     depth: usize,
-) -> Grown {
+) -> Subtree {
     let n = references.len();
     if n <= blocks.width() {
-        return Grown::leaf(extent, n as u32, blocks);
+        return Subtree::leaf(extent, n as u32, blocks);
     }
     let (middle, halves) = divide(references, &extent, blocks, depth);
     let (left, right) = references.split_at_mut(middle);
@@ -41,12 +41,12 @@ fn grow(
     let mut left = || grow(left, left_inner, first, l, blocks, depth + 1);
     let mut right = || grow(right, right_inner, first + middle, r, blocks, depth + 1);
     let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
-    let (grown, node) = Grown::join(&left, &right, first + middle, blocks);
+    let (subtree, node) = Subtree::join(&left, &right, first + middle, blocks);
     inner[middle] = node;
-    grown
+    subtree
 }
 
-/// Brings the left half to the front; gives its length, and the boxes of both halves.
+/// Partitions a set; returns the length of the left half, and the boxes of both halves.
 fn divide(
     references: &mut [Reference],
     extent: &Extent,
@@ -54,14 +54,14 @@ fn divide(
     depth: usize,
 ) -> (usize, [Extent; 2]) {
     if depth < DEEPEST
-        && let Some(border) = Border::best(references, extent, blocks)
+        && let Some(border) = ObjectSplit::best(references, extent, blocks)
     {
         return (partition(references, |r| border.is_left(r)), border.halves);
     }
     halve(references)
 }
 
-/// Two halves of the same length, by centroids along the longest axis.
+/// Splits a set at the median centroid along the longest axis.
 #[inline(never)]
 pub(super) fn halve(references: &mut [Reference]) -> (usize, [Extent; 2]) {
     let middle = references.len() / 2;

@@ -47,7 +47,7 @@ const LARGE_SET: usize = 1 << 14;
 
 /// A place to split at.
 #[derive(Clone, Copy)]
-pub(super) struct Border {
+pub(super) struct ObjectSplit {
     grid: Grid,
     axis: usize,
     /// The first bin of the right half.
@@ -57,7 +57,7 @@ pub(super) struct Border {
     pub halves: [Extent; 2],
 }
 
-impl Border {
+impl ObjectSplit {
     /// The cheapest border with primitives on both sides, of a set in the box `extent`.
     pub fn best(references: &[Reference], extent: &Extent, blocks: Blocks) -> Option<Self> {
         // Where there are many bins and primitives, the box is nearly the range of the centroids.
@@ -99,7 +99,7 @@ impl<const B: usize> Bins<B> {
     const EMPTY: Self = Self { boxes: [[Extent::EMPTY; B]; 3], counts: [[0; B]; 3] };
 
     #[inline(never)]
-    fn best(references: &[Reference], range: &Extent, blocks: Blocks) -> Option<Border> {
+    fn best(references: &[Reference], range: &Extent, blocks: Blocks) -> Option<ObjectSplit> {
         let grid = Grid::new(range, B);
         in_parts(references, |part| Self::of(part, &grid), Self::merge).cheapest(grid, blocks)
     }
@@ -129,7 +129,7 @@ impl<const B: usize> Bins<B> {
     }
 
     #[inline]
-    fn cheapest(&self, grid: Grid, blocks: Blocks) -> Option<Border> {
+    fn cheapest(&self, grid: Grid, blocks: Blocks) -> Option<ObjectSplit> {
         let cost = |extent: &Extent, count: u32| extent.half_area() * blocks.count(count) as f32;
         let mut best = (f32::INFINITY, 0, 0);
         for axis in 0..3 {
@@ -155,6 +155,6 @@ impl<const B: usize> Bins<B> {
         let (cost, axis, bin) = best;
         let side = |boxes: &[Extent]| boxes.iter().fold(Extent::EMPTY, |all, &b| all.union(b));
         let halves = [side(&self.boxes[axis][..bin]), side(&self.boxes[axis][bin..])];
-        (cost < f32::INFINITY).then_some(Border { grid, axis, bin: bin as u32, cost, halves })
+        (cost < f32::INFINITY).then_some(ObjectSplit { grid, axis, bin: bin as u32, cost, halves })
     }
 }

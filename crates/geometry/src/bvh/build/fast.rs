@@ -1,35 +1,33 @@
-//! By Morton codes: a tree in a fraction of the time, which costs more to trace.
+//! By Morton codes (LBVH): fast to build, slower to trace.
 //!
-//! The bits of a centroid's quantised coordinates, interleaved, are its place on a curve that
-//! visits space octant by octant. Primitives are sorted along the curve, and a range of them is
-//! divided where the highest bit changes that does so in it: between the halves of an octree's cell
-//! ([Lauterbach 2009]). The smallest ranges are cut into full blocks. These are made before there
-//! is a tree, which then grows over blocks, so that primitives are looked up three times: for the
-//! range of their centroids, their codes and their blocks.
+//! The interleaved bits of a centroid's quantised coordinates are its position on a Z-order curve.
+//! Primitives are sorted along the curve, and a range of them is split where its highest differing
+//! bit changes: between the halves of an octree cell ([Lauterbach 2009]). The smallest ranges are
+//! cut into full blocks. The tree is built over these blocks, so that primitives are loaded three
+//! times: for the bounds of their centroids, their codes and their blocks.
 
 use super::balanced::PARALLEL;
 use super::overflow::Overflow;
 use super::pages;
-use super::primitives::{MAX_WIDTH, Numbering, Primitives};
+use super::primitives::{MAX_WIDTH, Numbering, PREFETCH_DISTANCE, Primitives};
 use super::reference::{Extent, Reference};
-use super::tree::{Blocks, Grown, Inner, Planted};
-use super::widen::{Wide, widen};
-use super::{AHEAD, Built};
+use super::tree::{BinaryTree, Blocks, InnerNode, Subtree};
+use super::widen::{Built, Wide, widen};
 use math::Vec4;
 use rayon::prelude::*;
 
 /// Bits of a code, a third of them for each axis.
 const BITS: u32 = 30;
-/// Bits sorted by at a time.
+/// Bits of a digit of the radix sort.
 const DIGIT: u32 = 10;
-/// How many keys a thread works on at a time.
+/// Keys that a thread sorts at a time.
 const PART: usize = 1 << 16;
-/// Ranges that fill no more than so many blocks are cut into full ones.
+/// Ranges of at most so many blocks are cut into full ones.
 const FULL_BLOCKS: usize = 4;
-/// Ranges of so many blocks are not divided.
+/// Ranges of at most so many blocks become a leaf.
 const LEAF_BLOCKS: usize = 2;
 
-/// Makes blocks, and grows a tree over them: each reference is a block.
+/// Makes blocks, and builds a tree over them: each reference is a block.
 pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
     let numbering = Numbering::of(primitives);
     let keys = sorted_keys(primitives, &numbering);
@@ -41,9 +39,10 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
     };
     let overflow = Overflow::new();
     let block = |block: usize| {
-        members(block + 2 * AHEAD)
+        members(block + 2 * PREFETCH_DISTANCE)
             .for_each(|(geometry, primitive)| primitives.prefetch_indices(geometry, primitive));
-        members(block + AHEAD).for_each(|(geometry, primitive)| primitives.prefetch(geometry, primitive));
+        members(block + PREFETCH_DISTANCE)
+            .for_each(|(geometry, primitive)| primitives.prefetch(geometry, primitive));
         let mut references = [Reference::none(); MAX_WIDTH];
         for (reference, (geometry, primitive)) in references.iter_mut().zip(members(block)) {
             *reference = Reference::new(Extent::EMPTY, geometry, primitive);
@@ -52,16 +51,17 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
         let (made, extent) = overflow.block(primitives, block, members);
         (Reference::new(extent, 0, block as u32), made)
     };
-    let (mut references, mut blocks) = (pages::room(starts.len()), overflow.room(starts.len()));
+    let (mut references, mut blocks) =
+        (pages::with_capacity(starts.len()), overflow.with_capacity(starts.len()));
     let made = (0..starts.len()).into_par_iter().with_min_len(PARALLEL / 4).map(block);
     made.unzip_into_vecs(&mut references, &mut blocks);
     let codes: Vec<_> = starts.iter().map(|&start| code(keys[start as usize])).collect();
-    let mut inner = pages::filled(Inner::default(), references.len());
+    let mut inner = pages::filled(InnerNode::default(), references.len());
     let single = Blocks::of(1, P::COST);
     let tree = grow(&codes, &references, &mut inner, 0, single);
     let size = tree.as_node(&inner);
-    let planted = Planted { references, inner, root: tree.root, size };
-    let Wide { mut nodes, extent, depth, .. } = widen(&planted, single);
+    let tree = BinaryTree { references, inner, root: tree.root, size };
+    let Wide { mut nodes, extent, depth, .. } = widen(&tree, single);
     let blocks = overflow.resolve(blocks, &mut nodes);
     Built { nodes, bounds: extent.bounds(), depth, blocks }
 }
@@ -101,21 +101,21 @@ fn sort_by_digit(keys: &[u64], sorted: &mut [u64], shift: u32) {
         counts
     };
     let counts: Vec<Vec<usize>> = keys.par_chunks(PART).map(count).collect();
-    // Each part of the keys has a place of its own for each digit.
-    let mut places: Vec<Vec<&mut [u64]>> = counts.iter().map(|_| Vec::with_capacity(DIGITS)).collect();
+    // Each part of the keys has an output range of its own for each digit.
+    let mut outputs: Vec<Vec<&mut [u64]>> = counts.iter().map(|_| Vec::with_capacity(DIGITS)).collect();
     let mut rest = sorted;
     for digit in 0..DIGITS {
-        for (counts, places) in counts.iter().zip(&mut places) {
-            let place;
-            (place, rest) = std::mem::take(&mut rest).split_at_mut(counts[digit]);
-            places.push(place);
+        for (counts, outputs) in counts.iter().zip(&mut outputs) {
+            let output;
+            (output, rest) = std::mem::take(&mut rest).split_at_mut(counts[digit]);
+            outputs.push(output);
         }
     }
-    keys.par_chunks(PART).zip(places).for_each(|(part, mut places)| {
+    keys.par_chunks(PART).zip(outputs).for_each(|(part, mut outputs)| {
         let mut used = vec![0; DIGITS];
         for &key in part {
             let digit = digit(key);
-            places[digit][used[digit]] = key;
+            outputs[digit][used[digit]] = key;
             used[digit] += 1;
         }
     });
@@ -137,7 +137,7 @@ impl Coder {
 
     #[inline]
     fn of(&self, extent: &Extent) -> u32 {
-        /// A number below 2²² added to this stands, rounded, in the low bits.
+        /// Adding a number below 2²² rounds it into the low bits of the sum.
         const ROUND: Vec4 = Vec4::splat(12_582_912.0);
         let at = (extent.doubled_centroid() - self.min) * self.scale + ROUND;
         let [x, y, z, _] = at.to_array().map(|at| spread(at.to_bits()));
@@ -145,7 +145,7 @@ impl Coder {
     }
 }
 
-/// Puts two zeros between the ten low bits of a number.
+/// Spreads the low ten bits to every third bit.
 #[inline]
 fn spread(x: u32) -> u32 {
     let x = x & 0x3ff;
@@ -155,7 +155,7 @@ fn spread(x: u32) -> u32 {
     (x | x << 2) & 0x09249249
 }
 
-/// Where blocks begin. `first` is the index of the first key.
+/// The first key of each block. `first` is the index of the first key.
 fn starts(keys: &[u64], first: usize, width: usize) -> Vec<u32> {
     if keys.len() <= PART {
         let mut list = Vec::with_capacity(keys.len() / width * 3 / 2);
@@ -179,7 +179,7 @@ fn add_starts(keys: &[u64], first: usize, width: usize, list: &mut Vec<u32>) {
     add_starts(right, first + left.len(), width, list);
 }
 
-/// Where the right half of a range begins.
+/// The index where the right half of a range begins.
 fn middle<T: Copy>(range: &[T], code: impl Fn(T) -> u32) -> usize {
     let (first, last) = (code(range[0]), code(range[range.len() - 1]));
     if first == last {
@@ -189,13 +189,19 @@ fn middle<T: Copy>(range: &[T], code: impl Fn(T) -> u32) -> usize {
     range.partition_point(|&key| code(key) >> highest == first >> highest)
 }
 
-/// Grows a tree over blocks, whose first primitives have `codes`, and fills in `inner`. `first` is
+/// Builds a tree over blocks, whose first primitives have `codes`, and fills in `inner`. `first` is
 /// the index of the first block.
-fn grow(codes: &[u32], blocks: &[Reference], inner: &mut [Inner], first: usize, single: Blocks) -> Grown {
+fn grow(
+    codes: &[u32],
+    blocks: &[Reference],
+    inner: &mut [InnerNode],
+    first: usize,
+    single: Blocks,
+) -> Subtree {
     let n = blocks.len();
     if n <= LEAF_BLOCKS {
         let extent = blocks.iter().fold(Extent::EMPTY, |all, block| all.union(block.extent()));
-        return Grown::leaf(extent, n as u32, single);
+        return Subtree::leaf(extent, n as u32, single);
     }
     let middle = middle(codes, |code| code);
     let (left_codes, right_codes) = codes.split_at(middle);
@@ -204,7 +210,7 @@ fn grow(codes: &[u32], blocks: &[Reference], inner: &mut [Inner], first: usize, 
     let mut left = || grow(left_codes, left_blocks, left_inner, first, single);
     let mut right = || grow(right_codes, right_blocks, right_inner, first + middle, single);
     let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
-    let (grown, node) = Grown::join(&left, &right, first + middle, single);
+    let (subtree, node) = Subtree::join(&left, &right, first + middle, single);
     inner[middle] = node;
-    grown
+    subtree
 }

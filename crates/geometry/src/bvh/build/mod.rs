@@ -1,11 +1,11 @@
-//! How primitives are divided.
+//! Building trees.
 //!
-//! Every builder brings references to primitives into an order and grows a binary tree over them
-//! ([`tree`]); what becomes a wide node is then decided for all of them alike ([`widen`]).
+//! Every builder sorts references to primitives and builds a binary tree over them ([`tree`]),
+//! which is then collapsed into wide nodes ([`widen`]).
 //!
-//! Memory for n primitives, beyond what is kept: 32 n bytes of references and 24 n of binary nodes,
-//! given back when the blocks are made; `high` takes twice as much. `fast` has a reference and a
-//! binary node for each block alone, and takes 16 n bytes to sort.
+//! Temporary memory for n primitives: 32 n bytes of references and 24 n of binary nodes while the
+//! tree grows, then 8 n of ids while the blocks are made; `high` takes twice as much. `fast` has one
+//! reference and one binary node per block, and takes 16 n bytes to sort.
 
 mod balanced;
 mod bins;
@@ -23,47 +23,32 @@ mod tests;
 mod tree;
 mod widen;
 
-use super::node::WideNode;
-use math::Bounds3;
 use rayon::prelude::*;
 use tree::Blocks;
 use widen::Wide;
 
 use overflow::Overflow;
-use primitives::Numbering;
 pub(crate) use primitives::Primitives;
+use primitives::{MAX_WIDTH, Numbering, PREFETCH_DISTANCE};
 pub(crate) use reference::{Extent, Reference};
 pub(super) use refit::refit;
+pub(crate) use widen::Built;
 
-/// How much time a tree is worth.
+/// The trade-off between build time and tracing time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BuildQuality {
-    /// By Morton codes: for what is built anew for each picture. Takes a third of the time of
-    /// `Balanced`, and rays take up to twice as many tests.
+    /// By Morton codes: for what is rebuilt for each picture. Takes a third of the time of
+    /// `Balanced`; rays take up to twice as many tests.
     Fast,
-    /// By the surface-area heuristic over bins: for nearly everything.
+    /// By the binned surface area heuristic: for nearly everything.
     #[default]
     Balanced,
-    /// With spatial splits: for long, thin, slanted triangles and pictures that take long. Takes
-    /// six times as long as `Balanced`, and up to twice the memory.
+    /// With spatial splits: for long, thin, slanted triangles and long renders. Takes six times as
+    /// long as `Balanced`, and up to twice the memory.
     High,
 }
 
-/// A tree, and what its leaves hold.
-pub(crate) struct Built<B> {
-    pub nodes: Vec<WideNode>,
-    pub bounds: Bounds3,
-    /// How many nodes are above each other.
-    pub depth: usize,
-    /// In the order of the leaves.
-    pub blocks: Vec<B>,
-}
-
-/// Memory is asked for what is in a block so many blocks before that is made, and twice as many for
-/// what leads there.
-const AHEAD: usize = 8;
-
-/// Builds a tree.
+/// Builds a tree and the blocks of its leaves.
 pub(crate) fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> Built<P::Block> {
     match quality {
         BuildQuality::Fast => fast::build(primitives),
@@ -76,28 +61,37 @@ pub(crate) fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> Bui
                 references.retain(|r| !r.is_none());
             }
             let blocks = Blocks::of(primitives.width(), P::COST);
-            let planted = match quality {
-                BuildQuality::High => high::plant(
+            let tree = match quality {
+                BuildQuality::High => high::build(
                     references,
                     &|r: &Reference| primitives.corners(r.geometry(), r.primitive()),
                     blocks,
                 ),
-                _ => balanced::plant(references, blocks),
+                _ => balanced::build(references, blocks),
             };
-            let Wide { mut nodes, blocks, extent, depth } = widen::widen(&planted, blocks);
+            let Wide { mut nodes, blocks, extent, depth } = widen::widen(&tree, blocks);
+            // Blocks are made from ids alone: a quarter of the memory of references.
+            let id = |r: &Reference| [r.geometry(), r.primitive()];
+            let ids: Vec<[u32; 2]> = tree.references.par_iter().map(id).collect();
+            drop(tree);
             let members = |block: usize| {
                 let range = blocks.get(block).cloned().unwrap_or_default();
-                &planted.references[range.start as usize..range.end as usize]
+                &ids[range.start as usize..range.end as usize]
             };
             let overflow = Overflow::new();
             let block = |block: usize| {
-                let later = members(block + 2 * AHEAD);
-                later.iter().for_each(|r| primitives.prefetch_indices(r.geometry(), r.primitive()));
-                let soon = members(block + AHEAD);
-                soon.iter().for_each(|r| primitives.prefetch(r.geometry(), r.primitive()));
-                overflow.block(primitives, block, members(block)).0
+                let far = members(block + 2 * PREFETCH_DISTANCE);
+                far.iter().for_each(|&[g, p]| primitives.prefetch_indices(g, p));
+                let near = members(block + PREFETCH_DISTANCE);
+                near.iter().for_each(|&[g, p]| primitives.prefetch(g, p));
+                let mut references = [Reference::none(); MAX_WIDTH];
+                let ids = members(block);
+                for (reference, &[geometry, primitive]) in references.iter_mut().zip(ids) {
+                    *reference = Reference::new(Extent::EMPTY, geometry, primitive);
+                }
+                overflow.block(primitives, block, &references[..ids.len()]).0
             };
-            let mut made = overflow.room(blocks.len());
+            let mut made = overflow.with_capacity(blocks.len());
             made.par_extend((0..blocks.len()).into_par_iter().map(block));
             let blocks = overflow.resolve(made, &mut nodes);
             Built { nodes, bounds: extent.bounds(), depth, blocks }

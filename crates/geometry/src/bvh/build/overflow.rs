@@ -1,8 +1,7 @@
-//! Primitives that find no room in the block that was planned for them.
+//! Primitives that do not fit into the block planned for them.
 //!
-//! Trees are cut as if each block took its full number of primitives. Where one does not, because
-//! it has room for less than what they bring, the rest goes to blocks behind it, and all leaves are
-//! told where their blocks are now.
+//! Trees are built as if each block took its full number of primitives. Where their data exceeds
+//! the block's capacity, the rest goes to additional blocks behind it, and the leaves are updated.
 
 use super::pages;
 use super::primitives::Primitives;
@@ -11,7 +10,7 @@ use crate::bvh::node::{Child, WideNode};
 use rayon::prelude::*;
 use std::sync::Mutex;
 
-/// Blocks beside those that were planned, each with the number of the one that was too small.
+/// Additional blocks, each with the index of the planned block that was too small.
 pub(super) struct Overflow<B>(Mutex<Vec<(u32, B)>>);
 
 impl<B: Copy + Send> Overflow<B> {
@@ -19,12 +18,14 @@ impl<B: Copy + Send> Overflow<B> {
         Self(Mutex::default())
     }
 
-    /// An empty list for so many planned blocks, and some more: one that grows would be copied.
-    pub fn room(&self, planned: usize) -> Vec<B> {
-        pages::room(planned + planned / 16)
+    /// An empty list with capacity for so many planned blocks, and some more: one that grows would
+    /// be copied.
+    pub fn with_capacity(&self, planned: usize) -> Vec<B> {
+        pages::with_capacity(planned + planned / 16)
     }
 
-    /// Makes a planned block, and others when there is not room for all; gives the box around all.
+    /// Makes a planned block, and additional ones where it is too small; returns the box around
+    /// all.
     #[inline(always)]
     pub fn block<P: Primitives<Block = B>>(
         &self,
@@ -39,7 +40,7 @@ impl<B: Copy + Send> Overflow<B> {
         (block, extent.union(self.add(primitives, index, &references[taken..])))
     }
 
-    /// Makes blocks of what is left; gives the box around it.
+    /// Makes additional blocks of the rest; returns the box around it.
     #[cold]
     #[inline(never)]
     fn add<P: Primitives<Block = B>>(&self, primitives: &P, index: usize, mut left: &[Reference]) -> Extent {
@@ -54,15 +55,15 @@ impl<B: Copy + Send> Overflow<B> {
         all
     }
 
-    /// Puts the blocks behind those that were too small, and brings the leaves up to date.
+    /// Inserts the additional blocks behind those that were too small, and updates the leaves.
     pub fn resolve(self, mut blocks: Vec<B>, nodes: &mut [WideNode]) -> Vec<B> {
         let mut added = self.0.into_inner().expect("invariant: no thread panics with the lock");
         if added.is_empty() {
             return blocks;
         }
-        // Stable, as blocks of one number are in order.
+        // Stable, so that blocks of one index stay in order.
         added.par_sort_by_key(|&(index, _)| index);
-        // Where each planned block comes to stand: behind as many blocks more than planned.
+        // The final index of each planned block: later by the additional blocks before it.
         let planned = blocks.len();
         let mut firsts: Vec<u32> = (0..=planned as u32).collect();
         blocks.reserve_exact(added.len());
@@ -79,7 +80,7 @@ impl<B: Copy + Send> Overflow<B> {
             blocks[end + gap..].iter_mut().zip(of_one).for_each(|(block, &(_, added))| *block = added);
         }
         nodes.par_iter_mut().for_each(|node| {
-            node.renew_children(|child| match child.is_leaf() {
+            node.replace_children(|child| match child.is_leaf() {
                 true => {
                     let planned = child.blocks();
                     let first = firsts[planned.start] as usize;

@@ -1,9 +1,9 @@
-//! Dividing references in place, by many threads where there are many.
+//! Partitioning references in place, in parallel where there are many.
 
 use super::reference::{PARALLEL_SET, Reference};
 use rayon::prelude::*;
 
-/// Brings those for which `is_left` holds to the front; returns their number.
+/// Moves references for which `is_left` holds to the front; returns their number.
 pub(super) fn partition(
     references: &mut [Reference],
     is_left: impl Fn(&Reference) -> bool + Sync + Send,
@@ -14,7 +14,7 @@ pub(super) fn partition(
     let part = PARALLEL_SET / 4;
     let lefts: Vec<usize> = references.par_chunks_mut(part).map(|p| serial(p, &is_left)).collect();
     let middle: usize = lefts.iter().sum();
-    // What is in the wrong half, as runs: both halves have the same number of them.
+    // Runs of references in the wrong half: both halves have the same total length of them.
     let (mut wrong_right, mut wrong_left) = (Vec::new(), Vec::new());
     let mut at = 0;
     for (p, left) in references.chunks_mut(part).zip(lefts) {
@@ -35,7 +35,7 @@ fn serial(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) ->
     let mut middle = 0;
     for i in 0..references.len() {
         let left = is_left(&references[i]);
-        // No branch, which would be guessed wrong half of the time.
+        // Branchless: a branch would be mispredicted half of the time.
         references.swap(i, middle);
         middle += left as usize;
     }

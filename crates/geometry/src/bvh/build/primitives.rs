@@ -1,52 +1,54 @@
-//! What trees are built over.
+//! The primitives that trees are built over.
 
 use super::pages;
 use super::reference::{Extent, Reference};
 use math::Vec3;
 use rayon::prelude::*;
 
-/// Fewer primitives are not worth another thread.
+/// How many blocks ahead primitives are prefetched; what leads to them, twice as many.
+pub(super) const PREFETCH_DISTANCE: usize = 8;
+/// Fewer primitives are not split between threads.
 const PARALLEL: usize = 4096;
 
 /// Geometries of numbered primitives, which leaves test in blocks.
 pub(crate) trait Primitives: Sync {
-    /// What a leaf tests at once.
+    /// Primitives that a leaf tests at once.
     type Block: Copy + Send + Sync;
 
-    /// What the test of a block costs, where that of a wide node's boxes costs 1.
+    /// The cost of testing a block, relative to that of testing the boxes of a wide node.
     const COST: f32;
 
     /// The most primitives in a block: 1, 2, 4 or 8.
     fn width(&self) -> usize;
 
-    /// Each geometry, and how many primitives it has.
+    /// Each geometry and its number of primitives.
     fn geometries(&self) -> Vec<(u32, usize)>;
 
-    /// The box of a primitive. Those that are not finite have none, and are left out.
+    /// The box of a primitive; `None` for one that is not finite, which is left out.
     fn extent(&self, geometry: u32, primitive: u32) -> Option<Extent>;
 
-    /// The corners of what is a triangle.
+    /// The corners of a triangle; `None` for other primitives.
     fn corners(&self, _geometry: u32, _primitive: u32) -> Option<[Vec3; 3]> {
         None
     }
 
-    /// Asks for what [`Primitives::prefetch`] must read, soon to be read.
+    /// Prefetches what [`Primitives::prefetch`] will read.
     fn prefetch_indices(&self, _geometry: u32, _primitive: u32) {}
 
-    /// Asks for a primitive, soon to be put into a block.
+    /// Prefetches a primitive that will soon be put into a block.
     fn prefetch(&self, _geometry: u32, _primitive: u32) {}
 
-    /// Makes a block; gives how many of the primitives, of which only the ids count, have found
-    /// room in it, and the box around these. Those that have not will have blocks of their own.
+    /// Makes a block of the first of some primitives, given by their ids; returns how many fit into
+    /// it, and the box around these. The rest gets blocks of its own.
     fn block(&self, primitives: &[Reference]) -> (Self::Block, usize, Extent);
 }
 
 /// The most that [`Primitives::width`] may be.
 pub(super) const MAX_WIDTH: usize = 8;
 
-/// Gives the primitives of all geometries numbers, one geometry after the other.
+/// Consecutive numbers for the primitives of all geometries.
 pub(super) struct Numbering {
-    /// Geometries that have primitives, and the number of the first one.
+    /// Geometries that have primitives, and the number of the first primitive of each.
     firsts: Vec<(u32, usize)>,
     len: usize,
 }
@@ -69,19 +71,19 @@ impl Numbering {
         (geometry, (number - first) as u32)
     }
 
-    /// Each geometry, the number of its first primitive, and how many there are.
+    /// Each geometry, the number of its first primitive, and its number of primitives.
     fn geometries(&self) -> impl Iterator<Item = (u32, usize, usize)> {
         let ends = self.firsts.iter().skip(1).map(|&(_, first)| first).chain([self.len]);
         self.firsts.iter().zip(ends).map(|(&(geometry, first), end)| (geometry, first, end - first))
     }
 
-    /// Makes something of each number, the geometry, the primitive and its box.
+    /// Maps number, geometry, primitive and box of each primitive.
     pub fn map<T: Send>(
         &self,
         primitives: &impl Primitives,
         make: impl Fn(usize, u32, u32, Option<Extent>) -> T + Sync,
     ) -> Vec<T> {
-        let mut list = pages::room(self.len);
+        let mut list = pages::with_capacity(self.len);
         for (geometry, first, len) in self.geometries() {
             let make = |i: usize| {
                 let primitive = i as u32;
@@ -95,7 +97,7 @@ impl Numbering {
         list
     }
 
-    /// The range of the doubled centroids.
+    /// The bounds of the doubled centroids.
     pub fn centroids(&self, primitives: &impl Primitives) -> Extent {
         let mut all = Extent::EMPTY;
         for (geometry, _, len) in self.geometries() {

@@ -1,10 +1,10 @@
-//! Boxes as the builders see them.
+//! Boxes and references to primitives.
 
 use math::{Bounds3, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// A box as (low, −high): the union of two boxes is then a minimum, twice. The lanes w mean nothing
-/// here; a [`Reference`] keeps its ids in them.
+/// A box as (low, −high), so that a union is two minima. The lanes w are unused here; a
+/// [`Reference`] keeps its ids in them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(crate) struct Extent {
@@ -13,7 +13,7 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { low: Vec4::INFINITY, minus_high: Vec4::INFINITY };
 
     /// The box around one point.
@@ -37,7 +37,7 @@ impl Extent {
         (nothing == Vec4::ZERO).then_some(extent)
     }
 
-    /// What both share.
+    /// The box that both share.
     #[inline]
     pub fn intersection(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), minus_high: self.minus_high.max(other.minus_high) }
@@ -59,13 +59,13 @@ impl Extent {
         self.low.truncate().cmpgt(self.high().truncate()).any()
     }
 
-    /// [`Extent::union`] where the other box may have its ends in the wrong order.
+    /// [`Extent::union`] with a box that may be empty with finite ends.
     #[inline]
     pub fn union_unless_empty(self, other: Self) -> Self {
         if other.is_empty() { self } else { self.union(other) }
     }
 
-    /// Half of the surface of what both share.
+    /// Half of the surface area of the intersection.
     pub fn overlap(&self, other: &Self) -> f32 {
         let shared = self.intersection(*other);
         if shared.is_empty() { 0.0 } else { shared.half_area() }
@@ -89,13 +89,13 @@ impl Extent {
         -self.minus_high
     }
 
-    /// Twice the middle; beyond floats where the box is.
+    /// Twice the centroid; infinite where that is too large for floats.
     #[inline]
     pub fn doubled_centroid(&self) -> Vec4 {
         self.low - self.minus_high
     }
 
-    /// Twice as large in every coordinate.
+    /// All coordinates doubled.
     pub fn doubled(&self) -> Self {
         Self { low: self.low * 2.0, minus_high: self.minus_high * 2.0 }
     }
@@ -119,17 +119,17 @@ impl From<&Bounds3> for Extent {
     }
 }
 
-/// A primitive to be put into a tree: its box, and what it is.
+/// A primitive to be put into a tree: its box and its ids.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reference(Extent);
 
 impl Reference {
-    /// What [`Reference::primitive`] says of a place that is not in use.
-    const NOTHING: u32 = u32::MAX;
+    /// [`Reference::primitive`] of an unused reference.
+    const UNUSED: u32 = u32::MAX;
 
-    /// Not in use.
+    /// An unused reference.
     pub fn none() -> Self {
-        Self::new(Extent::EMPTY, Self::NOTHING, Self::NOTHING)
+        Self::new(Extent::EMPTY, Self::UNUSED, Self::UNUSED)
     }
 
     #[inline]
@@ -139,7 +139,7 @@ impl Reference {
         Self(Extent { low, minus_high })
     }
 
-    /// The same primitive, of which only what lies in `extent` counts.
+    /// A reference to the part of the same primitive in `extent`.
     #[inline]
     pub fn within(&self, extent: Extent) -> Self {
         Self::new(extent, self.geometry(), self.primitive())
@@ -162,14 +162,14 @@ impl Reference {
 
     #[inline]
     pub fn is_none(&self) -> bool {
-        self.primitive() == Self::NOTHING
+        self.primitive() == Self::UNUSED
     }
 }
 
-/// Larger sets are worked on in parts of a quarter of this, by many threads.
+/// Sets of this size and larger are processed in parallel, in parts of a quarter of this.
 pub(super) const PARALLEL_SET: usize = 1 << 16;
 
-/// Folds a set. The result does not depend on the parts as long as `merge` is associative.
+/// Folds a set, in parallel where it is large. `merge` must be associative.
 pub(super) fn in_parts<T: Send>(
     references: &[Reference],
     serial: impl Fn(&[Reference]) -> T + Sync + Send,

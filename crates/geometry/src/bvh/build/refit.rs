@@ -1,8 +1,7 @@
-//! New boxes for a tree whose primitives have moved.
+//! Refitting: new boxes for a tree whose primitives have moved.
 //!
-//! Blocks are brought up to date in the order of memory, then nodes from the leaves upwards:
-//! [`super::widen`] has written each node before those below it, and all that are below a child
-//! together.
+//! Blocks are reloaded in the order of memory, then nodes are updated from the leaves upwards:
+//! [`super::widen`] writes nodes in depth-first order.
 
 use super::reference::Extent;
 use crate::bvh::node::WideNode;
@@ -10,22 +9,22 @@ use math::Bounds3;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 
-/// Fewer blocks or nodes are not worth another thread.
+/// Fewer blocks or nodes are not split between threads.
 const PARALLEL: usize = 256;
 
-/// Gives all nodes new boxes. `renew` brings a block up to date and gives its box.
+/// Updates the boxes of all nodes. `reload` updates a block and returns its box.
 pub(crate) fn refit<B: Send>(
     nodes: &mut [WideNode],
     blocks: &mut [B],
-    renew: impl Fn(&mut B) -> Bounds3 + Sync,
+    reload: impl Fn(&mut B) -> Bounds3 + Sync,
 ) -> Bounds3 {
-    let renew = |block: &mut B| Extent::from(&renew(block));
-    let blocks: Vec<_> = blocks.par_iter_mut().with_min_len(PARALLEL).map(renew).collect();
+    let reload = |block: &mut B| Extent::from(&reload(block));
+    let blocks: Vec<_> = blocks.par_iter_mut().with_min_len(PARALLEL).map(reload).collect();
     refit_subtree(nodes, 0, &blocks);
     nodes.first().map_or(Bounds3::EMPTY, WideNode::bounds)
 }
 
-/// Gives the nodes of a subtree new boxes. Its root is the node `first` of the tree.
+/// Updates the boxes of a subtree, whose root is the node `first` of the tree.
 fn refit_subtree(nodes: &mut [WideNode], first: usize, blocks: &[Extent]) {
     if nodes.len() <= PARALLEL {
         (0..nodes.len()).rev().for_each(|node| refit_node(&mut nodes[node..], first + node, blocks));
@@ -44,8 +43,7 @@ fn refit_subtree(nodes: &mut [WideNode], first: usize, blocks: &[Extent]) {
     refit_node(nodes, first, blocks);
 }
 
-/// Gives the first of some nodes the boxes of its blocks and of the nodes below it. It is the node
-/// `first` of the tree.
+/// Updates the boxes of the first of some nodes, which is the node `first` of the tree.
 fn refit_node(nodes: &mut [WideNode], first: usize, blocks: &[Extent]) {
     for lane in 0..nodes[0].len() {
         let child = nodes[0].children()[lane];

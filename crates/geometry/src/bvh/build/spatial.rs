@@ -21,7 +21,7 @@ impl<T: Fn(&Reference) -> Option<[Vec3; 3]> + Sync + Send> Corners for T {}
 pub(super) struct Plane {
     axis: usize,
     at: f32,
-    /// As [`super::bins::Border::cost`].
+    /// As [`super::bins::ObjectSplit::cost`].
     pub cost: f32,
     /// What is on either side: a box around it, and how many.
     sides: [(Extent, u32); 2],

@@ -14,10 +14,10 @@
 use super::reference::{Extent, Reference};
 use crate::bvh::node::WIDTH;
 
-/// Leaves have at most this many blocks.
-const LARGEST_LEAF: u32 = 4;
+/// The most blocks of a leaf.
+const MAX_LEAF_BLOCKS: u32 = 4;
 
-/// Primitives are tested in blocks of a power of two, each at a cost.
+/// The number of primitives in a block, a power of two, and the cost of testing one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blocks {
     log2: u32,
@@ -33,13 +33,13 @@ impl Blocks {
         1 << self.log2
     }
 
-    /// What it costs to test so many blocks.
+    /// The cost of testing so many blocks.
     #[inline]
     pub fn cost(&self, blocks: u32) -> f32 {
         blocks as f32 * self.cost
     }
 
-    /// How many blocks hold so many primitives.
+    /// The number of blocks of so many primitives.
     #[inline]
     pub fn count(&self, primitives: u32) -> u32 {
         (primitives + (1 << self.log2) - 1) >> self.log2
@@ -48,7 +48,7 @@ impl Blocks {
 
 /// An inner node of the binary tree. It is stored where its right half begins.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Inner {
+pub(super) struct InnerNode {
     /// Borders at which the halves are divided in turn; 0 where a half is not.
     pub halves: [u32; 2],
     /// Four bits for each number of branches i from 2: how many the left half gets, 0 to do with i
@@ -59,7 +59,7 @@ pub(super) struct Inner {
     pub below: Size,
 }
 
-/// How much a tree becomes: wide nodes, and blocks of primitives.
+/// The size of a collapsed tree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Size {
     pub nodes: u32,
@@ -72,7 +72,7 @@ impl Size {
     }
 }
 
-/// What this node is as seen from above.
+/// What a binary node becomes.
 pub(super) enum Cut {
     Leaf,
     Node,
@@ -80,7 +80,7 @@ pub(super) enum Cut {
     Opened([usize; 2]),
 }
 
-impl Inner {
+impl InnerNode {
     /// What becomes of this node when it may take `branches`.
     #[inline]
     pub fn cut(&self, mut branches: usize) -> Cut {
@@ -112,20 +112,20 @@ impl Inner {
     }
 }
 
-/// References in order, and the tree over them.
-pub(super) struct Planted {
+/// Sorted references, and the binary tree over them.
+pub(super) struct BinaryTree {
     pub references: Vec<Reference>,
-    pub inner: Vec<Inner>,
-    /// Border of the root; 0 for a leaf.
+    pub inner: Vec<InnerNode>,
+    /// ObjectSplit of the root; 0 for a leaf.
     pub root: u32,
-    /// What all becomes, at least one wide node.
+    /// The size of the collapsed tree, which has at least one wide node.
     pub size: Size,
 }
 
-/// A tree over a range.
+/// The binary tree over a range of references.
 #[derive(Clone, Copy)]
-pub(super) struct Grown {
-    /// Border of its root; 0 for a leaf.
+pub(super) struct Subtree {
+    /// ObjectSplit of its root; 0 for a leaf.
     pub root: u32,
     pub count: u32,
     pub extent: Extent,
@@ -136,7 +136,7 @@ pub(super) struct Grown {
     size: [Size; WIDTH],
 }
 
-impl Grown {
+impl Subtree {
     pub fn leaf(extent: Extent, count: u32, blocks: Blocks) -> Self {
         let cost = extent.half_area() * blocks.cost(blocks.count(count));
         let size = Size { nodes: 0, blocks: blocks.count(count) };
@@ -144,7 +144,7 @@ impl Grown {
     }
 
     /// Joins two neighbours at `border`.
-    pub fn join(left: &Self, right: &Self, border: usize, blocks: Blocks) -> (Self, Inner) {
+    pub fn join(left: &Self, right: &Self, border: usize, blocks: Blocks) -> (Self, InnerNode) {
         let extent = left.extent.union(right.extent);
         let count = left.count + right.count;
         let (shared_cost, left_shares) = share(left, right);
@@ -155,7 +155,7 @@ impl Grown {
         let mut plan = u64::from(left_shares[WIDTH - 1]) << (4 * (WIDTH - 1));
         let as_node = extent.half_area() + shared_cost[WIDTH - 1];
         let as_leaf = extent.half_area() * blocks.cost(blocks.count(count));
-        let is_leaf = blocks.count(count) <= LARGEST_LEAF && as_leaf <= as_node;
+        let is_leaf = blocks.count(count) <= MAX_LEAF_BLOCKS && as_leaf <= as_node;
         let (one, one_size) = if is_leaf {
             plan |= 1;
             (as_leaf, Size { nodes: 0, blocks: blocks.count(count) })
@@ -173,12 +173,12 @@ impl Grown {
                 (cost[i], size[i]) = (opened, size_of(left_share, i + 1));
             }
         }
-        let inner = Inner { halves: [left.root, right.root], plan, below };
+        let inner = InnerNode { halves: [left.root, right.root], plan, below };
         (Self { root: border as u32, count, extent, cost, size }, inner)
     }
 
     /// How much a wide node over this becomes.
-    pub fn as_node(&self, inner: &[Inner]) -> Size {
+    pub fn as_node(&self, inner: &[InnerNode]) -> Size {
         match self.root {
             0 => Size { nodes: 1, ..self.size[0] },
             root => inner[root as usize].as_node(),
@@ -187,7 +187,7 @@ impl Grown {
 }
 
 /// By i − 1: the cost of sharing i branches between two neighbours, and how many the left one gets.
-fn share(left: &Grown, right: &Grown) -> ([f32; WIDTH], [u32; WIDTH]) {
+fn share(left: &Subtree, right: &Subtree) -> ([f32; WIDTH], [u32; WIDTH]) {
     // What is one branch anyway gets one.
     let mut cost = [f32::INFINITY; WIDTH];
     if left.root == 0 {

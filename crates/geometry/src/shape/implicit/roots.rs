@@ -1,58 +1,60 @@
-//! Where a formula is zero along a ray: all places in order, each proved.
+//! The roots of a formula along a ray, in order, with none missed.
 //!
-//! A piece of the ray is described by a [`Model`], whose polynomial P is written in Bernstein form:
-//! it lies in the convex hull of its control points (k/n, bₖ). Where |P| > r nothing is met. A line
-//! from an end's control point that passes below all others (above, where P is negative) says from
-//! which parameter on P may come within r of zero; what lies before is cut off, which at a single
-//! root converges as Newton's method does ([Sederberg 1990]). A piece that hardly shrinks is cut in
-//! two. Whenever r is no longer small beside P, the formula is evaluated anew on what is left.
+//! A piece of the ray is described by a [`Model`], whose polynomial P is converted to Bernstein
+//! form: it lies in the convex hull of its control points (k/n, bₖ). Where |P| > r there is no
+//! root. A line from an end's control point below all others (above, where P is negative) bounds
+//! the parameter from which on P may come within r of zero; the part before it is clipped, which
+//! converges quadratically at a simple root ([Sederberg 1990]). A piece that hardly shrinks is
+//! bisected. Where r is no longer small relative to P, the formula is evaluated again on the piece.
 //!
-//! A piece is a root once it is as short as rounding lets the point be known, or so short that a
-//! root which only touches zero cannot be told from one that just misses. So no root is passed
-//! over; what only comes within rounding of zero counts as met. Pieces on which the formula grows
-//! beyond bounds (poles) never become roots. The work for a ray is bounded: when it is spent, what
-//! could not be ruled out counts as met.
+//! A piece is a root once it is as short as rounding allows, or so short that a double root cannot
+//! be distinguished from a near miss. No root is missed; a near miss within rounding counts as a
+//! root. Pieces on which the formula is unbounded (poles) never become roots. The work for a ray is
+//! bounded: beyond that, pieces that could not be excluded count as roots.
+//!
+//! How short is relative to the coordinates on the ray; on a ray through a huge box, to those on
+//! the piece, so that a small surface in it is resolved as in a box of its own size.
 
 use super::model::Model;
 use super::program::Program;
 use math::DVec3;
 
-/// A place where the formula is zero.
+/// A root of a formula along a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Root {
     pub t: f64,
-    /// How far the place may be from `t`.
+    /// A bound of the error of `t`.
     pub error: f64,
 }
 
-/// How many pieces a ray may be cut into.
+/// The most pieces that a ray is cut into.
 const MAX_PIECES: u32 = 4096;
-/// How short a root's piece is, as a part of the largest coordinate there.
+/// The length of a root's piece, relative to the largest coordinate.
 const RESOLUTION: f64 = 1.0 / (1u64 << 36) as f64;
-/// The same for roots that only touch.
+/// The same for double roots.
 const TOUCH: f64 = 1.0 / (1u64 << 27) as f64;
-/// A new evaluation pays once the error is this part of the polynomial.
+/// The formula is evaluated again once the error is this fraction of the polynomial.
 const WORN: f64 = 1.0 / 16.0;
+/// A ray through a huge box has numbers so many times larger than those on a piece.
+const HUGE: f64 = 1024.0;
 
-/// The zeros of a formula along a ray, one after the other.
+/// An iterator over the roots of a formula along a ray.
 pub(super) struct Roots<'a, const N: usize> {
     program: &'a Program,
     o: DVec3,
     d: DVec3,
-    resolution: f64,
-    touch: f64,
-    /// How far rounding may move the ends of a piece.
-    slack: f64,
-    /// What is left, the first piece last.
+    /// The largest coordinate and the largest |t| on the whole ray.
+    largest: [f64; 2],
+    /// Pieces that are left, the first one last.
     pieces: Vec<Piece<N>>,
-    /// How many pieces may still be looked at.
+    /// How many pieces may still be examined.
     budget: u32,
-    /// Where the last root's piece ended.
+    /// The end of the last root's piece.
     end: f64,
     values: Vec<Model<N>>,
 }
 
-/// A piece of the ray; its control points and their error, where they are known.
+/// A piece of the ray, with its control points and their error where these are known.
 #[derive(Clone, Copy)]
 struct Piece<const N: usize> {
     t: [f64; 2],
@@ -62,20 +64,30 @@ struct Piece<const N: usize> {
 impl<'a, const N: usize> Roots<'a, N> {
     /// Along o + d·t for `t` from one end to the other.
     pub fn new(program: &'a Program, o: DVec3, d: DVec3, t: [f64; 2]) -> Self {
-        let largest = f64::max((o + d * t[0]).abs().max_element(), (o + d * t[1]).abs().max_element());
-        let scale = largest / d.abs().max_element();
         Self {
             program,
             o,
             d,
-            resolution: scale * RESOLUTION,
-            touch: scale * TOUCH,
-            slack: f64::max(t[0].abs(), t[1].abs()) * (16.0 * f64::EPSILON),
+            largest: [largest_coordinate(o, d, t), f64::max(t[0].abs(), t[1].abs())],
             pieces: vec![Piece { t, control: None }],
             budget: MAX_PIECES,
             end: f64::NEG_INFINITY,
             values: Vec::new(),
         }
+    }
+
+    /// The magnitude of coordinates on a piece, in lengths of the direction; not less than rounding
+    /// allows to distinguish.
+    fn scale(&self, t: [f64; 2]) -> f64 {
+        let d = self.d.abs().max_element();
+        let rounding = self.o.abs().max_element() + d * f64::max(t[0].abs(), t[1].abs());
+        let local = f64::max(largest_coordinate(self.o, self.d, t), rounding / HUGE);
+        magnitude(self.largest[0], local) / d
+    }
+
+    /// A bound of the rounding error of the ends of parts of a piece.
+    fn slack(&self, t: [f64; 2]) -> f64 {
+        magnitude(self.largest[1], f64::max(t[0].abs(), t[1].abs())) * (16.0 * f64::EPSILON)
     }
 
     /// Control points of the formula on a piece; `None` where it has no root there.
@@ -85,8 +97,9 @@ impl<'a, const N: usize> Roots<'a, N> {
         if !model.range.contains(0.0) {
             return None;
         }
-        // A piece as short as a point lies where the formula is defined, or it does not.
-        if model.partial && t[1] - t[0] <= self.resolution && !self.is_defined(0.5 * (t[0] + t[1])) {
+        // A piece as short as a point is where the formula is defined, or where it is not.
+        if model.partial && t[1] - t[0] <= self.scale(t) * RESOLUTION && !self.is_defined(0.5 * (t[0] + t[1]))
+        {
             return None;
         }
         Some(bernstein(&model))
@@ -115,20 +128,21 @@ impl<const N: usize> Iterator for Roots<'_, N> {
             self.budget = self.budget.saturating_sub(1);
             let size = largest(&b);
             let touches = is_fresh && r.is_finite() && size <= 2.0 * r;
-            if width <= self.resolution || (touches && width <= self.touch) || self.budget == 0 {
+            let scale = self.scale(t);
+            if width <= scale * RESOLUTION || (touches && width <= scale * TOUCH) || self.budget == 0 {
                 match r.is_finite().then(|| self.found(t)).flatten() {
                     Some(root) => return Some(root),
                     None => continue,
                 }
             }
             let Some([low, high]) = clip(&b, r) else { continue };
-            let at = |u: f64| t[0] + width * u;
+            let (at, slack) = (|u: f64| t[0] + width * u, self.slack(t));
             let part = |[low, high]: [f64; 2]| {
                 let (control, r) = restricted(&b, r, [low, high]);
                 if r < largest(&control) * WORN {
                     Piece { t: [at(low), at(high)], control: Some((control, r)) }
                 } else {
-                    Piece { t: [at(low) - self.slack, at(high) + self.slack], control: None }
+                    Piece { t: [at(low) - slack, at(high) + slack], control: None }
                 }
             };
             if high - low <= 0.7 {
@@ -141,6 +155,16 @@ impl<const N: usize> Iterator for Roots<'_, N> {
         }
         None
     }
+}
+
+/// The largest coordinate on a piece of a ray.
+fn largest_coordinate(o: DVec3, d: DVec3, t: [f64; 2]) -> f64 {
+    f64::max((o + d * t[0]).abs().max_element(), (o + d * t[1]).abs().max_element())
+}
+
+/// The magnitude of numbers on a piece: that of the whole ray, unless this is huge beside it.
+fn magnitude(whole: f64, piece: f64) -> f64 {
+    if piece * HUGE < whole { piece } else { whole }
 }
 
 /// For polynomials of degree N − 1: the control points bⱼ of sᵏ, by row j and column k. The blossom
@@ -209,14 +233,14 @@ fn clip<const N: usize>(b: &[f64; N], r: f64) -> Option<[f64; 2]> {
         if height.is_nan() || height <= 0.0 {
             return Some(0.0);
         }
-        // The steepest way towards zero.
+        // The steepest descent towards zero.
         let sign = first.signum();
         let mut steepest = 0.0;
         for j in 1..N {
             let drop = (first - b[other(j)]) * sign * ((N - 1) as f64 / j as f64);
             steepest = f64::max(steepest, drop);
         }
-        // Rounding down keeps what is cut off free of roots.
+        // Rounded down, so that no root is clipped.
         let reach = height / steepest * (1.0 - 16.0 * f64::EPSILON);
         (reach <= 1.0).then_some(reach)
     };

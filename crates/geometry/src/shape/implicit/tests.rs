@@ -5,7 +5,7 @@ use super::interval::Interval;
 use super::jet::Jet;
 use super::model::Model;
 use super::program::Program;
-use super::{Formula, formula};
+use super::{Formula, parser};
 use math::DVec3;
 use proptest::{prelude::*, test_runner::RngSeed};
 
@@ -35,7 +35,7 @@ fn text() -> impl Strategy<Value = String> {
 
 /// The program of a text, unless it is a constant.
 fn program(text: &str) -> Option<Program> {
-    formula::parse(text)
+    parser::parse(text)
         .inspect_err(|error| assert!(error.message.contains("everywhere"), "{text}: {error}"))
         .ok()
 }

@@ -1,8 +1,8 @@
-//! Textures of numbers and of spectra, by one reader over both.
+//! Textures of numbers and of spectra, read by one generic reader.
 
 use description::{
-    Arena, EncodingDesc, Handle, ImageTextureDesc, MappingDesc, Parameter, SceneDesc, SpectrumDesc, Stated,
-    TextureDesc, TextureFilter, TextureKind, WrapMode,
+    Arena, EncodingDesc, Handle, ImageChannel, ImageTextureDesc, MappingDesc, Parameter, SceneDesc,
+    SpectrumDesc, Stated, TextureDesc, TextureFilter, TextureKind, WrapMode,
 };
 use math::Vec3;
 
@@ -10,15 +10,17 @@ use super::Builder;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{Statements, TextureStatement};
 
-/// What differs between textures of numbers and of spectra.
+/// The differences between textures of numbers and of spectra.
 trait TextureValue: Clone {
-    /// The types of texture that both kinds have, and this one's own.
+    /// The types of texture that give such values.
     const TYPES: &'static [&'static str];
 
     fn constant(value: f32) -> Self;
     fn value(reader: &mut Reader, name: &'static str, default: f32) -> Self;
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self>;
-    /// Members of the set that only this kind has.
+    /// The channel of an image that is read; numbers only.
+    fn channel(reader: &mut Reader) -> Option<ImageChannel>;
+    /// The types that only this kind of value has.
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>>;
 }
 
@@ -48,6 +50,16 @@ impl TextureValue for f32 {
 
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self> {
         reader.float_parameter(name, default)
+    }
+
+    fn channel(reader: &mut Reader) -> Option<ImageChannel> {
+        let channels = [
+            ("r", Some(ImageChannel::Red)),
+            ("g", Some(ImageChannel::Green)),
+            ("b", Some(ImageChannel::Blue)),
+            ("a", Some(ImageChannel::Alpha)),
+        ];
+        reader.choice("channel", None, &channels)
     }
 
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>> {
@@ -92,6 +104,10 @@ impl TextureValue for SpectrumDesc {
         reader.spectrum_parameter(name, default)
     }
 
+    fn channel(_: &mut Reader) -> Option<ImageChannel> {
+        None
+    }
+
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>> {
         if reader.kind.value != "marble" {
             return None;
@@ -103,8 +119,7 @@ impl TextureValue for SpectrumDesc {
 }
 
 impl Builder<'_> {
-    /// Builds all textures in the order in which they were said, so that each finds those before
-    /// it.
+    /// Builds all textures in the order of the file, so that each can refer to those before it.
     pub(super) fn textures(&mut self, statements: &mut Statements, desc: &mut SceneDesc) {
         let mut floats = statements.float_textures.drain(..);
         let mut spectra = statements.spectrum_textures.drain(..);
@@ -121,7 +136,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Builds a texture; one that cannot be read stands as a constant.
+    /// Builds a texture. One that has errors becomes the constant 1.
     fn texture<V: TextureValue>(
         &mut self,
         texture: TextureStatement,
@@ -152,7 +167,7 @@ fn kind<V: TextureValue>(reader: &mut Reader) -> Option<TextureKind<V>> {
                 .map(|(name, default)| V::value(reader, name, default)),
             mapping: mapping(reader),
         },
-        "imagemap" => TextureKind::Image(image(reader)?),
+        "imagemap" => TextureKind::Image(image::<V>(reader)?),
         "checkerboard" => {
             let dimension = reader.integer("dimension", 2, 2..=3);
             // A texture of numbers alternates 1 and 0 by default, as one of spectra does.
@@ -190,7 +205,7 @@ fn octaves(reader: &mut Reader) -> (i32, f32) {
     (reader.integer("octaves", 8, 1..=64), reader.float("roughness", 0.5))
 }
 
-fn image(reader: &mut Reader) -> Option<ImageTextureDesc> {
+fn image<V: TextureValue>(reader: &mut Reader) -> Option<ImageTextureDesc> {
     let encoding = encoding(reader);
     let mapping = mapping(reader);
     let filter = reader.choice(
@@ -216,13 +231,14 @@ fn image(reader: &mut Reader) -> Option<ImageTextureDesc> {
     );
     let max_anisotropy = reader.positive("maxanisotropy", 8.0);
     let (scale, invert) = (reader.float("scale", 1.0), reader.boolean("invert", false));
+    let channel = V::channel(reader);
     let Some(image) = reader.image("filename", encoding) else {
         if !reader.has("filename") {
             reader.missing("filename");
         }
         return None;
     };
-    Some(ImageTextureDesc { image, mapping, filter, max_anisotropy, wrap, scale, invert })
+    Some(ImageTextureDesc { image, mapping, channel, filter, max_anisotropy, wrap, scale, invert })
 }
 
 fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
@@ -247,8 +263,8 @@ fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
     }
 }
 
-/// Where on the unit square a point lies. Parameters of mappings other than the chosen one are
-/// refused as unknown.
+/// The mapping to texture coordinates. Parameters of other mappings than the chosen one are errors,
+/// as unknown.
 fn mapping(reader: &mut Reader) -> MappingDesc {
     let kind = reader.choice("mapping", 0, &[("uv", 0), ("spherical", 1), ("cylindrical", 2), ("planar", 3)]);
     let delta = |reader: &mut Reader| [reader.float("udelta", 0.0), reader.float("vdelta", 0.0)];

@@ -2,14 +2,13 @@
 //! or both.
 //!
 //! All of them are films of splats, on which the light of one path of n counts 1/n; a sample of a
-//! pixel, one of as many as there are pixels, is added to its pixel alone. Each takes 48 bytes for
-//! each pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events, are 2.4
+//! pixel, one of as many as there are pixels, is added to its pixel alone. Each takes 36 bytes for
+//! each pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events, are 1.8
 //! KiB for each pixel. More than 2 GiB are refused.
 
 use film::{Film, SPLAT_BYTES, Splatter};
 use spectrum::SampledSpectrum;
 
-use crate::ByProduct;
 use crate::bidirectional::Found;
 
 /// Paths of more scattering events are not seen apart: the number of strategies grows with the
@@ -49,16 +48,22 @@ impl Techniques {
         }
     }
 
-    /// The films' pictures.
-    pub fn pictures(&self) -> Vec<ByProduct> {
-        let films = [(&self.unweighted, ""), (&self.weighted, "-weighted")];
-        let pictures =
-            films.into_iter().flat_map(|(films, suffix)| {
-                films.iter().flatten().zip(strategies(self.max_depth)).map(move |(film, (s, t))| {
-                    ByProduct::Picture(format!("s{s}-t{t}{suffix}"), film.develop())
-                })
-            });
-        pictures.collect()
+    /// The films with their names, once there are any.
+    pub fn films(&self) -> impl Iterator<Item = (String, &Film)> {
+        let kinds = [(&self.unweighted, ""), (&self.weighted, "-weighted")];
+        kinds.into_iter().flat_map(|(films, suffix)| {
+            let named = films.iter().flatten().zip(strategies(self.max_depth));
+            named.map(move |(film, (s, t))| (format!("s{s}-t{t}{suffix}"), film))
+        })
+    }
+
+    /// Goes on with these films, which [`films`](Self::films) has given.
+    pub fn set_films(&mut self, films: Vec<(String, Film)>) {
+        let mut films = films.into_iter().map(|(_, film)| film);
+        let count = strategies(self.max_depth).count();
+        for kind in self.unweighted.iter_mut().chain(&mut self.weighted) {
+            *kind = films.by_ref().take(count).collect();
+        }
     }
 }
 
@@ -126,10 +131,10 @@ mod tests {
     }
 
     #[test]
-    fn each_film_takes_48_bytes_for_a_pixel() {
+    fn each_film_takes_36_bytes_for_a_pixel() {
         for (max_depth, films) in [(0, 1), (1, 4), (5, 26), (8, 53), (100, 53)] {
-            assert_eq!(Techniques::new(max_depth, true, false).bytes(10), films * 480);
-            assert_eq!(Techniques::new(max_depth, true, true).bytes(10), 2 * films * 480);
+            assert_eq!(Techniques::new(max_depth, true, false).bytes(10), films * 360);
+            assert_eq!(Techniques::new(max_depth, true, true).bytes(10), 2 * films * 360);
         }
         assert_eq!(Techniques::new(5, false, false).bytes(10), 0);
     }

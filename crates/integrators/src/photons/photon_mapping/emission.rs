@@ -104,7 +104,7 @@ impl Emission<'_> {
         };
         let mut first = true;
         while walk.depth < self.paths.max_depth {
-            let Some(mut surface) = walk.meet(tracer) else { return };
+            let Some(mut surface) = walk.intersect(tracer) else { return };
             let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
             if vertex.is_connectible() {
                 if kind.keeps(&vertex, first) {

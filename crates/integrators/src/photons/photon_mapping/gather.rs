@@ -17,13 +17,14 @@
 //! later: rays leave the diffuse surface along directions of its BSDF, and where each meets a
 //! surface that is not purely specular the map tells all that it reflects.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use description::PhotonMappingDesc;
 use math::{RayDifferential, Vec2};
 use scattering::{Bsdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Maps, Reach};
 use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
@@ -34,30 +35,64 @@ use crate::transport::path_state::{PathState, Scattered, throughput};
 /// Photons count where the cosine between their surface's normal and the point's is at least this.
 const SAME_SURFACE: f32 = 0.7;
 
+/// The photons of a pass.
+#[derive(Debug, Default)]
+pub(super) struct PhotonMaps {
+    pub caustic: PhotonMap,
+    pub global: PhotonMap,
+}
+
+/// The mean of the radii of estimates, which does not depend on the order of threads.
+#[derive(Debug)]
+pub(super) struct MeanRadius {
+    pub largest: f32,
+    sum: AtomicU64,
+    count: AtomicU64,
+}
+
+impl MeanRadius {
+    /// A unit in parts of the largest radius: sums of integers do not depend on their order.
+    const UNIT: f32 = 1.0 / 4096.0;
+
+    pub fn new(largest: f32) -> Self {
+        Self { largest, sum: AtomicU64::new(0), count: AtomicU64::new(0) }
+    }
+
+    fn add(&self, radius: f32) {
+        self.sum.fetch_add((radius / (self.largest * Self::UNIT)) as u64, Ordering::Relaxed);
+        self.count.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub fn mean(&self) -> f64 {
+        let (sum, count) = (self.sum.load(Ordering::Relaxed), self.count.load(Ordering::Relaxed));
+        sum as f64 / count.max(1) as f64 * f64::from(self.largest * Self::UNIT)
+    }
+}
+
 /// Gathers light along rays.
 pub(super) struct Gather<'a> {
     /// What finds direct light.
     pub direct: &'a DirectLighting,
-    pub maps: &'a Maps,
+    pub maps: &'a PhotonMaps,
     pub settings: &'a PhotonMappingDesc,
     pub neighbourhood: Neighbourhood,
-    pub reach: &'a Reach,
+    pub mean_radius: &'a MeanRadius,
 }
 
 /// What is still to be found along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Quest {
+enum Sought {
     /// What every surface sends.
-    Light,
+    Radiance,
     /// What the next surface with photons reflects, as the global map tells it.
     Reflected,
     /// What lights that it meets at once send.
-    Lamps,
+    Emission,
 }
 
 /// Where photons are looked for.
 #[derive(Clone, Copy)]
-struct Place<'a> {
+struct GatherPoint<'a> {
     surface: &'a SurfaceInteraction,
     bsdf: &'a Bsdf,
     /// Scattering events from the camera, the one here included.
@@ -73,7 +108,7 @@ impl Gather<'_> {
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        self.follow(ray, *lambda, (Quest::Light, 0), tracer)
+        self.follow(ray, *lambda, (Sought::Radiance, 0), tracer)
     }
 
     /// What a ray brings that leaves the scattering event number `depth`.
@@ -81,7 +116,7 @@ impl Gather<'_> {
         &self,
         ray: RayDifferential,
         mut lambda: SampledWavelengths,
-        (mut quest, depth): (Quest, u32),
+        (mut sought, depth): (Sought, u32),
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let (scene, direct) = (tracer.scene, self.direct);
@@ -89,17 +124,17 @@ impl Gather<'_> {
         let mut path = PathState::new(ray, depth);
         // Whether a caustic map has already told of lights that the ray meets, unless it does so at
         // once.
-        let mut lamps_are_known = quest == Quest::Reflected;
+        let mut emission_is_known = sought == Sought::Reflected;
         loop {
-            let shows_lamps = !lamps_are_known || path.origin.is_some();
+            let counts_emission = !emission_is_known || path.origin.is_some();
             let Some((mut surface, t)) = tracer.intersect(&path.ray.ray) else {
-                if shows_lamps {
+                if counts_emission {
                     let escaped = direct.escaped(scene, &path.ray, path.origin.as_ref(), &lambda);
                     l += known(path.beta * escaped, &lambda);
                 }
                 return l;
             };
-            if shows_lamps {
+            if counts_emission {
                 let emitted = direct.emitted(scene, &surface, path.origin.as_ref(), &lambda);
                 l += known(path.beta * emitted, &lambda);
             }
@@ -107,7 +142,7 @@ impl Gather<'_> {
                 path.pass_through(&surface, t);
                 continue;
             };
-            if quest == Quest::Lamps || path.depth == self.settings.max_depth {
+            if sought == Sought::Emission || path.depth == self.settings.max_depth {
                 return l;
             }
             path.depth += 1;
@@ -116,20 +151,21 @@ impl Gather<'_> {
             let context = light_context(&surface, flags);
             let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
                 let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                if quest == Quest::Light && flags.is_non_specular() {
+                if sought == Sought::Radiance && flags.is_non_specular() {
                     let direct = direct.sample(tracer, (&surface, &context), &bsdf, &lambda);
                     l += known(path.beta * direct, &lambda);
                 }
                 Scattered::sample(&surface, &bsdf, tracer.sampler)
             });
             if flags.is_non_specular() {
-                let place = Place { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
-                if quest == Quest::Reflected {
-                    l += path.beta * self.reflected(&self.maps.global, &place);
+                let point =
+                    GatherPoint { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
+                if sought == Sought::Reflected {
+                    l += path.beta * self.reflected(&self.maps.global, &point);
                 } else {
-                    l += path.beta * self.reflected(&self.maps.caustic, &place);
+                    l += path.beta * self.reflected(&self.maps.caustic, &point);
                     if flags.is_diffuse() {
-                        l += path.beta * self.indirect(&path.ray, &place, tracer);
+                        l += path.beta * self.indirect(&path.ray, &point, tracer);
                     }
                 }
             }
@@ -137,15 +173,15 @@ impl Gather<'_> {
             let Some(scattered) = scattered else { return l };
             if scattered.sample.flags.is_specular() {
                 // What comes along a specular lobe is in no map of the surface.
-                lamps_are_known &= !flags.is_non_specular();
+                emission_is_known &= !flags.is_non_specular();
             } else {
-                if quest == Quest::Reflected {
+                if sought == Sought::Reflected {
                     return l;
                 }
                 if flags.is_diffuse() {
-                    quest = Quest::Lamps;
+                    sought = Sought::Emission;
                 }
-                lamps_are_known = true;
+                emission_is_known = true;
             }
             path.scatter(&surface, context, &scattered);
             if !path.survives(tracer.sampler) {
@@ -155,15 +191,15 @@ impl Gather<'_> {
     }
 
     /// Light that other surfaces have scattered: what is reflected of it.
-    fn indirect(&self, ray: &RayDifferential, place: &Place, tracer: &mut Tracer) -> SampledSpectrum {
+    fn indirect(&self, ray: &RayDifferential, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
         let count = self.settings.gather;
-        if place.depth == self.settings.max_depth {
+        if point.depth == self.settings.max_depth {
             return SampledSpectrum::ZERO;
         }
         if count == 0 {
-            return self.reflected(&self.maps.global, place);
+            return self.reflected(&self.maps.global, point);
         }
-        let Place { surface, bsdf, depth, lambda } = *place;
+        let GatherPoint { surface, bsdf, depth, lambda } = *point;
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
@@ -179,15 +215,15 @@ impl Gather<'_> {
                 continue;
             }
             let ray = surface.spawn_scattered(ray, &sample);
-            let l = self.follow(ray, *lambda, (Quest::Reflected, depth), tracer);
+            let l = self.follow(ray, *lambda, (Sought::Reflected, depth), tracer);
             sum += throughput(surface, &sample) * l;
         }
         sum / count as f32
     }
 
     /// What is reflected of the light that a map's photons have brought.
-    fn reflected(&self, map: &PhotonMap, place: &Place) -> SampledSpectrum {
-        let &Place { surface, bsdf, depth, lambda } = place;
+    fn reflected(&self, map: &PhotonMap, point: &GatherPoint) -> SampledSpectrum {
+        let &GatherPoint { surface, bsdf, depth, lambda } = point;
         let s = &surface.surface;
         let deepest = self.settings.max_depth + 1 - depth;
         let transmissive = bsdf.flags().is_transmissive();
@@ -208,7 +244,7 @@ impl Gather<'_> {
         let Some((l, radius)) = map.density(s.p.p, &self.neighbourhood, accept, weigh) else {
             return SampledSpectrum::ZERO;
         };
-        self.reach.add(radius);
+        self.mean_radius.add(radius);
         l
     }
 }

@@ -35,7 +35,6 @@ mod emission;
 mod gather;
 
 use std::ops::AddAssign;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::{PhotonMappingDesc, PhotonMappingShow};
 use film::Film;
@@ -53,8 +52,9 @@ use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, Integrator};
+
 use emission::{Emission, Kind};
-use gather::Gather;
+use gather::{Gather, MeanRadius, PhotonMaps};
 
 /// Photon mapping.
 #[derive(Debug)]
@@ -66,14 +66,7 @@ pub struct PhotonMapping {
     direct: DirectLighting,
     radius: f32,
     tally: Tally,
-    reach: Reach,
-}
-
-/// The photons of a pass.
-#[derive(Debug, Default)]
-struct Maps {
-    caustic: PhotonMap,
-    global: PhotonMap,
+    mean_radius: MeanRadius,
 }
 
 /// What the maps have held.
@@ -100,39 +93,12 @@ impl AddAssign for Tally {
     }
 }
 
-/// The radii of estimates, in parts of the largest.
-#[derive(Debug)]
-struct Reach {
-    largest: f32,
-    sum: AtomicU64,
-    count: AtomicU64,
-}
-
-impl Reach {
-    /// One part: fine enough for a mean, and whole numbers, whose sum has no order.
-    const PART: f32 = 1.0 / 4096.0;
-
-    fn new(largest: f32) -> Self {
-        Self { largest, sum: AtomicU64::new(0), count: AtomicU64::new(0) }
-    }
-
-    fn add(&self, radius: f32) {
-        self.sum.fetch_add((radius / (self.largest * Self::PART)) as u64, Ordering::Relaxed);
-        self.count.fetch_add(1, Ordering::Relaxed);
-    }
-
-    fn mean(&self) -> f64 {
-        let (sum, count) = (self.sum.load(Ordering::Relaxed), self.count.load(Ordering::Relaxed));
-        sum as f64 / count.max(1) as f64 * f64::from(self.largest * Self::PART)
-    }
-}
-
 impl PhotonMapping {
     /// With a sampler for the camera's rays, and a seed for photons.
     pub fn new(settings: PhotonMappingDesc, sampler: Sampler, photon_seed: u32) -> Self {
         let (lights, direct) = (Lights::none(), DirectLighting::none());
-        let (tally, reach) = (Tally::default(), Reach::new(1.0));
-        Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, reach }
+        let (tally, mean_radius) = (Tally::default(), MeanRadius::new(1.0));
+        Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, mean_radius }
     }
 
     /// How the global map's photons are used tells which ones it needs.
@@ -141,7 +107,7 @@ impl PhotonMapping {
     }
 
     /// Emits the photons of a pass.
-    fn maps(&self, emission: &Emission, control: &Control) -> Result<(Maps, RayStats), Cancelled> {
+    fn maps(&self, emission: &Emission, control: &Control) -> Result<(PhotonMaps, RayStats), Cancelled> {
         let map = |kind, paths| {
             let (photons, stats) = emission.emit(kind, paths, control, |vertex, _| Photon::at(vertex))?;
             Ok((PhotonMap::build(photons, paths, control)?, stats))
@@ -149,7 +115,7 @@ impl PhotonMapping {
         let (caustic, mut stats) = map(Kind::Caustic, self.settings.caustic_photons)?;
         let (global, global_stats) = map(self.global_kind(), self.settings.photons)?;
         stats += global_stats;
-        Ok((Maps { caustic, global }, stats))
+        Ok((PhotonMaps { caustic, global }, stats))
     }
 
     /// Draws the photons as dots, a white one that has lost nothing at white.
@@ -167,7 +133,7 @@ impl PhotonMapping {
         let (_, splatter) = film.tiles_and_splatter();
         let dot = |vertex: &Vertex, tracer: &mut Tracer| {
             let lens = tracer.sampler.get_2d();
-            if let Some(seen) = emission.paths.see(vertex, lens, splatter.reach(), tracer) {
+            if let Some(seen) = emission.paths.connect_to_camera(vertex, lens, splatter.reach(), tracer) {
                 let l = vertex.beta * white;
                 let l = if vertex.hero_only { hero_only(l) } else { l };
                 seen.splat(&splatter, &l, &emission.shutter.lambda);
@@ -192,7 +158,7 @@ impl Integrator for PhotonMapping {
         self.lights = Lights::of(scene);
         self.direct = DirectLighting::new(scene, LightSamplerKind::Bvh, Interfaces::Stop);
         self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
-        self.reach = Reach::new(self.radius);
+        self.mean_radius = MeanRadius::new(self.radius);
         control.check()
     }
 
@@ -228,8 +194,8 @@ impl Integrator for PhotonMapping {
             radius: self.radius,
             kernel: settings.kernel,
         };
-        let (direct, reach) = (&self.direct, &self.reach);
-        let gather = Gather { direct, maps: &maps, settings, neighbourhood, reach };
+        let (direct, mean_radius) = (&self.direct, &self.mean_radius);
+        let gather = Gather { direct, maps: &maps, settings, neighbourhood, mean_radius };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
         stats += pixels.add_at(Some(&shutter), film.tiles_mut(), control, |sample, tracer| {
@@ -252,7 +218,7 @@ impl Integrator for PhotonMapping {
             return vec![("photons", photons)];
         }
         let mebibytes = largest_memory as f64 / f64::from(1 << 20);
-        let (mean, largest) = (self.reach.mean(), self.reach.largest);
+        let (mean, largest) = (self.mean_radius.mean(), self.mean_radius.largest);
         vec![
             ("photons", format!("{photons}; {mebibytes:.1} MiB")),
             ("radius", format!("{mean:.3} in the mean, {largest:.3} at most")),

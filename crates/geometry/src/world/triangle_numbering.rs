@@ -1,28 +1,27 @@
-//! The triangles of a group's meshes under one number each, which takes half the room of geometry
-//! and primitive.
+//! Triangles of a group's meshes as numbers of 32 bits, half the size of geometry and primitive.
 //!
-//! Numbers run through the meshes in order. What has a number is found from a table of where every
-//! 256th number belongs, and few steps from there.
+//! Numbers run through the meshes in order. The mesh of a number is found by a table with the mesh
+//! of every 256th number, and a short linear search from there.
 
-use super::{Geometry, GeometryId};
+use super::geometry::{Geometry, GeometryId};
 use math::Vec3;
 
-/// Numbers for triangles.
+/// The numbering of all triangles of a group.
 #[derive(Clone, Debug)]
-pub(super) struct Numbers {
+pub(super) struct TriangleNumbering {
     geometries: Vec<GeometryId>,
-    /// The first number of each geometry; the number of all triangles in the end.
+    /// The first number of each geometry, then the number of all triangles.
     firsts: Vec<u32>,
-    /// To which of the geometries every 256th number belongs.
+    /// The index in `geometries` of every 256th number.
     guide: Vec<u32>,
 }
 
-impl Numbers {
-    const GUIDED: usize = 256;
+impl TriangleNumbering {
+    const GUIDE_STEP: usize = 256;
 
     /// Numbers the triangles of those members that are meshes.
     pub fn new(members: &[GeometryId], geometries: &[Geometry]) -> Self {
-        let mut numbers = Self { geometries: Vec::new(), firsts: vec![0], guide: Vec::new() };
+        let mut numbering = Self { geometries: Vec::new(), firsts: vec![0], guide: Vec::new() };
         let mut all = 0;
         for &id in members {
             if let Geometry::Mesh(mesh) = &geometries[id.0 as usize]
@@ -30,12 +29,12 @@ impl Numbers {
             {
                 all += mesh.len();
                 assert!(all < u32::MAX as usize, "too many triangles for numbers of 32 bits");
-                numbers.guide.resize(all.div_ceil(Self::GUIDED), numbers.geometries.len() as u32);
-                numbers.geometries.push(id);
-                numbers.firsts.push(all as u32);
+                numbering.guide.resize(all.div_ceil(Self::GUIDE_STEP), numbering.geometries.len() as u32);
+                numbering.geometries.push(id);
+                numbering.firsts.push(all as u32);
             }
         }
-        numbers
+        numbering
     }
 
     /// The geometries that have triangles, each with the number of its first.
@@ -43,17 +42,17 @@ impl Numbers {
         self.geometries.iter().copied().zip(self.firsts.iter().copied())
     }
 
-    /// The geometry, and which of its triangles.
+    /// Geometry and primitive of a number.
     #[inline(always)]
     pub fn id(&self, number: u32) -> (GeometryId, u32) {
-        let mut geometry = self.guide[number as usize / Self::GUIDED] as usize;
+        let mut geometry = self.guide[number as usize / Self::GUIDE_STEP] as usize;
         while self.firsts[geometry + 1] <= number {
             geometry += 1;
         }
         (self.geometries[geometry], number - self.firsts[geometry])
     }
 
-    /// The corners of a triangle; `None` where the geometry is no mesh any more.
+    /// The corners of a triangle; `None` where the geometry is no longer a mesh.
     #[inline]
     pub fn corners(&self, number: u32, geometries: &[Geometry]) -> Option<[Vec3; 3]> {
         let (geometry, primitive) = self.id(number);
@@ -63,7 +62,7 @@ impl Numbers {
         }
     }
 
-    /// Bytes of memory taken.
+    /// Bytes of memory.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.geometries) + size_of_val(&*self.firsts) + size_of_val(&*self.guide)
     }
@@ -87,12 +86,12 @@ mod tests {
         let lens = [3, 0, 1, 200, 64, 1, 1, 0, 63, 5];
         let geometries = lens.map(mesh);
         let members: Vec<_> = (0..lens.len() as u32).rev().map(GeometryId).collect();
-        let numbers = Numbers::new(&members, &geometries);
+        let numbering = TriangleNumbering::new(&members, &geometries);
         let expected = members.iter().flat_map(|&id| (0..lens[id.0 as usize] as u32).map(move |i| (id, i)));
         for (number, id) in expected.enumerate() {
-            assert_eq!(numbers.id(number as u32), id);
+            assert_eq!(numbering.id(number as u32), id);
         }
-        let first = |(id, first)| numbers.id(first) == (id, 0);
-        assert_eq!(numbers.meshes().filter(|&mesh| first(mesh)).count(), 8);
+        let first = |(id, first)| numbering.id(first) == (id, 0);
+        assert_eq!(numbering.meshes().filter(|&mesh| first(mesh)).count(), 8);
     }
 }

@@ -1,12 +1,14 @@
-//! The primitives of a world without rays: what there is, how often, and its points by their
-//! parameters.
+//! Enumerating the geometries of a world with their instances, and evaluating surfaces by their
+//! parameters instead of by rays.
 
-use super::{Geometry, GeometryId, GroupId, InstanceId, InstancePath, World};
+use super::World;
+use super::geometry::{Geometry, GeometryId};
+use super::instance::{GroupId, InstanceId, InstancePath};
 use crate::surface::SurfacePoint;
 use math::{Ray, Vec2, Vec3};
 
 impl World {
-    /// Every geometry as often as it can be hit, with the instances that lead to it.
+    /// Every geometry once for each path of instances that leads to it.
     pub fn placed_geometries(&self) -> Vec<(GeometryId, InstancePath)> {
         let mut found = Vec::new();
         self.collect_placed(GroupId::TOP, InstancePath::TOP, &mut found);
@@ -19,16 +21,17 @@ impl World {
         path: InstancePath,
         found: &mut Vec<(GeometryId, InstancePath)>,
     ) {
-        let members = (0..).map(GeometryId).zip(&self.group_of).filter(|(_, of)| **of == group);
+        let members = (0..).map(GeometryId).zip(&self.tables.group_of).filter(|(_, of)| **of == group);
         found.extend(members.map(|(id, _)| (id, path)));
-        for id in self.groups[group.0 as usize].instances() {
-            self.collect_placed(GroupId(self.instances[id.0 as usize].group), path.into(id), found);
+        for id in self.tables.groups[group.0 as usize].instances() {
+            let inner = GroupId(self.tables.instances[id.0 as usize].group);
+            self.collect_placed(inner, path.into(id), found);
         }
     }
 
-    /// What is known of the surface of a primitive where a [`Hit`](super::Hit) has these parameters
-    /// (on a sphere of a set: those of the surface), seen from along its normal; `None` where
-    /// primitives have no such parameters: planes, formulas, solids and curves.
+    /// The surface of a primitive at parameters as a [`Hit`](super::Hit) has them (those of the
+    /// surface on a sphere of a set), seen along its normal; `None` for primitives without such
+    /// parameters: planes, implicit surfaces, solids and curves.
     pub fn surface_at(
         &self,
         geometry: GeometryId,
@@ -41,10 +44,10 @@ impl World {
             Geometry::Shapes(shapes) => shapes[primitive as usize].surface_at(uv, time)?,
             geometry => geometry.shape(primitive)?.surface_at(uv, time)?,
         };
-        let anywhere = Ray::new(Vec3::ZERO, Vec3::Z, time);
+        let any_ray = Ray::new(Vec3::ZERO, Vec3::Z, time);
         let place = |surface: SurfacePoint, id: &InstanceId| {
-            let placed = &self.instances[id.0 as usize];
-            placed.with_placement(time, |placement| surface.placed(placement, &anywhere))
+            let instance = &self.tables.instances[id.0 as usize];
+            instance.with_placement(time, |placement| surface.placed(placement, &any_ray))
         };
         let surface = instance.ids().iter().rev().fold(inner, place);
         Some(SurfacePoint { wo: surface.n, ..surface })

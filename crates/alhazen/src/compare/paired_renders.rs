@@ -1,0 +1,157 @@
+//! One algorithm rendered twice, from different seeds, pass by pass in turn.
+//!
+//! Two independent pictures a and b of equal length tell noise and bias apart, which one picture
+//! cannot: where they differ there is noise, and where they agree on something else than the truth
+//! there is bias (see [`measure`](super::measure)). The first picture is what a render with the
+//! scene's seed gives.
+
+use std::sync::Arc;
+
+use description::{Diagnostic, SceneDesc};
+use geometry::RayStats;
+use image::Image;
+use integrators::{Cancelled, Control, Limits, Progress, Session, SessionState};
+use scene::{Scene, View};
+
+use super::Budget;
+use crate::Overrides;
+
+/// How far both renders are, each of which took this time and these rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Effort {
+    /// Passes of each, drafts not included.
+    pub passes: u32,
+    /// Mean time in seconds.
+    pub seconds: f64,
+    /// Mean number of rays.
+    pub rays: f64,
+}
+
+/// Two renders of one scene by one algorithm that differ in their seeds alone.
+pub(super) struct PairedRenders {
+    pair: [Session; 2],
+}
+
+impl PairedRenders {
+    /// Renders of a view of the scene, as described, with seeds `first_seed` and the next one.
+    pub fn new(
+        desc: &SceneDesc,
+        (scene, view): (&Arc<Scene>, &View),
+        first_seed: i32,
+    ) -> Result<(Self, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let mut desc = desc.clone();
+        let mut warnings = Vec::new();
+        let mut session = |seed: i32| -> Result<Session, Vec<Diagnostic>> {
+            Overrides { seed: Some(seed), ..Overrides::default() }
+                .apply(&mut desc)
+                .expect("invariant: any seed will do");
+            let built = integrators::build(&desc)?;
+            let film = film::compile(&desc)?;
+            warnings = [built.warnings, film.warnings].concat();
+            let state = SessionState::new(film.film);
+            Ok(Session::new(Arc::clone(scene), view.clone(), built.integrator, state))
+        };
+        let pair = [session(first_seed)?, session(first_seed.wrapping_add(1))?];
+        Ok((Self { pair }, warnings))
+    }
+
+    /// Renders until the budget is used up, and calls `at_checkpoint` at pass counts that grow geometrically, and at the end: also where it is
+    /// cancelled, unless no pass was done by both until then. `progress` hears of each pass of both.
+    pub fn render(
+        &mut self,
+        budget: Budget,
+        control: &Control,
+        progress: &mut dyn FnMut(&Progress),
+        mut at_checkpoint: impl FnMut(&Self),
+    ) -> Result<(), Cancelled> {
+        let mut checkpoint = 0;
+        progress(&self.progress(budget));
+        for pass in 0..self.most_passes(budget) {
+            if budget.is_spent(self.effort().seconds) {
+                break;
+            }
+            // A cancelled pass counts for nothing, though the films may have a part of its light.
+            let outcome = self.pass(pass, control);
+            let done = self.effort().passes;
+            if done == next_checkpoint(checkpoint) || (outcome.is_err() && done > checkpoint) {
+                at_checkpoint(self);
+                checkpoint = done;
+            }
+            progress(&self.progress(budget));
+            outcome?;
+        }
+        if self.effort().passes > checkpoint {
+            at_checkpoint(self);
+        }
+        Ok(())
+    }
+
+    /// Time alone limits a render that has a budget of time: it may have more passes than the
+    /// scene plans.
+    fn most_passes(&self, budget: Budget) -> u32 {
+        match budget {
+            Budget::Samples(_) => self.pair[0].integrator().passes(),
+            Budget::Time(_) => u32::MAX,
+        }
+    }
+
+    /// One pass of each.
+    fn pass(&mut self, pass: u32, control: &Control) -> Result<(), Cancelled> {
+        let mut run = |session: &mut Session| {
+            session.run(pass..pass + 1, &Limits::default(), control, &mut |_| ()).map(|_| ())
+        };
+        self.pair.iter_mut().try_for_each(&mut run)
+    }
+
+    /// How far both renders are together. Where time is the limit, the number of passes is a guess.
+    fn progress(&self, budget: Budget) -> Progress {
+        let Effort { passes: pass, seconds, .. } = self.effort();
+        let passes = match budget {
+            Budget::Samples(_) => self.most_passes(budget),
+            Budget::Time(time) => (f64::from(pass) * time.as_secs_f64() / seconds.max(1e-9)) as u32,
+        };
+        let [a, b] = self.pair.each_ref().map(Session::progress);
+        Progress {
+            pass,
+            passes,
+            samples: a.samples + b.samples,
+            stats: self.stats(),
+            elapsed: a.elapsed + b.elapsed,
+            noise: None,
+        }
+    }
+
+    fn stats(&self) -> RayStats {
+        let [a, b] = self.pair.each_ref().map(|session| session.progress().stats);
+        let mut stats = a;
+        stats += b;
+        stats
+    }
+
+    /// How far both renders are. A pass that only one has done does not count.
+    pub fn effort(&self) -> Effort {
+        let [a, b] = self.pair.each_ref().map(Session::progress);
+        let passes = self.pair.each_ref().map(|session| session.state().done.count());
+        Effort {
+            passes: passes[0].min(passes[1]),
+            seconds: (a.elapsed + b.elapsed).as_secs_f64() / 2.0,
+            rays: self.stats().rays as f64 / 2.0,
+        }
+    }
+
+    /// What the algorithm tells of itself, in the first render.
+    pub fn notes(&self) -> Vec<(&'static str, String)> {
+        self.pair[0].integrator().summary()
+    }
+
+    /// The two pictures as they stand.
+    pub fn pictures(&self) -> [Image; 2] {
+        self.pair.each_ref().map(|session| session.state().film.develop())
+    }
+}
+
+/// The first of the pass counts 1, 2, 3, 4, 6, 8, 11, 16, … (two for each doubling) above `passes`.
+fn next_checkpoint(passes: u32) -> u32 {
+    let mut counts = (0..64).map(|half_doublings| (f64::from(half_doublings) / 2.0).exp2().round() as u32);
+    counts.find(|&count| count > passes).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,264 @@
+//! Film files of renders: what is needed to go on with a render, and to merge shards of it.
+//!
+//! The film format leaves two texts to the caller. The *settings* are what all parts of a render
+//! have in common: the version of alhazen, the [`Overrides`], and the header of the picture. The
+//! state `session` is what the parts may differ in: where the scene is, the limits, the shard, and
+//! the time taken.
+
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use film::{Film, FilmFile, FilmFileError, FilmHeader, FilmWriter, PassSet, ReadLimits};
+use integrators::{Limits, Session, SessionState};
+use serde_json::{Value, json};
+
+use crate::{Header, Overrides};
+
+/// The name of the film that takes turns with the picture's where noise is estimated.
+const SECOND: &str = "second";
+
+/// The name of the state that is a [`RenderOrder`].
+const SESSION: &str = "session";
+
+/// Other versions may have other samples.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// One of the equal parts that the passes of a render are split into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Which part, from 1 to `count`.
+    pub index: u32,
+    /// How many parts there are.
+    pub count: u32,
+}
+
+impl Shard {
+    /// The whole render.
+    pub const WHOLE: Self = Self { index: 1, count: 1 };
+
+    /// Its passes, of so many.
+    pub fn passes(self, all: u32) -> std::ops::Range<u32> {
+        let end = |index: u32| (u64::from(all) * u64::from(index) / u64::from(self.count)) as u32;
+        end(self.index - 1)..end(self.index)
+    }
+}
+
+/// What a render was asked for: all that is needed to go on with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderOrder {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// The hash of its content.
+    pub scene_hash: [u8; 32],
+    /// What is changed of it.
+    pub overrides: Overrides,
+    /// Samples per pixel of the whole render; `u32::MAX` where only time or noise end it.
+    pub passes: u32,
+    /// The part of the passes that is rendered.
+    pub shard: Shard,
+    /// What else ends it.
+    pub limits: Limits,
+}
+
+impl RenderOrder {
+    /// Writes a film file of a render as it stands between two passes, with what the headers of its
+    /// pictures say.
+    pub fn write<W: Write>(&self, session: &Session, header: &Header, output: W) -> Result<W, FilmFileError> {
+        let state = session.state();
+        let film_header = FilmHeader {
+            scene_hash: self.scene_hash,
+            settings: self.settings(header).to_string(),
+            seed: self.overrides.seed.map_or(0, |seed| seed as u64),
+            planned: self.passes,
+            done: state.done.clone(),
+        };
+        // What drafts have left on the film is no part of the picture.
+        let blank = state.done.is_empty().then(|| state.film.blank());
+        let mut writer = FilmWriter::new(output, &film_header, blank.as_ref().unwrap_or(&state.film))?;
+        if let Some(second) = &state.second {
+            writer.film(SECOND, second)?;
+        }
+        for (name, film) in session.integrator().films() {
+            writer.film(&name, film)?;
+        }
+        writer.state(SESSION, &state.done, self.session(state).to_string().as_bytes())?;
+        writer.finish()
+    }
+
+    /// What all parts of a render have in common.
+    fn settings(&self, header: &Header) -> Value {
+        let Overrides { integrator, settings, accelerator, samples_per_pixel, resolution, crop, pixel, seed } =
+            &self.overrides;
+        json!({
+            "alhazen": VERSION,
+            "integrator": integrator,
+            "settings": settings,
+            "accelerator": accelerator,
+            "spp": samples_per_pixel,
+            "resolution": resolution,
+            "crop": crop,
+            "pixel": pixel,
+            "seed": seed,
+            "header": header.to_json(),
+        })
+    }
+
+    /// What the parts of a render may differ in.
+    fn session(&self, state: &SessionState) -> Value {
+        json!({
+            "scene": self.scene.to_string_lossy(),
+            "shard": [self.shard.index, self.shard.count],
+            "time": self.limits.time.map(|time| time.as_secs_f64()),
+            "noise": self.limits.noise,
+            "elapsed": state.elapsed.as_secs_f64(),
+            "second": state.counts[1],
+        })
+    }
+}
+
+/// A render that was saved, or several shards of one.
+#[derive(Debug)]
+pub struct SavedRender {
+    file: FilmFile,
+    overrides: Overrides,
+    header: Header,
+    parts: Vec<Part>,
+}
+
+/// What the parts of a render may differ in.
+#[derive(Clone, Debug)]
+struct Part {
+    scene: PathBuf,
+    shard: Shard,
+    limits: Limits,
+    elapsed: Duration,
+    on_second: u32,
+}
+
+impl SavedRender {
+    /// Reads a film file.
+    pub fn read(input: impl Read, limits: &ReadLimits) -> Result<Self, FilmFileError> {
+        let file = FilmFile::read(input, limits)?;
+        let settings: Value = serde_json::from_str(&file.header.settings).unwrap_or_default();
+        if let Some(version) = settings["alhazen"].as_str().filter(|&version| version != VERSION) {
+            let problem = format!("alhazen {version} has rendered it; this is {VERSION}");
+            return Err(FilmFileError::Mismatch(problem));
+        }
+        let (overrides, header) = overrides(&settings)
+            .zip(Header::from_json(&settings["header"]))
+            .ok_or_else(|| FilmFileError::Mismatch("its settings are not those of a render".into()))?;
+        let mut saved = Self { file, overrides, header, parts: Vec::new() };
+        saved.read_parts()?;
+        Ok(saved)
+    }
+
+    /// Adds another part of the same render.
+    pub fn merge(&mut self, input: impl Read, limits: &ReadLimits) -> Result<(), FilmFileError> {
+        self.file.merge(input, limits)?;
+        self.read_parts()
+    }
+
+    fn read_parts(&mut self) -> Result<(), FilmFileError> {
+        let sessions = self.file.states.iter().filter(|state| state.name == SESSION);
+        let parts = sessions.map(|state| part(&serde_json::from_slice(&state.bytes).ok()?));
+        let parts: Option<Vec<Part>> = parts.collect();
+        self.parts = parts
+            .filter(|parts| !parts.is_empty())
+            .ok_or_else(|| FilmFileError::Mismatch("it does not say what was rendered".into()))?;
+        Ok(())
+    }
+
+    /// What was asked for; of several parts, by the first one.
+    pub fn order(&self) -> RenderOrder {
+        let first = &self.parts[0];
+        RenderOrder {
+            scene: first.scene.clone(),
+            scene_hash: self.file.header.scene_hash,
+            overrides: self.overrides.clone(),
+            passes: self.file.header.planned,
+            shard: first.shard,
+            limits: first.limits,
+        }
+    }
+
+    /// What the headers of its pictures say.
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// What the picture still lacks: names of shards and passes.
+    pub fn missing(&self) -> Vec<String> {
+        let planned = self.file.header.planned;
+        if planned == u32::MAX {
+            return Vec::new();
+        }
+        let missing = self.file.header.done.missing(planned);
+        let count = self.parts[0].shard.count;
+        if self.parts.iter().any(|part| part.shard.count != count) {
+            return if missing.is_empty() { Vec::new() } else { vec![format!("passes {missing}")] };
+        }
+        let lacking = (1..=count).map(|index| {
+            let passes = Shard { index, count }.passes(planned);
+            (index, missing.intersection(&passes.into()))
+        });
+        let name = |(index, passes): (u32, PassSet)| match self.parts.iter().any(|p| p.shard.index == index) {
+            true => format!("passes {passes} of shard {index}/{count}"),
+            false => format!("shard {index}/{count} (passes {passes})"),
+        };
+        lacking.filter(|(_, passes)| !passes.is_empty()).map(name).collect()
+    }
+
+    /// The film, and what else a session goes on from; and the films that the algorithm has filled
+    /// beside it, with their names.
+    pub fn into_state(self) -> (SessionState, Vec<(String, Film)>) {
+        let Self { mut file, parts, .. } = self;
+        let second = file.films.iter().position(|(name, _)| name == SECOND);
+        let second = second.map(|index| file.films.remove(index).1);
+        let on_second = parts.iter().fold(0, |sum: u32, part| sum.saturating_add(part.on_second));
+        let on_second = if second.is_some() { on_second.min(file.header.done.count()) } else { 0 };
+        let state = SessionState {
+            counts: [file.header.done.count() - on_second, on_second],
+            done: file.header.done,
+            film: file.picture,
+            second,
+            elapsed: parts.iter().fold(Duration::ZERO, |sum, part| sum.saturating_add(part.elapsed)),
+        };
+        (state, file.films)
+    }
+}
+
+fn overrides(json: &Value) -> Option<Overrides> {
+    let text = |name: &str| json[name].as_str().map(str::to_owned);
+    let integer = |json: &Value| i32::try_from(json.as_i64()?).ok();
+    let setting = |pair: &Value| Some((pair[0].as_str()?.to_owned(), pair[1].as_str()?.to_owned()));
+    Some(Overrides {
+        integrator: text("integrator"),
+        settings: json["settings"].as_array()?.iter().map(setting).collect::<Option<_>>()?,
+        accelerator: text("accelerator"),
+        samples_per_pixel: json["spp"].as_u64().and_then(|samples| u32::try_from(samples).ok()),
+        resolution: array(&json["resolution"], integer),
+        crop: array(&json["crop"], |side| side.as_f64().map(|side| side as f32)),
+        pixel: array(&json["pixel"], integer),
+        seed: integer(&json["seed"]),
+    })
+}
+
+fn array<T, const N: usize>(json: &Value, item: impl Fn(&Value) -> Option<T>) -> Option<[T; N]> {
+    let items: Option<Vec<T>> = json.as_array()?.iter().map(item).collect();
+    items?.try_into().ok()
+}
+
+fn part(json: &Value) -> Option<Part> {
+    let time = |json: &Value| Duration::try_from_secs_f64(json.as_f64()?).ok();
+    let number = |json: &Value| u32::try_from(json.as_u64()?).ok();
+    let [index, count] = array(&json["shard"], number)?;
+    (1..=count).contains(&index).then_some(())?;
+    Some(Part {
+        scene: PathBuf::from(json["scene"].as_str()?),
+        shard: Shard { index, count },
+        limits: Limits { time: time(&json["time"]), noise: json["noise"].as_f64() },
+        elapsed: time(&json["elapsed"])?,
+        on_second: number(&json["second"])?,
+    })
+}

@@ -1,0 +1,79 @@
+//! A hash of all files that make a scene, by which another scene is recognised.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use import::AssetSource;
+
+/// Passes files on to the importer and hashes them on the way: the scene, what it includes, meshes
+/// and images.
+pub struct Fingerprint<'a> {
+    assets: &'a dyn AssetSource,
+    /// The scene's folder, to which paths are relative, so that a scene may be moved.
+    folder: PathBuf,
+    hashes: Mutex<BTreeMap<PathBuf, blake3::Hash>>,
+}
+
+impl<'a> Fingerprint<'a> {
+    /// Of a scene file among these assets.
+    pub fn new(assets: &'a dyn AssetSource, scene: &Path) -> Self {
+        let folder = scene.parent().unwrap_or(Path::new("")).to_owned();
+        Self { assets, folder, hashes: Mutex::default() }
+    }
+
+    /// The hash of all files that have been read: of their paths and contents, whatever the order.
+    pub fn hash(&self) -> [u8; 32] {
+        let hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = blake3::Hasher::new();
+        for (path, hash) in &*hashes {
+            let path = path.to_string_lossy();
+            all.update(&(path.len() as u64).to_le_bytes()).update(path.as_bytes()).update(hash.as_bytes());
+        }
+        *all.finalize().as_bytes()
+    }
+}
+
+impl AssetSource for Fingerprint<'_> {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let bytes = self.assets.read(path)?;
+        let hash = blake3::hash(&bytes);
+        let relative = path.strip_prefix(&self.folder).unwrap_or(path).to_owned();
+        self.hashes.lock().unwrap_or_else(PoisonError::into_inner).insert(relative, hash);
+        Ok(bytes)
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        self.assets.exists(path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use import::MemoryAssets;
+
+    fn hash(scene: &str, files: &[(&str, &str)]) -> [u8; 32] {
+        let assets = files.iter().fold(MemoryAssets::default(), |all, (path, text)| all.with(*path, *text));
+        let fingerprint = Fingerprint::new(&assets, Path::new(scene));
+        for (path, _) in files {
+            fingerprint.read(Path::new(path)).unwrap();
+        }
+        fingerprint.hash()
+    }
+
+    #[test]
+    fn names_and_contents_count_but_neither_folder_nor_order() {
+        let scene = hash("a/room.pbrt", &[("a/room.pbrt", "x"), ("a/wood.png", "y")]);
+        assert_eq!(scene, hash("/b/c/room.pbrt", &[("/b/c/wood.png", "y"), ("/b/c/room.pbrt", "x")]));
+        for other in [
+            &[("a/room.pbrt", "x"), ("a/wood.png", "z")][..],
+            &[("a/room.pbrt", "x"), ("a/tin.png", "y")],
+            &[("a/room.pbrt", "y"), ("a/wood.png", "x")],
+            &[("a/room.pbrt", "x")],
+        ] {
+            assert_ne!(scene, hash("a/room.pbrt", other));
+        }
+    }
+}

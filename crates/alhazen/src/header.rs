@@ -1,0 +1,78 @@
+//! What the header of a picture says: the scene's camera, and settings.
+
+use description::schema::Settings;
+use description::{CameraKind, SceneDesc};
+use film::Film;
+use image::{Attribute, Image, ImageMetadata};
+use integrators::SessionState;
+use math::Mat4;
+use serde_json::{Map, Value, json};
+
+/// What the header of a picture says: the scene's camera, and settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header(Vec<(String, Attribute)>);
+
+impl Header {
+    /// Of the pictures of a scene.
+    pub(crate) fn of(desc: &SceneDesc) -> Self {
+        let camera = match &desc.camera.kind {
+            CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
+            CameraKind::Orthographic { .. } => "orthographic".into(),
+            CameraKind::Spherical { .. } => "spherical".into(),
+            CameraKind::Realistic(_) => "realistic".into(),
+        };
+        let transform = desc.camera.camera_from_world.start.as_mat4();
+        let attributes = [
+            (ImageMetadata::SOFTWARE, Attribute::Text(concat!("alhazen ", env!("CARGO_PKG_VERSION")).into())),
+            (ImageMetadata::WORLD_TO_CAMERA, Attribute::Matrix(transform)),
+            ("camera", Attribute::Text(camera)),
+            ("integrator", Attribute::Text(desc.integrator.name().into())),
+            ("sampler", Attribute::Text(desc.sampler.name().into())),
+            ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
+        ];
+        Self(attributes.map(|(name, value)| (name.to_owned(), value)).to_vec())
+    }
+
+    /// The picture of a render as it stands, with this and the number of passes in its header.
+    pub fn picture(&self, state: &SessionState) -> Image {
+        state.with_film(|film| self.picture_of(film, state.done.count()))
+    }
+
+    /// The picture on a film of so many samples per pixel.
+    pub(crate) fn picture_of(&self, film: &Film, samples_per_pixel: u32) -> Image {
+        let mut picture = film.develop();
+        for (name, value) in &self.0 {
+            picture.metadata.set(name, value.clone());
+        }
+        picture.metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
+        picture
+    }
+
+    /// As JSON: text, whole numbers and matrices stand for themselves.
+    pub(crate) fn to_json(&self) -> Value {
+        let value = |value: &Attribute| match value {
+            Attribute::Text(text) => json!(text),
+            Attribute::Integer(number) => json!(number),
+            Attribute::Matrix(matrix) => json!(matrix.to_cols_array()),
+            Attribute::TextList(_) | Attribute::Float(_) | Attribute::Vector(_) => Value::Null,
+        };
+        self.0.iter().map(|(name, attribute)| (name.clone(), value(attribute))).collect::<Map<_, _>>().into()
+    }
+
+    /// From what [`to_json`](Self::to_json) has written.
+    pub(crate) fn from_json(json: &Value) -> Option<Self> {
+        let value = |value: &Value| match value {
+            Value::String(text) => Some(Attribute::Text(text.clone())),
+            Value::Number(number) => Some(Attribute::Integer(i32::try_from(number.as_i64()?).ok()?)),
+            Value::Array(columns) => {
+                let columns: Option<Vec<f32>> =
+                    columns.iter().map(|number| number.as_f64().map(|number| number as f32)).collect();
+                let columns: [f32; 16] = columns?.try_into().ok()?;
+                Some(Attribute::Matrix(Mat4::from_cols_array(&columns)))
+            }
+            _ => None,
+        };
+        let attributes = json.as_object()?.iter();
+        attributes.map(|(name, json)| Some((name.clone(), value(json)?))).collect::<Option<_>>().map(Self)
+    }
+}

@@ -1,0 +1,227 @@
+//! What `render` and `resume` have in common: a job is run, watched, saved and written.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use alhazen::description::schema::Settings;
+use alhazen::description::{IntegratorDesc, RadiosityDesc};
+use alhazen::import::{AssetSource, Imported, import};
+use alhazen::integrators::{Control, Limits, Session};
+use alhazen::{Header, Job, Overrides, system_clock};
+
+use crate::bar::Bar;
+use crate::checkpoint::Checkpoint;
+use crate::console::{say, warn};
+use crate::diagnostics;
+use crate::failure::Failure;
+use crate::interrupt::{self, Interrupt};
+use crate::output;
+use crate::results::{write_preview, write_results};
+use crate::summary::{Seconds, Summary, peak_memory};
+
+/// The longest time between two previews, and how many times as long as writing the last one took
+/// it is at least.
+const PREVIEW_INTERVAL: Duration = Duration::from_secs(60);
+const PREVIEW_SHARE: u32 = 20;
+
+/// What is printed.
+#[derive(Clone, Copy, Debug)]
+pub struct Verbosity {
+    /// Nothing but errors.
+    pub quiet: bool,
+    /// One JSON object instead of text.
+    pub json: bool,
+}
+
+impl Verbosity {
+    fn is_talkative(self) -> bool {
+        !self.quiet && !self.json
+    }
+}
+
+/// A scene that was imported and changed.
+pub struct Prepared {
+    imported: Imported,
+    overrides: Overrides,
+    begin: Instant,
+    imported_at: Instant,
+}
+
+impl Prepared {
+    /// Imports a scene and changes it.
+    pub fn new(scene: &Path, assets: &dyn AssetSource, overrides: Overrides) -> Result<Self, Failure> {
+        let begin = Instant::now();
+        let mut imported = import(scene, assets);
+        if imported.has_errors() {
+            return Err(scene_failure(imported));
+        }
+        overrides.apply(&mut imported.desc).map_err(|error| Failure::Usage(error.to_string()))?;
+        if let IntegratorDesc::Radiosity(RadiosityDesc { mesh_out: Some(file), .. }) =
+            &imported.desc.integrator.value
+        {
+            output::check_place(Path::new(file)).map_err(Failure::Input)?;
+        }
+        Ok(Self { imported, overrides, begin, imported_at: Instant::now() })
+    }
+
+    /// What was imported.
+    pub fn imported(&self) -> &Imported {
+        &self.imported
+    }
+
+    /// Compiles the scene.
+    pub fn compile(mut self) -> Result<(Job, Compiled), Failure> {
+        match Job::compile(&self.imported.desc) {
+            Ok(compiled) => {
+                self.imported.diagnostics.extend(compiled.warnings);
+                let integrator = self.imported.desc.integrator.name();
+                let Self { imported, begin, imported_at, .. } = self;
+                let compiled_at = Instant::now();
+                Ok((compiled.job, Compiled { imported, integrator, begin, imported_at, compiled_at }))
+            }
+            Err(errors) => {
+                if let Some(error) = self.overrides.blamed(&errors) {
+                    return Err(Failure::Usage(error.to_string()));
+                }
+                self.imported.diagnostics.extend(errors);
+                Err(scene_failure(self.imported))
+            }
+        }
+    }
+}
+
+/// What is still needed of a scene that was compiled.
+pub struct Compiled {
+    imported: Imported,
+    integrator: &'static str,
+    begin: Instant,
+    imported_at: Instant,
+    compiled_at: Instant,
+}
+
+/// A job with everything that it is run with.
+pub struct Task<'a> {
+    /// The scene file.
+    pub scene: &'a Path,
+    /// The job.
+    pub job: Job,
+    /// The passes to do.
+    pub passes: Range<u32>,
+    /// What else ends it.
+    pub limits: Limits,
+    /// Where the picture goes; nowhere if there are none.
+    pub outputs: Vec<PathBuf>,
+    /// Where the render is saved.
+    pub checkpoint: Option<Checkpoint>,
+    /// What there is to say about the result beside what the algorithm says.
+    pub notes: Vec<(&'static str, String)>,
+    /// What is printed.
+    pub verbosity: Verbosity,
+}
+
+impl Task<'_> {
+    /// Renders, writes the results and reports.
+    pub fn run(mut self, compiled: Compiled, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
+        let Compiled { imported, integrator, begin, imported_at, compiled_at } = compiled;
+        interrupt.begin_rendering();
+        let is_talkative = self.verbosity.is_talkative();
+        if is_talkative {
+            diagnostics::print(&imported.diagnostics, &imported.sources)?;
+        }
+        let control = Control::new(interrupt.cancel(), system_clock());
+        if !self.outputs.is_empty()
+            && self.job.session.state().done.is_empty()
+            && let Some(sketch) = self.job.sketch(&control)
+        {
+            write_preview(&sketch, &self.outputs);
+            interrupt.note_written(&self.outputs, 0);
+        }
+        let bar = Bar::new(is_talkative);
+        let mut preview = Preview::new(self.job.header().clone(), &self.outputs, interrupt);
+        let outcome = self.job.session.run(self.passes.clone(), &self.limits, &control, &mut |session| {
+            bar.show(&session.progress());
+            preview.after_pass(session);
+            if let Some(checkpoint) = &mut self.checkpoint {
+                checkpoint.after_pass(session);
+            }
+        });
+        bar.finish();
+        let rendered_at = Instant::now();
+
+        let session = &self.job.session;
+        let files = session.integrator().files();
+        let films = if self.outputs.is_empty() { Vec::new() } else { session.integrator().films() };
+        let beside = write_results(&self.job.picture(), &self.outputs, films, files);
+        // A cancelled pass has left a part of its light on the film, so that the last checkpoint
+        // stays as it is.
+        let saved = match &mut self.checkpoint {
+            Some(checkpoint) if outcome.is_ok() => checkpoint.finish(session),
+            _ => Ok(()),
+        };
+        let beside = beside?;
+        saved?;
+        self.notes.extend(session.integrator().summary());
+        let summary = Summary {
+            outcome,
+            scene: self.scene,
+            outputs: &self.outputs,
+            beside: &beside,
+            checkpoint: self.checkpoint.as_ref().map(Checkpoint::path).filter(|path| path.exists()),
+            notes: &self.notes,
+            integrator,
+            session,
+            threads: rayon::current_num_threads(),
+            seconds: Seconds {
+                import: (imported_at - begin).as_secs_f64(),
+                compile: (compiled_at - imported_at).as_secs_f64(),
+                render: (rendered_at - compiled_at).as_secs_f64(),
+                write: rendered_at.elapsed().as_secs_f64(),
+            },
+            peak_memory: peak_memory(),
+        };
+        if self.verbosity.json {
+            let (_, warnings) = diagnostics::to_json(&imported.diagnostics, &imported.sources);
+            say(summary.to_json(warnings))?;
+        } else if is_talkative {
+            say(&summary)?;
+        } else if let Some(interruption) = summary.interruption() {
+            warn(interruption)?;
+        }
+        Ok(if outcome.is_err() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+    }
+}
+
+/// Writes the picture as it stands, so that it can be looked at: after the first pass that ends
+/// later than half a second after the begin, and then whenever it has been rendered for twice as
+/// long as the last time, or for a minute more.
+struct Preview<'a> {
+    header: Header,
+    outputs: &'a [PathBuf],
+    interrupt: &'a Interrupt,
+    begin: Instant,
+    next: Duration,
+}
+
+impl<'a> Preview<'a> {
+    fn new(header: Header, outputs: &'a [PathBuf], interrupt: &'a Interrupt) -> Self {
+        Self { header, outputs, interrupt, begin: Instant::now(), next: Duration::from_millis(500) }
+    }
+
+    fn after_pass(&mut self, session: &Session) {
+        let elapsed = self.begin.elapsed();
+        if self.outputs.is_empty() || elapsed < self.next {
+            return;
+        }
+        write_preview(&self.header.picture(session.state()), self.outputs);
+        self.interrupt.note_written(self.outputs, session.progress().pass);
+        let writing = self.begin.elapsed() - elapsed;
+        self.next = elapsed + writing + elapsed.min(PREVIEW_INTERVAL).max(PREVIEW_SHARE * writing);
+    }
+}
+
+/// The failure that a wrong scene is.
+pub fn scene_failure(imported: Imported) -> Failure {
+    Failure::Scene { diagnostics: imported.diagnostics, sources: imported.sources }
+}

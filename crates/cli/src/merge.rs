@@ -1,0 +1,100 @@
+//! `alhazen merge`: the picture of film files, such as all shards of a render.
+
+use std::path::{Path, PathBuf};
+
+use alhazen::film::{FilmFileError, PassSet};
+use clap::Args;
+use serde_json::json;
+
+use crate::args::EXIT_CODES;
+use crate::checkpoint;
+use crate::console::say;
+use crate::failure::{Failure, about_file};
+use crate::results::write_results;
+use crate::resume::outputs;
+
+/// Options of `alhazen merge`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Merge {
+    /// The film files, in any order.
+    #[arg(value_name = "FILM", required = true)]
+    pub films: Vec<PathBuf>,
+    /// Write the picture here, in the format of the extension. Can be given several times.
+    /// [default: the first film file's name with .exr, in the current folder]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Print nothing but errors; with --json, the JSON object too.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write one JSON object to standard output instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Merges film files and writes the picture.
+pub fn merge(arguments: &Merge) -> Result<(), Failure> {
+    let [first, others @ ..] = &arguments.films[..] else {
+        return Err(Failure::Usage("there is no film file to merge".into()));
+    };
+    let outputs = outputs(&arguments.output, first)?;
+    let mut merged = checkpoint::read(first)?;
+    for (path, before) in others.iter().zip(1..) {
+        let (file, limits) = checkpoint::open(path)?;
+        merged.merge(file, &limits).map_err(|error| match error {
+            FilmFileError::Overlap(passes) => {
+                let first = &arguments.films[..before];
+                // Which of those before has them shows in their headers.
+                let holder = first.iter().find(|path| holds(path, &passes)).unwrap_or(&first[0]);
+                about_file(path, format!("passes {passes} are in {} too", holder.display()))
+            }
+            FilmFileError::Mismatch(problem) => {
+                about_file(path, format!("not of the same render as {}: {problem}", first.display()))
+            }
+            error => about_file(path, error),
+        })?;
+    }
+    let missing = merged.missing();
+    if !missing.is_empty() {
+        return Err(Failure::Input(format!("the picture is not whole: {} missing", list(&missing))));
+    }
+    let header = merged.header().clone();
+    let (state, films) = merged.into_state();
+    let picture = header.picture(&state);
+    let films = films.iter().map(|(name, film)| (name.clone(), film));
+    let beside = write_results(&picture, &outputs, films, Vec::new())?;
+    let passes = state.done.count();
+    if arguments.json {
+        let names = |paths: &[PathBuf]| paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>();
+        let (films, outputs, beside) = (names(&arguments.films), names(&outputs), names(&beside));
+        say(json!({
+            "status": "done",
+            "films": films,
+            "outputs": outputs,
+            "by_products": beside,
+            "passes": passes,
+            "noise": state.noise(),
+        }))?;
+    } else if !arguments.quiet {
+        let plural = if arguments.films.len() == 1 { "" } else { "s" };
+        say(format_args!("{passes} passes of {} film{plural}", arguments.films.len()))?;
+        for output in outputs.iter().chain(&beside) {
+            say(format_args!("  picture  {}", output.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether a film file holds some of these passes.
+fn holds(path: &Path, passes: &PassSet) -> bool {
+    checkpoint::header(path).is_ok_and(|header| !header.done.intersection(passes).is_empty())
+}
+
+/// "a, b and c are", "a is".
+fn list(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => format!("{one} is"),
+        [first @ .., last] => format!("{} and {last} are", first.join(", ")),
+    }
+}

@@ -1,0 +1,115 @@
+//! `alhazen resume`: goes on with a render that was saved.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use alhazen::import::Files;
+use alhazen::integrators::Limits;
+use alhazen::{Fingerprint, Shard};
+use clap::Args;
+
+use crate::args::{EXIT_CODES, RenderLimits, time};
+use crate::checkpoint::{self, Checkpoint};
+use crate::drive::{Prepared, Task, Verbosity};
+use crate::failure::{Failure, about_file};
+use crate::interrupt::Interrupt;
+use crate::output;
+use crate::results::named_after;
+use crate::threads::start_threads;
+
+/// Options of `alhazen resume`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Resume {
+    /// The film file.
+    pub film: PathBuf,
+    /// Write the picture here, in the format of the extension. Can be given several times.
+    /// [default: the film file's name with .exr, in the current folder]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Samples per pixel of the whole render, those before included. [default: as begun]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub spp: Option<u32>,
+    /// What else ends the render. [default: as begun, unless there is --spp]
+    #[command(flatten)]
+    pub limits: RenderLimits,
+    /// How often the film file is saved, unless a pass takes longer.
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]
+    pub every: Duration,
+    /// Threads to render with; their number never changes the picture. [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print nothing but errors; with --json, the JSON object too.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write one JSON object to standard output instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Goes on with a render, saves it and writes the picture.
+pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
+    let outputs = outputs(&arguments.output, &arguments.film)?;
+    output::check_place(&arguments.film).map_err(Failure::Usage)?;
+    start_threads(arguments.threads)?;
+    let interrupt = Interrupt::listen(arguments.json)?;
+    let film = &arguments.film;
+    let saved = checkpoint::read(film)?;
+    let mut order = saved.order();
+    let scene = order.scene.clone();
+
+    let fingerprint = Fingerprint::new(&Files, &scene);
+    let prepared = Prepared::new(&scene, &fingerprint, order.overrides.clone())?;
+    if fingerprint.hash() != order.scene_hash {
+        let scene = scene.display();
+        return Err(about_file(
+            film,
+            format!("it is of another scene than {scene} is now: files have changed"),
+        ));
+    }
+    let (mut job, compiled) = prepared.compile()?;
+    let is_limited = |limits: Limits| limits.time.is_some() || limits.noise.is_some();
+    let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
+    if arguments.spp.is_some() || is_limited(limits) {
+        order.limits = limits;
+    }
+    let mut notes = Vec::new();
+    if let Some(passes) = arguments.spp {
+        if order.shard != Shard::WHOLE && passes != order.passes {
+            let Shard { index, count } = order.shard;
+            let message =
+                format!("--spp cannot change: the film is shard {index}/{count} of {} passes", order.passes);
+            return Err(Failure::Usage(message));
+        }
+        order.passes = passes;
+    }
+    let (state, films) = saved.into_state();
+    let done = state.done.count();
+    job.resume(state, films).map_err(|error| about_file(film, error))?;
+    if order.passes != u32::MAX && order.passes > job.planned() && job.is_arranged() {
+        notes.push((
+            "samples",
+            format!(
+                "arranged for {} per pixel; those beyond are as right, but others than in a render planned for {}",
+                job.planned(),
+                order.passes
+            ),
+        ));
+    }
+    let passes = order.shard.passes(order.passes);
+    let limits = order.limits;
+    let checkpoint = Checkpoint::new(film.clone(), arguments.every, order, job.header().clone(), done);
+    let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
+    let checkpoint = Some(checkpoint);
+    let task = Task { scene: &scene, job, passes, limits, outputs, checkpoint, notes, verbosity };
+    task.run(compiled, &interrupt)
+}
+
+/// Where a picture of film files goes: to the outputs, or to the film's name with the extension of
+/// OpenEXR in the current folder.
+pub fn outputs(outputs: &[PathBuf], film: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let outputs = if outputs.is_empty() { vec![named_after(film, "exr")] } else { outputs.to_vec() };
+    outputs.iter().try_for_each(|path| output::check(path)).map_err(Failure::Usage)?;
+    Ok(outputs)
+}

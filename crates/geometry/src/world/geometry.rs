@@ -1,0 +1,91 @@
+//! Geometries: what a scene ties materials, lights and names to.
+
+use crate::curve::Curves;
+use crate::shape::{Shape, TriangleMesh};
+use crate::sphere_set::SphereSet;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// A geometry, counted over the whole world in the order of
+/// [`WorldBuilder::add_geometry`](crate::WorldBuilder::add_geometry).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct GeometryId(pub u32);
+
+/// One object of a scene: one or more primitives that share whatever is tied to a [`GeometryId`].
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// The triangles of a mesh.
+    Mesh(Arc<TriangleMesh>),
+    /// Any other shapes: one quadric, the patches of a bilinear mesh.
+    Shapes(Arc<[Shape]>),
+    /// The spheres of a set.
+    Spheres(Arc<SphereSet>),
+    /// The segments of curves.
+    Curves(Arc<Curves>),
+}
+
+impl From<TriangleMesh> for Geometry {
+    fn from(mesh: TriangleMesh) -> Self {
+        Self::Mesh(Arc::new(mesh))
+    }
+}
+
+impl From<Shape> for Geometry {
+    fn from(shape: Shape) -> Self {
+        Self::Shapes(Arc::new([shape]))
+    }
+}
+
+impl From<SphereSet> for Geometry {
+    fn from(set: SphereSet) -> Self {
+        Self::Spheres(Arc::new(set))
+    }
+}
+
+impl From<Curves> for Geometry {
+    fn from(curves: Curves) -> Self {
+        Self::Curves(Arc::new(curves))
+    }
+}
+
+impl Geometry {
+    /// The number of primitives.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.len(),
+            Self::Shapes(shapes) => shapes.len(),
+            Self::Spheres(set) => set.len(),
+            Self::Curves(curves) => curves.len(),
+        }
+    }
+
+    /// Whether there is no primitive.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bytes of memory of the primitives, without what shapes own on the heap.
+    pub(super) fn bytes(&self) -> usize {
+        match self {
+            Self::Mesh(mesh) => mesh.bytes(),
+            Self::Shapes(shapes) => size_of_val(&**shapes),
+            Self::Spheres(set) => set.bytes(),
+            Self::Curves(curves) => curves.bytes(),
+        }
+    }
+
+    /// Whether its primitives move by themselves.
+    pub fn is_moving(&self) -> bool {
+        matches!(self, Self::Shapes(shapes) if matches!(shapes.first(), Some(Shape::MovingTriangle(_))))
+    }
+
+    /// One primitive as a shape, as lights sample it; `None` for curves, which do not emit.
+    pub fn shape(&self, primitive: u32) -> Option<Cow<'_, Shape>> {
+        match self {
+            Self::Mesh(mesh) => Some(Cow::Owned(mesh.triangle(primitive as usize).into())),
+            Self::Shapes(shapes) => Some(Cow::Borrowed(&shapes[primitive as usize])),
+            Self::Spheres(set) => Some(Cow::Owned(set.sphere(primitive as usize).into())),
+            Self::Curves(_) => None,
+        }
+    }
+}

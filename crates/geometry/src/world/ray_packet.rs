@@ -1,0 +1,136 @@
+//! Packets of sixteen coherent rays, such as those of a camera, that traverse the triangles of a
+//! group together ([Reshetov et al. 2005]).
+//!
+//! An interval around the directions finds the boxes that any of the rays may enter; these boxes
+//! and the triangles in them are tested against all rays at once.
+
+#![allow(unsafe_code)]
+
+use super::group::Group;
+use super::instance::InstancePath;
+use super::query::Query;
+use super::stats::RayStats;
+use super::trace::{TriangleLeaves, is_valid};
+use super::triangle_block::TriangleBlock;
+use crate::bvh::{Leaves, WIDTH};
+use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
+use lanes::{Simd, Vector};
+use math::Ray;
+use std::ops::Range;
+
+/// How far apart the directions of a packet may be, relative to their length.
+const SPREAD: f32 = 0.1;
+
+/// Whether rays are worth tracing as a packet: they have one origin, and similar directions with
+/// the same signs and the same main axis.
+#[inline(always)]
+pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH]) -> bool {
+    let lead = &rays[0].0;
+    let axis = main_axis(lead.d);
+    let spread = lead.d.length_squared() * (SPREAD * SPREAD);
+    rays.iter().all(|(ray, t_max)| {
+        ray.o == lead.o
+            && is_valid(ray)
+            && *t_max >= 0.0
+            && ray.d.distance_squared(lead.d) < spread
+            && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
+            && main_axis(ray.d) == axis
+    })
+}
+
+/// Coherent rays.
+pub(super) struct RayPacket<'a> {
+    rays: &'a [(Ray, f32); WIDTH],
+    sheared: [Sheared; WIDTH],
+}
+
+impl<'a> RayPacket<'a> {
+    /// Up to so many rays are tested against triangles one by one.
+    const FEW: u32 = 4;
+
+    #[inline(always)]
+    pub fn new(rays: &'a [(Ray, f32); WIDTH]) -> Self {
+        Self { rays, sheared: std::array::from_fn(|i| Sheared::new(&rays[i].0)) }
+    }
+
+    /// Offers all hits on triangles of a group to the queries.
+    ///
+    /// # Safety
+    /// The processor must have the instruction set.
+    #[inline(always)]
+    pub unsafe fn trace<S: Simd, Q: Query>(
+        &self,
+        group: &Group,
+        queries: &mut [Q; WIDTH],
+        stats: &mut RayStats,
+    ) {
+        let mut t_max = std::array::from_fn(|i| self.rays[i].1);
+        let mut primitives = 0;
+        // SAFETY: the caller promises the instruction set.
+        unsafe {
+            let lanes: ShearedLanes<S::F32x16> = Sheared::each(&self.sheared);
+            let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]| {
+                if entering.count_ones() <= Self::FEW {
+                    let mut entering = entering;
+                    while entering != 0 {
+                        let i = entering.trailing_zeros() as usize;
+                        entering &= entering - 1;
+                        if t_max[i] < 0.0 {
+                            continue;
+                        }
+                        let mut leaves = TriangleLeaves::<S, Q> {
+                            group,
+                            instance: InstancePath::TOP,
+                            sheared: &self.sheared[i],
+                            lanes: &self.sheared[i].lanes::<{ TriangleBlock::VERTICES }, S::F32x8>(),
+                            query: &mut queries[i],
+                            primitives: 0,
+                        };
+                        if leaves.test(blocks.clone(), &mut t_max[i]) {
+                            t_max[i] = -1.0;
+                        }
+                        primitives += leaves.primitives;
+                    }
+                    return;
+                }
+                for block in &group.triangles.blocks[blocks] {
+                    for lane in 0..block.len() {
+                        primitives += WIDTH as u64;
+                        let found = block.intersect_rays(lane, &lanes, S::F32x16::load(t_max));
+                        if let Some(found) = found {
+                            self.offer(group, block, lane, &found, queries, t_max);
+                        }
+                    }
+                }
+            };
+            let triangles = &group.triangles;
+            stats.extents +=
+                triangles.tree.traverse_packet::<S, _>(&triangles.blocks, self.rays, &mut t_max, test);
+        }
+        stats.primitives += primitives;
+    }
+
+    #[inline(always)]
+    fn offer<Q: Query>(
+        &self,
+        group: &Group,
+        block: &TriangleBlock,
+        lane: usize,
+        found: &LaneHits<WIDTH>,
+        queries: &mut [Q; WIDTH],
+        t_max: &mut [f32; WIDTH],
+    ) {
+        let mut hits = found.hits;
+        while hits != 0 {
+            let i = hits.trailing_zeros() as usize % WIDTH;
+            hits &= hits - 1;
+            if t_max[i] < 0.0 {
+                continue;
+            }
+            let (sheared, numbering) = (&self.sheared[i], &group.triangles.numbering);
+            let hit = block.hit(lane, found, i, sheared, numbering, InstancePath::TOP);
+            let Some(hit) = hit else { continue };
+            t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
+        }
+    }
+}

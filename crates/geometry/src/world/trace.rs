@@ -1,0 +1,339 @@
+//! Traversal of a group by one ray: its triangles, then unbounded items, spheres, and the tree of
+//! other shapes and instances. Instances are entered recursively.
+
+#![allow(unsafe_code)]
+
+use super::geometry::{Geometry, GeometryId};
+use super::group::{Group, Item};
+use super::hit::Hit;
+use super::instance::InstancePath;
+use super::query::Query;
+use super::spheres::{SphereBlock, Spheres, UnitRay};
+use super::stats::RayStats;
+use super::tables::Tables;
+use super::triangle_block::TriangleBlock;
+use crate::bvh::{Bvh, Leaves};
+use crate::sphere_set::SphereSet;
+use crate::watertight::{Sheared, ShearedLanes};
+use lanes::{Simd, Task, Vector};
+use math::{Ray, Vec2};
+use std::ops::Range;
+
+/// A ray that traverses a group.
+pub(super) struct Trace<'a> {
+    pub tables: &'a Tables,
+    /// In the space of the group.
+    pub ray: &'a Ray,
+    /// The instances that the ray has entered.
+    pub instance: InstancePath,
+    pub stats: &'a mut RayStats,
+}
+
+impl Trace<'_> {
+    /// Offers all hits in a group to the query; returns whether it wants no more.
+    pub fn group<Q: Query>(&mut self, group: &Group, query: &mut Q) -> bool {
+        if !is_valid(self.ray) {
+            return false;
+        }
+        if !group.triangles.is_empty() {
+            let set = self.tables.instruction_set;
+            // SAFETY: the processor has the instruction set of a world.
+            let (extents, primitives, stop) =
+                unsafe { set.run(TraceTriangles { group, trace: self, query }) };
+            self.stats.extents += extents;
+            self.stats.primitives += primitives;
+            if stop {
+                return true;
+            }
+        }
+        self.all_but_triangles(group, query)
+    }
+
+    /// The same for everything but triangles.
+    pub fn all_but_triangles<Q: Query>(&mut self, group: &Group, query: &mut Q) -> bool {
+        for &item in &group.unbounded {
+            if self.item(item, query) {
+                return true;
+            }
+        }
+        if self.spheres(&group.spheres, query) {
+            return true;
+        }
+        if group.items.is_empty() {
+            return false;
+        }
+        let set = self.tables.instruction_set;
+        // SAFETY: the processor has the instruction set of a world.
+        let (extents, stop) = unsafe { set.run(TraceItems { group, trace: self, query }) };
+        self.stats.extents += extents;
+        stop
+    }
+
+    /// The parameters of these hits are zero: only the surface has them.
+    fn spheres<Q: Query>(&mut self, spheres: &Spheres, query: &mut Q) -> bool {
+        if spheres.blocks.is_empty() {
+            return false;
+        }
+        let set = self.tables.instruction_set;
+        // SAFETY: the processor has the instruction set of a world.
+        let (extents, primitives, stop) = unsafe { set.run(TraceSpheres { spheres, trace: self, query }) };
+        self.stats.extents += extents;
+        self.stats.primitives += primitives;
+        stop
+    }
+
+    #[inline(never)]
+    fn item<Q: Query>(&mut self, item: Item, query: &mut Q) -> bool {
+        match item {
+            Item::Shape(geometry, primitive) => {
+                self.stats.primitives += 1;
+                let hit = match self.tables.geometry(geometry) {
+                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
+                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
+                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
+                };
+                hit.is_some_and(|hit| {
+                    query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })
+                })
+            }
+            Item::Instance(id) => {
+                let prepared = &self.tables.instances[id.0 as usize];
+                let ray = prepared.with_placement(self.ray.time, |placement| placement.ray(self.ray));
+                let instance = self.instance.into(id);
+                let mut inner = Trace { tables: self.tables, ray: &ray, instance, stats: &mut *self.stats };
+                inner.group(&self.tables.groups[prepared.group as usize], query)
+            }
+        }
+    }
+
+    /// All of so many blocks, where rays are not tested against bounding volumes.
+    fn all(&self, blocks: usize) -> Option<Range<usize>> {
+        (!self.tables.extents).then_some(0..blocks)
+    }
+}
+
+/// Whether a ray can hit anything: not where it has numbers that are not finite, or a direction too
+/// short to have an inverse.
+pub(super) fn is_valid(ray: &Ray) -> bool {
+    ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
+}
+
+/// Whether traversal in order of distance is faster.
+#[inline(always)]
+fn in_order<Q: Query>(t_max: f32) -> bool {
+    !Q::ANY || t_max < f32::INFINITY
+}
+
+/// Passes `leaves` the blocks of a tree that the ray may meet, or `all` without traversal. Returns
+/// the number of boxes tested, and whether `leaves` wants no more.
+///
+/// # Safety
+/// The blocks must be those of the tree, and the processor must have the instruction set.
+#[inline(always)]
+unsafe fn traverse<S: Simd, Q: Query>(
+    tree: &Bvh,
+    all: Option<Range<usize>>,
+    ray: &Ray,
+    t_max: &mut f32,
+    leaves: &mut impl Leaves,
+) -> (u64, bool) {
+    // SAFETY: the caller promises the blocks and the instruction set.
+    unsafe {
+        match all {
+            Some(blocks) => (0, leaves.test(blocks, t_max)),
+            None if in_order::<Q>(*t_max) => tree.traverse::<S, false>(ray, t_max, leaves),
+            None => tree.traverse::<S, true>(ray, t_max, leaves),
+        }
+    }
+}
+
+/// A ray that traverses the triangles of a group.
+struct TraceTriangles<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
+    type Output = (u64, u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { group, trace, query } = self;
+        let sheared = Sheared::new(trace.ray);
+        // SAFETY: the caller promises the instruction set.
+        unsafe {
+            let lanes = sheared.lanes::<{ TriangleBlock::VERTICES }, S::F32x8>();
+            let mut t_max = query.t_max();
+            let mut leaves = TriangleLeaves::<S, Q> {
+                group,
+                instance: trace.instance,
+                sheared: &sheared,
+                lanes: &lanes,
+                query,
+                primitives: 0,
+            };
+            let all = trace.all(group.triangles.blocks.len());
+            let tree = &group.triangles.tree;
+            let (extents, stop) = traverse::<S, Q>(tree, all, trace.ray, &mut t_max, &mut leaves);
+            (extents, leaves.primitives, stop)
+        }
+    }
+}
+
+/// The triangles of a group, tested against one ray.
+pub(super) struct TriangleLeaves<'a, S: Simd, Q> {
+    pub group: &'a Group,
+    pub instance: InstancePath,
+    pub sheared: &'a Sheared,
+    pub lanes: &'a ShearedLanes<S::F32x8>,
+    pub query: &'a mut Q,
+    /// How many were tested.
+    pub primitives: u64,
+}
+
+impl<S: Simd, Q: Query> Leaves for TriangleLeaves<'_, S, Q> {
+    type Block = TriangleBlock;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[TriangleBlock] {
+        &self.group.triangles.blocks
+    }
+
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        // SAFETY: the tree was built over these blocks.
+        for block in unsafe { self.group.triangles.blocks.get_unchecked(blocks) } {
+            self.primitives += TriangleBlock::WIDTH as u64;
+            let Some(found) = block.intersect::<S>(self.lanes, *t_max) else { continue };
+            let mut hits = found.hits;
+            while hits != 0 {
+                let lane = hits.trailing_zeros() as usize % TriangleBlock::WIDTH;
+                hits &= hits - 1;
+                let (numbering, instance) = (&self.group.triangles.numbering, self.instance);
+                let hit = block.hit(lane, &found, lane, self.sheared, numbering, instance);
+                let Some(hit) = hit else { continue };
+                if self.query.offer(hit) {
+                    return true;
+                }
+            }
+            *t_max = self.query.t_max();
+        }
+        false
+    }
+}
+
+/// A ray that traverses the items of a group.
+struct TraceItems<'a, 'b, Q> {
+    group: &'a Group,
+    trace: &'a mut Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceItems<'_, '_, Q> {
+    type Output = (u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { group, trace, query } = self;
+        let (ray, all) = (trace.ray, trace.all(group.items.len()));
+        let mut t_max = query.t_max();
+        let mut leaves = ItemLeaves { items: &group.items, trace, query };
+        // SAFETY: the caller promises the instruction set.
+        unsafe { traverse::<S, Q>(&group.item_tree, all, ray, &mut t_max, &mut leaves) }
+    }
+}
+
+/// The items of a group, tested against one ray.
+struct ItemLeaves<'a, 'b, Q> {
+    items: &'a [Item],
+    trace: &'a mut Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Leaves for ItemLeaves<'_, '_, Q> {
+    type Block = Item;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[Item] {
+        self.items
+    }
+
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        for &item in &self.items[blocks] {
+            if self.trace.item(item, self.query) {
+                return true;
+            }
+        }
+        *t_max = self.query.t_max();
+        false
+    }
+}
+
+/// A ray that traverses the spheres of a group.
+struct TraceSpheres<'a, 'b, Q> {
+    spheres: &'a Spheres,
+    trace: &'a Trace<'b>,
+    query: &'a mut Q,
+}
+
+impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
+    type Output = (u64, u64, bool);
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> Self::Output {
+        let Self { spheres, trace, query } = self;
+        let mut t_max = query.t_max();
+        // SAFETY: the caller promises the instruction set.
+        unsafe {
+            let lanes = UnitRay::<S::F32x8>::new(trace.ray);
+            let mut leaves = SphereLeaves { blocks: &spheres.blocks, trace, lanes, query, primitives: 0 };
+            let all = trace.all(spheres.blocks.len());
+            let (extents, stop) = traverse::<S, Q>(&spheres.tree, all, trace.ray, &mut t_max, &mut leaves);
+            (extents, leaves.primitives, stop)
+        }
+    }
+}
+
+/// The spheres of a group, tested against one ray.
+struct SphereLeaves<'a, 'b, V, Q> {
+    blocks: &'a [SphereBlock],
+    trace: &'a Trace<'b>,
+    lanes: UnitRay<V>,
+    query: &'a mut Q,
+    /// How many were tested.
+    primitives: u64,
+}
+
+impl<V: Vector<{ SphereBlock::WIDTH }>, Q: Query> Leaves for SphereLeaves<'_, '_, V, Q> {
+    type Block = SphereBlock;
+
+    #[inline(always)]
+    fn blocks(&self) -> &[SphereBlock] {
+        self.blocks
+    }
+
+    #[inline(always)]
+    unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
+        for block in &self.blocks[blocks] {
+            self.primitives += block.len() as u64;
+            let mut candidates = block.candidates(&self.lanes, *t_max);
+            while candidates != 0 {
+                let lane = candidates.trailing_zeros() as usize % SphereBlock::WIDTH;
+                candidates &= candidates - 1;
+                let (center, radius) = block.sphere(lane);
+                let Some(t) = SphereSet::intersect(center, radius, self.trace.ray, self.query.end()) else {
+                    continue;
+                };
+                let (geometry, primitive) = block.id(lane);
+                let (geometry, instance) = (GeometryId(geometry), self.trace.instance);
+                if self.query.offer(Hit { t, uv: Vec2::ZERO, geometry, primitive, instance }) {
+                    return true;
+                }
+            }
+            *t_max = self.query.t_max();
+        }
+        false
+    }
+}

@@ -1,0 +1,53 @@
+//! The context of paths that are made from both ends.
+
+use scene::light_sampler::{LightSampler, LightSamplerKind, PowerLightSampler};
+use scene::{Scene, View};
+use spectrum::SampledSpectrum;
+
+use super::partial::Balance;
+
+/// Light samplers.
+#[derive(Clone, Debug)]
+pub(crate) struct Lights {
+    /// For next-event estimation at a vertex.
+    pub seen_from: LightSampler,
+    /// For the first vertices of light subpaths.
+    pub emitting: PowerLightSampler,
+}
+
+impl Lights {
+    /// For no lights.
+    pub fn none() -> Self {
+        Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default() }
+    }
+
+    /// For the lights of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            seen_from: scene.light_sampler(LightSamplerKind::Bvh),
+            emitting: PowerLightSampler::new(scene.lights()),
+        }
+    }
+}
+
+/// Samples subpaths and makes paths of them.
+#[derive(Clone, Copy)]
+pub(crate) struct Bidirectional<'a> {
+    pub scene: &'a Scene,
+    pub view: &'a View,
+    pub lights: &'a Lights,
+    /// How strategies are weighted.
+    pub balance: Balance,
+    /// Most scattering events of a path.
+    pub max_depth: u32,
+    /// Roughen surfaces after the first rough one of each subpath.
+    pub regularize: bool,
+}
+
+/// Radiance that is known at the first wavelength alone, as radiance at all wavelengths with the same
+/// mean.
+pub(crate) fn hero_only(l: SampledSpectrum) -> SampledSpectrum {
+    let mut hero = SampledSpectrum::ZERO;
+    hero[0] = l[0] * spectrum::N as f32;
+    hero
+}

@@ -1,0 +1,52 @@
+//! Randomisation that samplers share: scrambled Sobol' coordinates, and shuffled sets of samples.
+
+use crate::hash::{hash, permutation_element, unit_interval};
+use crate::low_discrepancy::{fast_owen_scramble, owen_scramble, sobol_bits};
+
+/// How a low-discrepancy sequence is randomised.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Randomize {
+    /// Not at all.
+    None,
+    /// Each digit is permuted, the same way in all points.
+    PermuteDigits,
+    /// Owen scrambling by a hash: each digit is permuted depending on the digits before it.
+    #[default]
+    FastOwen,
+    /// Owen scrambling digit by digit.
+    Owen,
+}
+
+impl Randomize {
+    /// A Sobol' coordinate, randomised by `seed`.
+    #[inline]
+    pub(super) fn sobol(self, index: u64, dimension: usize, seed: u32) -> f32 {
+        self.bits(sobol_bits(index, dimension), seed)
+    }
+
+    /// A binary fraction of 32 bits, randomised by `seed`.
+    #[inline]
+    pub(super) fn bits(self, bits: u32, seed: u32) -> f32 {
+        unit_interval(match self {
+            Randomize::None => bits,
+            Randomize::PermuteDigits => bits ^ seed,
+            Randomize::FastOwen => fast_owen_scramble(bits, seed),
+            Randomize::Owen => owen_scramble(bits, seed),
+        })
+    }
+}
+
+/// A hash of one dimension of one pixel.
+#[inline]
+pub(super) fn pixel_hash(pixel: [i32; 2], dimension: u32, seed: u32) -> u64 {
+    hash(&[pixel[0] as u32, pixel[1] as u32, dimension, seed])
+}
+
+/// The position of sample `index` in a shuffled set of `count` samples, and the number of that set.
+/// The first set is shuffled by `seed` itself, each further one by a seed of its own.
+#[inline]
+pub(super) fn shuffled(index: u32, count: u32, seed: u32) -> (u32, u32) {
+    let (round, index) = (index / count, index % count);
+    let seed = if round == 0 { seed } else { hash(&[seed, round]) as u32 };
+    (permutation_element(index, count, seed), round)
+}
