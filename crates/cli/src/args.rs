@@ -102,16 +102,16 @@ pub struct Render {
     #[command(flatten)]
     pub limits: RenderLimits,
     /// Save the render here while it runs, so that `alhazen resume` can go on with it: the film,
-    /// which samples it holds, the scene's path and the options. The file is replaced whole, so that
-    /// it is valid at any moment.
+    /// which samples it holds, the scene's path and the options. The file is replaced whole, so
+    /// that it is valid at any moment.
     #[arg(long, value_name = "FILE.film")]
     pub checkpoint: Option<PathBuf>,
     /// How often --checkpoint saves, unless a pass takes longer.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]
     pub every: Duration,
     /// Render one of N equal parts of the samples per pixel, counted from 1, into the film file of
-    /// --checkpoint; `alhazen merge` makes the picture of all. A picture of the part alone is written
-    /// to --output only.
+    /// --checkpoint; `alhazen merge` makes the picture of all. A picture of the part alone is
+    /// written to --output only.
     #[arg(long, value_name = "K/N", value_parser = shard, requires = "checkpoint", conflicts_with = "noise")]
     pub shard: Option<Shard>,
     /// Other changes to the scene.
@@ -139,15 +139,15 @@ impl Render {
 /// What ends a render beside its number of samples per pixel: whichever comes first.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct RenderLimits {
-    /// Render for so long: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do not
-    /// count; of a render that is resumed, the time before does. No pass (one sample of each pixel)
-    /// is begun that would probably end later.
+    /// Render for so long: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do
+    /// not count; of a render that is resumed, the time before does. No pass (one sample of each
+    /// pixel) is begun that would probably end later.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Render until the noise of the picture, its estimated relative standard error, is not above
-    /// this: 0.02 is 2 %. It is the root of the mean, over pixels and channels, of variance / (value²
-    /// + (mean / 10)²), measured by the difference of two pictures of half the samples each, from 16
-    /// samples per pixel on. The second picture doubles the memory of the film.
+    /// this: 0.02 is 2 %. It is the root of the mean, over pixels and channels, of variance /
+    /// (value² + (mean / 10)²), measured by the difference of two pictures of half the samples
+    /// each, from 16 samples per pixel on. The second picture doubles the memory of the film.
     #[arg(long, value_name = "NOISE", value_parser = noise)]
     pub noise: Option<f64>,
 }

@@ -1,5 +1,5 @@
-//! The progress bar: passes, samples, rays per second, noise, elapsed and remaining time. Shown on a
-//! terminal only.
+//! The progress bar: passes, samples, rays per second, noise, elapsed and remaining time. Shown on
+//! a terminal only.
 
 use std::time::Duration;
 

@@ -22,10 +22,10 @@
 //! noise = √⟨Var[r] / (r² + (m/10)²)⟩
 //! ```
 //!
-//! where ⟨·⟩ is the mean over pixels and channels, and m the mean of r, which keeps dark pixels from
-//! deciding alone. It is the root of the relMSE [Rousselle 2011] against the picture without noise,
-//! but does not depend on exposure. Bias is not noise. Samplers whose passes complement each other
-//! have less noise than this says, as the halves' errors are negatively correlated.
+//! where ⟨·⟩ is the mean over pixels and channels, and m the mean of r, which keeps dark pixels
+//! from deciding alone. It is the root of the relMSE [Rousselle 2011] against the picture without
+//! noise, but does not depend on exposure. Bias is not noise. Samplers whose passes complement each
+//! other have less noise than this says, as the halves' errors are negatively correlated.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -79,7 +79,8 @@ pub enum Stop {
     Noise,
 }
 
-/// A render: the scene, the view of it, the algorithm, the film, and the passes that the film holds.
+/// A render: the scene, the view of it, the algorithm, the film, and the passes that the film
+/// holds.
 pub struct Session {
     scene: Arc<Scene>,
     view: View,

@@ -2,12 +2,12 @@
 //! distances.
 //!
 //! A pass shoots photons and keeps those that have been scattered at least once before they come to
-//! a diffuse surface ([`merging`](crate::photons::merging)). Then each pixel follows a path from the camera,
-//! past mirrors, glass and what is glossy, to the first diffuse surface. There the path ends: light
-//! straight from the lights is found by choosing a point on one, all other light by merging with
-//! the photons within the radius. On the way it looks for lights as path tracing does, by choice
-//! and by chance, weighted by the balance heuristic; at the end by choice alone, so that nothing
-//! counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
+//! a diffuse surface ([`merging`](crate::photons::merging)). Then each pixel follows a path from
+//! the camera, past mirrors, glass and what is glossy, to the first diffuse surface. There the path
+//! ends: light straight from the lights is found by choosing a point on one, all other light by
+//! merging with the photons within the radius. On the way it looks for lights as path tracing does,
+//! by choice and by chance, weighted by the balance heuristic; at the end by choice alone, so that
+//! nothing counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
 //!
 //! It shines where light is focused and then seen through glass or in a mirror, which no path from
 //! the eye finds; any number of pixels share a photon. It is slow where photons are rare: in large

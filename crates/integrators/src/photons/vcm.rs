@@ -1,14 +1,15 @@
 //! Vertex connection and merging: bidirectional path tracing and progressive photon mapping as one.
 //!
 //! A pass has two steps. First, light subpaths are made, one for each pixel, and leave their
-//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel makes a camera subpath and
-//! connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and vertices of the
-//! camera subpath are merged with the photons within the radius. Merging is one more family of
-//! strategies: a path whose vertex x is made from both ends is found if the two ends come within r
-//! of each other, so the density of such a path is that of its two subpaths, times π r² (the chance
-//! to meet, if all is smooth), times the number n of photon paths. (Where a texture cuts x out in
-//! part, both ends must meet it, and the part that remains is one more factor of η.) With that, the
-//! balance heuristic weighs merging against connecting as it weighs connections against each other:
+//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel makes a camera
+//! subpath and connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and
+//! vertices of the camera subpath are merged with the photons within the radius. Merging is one
+//! more family of strategies: a path whose vertex x is made from both ends is found if the two ends
+//! come within r of each other, so the density of such a path is that of its two subpaths, times π
+//! r² (the chance to meet, if all is smooth), times the number n of photon paths. (Where a texture
+//! cuts x out in part, both ends must meet it, and the part that remains is one more factor of η.)
+//! With that, the balance heuristic weighs merging against connecting as it weighs connections
+//! against each other:
 //!
 //! ```text
 //! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
@@ -34,8 +35,9 @@
 //! it is with merges everywhere.
 //!
 //! What camera rays alone find, light that comes by specular surfaces all the way, has more of them
-//! ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at 96 × 64 pixels nine tenths of the error were
-//! such glints, and five rays instead of one take a third of it or more for a seventh more time.
+//! ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at 96 × 64 pixels nine
+//! tenths of the error were such glints, and five rays instead of one take a third of it or more
+//! for a seventh more time.
 //!
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
 //! third of the variance; behind a door, light seeps under it then.
