@@ -9,8 +9,8 @@ use crate::settings::{self, Unset, called, drawn, integrator_called};
 /// Changes to a scene. `None` leaves what the scene says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// The name of the integrator, as in [`integrator_names`](crate::integrator_names). Settings that both
-    /// integrators have are kept, all if it is the scene's own.
+    /// The name of the integrator, as in [`integrator_names`](crate::integrator_names). Settings
+    /// that both integrators have are kept, all if it is the scene's own.
     pub integrator: Option<String>,
     /// Settings by their names in [`PARTS`](crate::PARTS), with their values as text. `sampler` and
     /// `filter` choose another sampler and another filter.

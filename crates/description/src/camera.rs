@@ -58,8 +58,8 @@ settings! {
     pub struct ScreenDesc {
         /// Width of the image over its height. If absent, that of the film.
         frame_aspect_ratio: Option<f32> = None => ["frameaspectratio": above(0.0)];
-        /// The part of the screen, x0, x1, y0, y1. If absent, [−1, 1] over the shorter side and more
-        /// over the other.
+        /// The part of the screen, x0, x1, y0, y1. If absent, [−1, 1] over the shorter side and
+        /// more over the other.
         window: Option<[f32; 4]> = None => ["screenwindow"];
     }
 }

@@ -3,7 +3,8 @@
 use crate::ColorSpaceDesc;
 use crate::schema::{above, choices, from, one_of, settings};
 
-/// The sensors of the format: an ideal one with the responses of CIE 1931 XYZ, and measured cameras.
+/// The sensors of the format: an ideal one with the responses of CIE 1931 XYZ, and measured
+/// cameras.
 const SENSORS: &[&str] = &[
     "cie1931",
     "canon_eos_100d",
@@ -93,8 +94,8 @@ choices! {
 }
 
 settings! {
-    /// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the exposure
-    /// time is that of the camera's shutter.
+    /// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the
+    /// exposure time is that of the camera's shutter.
     #[derive(Clone, Debug, PartialEq)]
     pub struct SensorDesc {
         /// The sensor: `cie1931`, an ideal one, or a measured camera.

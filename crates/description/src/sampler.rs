@@ -111,7 +111,8 @@ impl SamplerKind {
     pub fn set_samples_per_pixel(&mut self, samples: u32) {
         match self {
             Self::Stratified { strata, .. } => {
-                let side = (1..=samples.isqrt()).rev().find(|side| samples % side == 0).unwrap_or(1);
+                let side =
+                    (1..=samples.isqrt()).rev().find(|side| samples.is_multiple_of(*side)).unwrap_or(1);
                 *strata = [samples / side, side];
             }
             Self::Independent { pixel_samples }

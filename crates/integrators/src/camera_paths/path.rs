@@ -26,8 +26,8 @@ pub struct Path {
 }
 
 impl Path {
-    /// Knows no lights until it is prepared for a scene. `interfaces` says what interfaces do to the
-    /// light of delta lights.
+    /// Knows no lights until it is prepared for a scene. `interfaces` says what interfaces do to
+    /// the light of delta lights.
     pub fn new(settings: PathDesc, interfaces: Interfaces) -> Self {
         Self { settings, interfaces, direct: DirectLighting::none() }
     }

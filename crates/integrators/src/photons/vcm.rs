@@ -42,9 +42,9 @@
 //! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
 //! third of the variance; behind a door, light seeps under it then.
 //!
-//! At most [`MAX_PHOTON_PATHS`] paths of a pass leave photons, which bounds memory: 180 bytes for each of
-//! at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they are
-//! sorted. In larger pictures the other pixels make their light subpaths when they need them.
+//! At most [`MAX_PHOTON_PATHS`] paths of a pass leave photons, which bounds memory: 180 bytes for
+//! each of at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they
+//! are sorted. In larger pictures the other pixels make their light subpaths when they need them.
 //!
 //! Biased: light that merging finds is blurred over the radius, which shrinks as `merging` says;
 //! consistent. Depth of field and motion are right, because all paths of a pass have one time.
@@ -86,8 +86,8 @@ pub struct Vcm {
 }
 
 impl Vcm {
-    /// With a sampler for each end of what is connected, a seed for photons and glints, and the most
-    /// light subpaths of a pass that leave photons, above 0; [`MAX_PHOTON_PATHS`] is usual.
+    /// With a sampler for each end of what is connected, a seed for photons and glints, and the
+    /// most light subpaths of a pass that leave photons, above 0; [`MAX_PHOTON_PATHS`] is usual.
     pub fn new(
         settings: VcmDesc,
         [sampler, light_sampler]: [Sampler; 2],

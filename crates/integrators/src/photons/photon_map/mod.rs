@@ -7,9 +7,9 @@
 //! 1/n Σ K(dᵢ/r)/r² · βᵢ
 //! ```
 //!
-//! over the photons i at the distances dᵢ < r, K being a [`PhotonKernel`]. The radius r is the distance
-//! of the photon that comes after the `nearest` nearest, so that where photons lie densely little
-//! is blurred; but at most `radius`.
+//! over the photons i at the distances dᵢ < r, K being a [`PhotonKernel`]. The radius r is the
+//! distance of the photon that comes after the `nearest` nearest, so that where photons lie densely
+//! little is blurred; but at most `radius`.
 //!
 //! A given radius has a bias, that of the blur: on a plane inside which the density is linear there
 //! is none, elsewhere it falls with r². At edges of surfaces the disk hangs over and finds too
