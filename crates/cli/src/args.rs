@@ -7,6 +7,7 @@ use alhazen::compare::Contender;
 use alhazen::{Overrides, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::help;
 use crate::merge::Merge;
 use crate::resume::Resume;
 
@@ -383,15 +384,7 @@ pub struct Man {
 }
 
 fn render_long_help() -> String {
-    let mut text = String::from("Algorithms:\n");
-    for name in alhazen::INTEGRATORS {
-        text += &format!("  {name}\n");
-    }
-    text += "\nSettings:\n";
-    for setting in &alhazen::SETTINGS {
-        text += &format!("  {:<18} {}\n", setting.name, setting.help);
-    }
-    text + "\n" + EXIT_CODES
+    help::settings() + "\n" + EXIT_CODES
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {

@@ -7,11 +7,10 @@
 //! uniform one.
 //!
 //! Unbiased up to its depth, with two exceptions: without light sampling, point and distant lights
-//! are never hit; without BSDF sampling, smooth metal and glass are black.
-//!
-//! Settings: `max_depth`, most scattering events, default 5; `sample_lights` and `sample_bsdf`,
-//! default true. Source: [Pharr 2023 §13.2].
+//! are never hit; without BSDF sampling, smooth metal and glass are black. Source:
+//! [Pharr 2023 §13.2].
 
+use description::SimplePathDesc;
 use math::{RayDifferential, Vector3};
 use sampling::warp;
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
@@ -24,21 +23,8 @@ use crate::transport::path_state::pass_through;
 use crate::{RayIntegrator, Tracer};
 
 /// Simple path tracing.
-#[derive(Clone, Copy, Debug)]
-pub struct SimplePath {
-    /// Most scattering events.
-    pub max_depth: u32,
-    /// Sample a light at each surface.
-    pub sample_lights: bool,
-    /// Sample directions by the BSDF instead of uniformly.
-    pub sample_bsdf: bool,
-}
-
-impl Default for SimplePath {
-    fn default() -> Self {
-        Self { max_depth: 5, sample_lights: true, sample_bsdf: true }
-    }
-}
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SimplePath(pub SimplePathDesc);
 
 /// The next segment of a path.
 struct Onward {
@@ -59,7 +45,7 @@ impl RayIntegrator for SimplePath {
         let mut depth = 0;
         let mut specular_bounce = true;
         while !beta.is_black() {
-            let count_emission = specular_bounce || !self.sample_lights;
+            let count_emission = specular_bounce || !self.0.sample_lights;
             let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
                 if count_emission {
                     l += beta * tracer.scene.escaped(&ray.ray, lambda);
@@ -75,16 +61,16 @@ impl RayIntegrator for SimplePath {
                 specular_bounce = true;
                 continue;
             };
-            if depth == self.max_depth {
+            if depth == self.0.max_depth {
                 return l;
             }
             depth += 1;
             let onward = each_bxdf!(bsdf.bxdf, bxdf => {
                 let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                if self.sample_lights {
+                if self.0.sample_lights {
                     l += beta * one_light(tracer, &surface, &bsdf, lambda);
                 }
-                if self.sample_bsdf {
+                if self.0.sample_bsdf {
                     by_bsdf(tracer, &surface, &bsdf)
                 } else {
                     Some(uniform(tracer, &surface, &bsdf))

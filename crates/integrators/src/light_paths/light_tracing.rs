@@ -19,12 +19,14 @@
 //! many. Lights themselves, at depth 0, are found by one camera ray for each pixel, since those at
 //! infinity are no vertices of subpaths.
 //!
-//! Unbiased for what it can see. Surfaces without bounds are black where they lie beyond the scene's
-//! bounds and light comes from infinity (`endless.rs`). A light subpath that a cancellation cuts off
-//! has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+//! Unbiased for what it can see. Surfaces without bounds are black where they lie beyond the
+//! scene's bounds and light comes from infinity (`endless.rs`). A light subpath that a cancellation
+//! cuts off has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993];
+//! [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use description::LightTracingDesc;
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -38,7 +40,7 @@ use crate::{Cancelled, Control, Integrator};
 /// Light tracing.
 #[derive(Debug)]
 pub struct LightTracing {
-    max_depth: u32,
+    settings: LightTracingDesc,
     sampler: Sampler,
     light_sampler: Sampler,
     lights: Lights,
@@ -49,10 +51,10 @@ pub struct LightTracing {
 }
 
 impl LightTracing {
-    /// With paths of at most `max_depth` scattering events, and a sampler for each end.
-    pub fn new(max_depth: u32, sampler: Sampler, light_sampler: Sampler) -> Self {
+    /// With a sampler for each end of a path.
+    pub fn new(settings: LightTracingDesc, sampler: Sampler, light_sampler: Sampler) -> Self {
         let [rays, reached] = [0; 2].map(AtomicU64::new);
-        Self { max_depth, sampler, light_sampler, lights: Lights::none(), rays, reached }
+        Self { settings, sampler, light_sampler, lights: Lights::none(), rays, reached }
     }
 }
 
@@ -79,7 +81,7 @@ impl Integrator for LightTracing {
             view,
             lights: &self.lights,
             balance: Balance::connecting(film.pixel_bounds().area() as f32),
-            max_depth: self.max_depth,
+            max_depth: self.settings.max_depth,
             regularize: false,
         };
         let seen = Bidirectional { max_depth: 0, ..paths };

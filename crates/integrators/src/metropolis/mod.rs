@@ -15,9 +15,10 @@
 //! I = ∫ f(u) h(p(u)) du = b · E[ f(u)/c(u) · h(p(u)) ],   u of the density c/b,   b = ∫ c(u) du
 //! ```
 //!
-//! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z. `chain.rs`
-//! says how a chain comes to that density, [`PrimarySample`](sampling::sampler::PrimarySample) how
-//! it mutates. The algorithm that makes the paths, the `technique`, is
+//! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z.
+//! `chain.rs` says how a chain comes to that density,
+//! [`PrimarySample`](sampling::sampler::PrimarySample) how it mutates. The algorithm that makes the
+//! paths, the `technique`, is
 //!
 //! - `path`: a camera path with all the light that it finds [Kelemen 2002];
 //! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as
@@ -34,8 +35,8 @@
 //! [Veach 1997 §11.3.1]. So passes are independent pictures, chains are independent of threads, and
 //! the error falls with the number of passes without limit.
 //!
-//! Lights that the camera sees directly are left to one camera ray for each pixel and pass: they are
-//! found without chance, and so bright that chains would spend most of their time on them.
+//! Lights that the camera sees directly are left to one camera ray for each pixel and pass: they
+//! are found without chance, and so bright that chains would spend most of their time on them.
 //!
 //! Unbiased up to `max_depth`, except with `regularize`. What it is bad at: noise is not that of
 //! independent samples but comes in blotches, where a chain stayed; the overall brightness is only
@@ -45,30 +46,26 @@
 
 mod chain;
 mod chains;
-mod settings;
 mod target;
 
-use description::MltTechnique;
+use description::{MltDesc, MltTechnique, PathDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
-use scene::light_sampler::LightSamplerKind;
 use scene::{Interfaces, Scene, View};
 use spectrum::SampledSpectrum;
-
-pub use settings::MltSettings;
 
 use chains::{Chains, Targeted};
 use target::{CameraPaths, ConnectedPaths, FilmDomain, Target};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, Path, PathSettings, RayIntegrator};
+use crate::{Cancelled, Control, Integrator, Path, RayIntegrator};
 
 /// Metropolis light transport.
 #[derive(Debug)]
 pub struct Mlt {
-    settings: MltSettings,
+    settings: MltDesc,
     /// Of the camera rays that see lights.
     sampler: Sampler,
     /// Paths that do not scatter.
@@ -86,14 +83,10 @@ enum Technique {
 
 impl Mlt {
     /// With a sampler of the camera rays that see lights.
-    pub fn new(settings: MltSettings, sampler: Sampler, seed: u32) -> Self {
+    pub fn new(settings: MltDesc, sampler: Sampler, seed: u32) -> Self {
         let path = |max_depth| {
-            Path::new(PathSettings {
-                max_depth,
-                regularize: settings.regularize,
-                light_sampler: LightSamplerKind::Bvh,
-                interfaces: Interfaces::Stop,
-            })
+            let regularize = settings.regularize;
+            Path::new(PathDesc { max_depth, regularize, ..PathDesc::default() }, Interfaces::Stop)
         };
         let technique = match settings.technique {
             MltTechnique::Path => Technique::Path(path(settings.max_depth)),
@@ -124,7 +117,7 @@ impl Integrator for Mlt {
         film: &mut Film,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
-        let MltSettings { max_depth, regularize, .. } = self.settings;
+        let MltDesc { max_depth, regularize, .. } = self.settings;
         let filter = film.filter().clone();
         let mutations = film.pixel_bounds().area();
         let (tiles, splatter) = film.tiles_and_splatter();

@@ -3,10 +3,11 @@
 //! A pass emits photons and keeps those that arrive at a diffuse surface after at least one
 //! scattering event ([`merging`](crate::photons::merging)). Then each pixel samples a camera path
 //! through specular and glossy surfaces to the first diffuse one. There the path ends: direct light
-//! is found by next-event estimation, all other light by merging with the photons within the radius.
-//! On the way it looks for lights as path tracing does, by next-event estimation and by chance,
-//! weighted by the balance heuristic; at the end by next-event estimation alone, so that nothing
-//! counts twice. A surface with a specular lobe besides a diffuse one does not end the path.
+//! is found by next-event estimation, all other light by merging with the photons within the
+//! radius. On the way it looks for lights as path tracing does, by next-event estimation and by
+//! chance, weighted by the balance heuristic; at the end by next-event estimation alone, so that
+//! nothing counts twice. A surface with a specular lobe besides a diffuse one does not end the
+//! path.
 //!
 //! It is at its best on caustics seen through glass or in a mirror, which no path from the camera
 //! finds; all pixels share all photons. It is slow where photons are rare: in large scenes of which
@@ -23,6 +24,7 @@
 //! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
 //! [Pharr 2016 §16.2].
 
+use description::SppmDesc;
 use film::Film;
 use geometry::RayStats;
 use sampling::sampler::PaddedSobol;
@@ -47,28 +49,10 @@ const SPACING: f32 = 5.0;
 /// It is no larger part of the scene's than this.
 const LARGEST_SHARE: f32 = 0.05;
 
-/// Settings of [`Sppm`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SppmSettings {
-    /// Most scattering events; default 5.
-    pub max_depth: u32,
-    /// Light subpaths in a pass, above 0; by default as many as pixels.
-    pub photons_per_iteration: Option<u32>,
-    /// Distance in the scene within which photons count in the first pass, above 0; by default 5/√n
-    /// of the scene's radius for n light subpaths, and no more than 0.05 of it.
-    pub radius: Option<f32>,
-}
-
-impl Default for SppmSettings {
-    fn default() -> Self {
-        Self { max_depth: 5, photons_per_iteration: None, radius: None }
-    }
-}
-
 /// Stochastic progressive photon mapping.
 #[derive(Debug)]
 pub struct Sppm {
-    settings: SppmSettings,
+    settings: SppmDesc,
     sampler: Sampler,
     lights: Lights,
     merging: Merging,
@@ -76,7 +60,7 @@ pub struct Sppm {
 
 impl Sppm {
     /// With a sampler for what begins at the camera, and a seed for photons.
-    pub fn new(settings: SppmSettings, sampler: Sampler, photon_seed: u32) -> Self {
+    pub fn new(settings: SppmDesc, sampler: Sampler, photon_seed: u32) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), ALPHA, photon_seed);
         Self { settings, sampler, lights: Lights::none(), merging }
     }

@@ -14,17 +14,17 @@
 //! each light path is counted once.
 //!
 //! With a final gather, the global map holds photons of all kinds and is looked up one surface
-//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a surface
-//! that is not purely specular the map gives all that it reflects.
+//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a
+//! surface that is not purely specular the map gives all that it reflects.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use description::PhotonMappingDesc;
 use math::{RayDifferential, Vec2};
 use scattering::{Bsdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::settings::PhotonMappingSettings;
 use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
@@ -74,7 +74,7 @@ pub(super) struct Gather<'a> {
     /// What finds direct light.
     pub direct: &'a DirectLighting,
     pub maps: &'a PhotonMaps,
-    pub settings: &'a PhotonMappingSettings,
+    pub settings: &'a PhotonMappingDesc,
     pub neighbourhood: Neighbourhood,
     pub mean_radius: &'a MeanRadius,
 }
