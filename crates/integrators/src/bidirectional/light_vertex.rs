@@ -13,7 +13,8 @@ pub(crate) struct LightVertex {
     pub p: Point3,
     /// Unit direction to the previous vertex.
     pub wo: Vector3,
-    /// Power that arrives along `wo`, over the density of the subpath, if every ray hit the surface.
+    /// Power that arrives along `wo`, over the density of the subpath, if every ray hit the
+    /// surface.
     pub beta: SampledSpectrum,
     /// For the weights.
     pub partial: Partial,

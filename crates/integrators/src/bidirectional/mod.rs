@@ -12,9 +12,9 @@
 //! | s, 1 | the end of the light subpath is connected to a point on the lens |
 //! | s, t | two surface vertices are connected |
 //!
-//! Vertices of the light subpath can also be *merged* with nearby vertices of camera subpaths: photon
-//! mapping. Every path is found by all strategies, so each is weighted by multiple importance
-//! sampling; [`Partial`] is what a subpath carries for that.
+//! Vertices of the light subpath can also be *merged* with nearby vertices of camera subpaths:
+//! photon mapping. Every path is found by all strategies, so each is weighted by multiple
+//! importance sampling; [`Partial`] is what a subpath carries for that.
 //!
 //! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] makes paths of the
 //! vertices. The depth of a vertex is the number of scattering events on its subpath, its own
@@ -26,8 +26,8 @@
 //! refraction does not scale by η², and shading normals scale by |wo·ns||wi·ng| / |wo·ng||wi·ns|
 //! ([Veach 1997 §5.3]).
 //!
-//! Dispersion terminates all wavelengths but the first of a subpath. What two subpaths make together
-//! is then known at the first wavelength only; [`hero_only`] turns it into radiance at the
+//! Dispersion terminates all wavelengths but the first of a subpath. What two subpaths make
+//! together is then known at the first wavelength only; [`hero_only`] turns it into radiance at the
 //! wavelengths that both began with.
 
 mod bdpt;

@@ -44,8 +44,8 @@ pub(crate) struct Bidirectional<'a> {
     pub regularize: bool,
 }
 
-/// Radiance that is known at the first wavelength alone, as radiance at all wavelengths with the same
-/// mean.
+/// Radiance that is known at the first wavelength alone, as radiance at all wavelengths with the
+/// same mean.
 pub(crate) fn hero_only(l: SampledSpectrum) -> SampledSpectrum {
     let mut hero = SampledSpectrum::ZERO;
     hero[0] = l[0] * spectrum::N as f32;

@@ -76,9 +76,9 @@ impl Vertex {
         Merges { here: if self.can_merge() { self.alpha } else { 0.0 }, before }
     }
 
-    /// The power of the photon that a light subpath leaves. Of all photons that arrive only the part
-    /// `alpha` stays, so each stands for those that have passed as well: the camera subpath that
-    /// looks for photons has hit the surface already.
+    /// The power of the photon that a light subpath leaves. Of all photons that arrive only the
+    /// part `alpha` stays, so each stands for those that have passed as well: the camera subpath
+    /// that looks for photons has hit the surface already.
     #[inline]
     pub fn photon_beta(&self) -> SampledSpectrum {
         self.beta / self.alpha

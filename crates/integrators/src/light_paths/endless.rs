@@ -1,8 +1,8 @@
 //! Shapes without bounds, and how far light from infinity reaches.
 //!
-//! Light subpaths from infinity start on a disk outside the bounding sphere of all bounded shapes. A
-//! plane is lit by them where they leave the sphere, and nowhere else. Algorithms that sample lights
-//! from surfaces are not affected; those that trace light subpaths miss what lies beyond.
+//! Light subpaths from infinity start on a disk outside the bounding sphere of all bounded shapes.
+//! A plane is lit by them where they leave the sphere, and nowhere else. Algorithms that sample
+//! lights from surfaces are not affected; those that trace light subpaths miss what lies beyond.
 
 use description::{
     Diagnostic, Handle, InstanceDesc, LightKind, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation,

@@ -19,9 +19,10 @@
 //! many. Lights themselves, at depth 0, are found by one camera ray for each pixel, since those at
 //! infinity are no vertices of subpaths.
 //!
-//! Unbiased for what it can see. Surfaces without bounds are black where they lie beyond the scene's
-//! bounds and light comes from infinity (`endless.rs`). A light subpath that a cancellation cuts off
-//! has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+//! Unbiased for what it can see. Surfaces without bounds are black where they lie beyond the
+//! scene's bounds and light comes from infinity (`endless.rs`). A light subpath that a cancellation
+//! cuts off has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993];
+//! [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -30,8 +30,8 @@ pub(super) struct Chains {
 /// The number of a pass whose candidates estimate b₀: no other pass has it.
 const BEFORE_ALL: u32 = u32::MAX;
 
-/// Mutations for each candidate start, at least. With fewer candidates, chains start too often at the
-/// same one.
+/// Mutations for each candidate start, at least. With fewer candidates, chains start too often at
+/// the same one.
 const MUTATIONS_PER_CANDIDATE: usize = 4;
 
 /// Shorter chains than this move too little away from their start.

@@ -15,9 +15,10 @@
 //! I = ∫ f(u) h(p(u)) du = b · E[ f(u)/c(u) · h(p(u)) ],   u of the density c/b,   b = ∫ c(u) du
 //! ```
 //!
-//! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z. `chain.rs`
-//! says how a chain comes to that density, [`PrimarySample`](sampling::sampler::PrimarySample) how
-//! it mutates. The algorithm that makes the paths, the `technique`, is
+//! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z.
+//! `chain.rs` says how a chain comes to that density,
+//! [`PrimarySample`](sampling::sampler::PrimarySample) how it mutates. The algorithm that makes the
+//! paths, the `technique`, is
 //!
 //! - `path`: a camera path with all the light that it finds [Kelemen 2002];
 //! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as
@@ -34,8 +35,8 @@
 //! [Veach 1997 §11.3.1]. So passes are independent pictures, chains are independent of threads, and
 //! the error falls with the number of passes without limit.
 //!
-//! Lights that the camera sees directly are left to one camera ray for each pixel and pass: they are
-//! found without chance, and so bright that chains would spend most of their time on them.
+//! Lights that the camera sees directly are left to one camera ray for each pixel and pass: they
+//! are found without chance, and so bright that chains would spend most of their time on them.
 //!
 //! Unbiased up to `max_depth`, except with `regularize`. What it is bad at: noise is not that of
 //! independent samples but comes in blotches, where a chain stayed; the overall brightness is only

@@ -2,7 +2,8 @@
 //! pass to pass.
 //!
 //! The radiance that a surface at x scatters towards the camera is estimated from the n light
-//! subpaths of a pass by all their vertices within the radius r, as if they had arrived at x itself:
+//! subpaths of a pass by all their vertices within the radius r, as if they had arrived at x
+//! itself:
 //!
 //! ```text
 //! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p/α_p
@@ -12,9 +13,9 @@
 //! position. Of a surface with the alpha α only the part α of the photons stays, while x has been
 //! hit and receives all the light that arrives.
 //!
-//! The estimate blurs light over the radius. The bias of the blur is proportional to r² (to r beside
-//! edges and thin walls, through which light leaks), the variance to 1/r²; both vanish if pass i has
-//! the radius of [Knaus 2011]
+//! The estimate blurs light over the radius. The bias of the blur is proportional to r² (to r
+//! beside edges and thin walls, through which light leaks), the variance to 1/r²; both vanish if
+//! pass i has the radius of [Knaus 2011]
 //!
 //! ```text
 //! r_{i+1}² = r_i² · (i + α)/(i + 1)        so that r_i² ~ i^(α − 1)

@@ -1,9 +1,10 @@
 //! More camera rays for light that reaches the camera by specular surfaces alone.
 //!
-//! No vertex of a specular path can be connected or merged, so it is found by camera rays alone. The
-//! image of a small light in a mirror may be much smaller than a pixel: one ray in thousands hits
-//! it, and makes its pixel as many times too bright. Only more rays help. They cost little compared
-//! with a sample of all strategies, because they end at the first surface that is not specular.
+//! No vertex of a specular path can be connected or merged, so it is found by camera rays alone.
+//! The image of a small light in a mirror may be much smaller than a pixel: one ray in thousands
+//! hits it, and makes its pixel as many times too bright. Only more rays help. They cost little
+//! compared with a sample of all strategies, because they end at the first surface that is not
+//! specular.
 //!
 //! A pixel gets further rays if its own camera ray hits a specular surface first, and if there are
 //! lights that rays can hit. Let S₁ be the first event, and g₁ what the ray then finds by specular

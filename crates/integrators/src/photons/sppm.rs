@@ -3,10 +3,11 @@
 //! A pass emits photons and keeps those that arrive at a diffuse surface after at least one
 //! scattering event ([`merging`](crate::photons::merging)). Then each pixel samples a camera path
 //! through specular and glossy surfaces to the first diffuse one. There the path ends: direct light
-//! is found by next-event estimation, all other light by merging with the photons within the radius.
-//! On the way it looks for lights as path tracing does, by next-event estimation and by chance,
-//! weighted by the balance heuristic; at the end by next-event estimation alone, so that nothing
-//! counts twice. A surface with a specular lobe besides a diffuse one does not end the path.
+//! is found by next-event estimation, all other light by merging with the photons within the
+//! radius. On the way it looks for lights as path tracing does, by next-event estimation and by
+//! chance, weighted by the balance heuristic; at the end by next-event estimation alone, so that
+//! nothing counts twice. A surface with a specular lobe besides a diffuse one does not end the
+//! path.
 //!
 //! It is at its best on caustics seen through glass or in a mirror, which no path from the camera
 //! finds; all pixels share all photons. It is slow where photons are rare: in large scenes of which

@@ -3,34 +3,35 @@
 //! A pass has two steps. First, light subpaths are sampled, one for each pixel, and leave their
 //! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel samples a camera
 //! subpath and connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and
-//! vertices of the camera subpath are merged with the photons within the radius. Merging is one more
-//! family of strategies: a path whose vertex x is made from both ends is found if the two ends lie
-//! within r of each other, so its density is that of the two subpaths, times π r² (the probability
-//! of being that near, if all is smooth), times the number n of photon paths. (Where alpha cuts x
-//! out in part, both ends must hit it, and alpha is one more factor of η.) The balance heuristic
-//! then weighs merging against connecting as it weighs connections against each other:
+//! vertices of the camera subpath are merged with the photons within the radius. Merging is one
+//! more family of strategies: a path whose vertex x is made from both ends is found if the two ends
+//! lie within r of each other, so its density is that of the two subpaths, times π r² (the
+//! probability of being that near, if all is smooth), times the number n of photon paths. (Where
+//! alpha cuts x out in part, both ends must hit it, and alpha is one more factor of η.) The balance
+//! heuristic then weighs merging against connecting as it weighs connections against each other:
 //!
 //! ```text
 //! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
 //! η   = n π r²
 //! ```
 //!
-//! Merging finds what no connection can: a caustic seen through glass. Every pixel uses all photons,
-//! so the size of the light does not matter. Where connecting is good it is better, and gets the
-//! weight: η shrinks with the radius, and the weight of photons with it. Without merging (r → 0)
-//! this is `bdpt`; with nothing but merging it would be photon mapping. Photons that come straight
-//! from a light are not merged: next-event estimation finds the same paths with less noise.
+//! Merging finds what no connection can: a caustic seen through glass. Every pixel uses all
+//! photons, so the size of the light does not matter. Where connecting is good it is better, and
+//! gets the weight: η shrinks with the radius, and the weight of photons with it. Without merging
+//! (r → 0) this is `bdpt`; with nothing but merging it would be photon mapping. Photons that come
+//! straight from a light are not merged: next-event estimation finds the same paths with less
+//! noise.
 //!
 //! Nor is anything merged beyond the first diffuse surface of a camera subpath. From there it goes
-//! anywhere, and where it hits a bright spot by chance, such as the caustic on the far wall, merging
-//! would add all photons of the spot at once. They share one camera subpath, but the balance
-//! heuristic takes them for thousands of independent samples, gives merging nearly all the weight,
-//! and single pixels are too bright until very many passes are made. [Grittmann 2021] account for
-//! this correlation by a factor for each merge that depends on the densities of both subpaths; here
-//! the factor is 1 or 0, which the recursion of a subpath can know. What is left out is found all
-//! the same, by photons that the bright spot has sent to the first diffuse surface, and by
-//! connections. In the mirror room, at 300 × 200 pixels, the variance is half of what it is with
-//! merges everywhere.
+//! anywhere, and where it hits a bright spot by chance, such as the caustic on the far wall,
+//! merging would add all photons of the spot at once. They share one camera subpath, but the
+//! balance heuristic takes them for thousands of independent samples, gives merging nearly all the
+//! weight, and single pixels are too bright until very many passes are made. [Grittmann 2021]
+//! account for this correlation by a factor for each merge that depends on the densities of both
+//! subpaths; here the factor is 1 or 0, which the recursion of a subpath can know. What is left out
+//! is found all the same, by photons that the bright spot has sent to the first diffuse surface,
+//! and by connections. In the mirror room, at 300 × 200 pixels, the variance is half of what it is
+//! with merges everywhere.
 //!
 //! Light that reaches the camera by specular surfaces alone is found by camera rays alone, which
 //! get more samples ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at

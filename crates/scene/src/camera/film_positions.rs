@@ -1,9 +1,9 @@
 //! All film positions of one ray.
 //!
-//! A film that shows all directions has no border: beyond it, where reconstruction filters reach, the
-//! picture continues with another part of itself. A ray thus has many film positions, one on the
-//! film and others around it, and its light reaches the pixels near each of them. The plane of film
-//! positions covers the sphere periodically, for a film of W × H pixels:
+//! A film that shows all directions has no border: beyond it, where reconstruction filters reach,
+//! the picture continues with another part of itself. A ray thus has many film positions, one on
+//! the film and others around it, and its light reaches the pixels near each of them. The plane of
+//! film positions covers the sphere periodically, for a film of W × H pixels:
 //!
 //! | mapping | (x, y) is seen at | repeated every |
 //! |---|---|---|

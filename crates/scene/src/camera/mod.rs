@@ -7,10 +7,10 @@
 //! pbrt). Film positions are in pixels, x to the right and y down, (0, 0) at the top left corner of
 //! the picture, so that the centre of pixel (i, j) is (i + ½, j + ½). Rays are in render space,
 //! their directions have unit length, and their `time` is in the scene's units. For paths from the
-//! lights, [`Camera::we`] is the importance of a ray and [`Camera::sample_wi`] samples the lens from
-//! a point: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of integral 1 over the film
-//! in pixels. Differentials are one pixel wide, to be scaled by [`differential_scale`] when a pixel
-//! takes many samples.
+//! lights, [`Camera::we`] is the importance of a ray and [`Camera::sample_wi`] samples the lens
+//! from a point: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of integral 1 over the
+//! film in pixels. Differentials are one pixel wide, to be scaled by [`differential_scale`] when a
+//! pixel takes many samples.
 
 mod compile;
 mod film_positions;
@@ -94,7 +94,8 @@ impl Camera {
         Self { projection, transform, shutter, minimum_differentials }
     }
 
-    /// The same camera with pixels `n` times as wide and high: film position x shows what n·x showed.
+    /// The same camera with pixels `n` times as wide and high: film position x shows what n·x
+    /// showed.
     pub fn coarser(&self, n: u32) -> Self {
         Self {
             projection: self.projection.coarser(n),

@@ -1,10 +1,10 @@
 //! Emission of photons.
 //!
 //! Light subpaths start at lights in proportion to their power and are scattered as the BSDFs say,
-//! so that all photons carry about the same power and lie where there is light. The first surface of
-//! a subpath that is not purely specular decides what its photons are: direct light if it is the
-//! first surface of all, a caustic if only specular surfaces come before it; and indirect light from
-//! there on.
+//! so that all photons carry about the same power and lie where there is light. The first surface
+//! of a subpath that is not purely specular decides what its photons are: direct light if it is the
+//! first surface of all, a caustic if only specular surfaces come before it; and indirect light
+//! from there on.
 
 use geometry::RayStats;
 use rayon::prelude::*;

@@ -14,8 +14,8 @@
 //! each light path is counted once.
 //!
 //! With a final gather, the global map holds photons of all kinds and is looked up one surface
-//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a surface
-//! that is not purely specular the map gives all that it reflects.
+//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a
+//! surface that is not purely specular the map gives all that it reflects.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
