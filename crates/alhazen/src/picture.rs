@@ -3,17 +3,70 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use image::{Chromaticities, Format, Image, ImageError, WriteOptions};
-use spectrum::{Rgb, RgbColorSpace};
+use image::{Channel, Chromaticities, Format, Image, ImageError, ImageMetadata, PixelSource, WriteOptions};
+use spectrum::{Matrix3, Rgb, RgbColorSpace};
 
-/// Writes a picture in the format of the name's extension. EXR files keep the picture's colour
-/// space and everything that its header says; other formats cannot tell their colour space, and get
-/// sRGB.
-pub fn write_picture(picture: &Image, path: impl AsRef<Path>) -> Result<(), ImageError> {
+/// Writes a picture in the format of the name's extension. EXR files keep all channels, the
+/// picture's colour space and everything that its header says; other formats keep the colours
+/// alone, cannot tell their colour space, and get sRGB.
+pub fn write_picture(picture: &dyn PixelSource, path: impl AsRef<Path>) -> Result<(), ImageError> {
     let path = path.as_ref();
-    let keeps_space = Format::from_name(&path.to_string_lossy()) == Some(Format::Exr);
-    let written = if keeps_space { Cow::Borrowed(picture) } else { in_srgb(picture) };
-    image::write(&written, path, &WriteOptions::default())
+    let format = Format::from_name(&path.to_string_lossy());
+    match color_space(picture.metadata().chromaticities).filter(|_| format != Some(Format::Exr)) {
+        None => image::write(picture, path, &WriteOptions::default()),
+        Some(space) => image::write(&InSrgb::new(picture, space), path, &WriteOptions::default()),
+    }
+}
+
+/// A picture whose colours are converted to sRGB while it is read.
+struct InSrgb<'a> {
+    picture: &'a dyn PixelSource,
+    srgb_from_picture: Matrix3,
+    metadata: ImageMetadata,
+    /// Where the channels R, G and B are.
+    color: Option<[usize; 3]>,
+}
+
+impl<'a> InSrgb<'a> {
+    fn new(picture: &'a dyn PixelSource, space: &RgbColorSpace) -> Self {
+        let channels = picture.channels();
+        let find = |name| channels.iter().position(|channel| channel.name == name);
+        let color = match ["R", "G", "B"].map(find) {
+            [Some(r), Some(g), Some(b)] => Some([r, g, b]),
+            _ => None,
+        };
+        let metadata = ImageMetadata { chromaticities: None, ..picture.metadata().clone() };
+        Self { picture, srgb_from_picture: space.convert(RgbColorSpace::srgb()), metadata, color }
+    }
+}
+
+impl PixelSource for InSrgb<'_> {
+    fn width(&self) -> u32 {
+        self.picture.width()
+    }
+
+    fn height(&self) -> u32 {
+        self.picture.height()
+    }
+
+    fn channels(&self) -> Vec<Channel> {
+        self.picture.channels()
+    }
+
+    fn metadata(&self) -> &ImageMetadata {
+        &self.metadata
+    }
+
+    fn row(&self, y: u32, values: &mut [f32]) {
+        self.picture.row(y, values);
+        let count = values.len() / self.width() as usize;
+        if let Some(color) = self.color {
+            for pixel in values.chunks_exact_mut(count) {
+                let rgb = self.srgb_from_picture.apply_f32(color.map(|c| pixel[c]));
+                (0..3).for_each(|i| pixel[color[i]] = rgb[i]);
+            }
+        }
+    }
 }
 
 /// The colour space with these primaries, unless it is sRGB, or none that is known.
@@ -52,7 +105,7 @@ mod tests {
             [("a.exr", grey_green, 1e-3), ("a.pfm", [0.2, 0.5, 0.3], 1e-4), ("a.png", [0.2, 0.5, 0.3], 1e-2)]
         {
             write_picture(&picture, folder.join(name)).unwrap();
-            let read = Image::open(folder.join(name)).unwrap().rgb(1, 0);
+            let read = image::open(folder.join(name)).unwrap().rgb(1, 0);
             assert!((0..3).all(|c| (read[c] - expected[c]).abs() < tolerance), "{name}: {read:?}");
         }
         std::fs::remove_dir_all(folder).unwrap();

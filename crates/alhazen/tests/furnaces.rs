@@ -9,7 +9,7 @@ mod common;
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use alhazen::image::Image;
+use alhazen::image::{self, Image};
 use alhazen::{Overrides, write_picture};
 use common::{Estimate, means, render_text, rgb_values};
 
@@ -31,7 +31,7 @@ fn picture(integrator: &str, samples: u32, world: &str, overrides: &Overrides) -
         format!("alhazen-furnace-{}-{}.exr", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
     let path = std::env::temp_dir().join(name);
     write_picture(&render_text(&text, overrides), &path).expect("the picture is written");
-    let picture = Image::open(&path).expect("the picture is read");
+    let picture = image::open(&path).expect("the picture is read");
     std::fs::remove_file(path).expect("the picture is removed");
     picture
 }

@@ -9,11 +9,11 @@ mod common;
 use std::path::Path;
 
 use alhazen::Overrides;
-use alhazen::image::Image;
+use alhazen::image::{self, Image};
 use common::{Estimate, data, render_text, shape, shrunk};
 
 fn reference(path: &Path) -> Image {
-    Image::open(path).expect("the reference is readable")
+    image::open(path).expect("the reference is readable")
 }
 
 /// What all scenes begin with: a camera of Mitsuba's hand, and pixels without overlap.

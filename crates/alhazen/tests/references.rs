@@ -10,7 +10,7 @@ mod common;
 use std::path::PathBuf;
 
 use alhazen::Overrides;
-use alhazen::image::Image;
+use alhazen::image::{self, Image};
 use common::{Estimate, data, means, render_scene, render_text, shrunk};
 
 /// The scene's text and reference.
@@ -18,7 +18,7 @@ fn cornell_box() -> Option<(PathBuf, String, Image)> {
     let folder = data("pbrt-bitterli/cornell-box")?;
     let path = folder.join("scene-v4.pbrt");
     let text = std::fs::read_to_string(&path).expect("the scene is readable");
-    let reference = Image::open(folder.join("TungstenRender.exr")).expect("the reference is readable");
+    let reference = image::open(folder.join("TungstenRender.exr")).expect("the reference is readable");
     Some((path, text, reference))
 }
 

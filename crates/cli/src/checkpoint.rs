@@ -1,7 +1,7 @@
 //! Checkpoints: the film file of a render, saved again and again while it runs.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -57,8 +57,9 @@ impl Checkpoint {
     }
 
     fn save(&mut self, session: &Session) {
-        let saved =
-            replace_file_with(&self.path, |file| self.order.write(session, &self.header, file).map(|_| ()));
+        let saved = replace_file_with(&self.path, |file| {
+            self.order.write(session, &self.header, BufWriter::new(file)).map(|_| ())
+        });
         let saved = saved.map_err(|error| about_file(&self.path, error));
         self.last = (session.state().done.count(), saved);
         // How long it takes to save is not to decide how often.

@@ -4,7 +4,7 @@ use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, SceneDesc};
 use math::Bounds2i;
 use spectrum::RgbColorSpace;
 
-use crate::{Film, FilmSettings, Filter, PixelSensor};
+use crate::{Film, FilmSettings, Filter, LayerSet, PixelSensor};
 
 /// The lowest and the highest temperature in kelvin that white balance takes.
 const WHITE_BALANCE: std::ops::RangeInclusive<f32> = 500.0..=100_000.0;
@@ -65,6 +65,7 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
         max_component_value: film.max_component_value,
         color_space,
         half_floats: film.save_fp16,
+        layers: LayerSet::NONE,
     })
 }
 

@@ -10,19 +10,33 @@
 //! (x, y) is at (x + ½, y + ½).
 
 mod compile;
+mod cryptomatte;
+mod develop;
+mod exposure;
 mod file;
 mod film;
 pub mod filter;
+mod grid;
+mod layer;
 mod passes;
+mod rejected;
+mod sample;
 mod sensor;
 mod splats;
 mod sum;
+mod tile;
 
 pub use compile::{Compiled, compile, pixel_bounds};
+pub use cryptomatte::{id_of_name, set_names};
+pub use develop::Development;
 pub use file::{FilmFile, FilmFileError, FilmHeader, FilmWriter, ReadLimits, State};
-pub use film::{Film, FilmSettings, FilmTile, MAX_REJECTED_PIXELS, Rejected, TILE_SIZE};
+pub use film::{Film, FilmSettings, PIXEL_BYTES};
 pub use filter::{Filter, FilterSample};
+pub use grid::TILE_SIZE;
+pub use layer::{Layer, LayerSet};
 pub use passes::PassSet;
+pub use rejected::{MAX_REJECTED_PIXELS, Rejected};
+pub use sample::{FirstHit, Sample};
 pub use sensor::PixelSensor;
 pub use splats::{SPLAT_BYTES, Splatter};
-pub use sum::ExactSum;
+pub use tile::FilmTile;

@@ -1,56 +1,239 @@
 //! Sums that do not depend on the order of addition.
 //!
 //! Floating-point addition rounds after each term, so its result depends on the order. Here each
-//! term is rounded once, to a multiple of 2⁻⁶⁴, and terms are added as integers of 128 bits, which
-//! is exact: any order, any grouping and any number of threads give the same bits.
+//! term is rounded once, to a multiple of 2⁻⁶⁴, and terms are added as integers, which is exact:
+//! any order, any grouping and any number of threads give the same bits. A term is off by 2⁻⁶⁵ ≈
+//! 3·10⁻²⁰ at most, and may be as large as [`MAX_TERM`] = 2⁴⁰ ≈ 10¹².
 //!
-//! Range: a term may be as large as [`ExactSum::MAX_TERM`] = 2⁴⁰ ≈ 10¹², of which 2²³ fit into a
-//! sum; beyond that a sum stays at its largest value. A term is off by 2⁻⁶⁵ ≈ 3·10⁻²⁰ at most.
+//! An array keeps the low 96 bits of each sum, 12 bytes, which reach to ±2³¹. What goes beyond is
+//! rare (bright light sources of many samples) and kept in a map for each tile. The low bits are
+//! those in [−2⁹⁵, 2⁹⁵), so that each sum has one form only.
 
-/// A sum of numbers, independent of their order.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExactSum(i128);
+use std::collections::BTreeMap;
+use std::ops::Range;
 
-impl ExactSum {
-    /// The largest magnitude that a term may have.
-    pub const MAX_TERM: f64 = (1_u64 << 40) as f64;
+use image::ImageError;
 
-    const UNITS_PER_ONE: f64 = 18_446_744_073_709_551_616.0;
+use crate::grid::Grid;
 
-    /// Whether `term` can be added: it is a number and not larger than [`Self::MAX_TERM`].
+/// The largest magnitude that a term may have.
+pub(crate) const MAX_TERM: f64 = (1_u64 << 40) as f64;
+
+/// What the array takes for a sum, in bytes.
+pub(crate) const SUM_BYTES: usize = size_of::<Low>();
+
+const UNITS_PER_ONE: f64 = 18_446_744_073_709_551_616.0;
+
+/// The low 96 bits of a sum in two's complement, the lowest first.
+type Low = [u32; 3];
+
+/// The rest of the sums of a tile, in units of 2⁹⁶, by their index in the tile; none is 0.
+type High = BTreeMap<u16, i64>;
+
+/// Whether `term` can be added: it is a number and not larger than [`MAX_TERM`].
+#[inline]
+pub(crate) fn can_add(term: f64) -> bool {
+    term.abs() <= MAX_TERM
+}
+
+/// A sum's units as the nearest number.
+#[inline]
+pub(crate) fn value(units: i128) -> f64 {
+    units as f64 / UNITS_PER_ONE
+}
+
+/// A term's units.
+#[inline]
+pub(crate) fn units(term: f64) -> i128 {
+    debug_assert!(can_add(term));
+    (term * UNITS_PER_ONE).round_ties_even() as i128
+}
+
+#[inline]
+fn extended([a, b, c]: Low) -> i128 {
+    i128::from(u64::from(a) | u64::from(b) << 32) | i128::from(c as i32) << 64
+}
+
+/// The number in [−2⁹⁵, 2⁹⁵) that has the same low 96 bits.
+#[inline]
+fn low_bits(units: i128) -> i128 {
+    units << 32 >> 32
+}
+
+/// Sums for each pixel of a film, tile after tile.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sums {
+    /// How many sums a pixel has.
+    components: usize,
+    low: Vec<Low>,
+    high: Vec<High>,
+}
+
+impl Sums {
+    /// So many sums for each pixel, all 0; refused where there is no memory for them.
+    pub(crate) fn new(grid: Grid, components: usize) -> Result<Self, ImageError> {
+        if components == 0 {
+            return Ok(Self::default());
+        }
+        let count = grid.0.area().saturating_mul(components);
+        Ok(Self { components, low: zeros(count)?, high: maps(grid.tile_count())? })
+    }
+
+    /// How many sums a pixel has.
+    pub(crate) fn components(&self) -> usize {
+        self.components
+    }
+
+    /// The sums of each tile, of as many pixels as its range says.
+    pub(crate) fn tiles(&mut self, grid: Grid) -> impl Iterator<Item = TileSums<'_>> {
+        let (components, mut rest) = (self.components, &mut self.low[..]);
+        self.high.iter_mut().enumerate().map(move |(tile, high)| {
+            let count = grid.bounds(tile).area() * components;
+            let (low, others) = std::mem::take(&mut rest).split_at_mut(count);
+            rest = others;
+            TileSums { components, low, high }
+        })
+    }
+
+    /// The sums of one tile, whose pixels are in this range.
+    pub(crate) fn tile(&mut self, tile: usize, pixels: Range<usize>) -> TileSums<'_> {
+        let components = self.components;
+        let low = &mut self.low[pixels.start * components..pixels.end * components];
+        TileSums { components, low, high: &mut self.high[tile] }
+    }
+
+    /// A sum in units of 2⁻⁶⁴, as far as 128 bits hold it. `first` is the index of the tile's first
+    /// pixel.
+    pub(crate) fn units(&self, tile: usize, first: usize, pixel: usize, component: usize) -> i128 {
+        let index = pixel * self.components + component;
+        let low = extended(self.low[first * self.components + index]);
+        whole(low, &self.high[tile], index)
+    }
+
+    /// Adds the sums of another film of the same pixels.
+    pub(crate) fn merge(&mut self, other: &Self, grid: Grid) {
+        for (tile, mut sums) in self.tiles(grid).enumerate() {
+            let start = grid.range(tile).start * other.components;
+            sums.merge(&other.low[start..start + sums.low.len()], &other.high[tile]);
+        }
+    }
+}
+
+/// The sum that low and high bits make, as far as 128 bits hold it.
+#[inline]
+fn whole(low: i128, high: &High, index: usize) -> i128 {
+    match high.get(&(index as u16)).filter(|_| !high.is_empty()) {
+        None => low,
+        Some(&high) => {
+            // With low bits that are not negative only sums beyond 128 bits saturate.
+            let (high, low) = if low < 0 { (high - 1, low + (1 << 96)) } else { (high, low) };
+            i128::from(high).saturating_mul(1 << 96).saturating_add(low)
+        }
+    }
+}
+
+/// The sums of one tile.
+#[derive(Debug)]
+pub(crate) struct TileSums<'film> {
+    components: usize,
+    low: &'film mut [Low],
+    high: &'film mut High,
+}
+
+impl TileSums<'_> {
+    /// Adds a term that [`can_add`].
     #[inline]
-    pub fn can_add(term: f64) -> bool {
-        term.abs() <= Self::MAX_TERM
+    pub(crate) fn add(&mut self, pixel: usize, component: usize, term: f64) {
+        self.add_low(pixel * self.components + component, units(term));
     }
 
-    /// Adds a term that [`Self::can_add`].
+    /// Adds units of 2⁻⁶⁴.
+    pub(crate) fn add_units(&mut self, pixel: usize, component: usize, units: i128) {
+        let (index, low) = (pixel * self.components + component, low_bits(units));
+        self.add_low(index, low);
+        // `units` − `low` is a multiple of 2⁹⁶ that may take more than 128 bits.
+        self.add_high(index, (units >> 96) as i64 + i64::from(low < 0));
+    }
+
+    /// Adds units that take less than 127 bits.
     #[inline]
-    pub fn add(&mut self, term: f64) {
-        debug_assert!(Self::can_add(term));
-        self.0 = self.0.saturating_add((term * Self::UNITS_PER_ONE).round_ties_even() as i128);
+    fn add_low(&mut self, index: usize, units: i128) {
+        let sum = extended(self.low[index]) + units;
+        let low = low_bits(sum);
+        self.low[index] = [0, 32, 64].map(|shift| (low >> shift) as u32);
+        if low != sum {
+            self.add_high(index, ((sum - low) >> 96) as i64);
+        }
     }
 
-    /// Adds all terms of another sum.
-    #[inline]
-    pub fn merge(&mut self, other: Self) {
-        self.0 = self.0.saturating_add(other.0);
+    #[cold]
+    fn add_high(&mut self, index: usize, units: i64) {
+        let high = self.high.entry(index as u16).or_insert(0);
+        *high = high.saturating_add(units);
+        if *high == 0 {
+            self.high.remove(&(index as u16));
+        }
     }
 
-    /// The sum in units of 2⁻⁶⁴.
-    pub(crate) fn units(self) -> i128 {
-        self.0
+    fn merge(&mut self, low: &[Low], high: &High) {
+        for (index, &low) in low.iter().enumerate() {
+            self.add_low(index, extended(low));
+        }
+        high.iter().for_each(|(&index, &high)| self.add_high(index.into(), high));
+    }
+}
+
+/// The sums of one tile, with memory of its own.
+#[derive(Clone, Debug)]
+pub(crate) struct OwnTileSums {
+    components: usize,
+    low: Vec<Low>,
+    high: High,
+}
+
+impl OwnTileSums {
+    /// So many sums for each of so many pixels, all 0; refused where there is no memory for them.
+    pub(crate) fn new(pixels: usize, components: usize) -> Result<Self, ImageError> {
+        Ok(Self { components, low: zeros(pixels * components)?, high: High::new() })
     }
 
-    /// The sum of so many units of 2⁻⁶⁴.
-    pub(crate) fn from_units(units: i128) -> Self {
-        Self(units)
+    /// How many sums a pixel has.
+    pub(crate) fn components(&self) -> usize {
+        self.components
     }
 
-    /// The number nearest to the sum.
-    #[inline]
-    pub fn value(self) -> f64 {
-        self.0 as f64 / Self::UNITS_PER_ONE
+    /// The sums, to be added to.
+    pub(crate) fn open(&mut self) -> TileSums<'_> {
+        TileSums { components: self.components, low: &mut self.low, high: &mut self.high }
     }
+
+    /// A sum in units of 2⁻⁶⁴, as far as 128 bits hold it.
+    pub(crate) fn units(&self, pixel: usize, component: usize) -> i128 {
+        let index = pixel * self.components + component;
+        whole(extended(self.low[index]), &self.high, index)
+    }
+
+    /// Adds the sums of another film's tile.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.open().merge(&other.low, &other.high);
+    }
+}
+
+/// So many zeros. The operating system gives their memory when it is first written to.
+pub(crate) fn zeros<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>, ImageError> {
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| no_memory(count * size_of::<T>()))
+}
+
+/// So many empty maps.
+pub(crate) fn maps<K, V>(count: usize) -> Result<Vec<BTreeMap<K, V>>, ImageError> {
+    let mut maps = Vec::new();
+    maps.try_reserve_exact(count).map_err(|_| no_memory(count * size_of::<BTreeMap<K, V>>()))?;
+    maps.resize_with(count, BTreeMap::new);
+    Ok(maps)
+}
+
+fn no_memory(bytes: usize) -> ImageError {
+    ImageError::Limits(format!("no memory for {bytes} bytes of a film"))
 }
 
 #[cfg(test)]
@@ -58,50 +241,91 @@ mod tests {
     use super::*;
     use testkit::Random;
 
-    fn sum(terms: &[f64]) -> ExactSum {
-        let mut sum = ExactSum::default();
-        terms.iter().for_each(|&term| sum.add(term));
+    fn sum(terms: &[f64]) -> OwnTileSums {
+        let mut sum = OwnTileSums::new(1, 1).unwrap();
+        terms.iter().for_each(|&term| sum.open().add(0, 0, term));
         sum
+    }
+
+    fn number(sum: &OwnTileSums) -> f64 {
+        value(sum.units(0, 0))
+    }
+
+    /// Low and high bits.
+    fn bits(sum: &OwnTileSums) -> (Low, Option<i64>) {
+        (sum.low[0], sum.high.get(&0).copied())
     }
 
     #[test]
     fn small_terms_survive_large_ones() {
         let tiny = 2f64.powi(-60);
-        assert_eq!(sum(&[ExactSum::MAX_TERM, tiny, -ExactSum::MAX_TERM]).value(), tiny);
+        assert_eq!(number(&sum(&[MAX_TERM, tiny, -MAX_TERM])), tiny);
         assert_eq!(
-            sum(&[0.1, 0.2, -0.3]).value().abs(),
+            number(&sum(&[0.1, 0.2, -0.3])).abs(),
             2f64.powi(-55),
             "the error of the decimal fractions"
         );
-        assert_eq!(sum(&[2f64.powi(-66); 100]).value(), 0.0, "below the grid");
+        assert_eq!(number(&sum(&[2f64.powi(-66); 100])), 0.0, "below the grid");
     }
 
     #[test]
     fn terms_that_are_not_numbers_or_too_large_cannot_be_added() {
-        for term in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 2.0 * ExactSum::MAX_TERM] {
-            assert!(!ExactSum::can_add(term));
+        for term in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 2.0 * MAX_TERM] {
+            assert!(!can_add(term));
         }
-        assert!(ExactSum::can_add(-ExactSum::MAX_TERM));
+        assert!(can_add(-MAX_TERM));
+    }
+
+    #[test]
+    fn sums_beyond_96_bits_are_exact() {
+        let limit = 2f64.powi(31);
+        let tiny = 2f64.powi(-64);
+        for (terms, expected, high) in [
+            (vec![limit], limit, Some(1)),
+            (vec![limit - tiny * 2f64.powi(60)], limit - tiny * 2f64.powi(60), None),
+            (vec![-limit], -limit, None),
+            (vec![-limit, -tiny], -limit, Some(-1)),
+            (vec![limit, -1.0], limit - 1.0, None),
+            (vec![MAX_TERM; 1000], 1000.0 * MAX_TERM, Some(1000 << 8)),
+            (vec![-MAX_TERM; 1000], -1000.0 * MAX_TERM, Some(-1000 << 8)),
+        ] {
+            let sum = sum(&terms);
+            assert_eq!((number(&sum), bits(&sum).1), (expected, high));
+        }
+    }
+
+    #[test]
+    fn units_of_any_size_are_added_as_they_are() {
+        let limits = [0, 1, -1, (1 << 95) - 1, 1 << 95, -1 << 95, (-1 << 95) - 1, i128::MAX, i128::MIN];
+        for units in limits {
+            let mut sum = OwnTileSums::new(1, 1).unwrap();
+            sum.open().add_units(0, 0, units);
+            assert_eq!(sum.units(0, 0), units);
+            sum.open().add_units(0, 0, -(units / 2));
+            sum.open().add_units(0, 0, -(units - units / 2));
+            assert_eq!(bits(&sum), ([0; 3], None));
+        }
     }
 
     #[test]
     fn any_order_and_grouping_gives_the_same_sum() {
         let mut random = Random::new(1);
         for count in 1..200 {
-            // Magnitudes over sixty powers of two, where a floating-point sum would depend on the
-            // order.
+            // Magnitudes over seventy powers of two, where a floating-point sum would depend on the
+            // order, and carries beyond 96 bits are frequent.
             let mut term =
-                || f64::from(random.get_1d() - 0.5) * 2f64.powi((60.0 * random.get_1d()) as i32 - 30);
+                || f64::from(random.get_1d() - 0.5) * 2f64.powi((70.0 * random.get_1d()) as i32 - 30);
             let terms: Vec<f64> = (0..count).map(|_| term()).collect();
             let whole = sum(&terms);
             let reversed: Vec<f64> = terms.iter().rev().copied().collect();
-            assert_eq!(sum(&reversed), whole);
+            assert_eq!(bits(&sum(&reversed)), bits(&whole));
             let (first, second) = terms.split_at((random.get_1d() * count as f32) as usize);
             let mut merged = sum(second);
-            merged.merge(sum(first));
-            assert_eq!(merged, whole);
+            merged.merge(&sum(first));
+            assert_eq!(bits(&merged), bits(&whole));
+            assert_eq!(whole.units(0, 0), terms.iter().map(|&term| units(term)).sum::<i128>());
             let magnitude: f64 = terms.iter().map(|x| x.abs()).sum();
-            let error = (whole.value() - terms.iter().sum::<f64>()).abs();
+            let error = (number(&whole) - terms.iter().sum::<f64>()).abs();
             assert!(error <= 1e-14 * magnitude + count as f64 * 2f64.powi(-65));
         }
     }

@@ -94,9 +94,9 @@ fn what_is_written_is_read_again() {
 
 #[test]
 fn a_film_that_was_read_goes_on_like_the_original() {
-    let mut file = read(&bytes(&passes(&[0..3]))).unwrap();
+    let mut file = read(&bytes(&PassSet::from(0..3))).unwrap();
     add_pass(&mut file.picture, 3);
-    assert_eq!(floats(&file.picture), floats(&film(&passes(&[0..4]))));
+    assert_eq!(floats(&file.picture), floats(&film(&PassSet::from(0..4))));
 }
 
 #[test]
@@ -127,9 +127,9 @@ fn every_filter_is_read_as_it_was_written() {
 
 #[test]
 fn parts_merge_to_the_bits_of_the_whole_in_any_order() {
-    let all = passes(&[0..8]);
+    let all = PassSet::from(0..8);
     let whole = film(&all);
-    let parts = [passes(&[0..1, 6..8]), passes(&[1..4]), passes(&[4..6])].map(|part| bytes(&part));
+    let parts = [passes(&[0..1, 6..8]), PassSet::from(1..4), PassSet::from(4..6)].map(|part| bytes(&part));
     for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0]] {
         let mut file = read(&parts[order[0]]).unwrap();
         for &part in &order[1..] {
@@ -150,14 +150,15 @@ fn parts_merge_to_the_bits_of_the_whole_in_any_order() {
 
 #[test]
 fn files_of_other_renders_and_doubled_passes_are_refused() {
-    let file = || read(&bytes(&passes(&[0..3]))).unwrap();
+    let file = || read(&bytes(&PassSet::from(0..3))).unwrap();
     let refusal = |change: &dyn Fn(&mut FilmFile)| {
-        let mut other = read(&bytes(&passes(&[3..4]))).unwrap();
+        let mut other = read(&bytes(&PassSet::from(3..4))).unwrap();
         change(&mut other);
         let limits = ReadLimits::default();
         file().merge(&other.write(Vec::new()).unwrap()[..], &limits).unwrap_err().to_string()
     };
-    let cases: [(&dyn Fn(&mut FilmFile), &str); 8] = [
+    type Change<'a> = &'a dyn Fn(&mut FilmFile);
+    let cases: [(Change, &str); 8] = [
         (&|file| file.header.scene_hash[3] ^= 1, "the scenes differ"),
         (&|file| file.header.settings.push(' '), "the settings differ"),
         (&|file| file.header.seed = 4, "the seeds differ"),
@@ -175,7 +176,7 @@ fn files_of_other_renders_and_doubled_passes_are_refused() {
 
 #[test]
 fn files_of_any_shorter_length_are_refused() {
-    let bytes = bytes(&passes(&[0..1]));
+    let bytes = bytes(&PassSet::from(0..1));
     for length in 0..bytes.len() {
         match read(&bytes[..length]) {
             Err(FilmFileError::Foreign) if length < 8 => (),
@@ -189,7 +190,7 @@ fn files_of_any_shorter_length_are_refused() {
 
 #[test]
 fn every_flipped_bit_is_noticed() {
-    let bytes = bytes(&passes(&[0..1]));
+    let bytes = bytes(&PassSet::from(0..1));
     let mut random = Random::new(8);
     for byte in 0..bytes.len() {
         let mut damaged = bytes.clone();
@@ -204,7 +205,7 @@ fn every_flipped_bit_is_noticed() {
 
 #[test]
 fn errors_name_the_section_and_what_is_wrong_with_it() {
-    let bytes = bytes(&passes(&[0..1]));
+    let bytes = bytes(&PassSet::from(0..1));
     let message = |bytes: &[u8]| read(bytes).unwrap_err().to_string();
     assert_eq!(message(b"PNG"), "not a film file");
     let mut newer = bytes.clone();
@@ -284,7 +285,7 @@ fn errors_of_reading_and_writing_are_passed_on() {
 
 #[test]
 fn any_bytes_after_the_version_are_survived() {
-    let start = bytes(&passes(&[0..1]))[..12].to_vec();
+    let start = bytes(&PassSet::from(0..1))[..12].to_vec();
     let mut random = Random::new(2);
     for length in 0..300 {
         let noise = (0..length).map(|_| (256.0 * random.get_1d()) as u8);

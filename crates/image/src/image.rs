@@ -1,15 +1,16 @@
 //! The pixel array.
 
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 use half::f16;
 use math::Point2;
 
 use crate::{
-    codec::{self, ReadOptions},
+    depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
     metadata::{ImageMetadata, Window},
+    source::{Channel, PixelSource, alpha_channel, color_channels},
     wrap::WrapMode,
 };
 
@@ -106,12 +107,6 @@ impl Image {
             }
         }
         Self::new(width, height, channels, Pixels::F32(values)).expect("a valid size was asked for")
-    }
-
-    /// Reads a file; the format is found from its content, then its extension.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, ImageError> {
-        let path = path.as_ref();
-        codec::read(&std::fs::read(path)?, &path.to_string_lossy(), &ReadOptions::default())
     }
 
     /// Number of columns.
@@ -363,23 +358,32 @@ impl Image {
     }
 }
 
-/// Which channels are red, green and blue: R, G, B by name, else those of the first layer that has
-/// them ("layer.R"), else Y, else the first channel.
-fn color_channels(channels: &[String]) -> [usize; 3] {
-    let find = |name: &str| channels.iter().position(|channel| channel == name);
-    let layers = std::iter::once("")
-        .chain(channels.iter().filter_map(|c| c.strip_suffix('R').filter(|l| l.ends_with('.'))));
-    for layer in layers {
-        if let [Some(r), Some(g), Some(b)] = ["R", "G", "B"].map(|c| find(&format!("{layer}{c}"))) {
-            return [r, g, b];
+impl PixelSource for Image {
+    fn width(&self) -> u32 {
+        self.width
+    }
+
+    fn height(&self) -> u32 {
+        self.height
+    }
+
+    fn channels(&self) -> Vec<Channel> {
+        let depth = match self.pixels {
+            Pixels::U8(..) => SampleDepth::U8,
+            Pixels::F16(_) => SampleDepth::F16,
+            Pixels::F32(_) => SampleDepth::F32,
+        };
+        self.channels.iter().map(|name| Channel { name: name.clone(), depth }).collect()
+    }
+
+    fn metadata(&self) -> &ImageMetadata {
+        &self.metadata
+    }
+
+    fn row(&self, y: u32, values: &mut [f32]) {
+        let (start, count) = (self.offset(0, y), self.channels.len());
+        for (index, value) in values.iter_mut().enumerate() {
+            *value = self.value(start + index, index % count);
         }
     }
-    [find("Y").unwrap_or(0); 3]
-}
-
-fn alpha_channel(channels: &[String]) -> Option<usize> {
-    channels
-        .iter()
-        .position(|name| name == "A")
-        .or_else(|| channels.iter().position(|name| name.ends_with(".A")))
 }

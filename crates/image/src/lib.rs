@@ -7,27 +7,31 @@
 //! far two pictures are apart.
 
 pub mod codec;
+mod depth;
 mod encoding;
 mod error;
 pub mod false_color;
 pub mod flip;
 mod image;
+mod memory;
 mod metadata;
 pub mod metrics;
 mod projection;
 mod pyramid;
 mod resample;
+mod source;
 mod wrap;
 
 pub use codec::{
-    Format, ImageInfo, LayerInfo, ReadOptions, Sample, SampleDepth, WriteOptions, encode, info, link_target,
-    read, replace_file, replace_file_with, write,
+    Format, ImageInfo, LayerInfo, ReadOptions, Sample, WriteOptions, encode, info, link_target, open, read,
+    replace_file, replace_file_with, write,
 };
+pub use depth::SampleDepth;
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};
 pub use metadata::{Attribute, Chromaticities, ImageMetadata, Window};
 pub use projection::Projection;
 pub use pyramid::{Pyramid, TextureFilter};
-
+pub use source::{Channel, PixelSource};
 pub use wrap::WrapMode;

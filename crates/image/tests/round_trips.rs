@@ -6,7 +6,7 @@ use std::{fs, path::PathBuf};
 
 use alhazen_image::{
     Attribute, Chromaticities, ColorEncoding, Format, Image, ImageError, Pixels, ReadOptions, SampleDepth,
-    Window, WriteOptions, encode, read, write,
+    Window, WriteOptions, encode, open, read, write,
 };
 use proptest::{prelude::*, test_runner::RngSeed};
 
@@ -179,7 +179,7 @@ fn files_appear_whole_and_nothing_else_does() {
         for _ in 0..2 {
             write(&gradient(3), &path, &WriteOptions::default()).unwrap();
         }
-        assert_eq!(Image::open(&path).unwrap().width(), gradient(3).width());
+        assert_eq!(open(&path).unwrap().width(), gradient(3).width());
     }
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), Format::ALL.len());
 }

@@ -54,7 +54,7 @@ fn every_compression_means_the_same_picture() {
         ("f16/piz", HALVES),
         ("f16/b44", [125.0085, 151.2103, 216.6967]),
     ] {
-        let image = Image::open(data.join(format!("images/exr-methods/{file}.exr"))).unwrap();
+        let image = alhazen_image::open(data.join(format!("images/exr-methods/{file}.exr"))).unwrap();
         assert_eq!(matches!(image.pixels(), Pixels::F16(_)), file.starts_with("f16"), "{file}");
         for (found, expected) in mean(&image).into_iter().zip(expected) {
             assert!((found - expected).abs() < 1e-3 * expected, "{file}: {found} is not {expected}");
@@ -65,7 +65,7 @@ fn every_compression_means_the_same_picture() {
 #[test]
 fn windows_are_kept_apart() {
     let Some(data) = common::data_folder() else { return };
-    let image = Image::open(data.join("images/exr/t05.exr")).unwrap();
+    let image = alhazen_image::open(data.join("images/exr/t05.exr")).unwrap();
     assert_eq!(image.data_window(), Window { min: [0, 0], max: [400, 300] });
     assert_eq!(image.display_window(), Window { min: [30, 20], max: [370, 280] });
 }

@@ -80,7 +80,7 @@ impl Folder {
     }
 
     pub fn image(&self, name: &str) -> alhazen::image::Image {
-        alhazen::image::Image::open(self.0.join(name)).expect("a picture")
+        alhazen::image::open(self.0.join(name)).expect("a picture")
     }
 }
 

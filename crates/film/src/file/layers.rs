@@ -2,11 +2,12 @@
 
 use super::FilmFileError;
 use super::section::Fields;
-use crate::{Film, MAX_REJECTED_PIXELS, TILE_SIZE};
+use crate::grid::Grid;
+use crate::{Film, MAX_REJECTED_PIXELS, Rejected, TILE_SIZE};
 
 /// Appends what a film counts as a whole: paths of splats and refused samples.
 pub fn put_totals(payload: &mut Vec<u8>, film: &Film) {
-    payload.extend(film.path_count().to_le_bytes());
+    payload.extend(film.splats.paths().to_le_bytes());
     let rejected = film.rejected();
     payload.extend(rejected.count.to_le_bytes());
     payload.push(rejected.pixels().count() as u8);
@@ -15,7 +16,7 @@ pub fn put_totals(payload: &mut Vec<u8>, film: &Film) {
 
 /// Adds what [`put_totals`] has written.
 pub fn add_totals(fields: &mut Fields, film: &mut Film) -> Result<(), FilmFileError> {
-    film.add_path_count(fields.u64()?);
+    film.splats.add_paths(fields.u64()?);
     let (count, pixels) = (fields.u64()?, fields.u8()?);
     if usize::from(pixels) > MAX_REJECTED_PIXELS || u64::from(pixels) > count {
         return Err(fields.wrong(&format!("it remembers {pixels} of {count} refused samples")));
@@ -24,34 +25,99 @@ pub fn add_totals(fields: &mut Fields, film: &mut Film) -> Result<(), FilmFileEr
     for _ in 0..pixels {
         remembered.push([fields.i32()?, fields.i32()?]);
     }
-    film.add_rejected(count, remembered);
+    film.add_rejected(&Rejected::new(count, remembered));
     Ok(())
 }
 
-/// Appends the sums of a row of tiles: tile by tile, component by component, each as a block.
+/// Appends the sums of a row of tiles: tile by tile, component by component, each as a block, then
+/// identifiers.
 pub fn put_row(payload: &mut Vec<u8>, film: &Film, row: usize) {
-    for tile in film.tiles_of_row(row) {
-        for component in 0..film.component_count() {
-            put_block(payload, &film.sums(tile, component));
+    for tile in film.grid.row(row) {
+        let (range, mut numbers) = (film.grid.range(tile), Vec::new());
+        let mut put = |number: &dyn Fn(usize) -> i128| {
+            numbers.clear();
+            numbers.extend((0..range.len()).map(number));
+            put_block(payload, &numbers);
+        };
+        for c in 0..film.color.components() {
+            put(&|pixel| film.color.units(tile, range.start, pixel, c));
+        }
+        if !film.counts.is_empty() {
+            put(&|pixel| film.counts[range.start + pixel].into());
+        }
+        for c in 0..film.data.components() {
+            put(&|pixel| film.data.units(tile, range.start, pixel, c));
+        }
+        if !film.splats.is_empty() {
+            let sums = film.splats.tile(tile);
+            (0..sums.components()).for_each(|c| put(&|pixel| sums.units(pixel, c)));
+        }
+        for ids in film.ids.iter().filter_map(|ids| ids.get(tile)) {
+            payload.extend((ids.len() as u32).to_le_bytes());
+            for (&(pixel, id), weight) in ids {
+                payload.extend(pixel.to_le_bytes());
+                payload.extend(id.to_le_bytes());
+                payload.extend(weight.to_le_bytes());
+            }
         }
     }
 }
 
 /// Adds what [`put_row`] has written.
 pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), FilmFileError> {
-    for tile in film.tiles_of_row(row) {
-        for component in 0..film.component_count() {
-            let sums = block(fields, film.tile_area(tile))?;
-            film.add_sums(tile, component, &sums).map_err(|problem| fields.wrong(&problem))?;
+    for tile in film.grid.row(row) {
+        let range = film.grid.range(tile);
+        for c in 0..film.color.components() {
+            let sums = block(fields, range.len())?;
+            let mut tile = film.color.tile(tile, range.clone());
+            sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+        }
+        if !film.counts.is_empty() {
+            let counts = block(fields, range.len())?;
+            for (sum, count) in film.counts[range.clone()].iter_mut().zip(counts) {
+                let count = u32::try_from(count).map_err(|_| fields.wrong(&format!("{count} samples")))?;
+                *sum = sum.saturating_add(count);
+            }
+        }
+        for c in 0..film.data.components() {
+            let sums = block(fields, range.len())?;
+            let mut tile = film.data.tile(tile, range.clone());
+            sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+        }
+        if !film.splats.is_empty() {
+            let mut own = film.splats.tile(tile);
+            for c in 0..own.components() {
+                let sums = block(fields, range.len())?;
+                let mut tile = own.open();
+                sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+            }
+        }
+        for ids in film.ids.iter_mut().filter_map(|ids| ids.get_mut(tile)) {
+            for _ in 0..fields.u32()? {
+                let (pixel, id) = (fields.array().map(u16::from_le_bytes)?, fields.u32()?);
+                if usize::from(pixel) >= range.len() {
+                    return Err(fields.wrong(&format!("an identifier in pixel {pixel} of {}", range.len())));
+                }
+                let sum = ids.entry((pixel, id)).or_insert(0);
+                *sum = sum.saturating_add(fields.array().map(i128::from_le_bytes)?);
+            }
         }
     }
     Ok(())
 }
 
-/// The most bytes that a row of tiles takes.
-pub fn max_row_bytes(film: &Film) -> u64 {
+/// The most bytes that a row of tiles takes; any number that fits in `limit` where there are
+/// identifiers.
+pub fn max_row_bytes(film: &Film, limit: u64) -> u64 {
+    if film.ids.iter().any(|ids| !ids.is_empty()) {
+        return limit;
+    }
+    let Grid(bounds) = film.grid;
+    let count = usize::from(!film.counts.is_empty());
+    let splats = if film.splats.is_empty() { 0 } else { film.splats.tile(0).components() };
+    let components = film.color.components() + count + film.data.components() + splats;
     let tile = 1 + 16 * TILE_SIZE as u64 * TILE_SIZE as u64;
-    film.tiles_of_row(0).len() as u64 * film.component_count() as u64 * tile
+    (bounds.width() as u64).div_ceil(TILE_SIZE as u64) * components as u64 * tile
 }
 
 /// Appends whole numbers, each in as many bytes as the longest of them needs, with that length

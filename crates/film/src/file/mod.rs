@@ -175,7 +175,7 @@ impl<W: Write> FilmWriter<W> {
         settings::put(&mut payload, film);
         layers::put_totals(&mut payload, film);
         self.sections.write(FILM, &[&payload])?;
-        for row in 0..film.tile_rows() {
+        for row in 0..film.grid.rows() {
             payload.clear();
             layers::put_row(&mut payload, film, row);
             self.sections.write(ROWS, &[&payload])?;
@@ -231,7 +231,7 @@ impl FilmFile {
                 return Err(fields.wrong(&format!("there are two films `{name}`")));
             }
             let mut film = settings::read(&mut fields, &mut limits)?;
-            add_rows(&mut film, fields, &mut sections)?;
+            add_rows(&mut film, fields, &mut sections, limits.max_bytes)?;
             films.push((name, film));
             section = sections.read(&[END, FILM, STATE], limits.max_bytes.max(MAX_SETTINGS))?;
         }
@@ -273,7 +273,7 @@ impl FilmFile {
                     .ok_or_else(missing)?,
             };
             settings::check(&mut fields, film)?;
-            add_rows(film, fields, &mut sections)?;
+            add_rows(film, fields, &mut sections, limits.max_bytes)?;
             merged.push(name);
             section = sections.read(&[END, FILM, STATE], limits.max_bytes.max(MAX_SETTINGS))?;
         }
@@ -302,11 +302,12 @@ fn add_rows<R: Read>(
     film: &mut Film,
     mut fields: Fields,
     sections: &mut SectionReader<R>,
+    max_bytes: u64,
 ) -> Result<(), FilmFileError> {
     layers::add_totals(&mut fields, film)?;
     fields.finish()?;
-    for row in 0..film.tile_rows() {
-        let section = sections.read(&[ROWS], layers::max_row_bytes(film))?;
+    for row in 0..film.grid.rows() {
+        let section = sections.read(&[ROWS], layers::max_row_bytes(film, max_bytes))?;
         let mut fields = section.fields();
         layers::add_row(&mut fields, film, row)?;
         fields.finish()?;

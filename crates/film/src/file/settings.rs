@@ -6,7 +6,11 @@ use spectrum::{Matrix3, RgbColorSpace};
 use super::FilmFileError;
 use super::ReadLimits;
 use super::section::{Fields, put_text};
-use crate::{Film, FilmSettings, Filter, PixelSensor};
+use crate::{Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
+
+/// The layers of every film's pixels: colour of samples, and splats.
+const COLOR: &str = "color";
+const SPLATS: &str = "splats";
 
 /// Appends the settings of a film, and the names of its layers.
 pub fn put(payload: &mut Vec<u8>, film: &Film) {
@@ -24,7 +28,10 @@ pub fn put(payload: &mut Vec<u8>, film: &Film) {
     payload.extend(settings.max_component_value.to_le_bytes());
     put_text(payload, settings.color_space.name());
     payload.push(settings.half_floats.into());
-    let layers = film.layer_names();
+    let color = (!film.counts.is_empty()).then_some(COLOR);
+    let splats = (!film.splats.is_empty()).then_some(SPLATS);
+    let layers: Vec<_> =
+        color.into_iter().chain(settings.layers.iter().map(Layer::name)).chain(splats).collect();
     payload.push(layers.len() as u8);
     layers.iter().for_each(|name| put_text(payload, name));
 }
@@ -53,6 +60,17 @@ pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFi
     let color_space = RgbColorSpace::named(color_space)
         .ok_or_else(|| fields.wrong(&format!("an unknown colour space `{color_space}`")))?;
     let half_floats = fields.u8()? != 0;
+    let (mut color, mut splats, mut layers) = (false, false, LayerSet::NONE);
+    for _ in 0..fields.u8()? {
+        match fields.text()? {
+            COLOR => color = true,
+            SPLATS => splats = true,
+            name => {
+                let unknown = || fields.wrong(&format!("an unknown layer `{name}`"));
+                layers = layers.with(Layer::from_name(name).ok_or_else(unknown)?);
+            }
+        }
+    }
     let settings = FilmSettings {
         full_resolution,
         pixel_bounds: Bounds2i { min, max },
@@ -62,14 +80,18 @@ pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFi
         max_component_value,
         color_space,
         half_floats,
+        layers,
     };
-    let mut layers = Vec::new();
-    for _ in 0..fields.u8()? {
-        layers.push(fields.text()?);
-    }
-    let bytes = Film::bytes_of(&settings, &layers).map_err(|problem| fields.wrong(&problem))?;
-    limits.take(bytes, "a film")?;
-    Film::with_layers(settings, &layers).map_err(|error| FilmFileError::Limits(error.to_string()))
+    let pixels = settings.pixel_bounds.area() as u64;
+    limits.take(pixels.saturating_mul(Film::pixel_bytes(layers, color, splats)), "a film")?;
+    let film = if color { Film::new(settings) } else { Film::of_splats(settings) };
+    let reserved = film.and_then(|mut film| {
+        if splats {
+            film.reserve_splats()?;
+        }
+        Ok(film)
+    });
+    reserved.map_err(|error| FilmFileError::Limits(error.to_string()))
 }
 
 /// Reads what [`put`] has written, and refuses settings that are not those of this film.

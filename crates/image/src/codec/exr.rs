@@ -5,7 +5,7 @@
 //! Blocks are unpacked on the calling thread pool rather than by the crate's own threads, as a
 //! panic on those would end the process. Sources: [OpenEXR file layout].
 
-use std::io::Cursor;
+use std::io::{BufWriter, Cursor, Read, Seek, SeekFrom, Write};
 
 use exr::{
     block::{self, BlockIndex, UncompressedBlock, chunk::Chunk, reader::ChunksReader, writer::ChunksWriter},
@@ -21,11 +21,14 @@ use half::f16;
 use math::Mat4;
 use rayon::prelude::*;
 
-use super::{ReadOptions, SampleDepth, WriteOptions};
+use super::{ReadOptions, WriteOptions};
 use crate::{
+    depth::SampleDepth,
     error::ImageError,
     image::{Image, Pixels},
+    memory::filled,
     metadata::{Attribute, Chromaticities, ImageMetadata, Window},
+    source::{Channel, PixelSource},
 };
 
 /// How many blocks are in memory packed and unpacked at a time.
@@ -49,11 +52,11 @@ pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> 
     let count = width * height * names.len();
     let target = Target { width, channels: &slots };
     let pixels = if all_half {
-        let mut values = vec![f16::ZERO; count];
+        let mut values = filled(count, f16::ZERO)?;
         read_blocks(chunks, bytes.len(), |block| target.scatter(block, &header, f16::from_f32, &mut values))?;
         Pixels::F16(values)
     } else {
-        let mut values = vec![0.0; count];
+        let mut values = filled(count, 0.0)?;
         read_blocks(chunks, bytes.len(), |block| target.scatter(block, &header, |v| v, &mut values))?;
         Pixels::F32(values)
     };
@@ -229,61 +232,83 @@ fn from_attribute(value: &AttributeValue) -> Option<Attribute> {
 }
 
 /// Writes scan lines packed by ZIP, sixteen at a time.
-pub fn encode(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
-    let half = match options.depth {
-        SampleDepth::Natural => !matches!(image.pixels(), Pixels::F32(_)),
-        SampleDepth::F16 => true,
-        SampleDepth::F32 => false,
-        depth => {
-            return Err(ImageError::Unsupported(format!("EXR does not hold samples of depth {depth:?}")));
-        }
+pub fn encode(
+    picture: &dyn PixelSource,
+    options: &WriteOptions,
+    output: &mut (impl Read + Write + Seek),
+) -> Result<(), ImageError> {
+    let sample_type = |depth| match (options.depth, depth) {
+        (SampleDepth::Natural, SampleDepth::F32) | (SampleDepth::F32, _) => Ok(SampleType::F32),
+        (SampleDepth::Natural, _) | (SampleDepth::F16, _) => Ok(SampleType::F16),
+        (depth, _) => Err(ImageError::Unsupported(format!("EXR does not hold samples of depth {depth:?}"))),
     };
-    let sample_type = if half { SampleType::F16 } else { SampleType::F32 };
-    let mut order: Vec<usize> = (0..image.channel_count()).collect();
-    order.sort_by_key(|&c| image.channels()[c].as_bytes());
-    let channels = order
+    let channels = picture.channels();
+    let mut order: Vec<usize> = (0..channels.len()).collect();
+    order.sort_by_key(|&c| channels[c].name.as_bytes());
+    let descriptions = order
         .iter()
-        .map(|&c| Ok(ChannelDescription::named(to_text(&image.channels()[c])?, sample_type)))
+        .map(|&c| {
+            let Channel { name, depth } = &channels[c];
+            Ok(ChannelDescription::named(to_text(name)?, sample_type(*depth)?))
+        })
         .collect::<Result<_, ImageError>>()?;
 
-    let size = Vec2(image.width() as usize, image.height() as usize);
-    let (shared, own) = attributes(image)?;
-    let header = Header::new(Text::default(), size, channels)
+    let size = Vec2(picture.width() as usize, picture.height() as usize);
+    let (shared, own) = attributes(picture)?;
+    let header = Header::new(Text::default(), size, descriptions)
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(own)
         .with_shared_attributes(shared);
     let headers = exr::meta::Headers::from_iter([header]);
-    let mut bytes = Cursor::new(Vec::new());
-    block::write(&mut bytes, headers, true, |meta, writer| {
-        let blocks: Vec<_> = block::enumerate_ordered_header_block_indices(&meta.headers).collect();
-        let chunks = blocks
-            .into_par_iter()
-            .map(|(index, block)| {
-                let block = pack(image, &order, half, &meta.headers[0], block);
-                Ok((index, block.compress_to_chunk(&meta.headers)?))
-            })
-            .collect::<exr::error::Result<Vec<_>>>()?;
-        chunks.into_iter().try_for_each(|(index, chunk)| writer.write_chunk(index, chunk))
+    let start = output.stream_position()?;
+    let mut buffered = BufWriter::new(&mut *output);
+    block::write(&mut buffered, headers, true, |meta, writer| {
+        let mut blocks = block::enumerate_ordered_header_block_indices(&meta.headers);
+        loop {
+            let batch: Vec<_> = blocks.by_ref().take(BATCH).collect();
+            if batch.is_empty() {
+                return Ok(());
+            }
+            let chunks = batch
+                .into_par_iter()
+                .map(|(index, block)| {
+                    let block = pack(picture, &order, &meta.headers[0], block);
+                    Ok((index, block.compress_to_chunk(&meta.headers)?))
+                })
+                .collect::<exr::error::Result<Vec<_>>>()?;
+            chunks.into_iter().try_for_each(|(index, chunk)| writer.write_chunk(index, chunk))?;
+        }
     })
     .map_err(from_library)?;
-    let mut bytes = bytes.into_inner();
-    sort_attributes(&mut bytes);
-    Ok(bytes)
+    buffered.flush()?;
+    drop(buffered);
+    sort_attributes(output, start)
 }
 
 /// Puts the attributes of a file's header in the order of their names: the library leaves it to
 /// chance, and the same picture is to be the same bytes. Nothing that follows the header moves.
-fn sort_attributes(file: &mut [u8]) {
+fn sort_attributes(file: &mut (impl Read + Write + Seek), start: u64) -> Result<(), ImageError> {
     /// The magic number and the version.
-    const BEFORE: usize = 8;
-    let (mut attributes, mut end) = (Vec::new(), BEFORE);
-    while let Some(length) = attribute_length(&file[end..]) {
-        attributes.push(file[end..end + length].to_vec());
-        end += length;
+    const BEFORE: u64 = 8;
+    file.seek(SeekFrom::Start(start + BEFORE))?;
+    let (mut header, mut attributes, mut end) = (Vec::new(), Vec::new(), 0);
+    loop {
+        let more = file.take(1 << 16).read_to_end(&mut header)?;
+        while let Some(length) = attribute_length(&header[end..]) {
+            attributes.push(end..end + length);
+            end += length;
+        }
+        if more == 0 || header.get(end) == Some(&0) {
+            break;
+        }
     }
     // No name is the beginning of another one with its zero.
-    attributes.sort_unstable();
-    file[BEFORE..end].copy_from_slice(&attributes.concat());
+    attributes.sort_unstable_by_key(|range| &header[range.clone()]);
+    let sorted: Vec<u8> = attributes.into_iter().flat_map(|range| header[range].iter().copied()).collect();
+    file.seek(SeekFrom::Start(start + BEFORE))?;
+    file.write_all(&sorted)?;
+    file.seek(SeekFrom::End(0))?;
+    Ok(())
 }
 
 /// How long the attribute is with which a header begins: name and type, each with a zero after it,
@@ -296,24 +321,32 @@ fn attribute_length(header: &[u8]) -> Option<usize> {
     Some(value + 4 + u32::from_le_bytes(length) as usize).filter(|&length| length <= header.len())
 }
 
-fn pack(image: &Image, order: &[usize], half: bool, header: &Header, block: BlockIndex) -> UncompressedBlock {
+fn pack(picture: &dyn PixelSource, order: &[usize], header: &Header, block: BlockIndex) -> UncompressedBlock {
+    let count = order.len();
+    let mut row = vec![0.0; picture.width() as usize * count];
+    let mut in_row = None;
     UncompressedBlock::from_lines(&header.channels, block, |line| {
         let Vec2(x0, y) = line.location.position;
-        let c = order[line.location.channel];
-        let sample = |x: usize| image.channel((x0 + x) as u32, y as u32, c);
-        let size = if half { 2 } else { 4 };
-        for (x, bytes) in line.value.chunks_exact_mut(size).enumerate() {
-            if half {
-                bytes.copy_from_slice(&f16::from_f32(sample(x)).to_ne_bytes());
-            } else {
-                bytes.copy_from_slice(&sample(x).to_ne_bytes());
+        if in_row != Some(y) {
+            picture.row(y as u32, &mut row);
+            in_row = Some(y);
+        }
+        let channel = line.location.channel;
+        let samples = row[x0 * count + order[channel]..].iter().step_by(count);
+        if header.channels.list[channel].sample_type == SampleType::F16 {
+            for (bytes, &sample) in line.value.chunks_exact_mut(2).zip(samples) {
+                bytes.copy_from_slice(&f16::from_f32(sample).to_ne_bytes());
+            }
+        } else {
+            for (bytes, &sample) in line.value.chunks_exact_mut(4).zip(samples) {
+                bytes.copy_from_slice(&sample.to_ne_bytes());
             }
         }
     })
 }
 
-fn attributes(image: &Image) -> Result<(ImageAttributes, LayerAttributes), ImageError> {
-    let metadata = &image.metadata;
+fn attributes(image: &dyn PixelSource) -> Result<(ImageAttributes, LayerAttributes), ImageError> {
+    let metadata = image.metadata();
     let data = image.data_window();
     if (data.width(), data.height()) != (image.width(), image.height()) {
         return Err(ImageError::Invalid(format!("{data:?} is not the size of the image")));

@@ -12,14 +12,16 @@ mod raster;
 
 use std::{
     fs::{self, File, OpenOptions},
-    io::{self, BufWriter, Write},
+    io::{self, Cursor, Read, Seek, Write},
     panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
 };
 
 pub use info::{ImageInfo, LayerInfo, Sample, info};
 
-use crate::{encoding::ColorEncoding, error::ImageError, image::Image};
+use crate::{
+    depth::SampleDepth, encoding::ColorEncoding, error::ImageError, image::Image, source::PixelSource,
+};
 
 /// A file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,23 +145,6 @@ impl ReadOptions {
     }
 }
 
-/// How values are stored in a file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SampleDepth {
-    /// What suits the format: in EXR the depth of the image in memory (halves for 8-bit images), in
-    /// TIFF single floats for floating-point images, else 8 bits where the format has integers.
-    #[default]
-    Natural,
-    /// 8-bit codes.
-    U8,
-    /// 16-bit codes.
-    U16,
-    /// Half floats.
-    F16,
-    /// Single floats.
-    F32,
-}
-
 /// How to write.
 #[derive(Clone, Debug, Default)]
 pub struct WriteOptions {
@@ -182,18 +167,43 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, Im
         .unwrap_or_else(|_| Err(ImageError::Invalid(format!("damaged {format:?} data"))))
 }
 
-/// Encodes an image as the bytes of a file. Integer formats hold sRGB codes of the colour clamped
+/// Reads a file; the format is found from its content, then its extension.
+pub fn open(path: impl AsRef<Path>) -> Result<Image, ImageError> {
+    let path = path.as_ref();
+    read(&fs::read(path)?, &path.to_string_lossy(), &ReadOptions::default())
+}
+
+/// Encodes a picture as the bytes of a file. Integer formats hold sRGB codes of the colour clamped
 /// to [0, 1].
-pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
+pub fn encode(
+    picture: &dyn PixelSource,
+    format: Format,
+    options: &WriteOptions,
+) -> Result<Vec<u8>, ImageError> {
+    let mut bytes = Cursor::new(Vec::new());
+    encode_to(picture, format, options, &mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+fn encode_to(
+    picture: &dyn PixelSource,
+    format: Format,
+    options: &WriteOptions,
+    output: &mut (impl Read + Write + Seek),
+) -> Result<(), ImageError> {
     match format {
-        Format::Exr => exr::encode(image, options),
-        Format::Pfm => pfm::encode(image, options),
-        _ => raster::encode(image, format, options),
+        Format::Exr => exr::encode(picture, options, output),
+        Format::Pfm => pfm::encode(picture, options, output),
+        _ => raster::encode(picture, format, options, output),
     }
 }
 
-/// Writes an image to a file in the format of its extension, by [`replace_file`].
-pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> Result<(), ImageError> {
+/// Writes a picture to a file in the format of its extension, by [`replace_file_with`].
+pub fn write(
+    picture: &dyn PixelSource,
+    path: impl AsRef<Path>,
+    options: &WriteOptions,
+) -> Result<(), ImageError> {
     let path = path.as_ref();
     let Some(format) = Format::from_name(&path.to_string_lossy()) else {
         let known = Format::ALL.map(|format| format.extensions()[0]).join(", ");
@@ -202,7 +212,11 @@ pub fn write(image: &Image, path: impl AsRef<Path>, options: &WriteOptions) -> R
             path.display()
         )));
     };
-    Ok(replace_file(path, &encode(image, format, options)?)?)
+    if is_special(path) {
+        // A pipe cannot be written in two directions.
+        return Ok(replace_file(path, &encode(picture, format, options)?)?);
+    }
+    replace_file_with(path, |file| encode_to(picture, format, options, file))
 }
 
 /// Writes a file that appears whole or not at all; see [`replace_file_with`].
@@ -212,22 +226,18 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// Writes a file that appears whole or not at all: it is written beside its final place and then
 /// moved there. Symbolic links are followed: their target is replaced, and they stay. What is no
-/// file, such as a pipe, is written as it is.
+/// file, such as a pipe, is written as it is. `write` is given the file without a buffer.
 pub fn replace_file_with<E: From<io::Error>>(
     path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), E>,
+    write: impl FnOnce(&mut File) -> Result<(), E>,
 ) -> Result<(), E> {
     let path = &link_target(path);
-    if fs::metadata(path).is_ok_and(|existing| !existing.is_file()) {
-        let mut file = BufWriter::new(OpenOptions::new().write(true).open(path)?);
-        write(&mut file)?;
-        return Ok(file.flush()?);
+    if is_special(path) {
+        return write(&mut OpenOptions::new().write(true).open(path)?);
     }
-    let (file, temporary) = create_beside(path)?;
-    let mut file = BufWriter::new(file);
+    let (mut file, temporary) = create_beside(path)?;
     let written = write(&mut file).and_then(|()| {
-        file.flush()?;
-        file.get_ref().sync_all()?;
+        file.sync_all()?;
         Ok(fs::rename(&temporary, path)?)
     });
     if written.is_err() {
@@ -236,6 +246,11 @@ pub fn replace_file_with<E: From<io::Error>>(
         let _ = fs::remove_file(&temporary);
     }
     written
+}
+
+/// Whether something is there that is no file.
+fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|existing| !existing.is_file())
 }
 
 /// The file that a path leads to through symbolic links, whether it exists or not; the path itself
@@ -258,7 +273,7 @@ fn create_beside(path: &Path) -> io::Result<(File, PathBuf)> {
     let mut attempt = 0;
     loop {
         let temporary = path.with_file_name(format!(".{name}.{}-{attempt}.part", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&temporary) {
+        match OpenOptions::new().read(true).write(true).create_new(true).open(&temporary) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => attempt += 1,
             result => return result.map(|file| (file, temporary)),
         }

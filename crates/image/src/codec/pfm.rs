@@ -2,10 +2,15 @@
 //! whose sign tells the byte order (negative: little endian), then rows of single floats from the
 //! **bottom** up [Debevec, PFM format].
 
-use super::{ReadOptions, SampleDepth, WriteOptions};
+use std::io::{BufWriter, Write};
+
+use super::{ReadOptions, WriteOptions};
 use crate::{
+    depth::SampleDepth,
     error::ImageError,
     image::{Image, Pixels},
+    memory::reserved,
+    source::{PixelSource, color_channels},
 };
 
 /// The values are multiplied by the scale's magnitude.
@@ -30,7 +35,7 @@ pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> 
     }
     let magnitude = scale.abs();
     let from_bytes = if scale < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
-    let mut values = Vec::with_capacity(row * height as usize);
+    let mut values = reserved(row * height as usize)?;
     for y in (0..height as usize).rev() {
         let (samples, _) = data[4 * row * y..4 * row * (y + 1)].as_chunks();
         values.extend(samples.iter().map(|&sample| magnitude * from_bytes(sample)));
@@ -38,21 +43,30 @@ pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> 
     Image::new(width, height, channels.iter().copied(), Pixels::F32(values))
 }
 
-/// Writes little-endian single floats: three channels where the image has colour, else one.
-pub fn encode(image: &Image, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
+/// Writes little-endian single floats: three channels where the picture has colour, else one.
+pub fn encode(
+    picture: &dyn PixelSource,
+    options: &WriteOptions,
+    output: &mut impl Write,
+) -> Result<(), ImageError> {
     if !matches!(options.depth, SampleDepth::Natural | SampleDepth::F32) {
         return Err(ImageError::Unsupported("PFM holds single floats only".into()));
     }
-    let (kind, count) = if image.is_color() { ("PF", 3) } else { ("Pf", 1) };
-    let mut bytes = format!("{kind}\n{} {}\n-1.0\n", image.width(), image.height()).into_bytes();
-    for y in (0..image.height()).rev() {
-        for x in 0..image.width() {
-            for value in &image.rgb(x, y)[..count] {
-                bytes.extend(value.to_le_bytes());
+    let channels = picture.channels();
+    let color = color_channels(&channels);
+    let (kind, count) = if color[0] != color[1] { ("PF", 3) } else { ("Pf", 1) };
+    let mut output = BufWriter::new(output);
+    write!(output, "{kind}\n{} {}\n-1.0\n", picture.width(), picture.height())?;
+    let mut row = vec![0.0; picture.width() as usize * channels.len()];
+    for y in (0..picture.height()).rev() {
+        picture.row(y, &mut row);
+        for pixel in row.chunks_exact(channels.len()) {
+            for &c in &color[..count] {
+                output.write_all(&pixel[c].to_le_bytes())?;
             }
         }
     }
-    Ok(bytes)
+    Ok(output.flush()?)
 }
 
 /// Words of the header; one white space ends each, and more may stand before it.

@@ -1,17 +1,20 @@
 //! PNG, JPEG, Radiance HDR, TGA, BMP, QOI and TIFF, by the `image` crate.
 
-use std::io::Cursor;
+use std::io::{BufWriter, Cursor, Seek, Write};
 
 use image_rs::{
-    DynamicImage, ImageBuffer, ImageError as RasterError, ImageFormat, ImageReader, Limits, Luma, LumaA, Rgb,
-    Rgba, codecs::jpeg::JpegEncoder,
+    DynamicImage, ImageBuffer, ImageDecoder, ImageError as RasterError, ImageFormat, ImageReader, Limits,
+    Luma, LumaA, Rgb, Rgba, codecs::jpeg::JpegEncoder,
 };
 
-use super::{Format, ReadOptions, SampleDepth, WriteOptions};
+use super::{Format, ReadOptions, WriteOptions};
 use crate::{
+    depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
     image::{Image, Pixels},
+    memory::{collected, filled, reserved},
+    source::{PixelSource, alpha_channel, color_channels},
 };
 
 /// Of 100; at this one losses are hard to see.
@@ -25,36 +28,41 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
     limits.max_image_width = Some(1 << 20);
     limits.max_image_height = Some(1 << 20);
     reader.limits(limits);
-    let decoded = reader.decode().map_err(from_library)?;
+    let decoder = reader.into_decoder().map_err(from_library)?;
+    let ((width, height), color_type) = (decoder.dimensions(), decoder.color_type());
+    let size = usize::try_from(decoder.total_bytes())
+        .ok()
+        .filter(|&size| size as u64 <= options.byte_limit(bytes.len()))
+        .ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))?;
+    let mut samples = filled(size, 0)?;
+    // Where memory is short, the library's own work would end the program: it is tried out.
+    drop(reserved::<u8>(size)?);
+    decoder.read_image(&mut samples).map_err(from_library)?;
     if format == Format::Png {
         check_palette(bytes)?;
     }
-    let (width, height) = (decoded.width(), decoded.height());
     let encoding = options.encoding();
-    let codes = |values: Vec<u8>| Pixels::U8(values, encoding);
-    let linear = |values: Vec<u16>, alpha_every: usize| {
-        let value = |(index, code)| {
-            let code = f32::from(code) / 65535.0;
-            if index % alpha_every == alpha_every - 1 { code } else { encoding.to_linear(code) }
-        };
-        Pixels::F32(values.into_iter().enumerate().map(value).collect())
+    let count = usize::from(color_type.channel_count());
+    let channels: &[&str] = match count {
+        1 => &["Y"],
+        2 => &["Y", "A"],
+        3 => &["R", "G", "B"],
+        _ => &["R", "G", "B", "A"],
     };
-    const Y: &[&str] = &["Y"];
-    const YA: &[&str] = &["Y", "A"];
-    const RGB: &[&str] = &["R", "G", "B"];
-    const RGBA: &[&str] = &["R", "G", "B", "A"];
-    let (channels, pixels) = match decoded {
-        DynamicImage::ImageLuma8(buffer) => (Y, codes(buffer.into_raw())),
-        DynamicImage::ImageLumaA8(buffer) => (YA, codes(buffer.into_raw())),
-        DynamicImage::ImageRgb8(buffer) => (RGB, codes(buffer.into_raw())),
-        DynamicImage::ImageRgba8(buffer) => (RGBA, codes(buffer.into_raw())),
-        DynamicImage::ImageLuma16(buffer) => (Y, linear(buffer.into_raw(), usize::MAX)),
-        DynamicImage::ImageLumaA16(buffer) => (YA, linear(buffer.into_raw(), 2)),
-        DynamicImage::ImageRgb16(buffer) => (RGB, linear(buffer.into_raw(), usize::MAX)),
-        DynamicImage::ImageRgba16(buffer) => (RGBA, linear(buffer.into_raw(), 4)),
-        DynamicImage::ImageRgb32F(buffer) => (RGB, Pixels::F32(buffer.into_raw())),
-        DynamicImage::ImageRgba32F(buffer) => (RGBA, Pixels::F32(buffer.into_raw())),
-        _ => return Err(ImageError::Unsupported(format!("{format:?} of an unknown pixel layout"))),
+    let pixels = match usize::from(color_type.bytes_per_pixel()) / count {
+        1 => Pixels::U8(samples, encoding),
+        2 => {
+            let linear = |(index, code): (usize, &[u8; 2])| {
+                let code = f32::from(u16::from_ne_bytes(*code)) / 65535.0;
+                let alpha = count % 2 == 0 && index % count == count - 1;
+                if alpha { code } else { encoding.to_linear(code) }
+            };
+            Pixels::F32(collected(size / 2, samples.as_chunks().0.iter().enumerate().map(linear))?)
+        }
+        _ => {
+            let values = samples.as_chunks().0.iter().map(|&bytes| f32::from_ne_bytes(bytes));
+            Pixels::F32(collected(size / 4, values)?)
+        }
     };
     Image::new(width, height, channels.iter().copied(), pixels)
 }
@@ -74,7 +82,7 @@ fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
         return Ok(());
     }
     let size = reader.output_buffer_size().ok_or_else(|| ImageError::Limits("PNG".into()))?;
-    let mut packed = vec![0; size];
+    let mut packed = filled(size, 0)?;
     let frame = reader.next_frame(&mut packed).map_err(damaged)?;
     let index = |row: &[u8], x: usize| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xff >> (8 - bits));
     let known = |row: &[u8]| (0..width).all(|x| usize::from(index(row, x)) < color_count);
@@ -86,10 +94,16 @@ fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
 
 /// Integer formats hold sRGB codes of the colour clamped to [0, 1]; alpha is kept where the format
 /// has it.
-pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<Vec<u8>, ImageError> {
+pub fn encode(
+    picture: &dyn PixelSource,
+    format: Format,
+    options: &WriteOptions,
+    output: &mut (impl Write + Seek),
+) -> Result<(), ImageError> {
+    let channels = picture.channels();
     let depth = match (format, options.depth) {
         (Format::Hdr, SampleDepth::Natural) => SampleDepth::F32,
-        (Format::Tiff, SampleDepth::Natural) if !matches!(image.pixels(), Pixels::U8(..)) => SampleDepth::F32,
+        (Format::Tiff, SampleDepth::Natural) if channels[0].depth != SampleDepth::U8 => SampleDepth::F32,
         (_, SampleDepth::Natural) => SampleDepth::U8,
         (_, depth) => depth,
     };
@@ -103,60 +117,89 @@ pub fn encode(image: &Image, format: Format, options: &WriteOptions) -> Result<V
         return Err(ImageError::Unsupported(format!("{format:?} does not hold samples of depth {depth:?}")));
     }
     let keeps_alpha = !matches!(format, Format::Hdr | Format::Jpeg);
+    let color = color_channels(&channels);
     // Only some formats have grey images, and no float writer of the library does.
-    let grey = !image.is_color() && depth != SampleDepth::F32 && !matches!(format, Format::Qoi);
-    let alpha = image.alpha_index().filter(|_| keeps_alpha);
-    let colored = if grey { 1 } else { 3 };
-    let mut values = Vec::with_capacity(image.width() as usize * image.height() as usize * 4);
-    for y in 0..image.height() {
-        for x in 0..image.width() {
-            values.extend_from_slice(&image.rgb(x, y)[..colored]);
-            values.extend(alpha.map(|c| image.channel(x, y, c)));
-        }
-    }
-    let buffer = dynamic(image.width(), image.height(), &values, colored, alpha.is_some(), depth)
-        .ok_or_else(|| ImageError::Limits(format!("{} × {} pixels", image.width(), image.height())))?;
-    let mut bytes = Cursor::new(Vec::new());
+    let grey = color[0] == color[1] && depth != SampleDepth::F32 && !matches!(format, Format::Qoi);
+    let alpha = alpha_channel(&channels).filter(|_| keeps_alpha);
+    let written: Vec<usize> = color[..if grey { 1 } else { 3 }].iter().copied().chain(alpha).collect();
+    let buffer = dynamic(picture, &Layout { channels: channels.len(), written, alpha }, depth)?;
+    let mut output = BufWriter::new(output);
     match format {
-        Format::Jpeg => buffer.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)),
-        _ => buffer.write_to(&mut bytes, library_format(format)?),
+        Format::Jpeg => buffer.write_with_encoder(JpegEncoder::new_with_quality(&mut output, JPEG_QUALITY)),
+        _ => buffer.write_to(&mut output, library_format(format)?),
     }
     .map_err(from_library)?;
-    Ok(bytes.into_inner())
+    Ok(output.flush()?)
 }
 
-/// The library's image of linear values, `colored` colour channels and perhaps alpha a pixel.
+/// Which of a picture's channels are written.
+struct Layout {
+    /// How many channels it has.
+    channels: usize,
+    /// Which of them are written, in this order.
+    written: Vec<usize>,
+    /// Which of them is alpha.
+    alpha: Option<usize>,
+}
+
+impl Layout {
+    /// The written values, each made of a linear one and the encoding of its channel.
+    fn collect<T>(
+        &self,
+        picture: &dyn PixelSource,
+        convert: impl Fn(f32, ColorEncoding) -> T,
+    ) -> Result<Vec<T>, ImageError> {
+        let (width, height) = (picture.width() as usize, picture.height() as usize);
+        let mut values = reserved(width * height * self.written.len())?;
+        let mut row = vec![0.0; width * self.channels];
+        for y in 0..picture.height() {
+            picture.row(y, &mut row);
+            for pixel in row.chunks_exact(self.channels) {
+                values.extend(self.written.iter().map(|&c| {
+                    let linear = self.alpha == Some(c);
+                    convert(pixel[c], if linear { ColorEncoding::Linear } else { ColorEncoding::Srgb })
+                }));
+            }
+        }
+        Ok(values)
+    }
+}
+
+/// The library's image of a picture.
 fn dynamic(
-    width: u32,
-    height: u32,
-    values: &[f32],
-    colored: usize,
-    alpha: bool,
+    picture: &dyn PixelSource,
+    layout: &Layout,
     depth: SampleDepth,
-) -> Option<DynamicImage> {
-    let count = colored + usize::from(alpha);
-    let code = |index: usize| {
-        let encoding = if index % count == colored { ColorEncoding::Linear } else { ColorEncoding::Srgb };
-        encoding.from_linear(values[index])
-    };
-    let u8s = || (0..values.len()).map(|i| (code(i) * 255.0 + 0.5) as u8).collect::<Vec<_>>();
-    let u16s = || (0..values.len()).map(|i| (code(i) * 65535.0 + 0.5) as u16).collect::<Vec<_>>();
-    Some(match (depth, colored, alpha) {
+) -> Result<DynamicImage, ImageError> {
+    let (width, height) = (picture.width(), picture.height());
+    let u8s = || layout.collect(picture, |v, encoding| (encoding.from_linear(v) * 255.0 + 0.5) as u8);
+    let u16s = || layout.collect(picture, |v, encoding| (encoding.from_linear(v) * 65535.0 + 0.5) as u16);
+    let floats = || layout.collect(picture, |v, _| v);
+    let image: Option<DynamicImage> = match (depth, layout.written.len(), layout.alpha.is_some()) {
         (SampleDepth::F32, _, false) => {
-            ImageBuffer::<Rgb<f32>, _>::from_raw(width, height, values.to_vec())?.into()
+            ImageBuffer::<Rgb<f32>, _>::from_raw(width, height, floats()?).map(Into::into)
         }
         (SampleDepth::F32, _, true) => {
-            ImageBuffer::<Rgba<f32>, _>::from_raw(width, height, values.to_vec())?.into()
+            ImageBuffer::<Rgba<f32>, _>::from_raw(width, height, floats()?).map(Into::into)
         }
-        (SampleDepth::U16, 1, false) => ImageBuffer::<Luma<u16>, _>::from_raw(width, height, u16s())?.into(),
-        (SampleDepth::U16, 1, true) => ImageBuffer::<LumaA<u16>, _>::from_raw(width, height, u16s())?.into(),
-        (SampleDepth::U16, _, false) => ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, u16s())?.into(),
-        (SampleDepth::U16, _, true) => ImageBuffer::<Rgba<u16>, _>::from_raw(width, height, u16s())?.into(),
-        (_, 1, false) => ImageBuffer::<Luma<u8>, _>::from_raw(width, height, u8s())?.into(),
-        (_, 1, true) => ImageBuffer::<LumaA<u8>, _>::from_raw(width, height, u8s())?.into(),
-        (_, _, false) => ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, u8s())?.into(),
-        (_, _, true) => ImageBuffer::<Rgba<u8>, _>::from_raw(width, height, u8s())?.into(),
-    })
+        (SampleDepth::U16, 1, _) => {
+            ImageBuffer::<Luma<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
+        }
+        (SampleDepth::U16, 2, _) => {
+            ImageBuffer::<LumaA<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
+        }
+        (SampleDepth::U16, 3, _) => {
+            ImageBuffer::<Rgb<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
+        }
+        (SampleDepth::U16, ..) => {
+            ImageBuffer::<Rgba<u16>, _>::from_raw(width, height, u16s()?).map(Into::into)
+        }
+        (_, 1, _) => ImageBuffer::<Luma<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
+        (_, 2, _) => ImageBuffer::<LumaA<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
+        (_, 3, _) => ImageBuffer::<Rgb<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
+        _ => ImageBuffer::<Rgba<u8>, _>::from_raw(width, height, u8s()?).map(Into::into),
+    };
+    image.ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))
 }
 
 pub(super) fn library_format(format: Format) -> Result<ImageFormat, ImageError> {

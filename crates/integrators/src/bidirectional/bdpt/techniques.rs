@@ -2,8 +2,8 @@
 //! or both.
 //!
 //! All of them are films of splats, on which the light of one path of n counts 1/n; a sample of a
-//! pixel, one of as many as there are pixels, is added to its pixel alone. Each takes 48 bytes for
-//! each pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events, are 2.4
+//! pixel, one of as many as there are pixels, is added to its pixel alone. Each takes 36 bytes for
+//! each pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events, are 1.8
 //! KiB for each pixel. More than 2 GiB are refused.
 
 use film::{Film, SPLAT_BYTES, Splatter};
@@ -131,10 +131,10 @@ mod tests {
     }
 
     #[test]
-    fn each_film_takes_48_bytes_for_a_pixel() {
+    fn each_film_takes_36_bytes_for_a_pixel() {
         for (max_depth, films) in [(0, 1), (1, 4), (5, 26), (8, 53), (100, 53)] {
-            assert_eq!(Techniques::new(max_depth, true, false).bytes(10), films * 480);
-            assert_eq!(Techniques::new(max_depth, true, true).bytes(10), 2 * films * 480);
+            assert_eq!(Techniques::new(max_depth, true, false).bytes(10), films * 360);
+            assert_eq!(Techniques::new(max_depth, true, true).bytes(10), 2 * films * 360);
         }
         assert_eq!(Techniques::new(5, false, false).bytes(10), 0);
     }

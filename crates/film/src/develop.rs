@@ -1,0 +1,175 @@
+//! From a film's sums to a picture.
+
+use std::ops::RangeInclusive;
+
+use image::{Channel, Chromaticities, Image, ImageMetadata, PixelSource, SampleDepth, Window};
+use spectrum::{Matrix3, Rgb};
+
+use crate::exposure::within_half;
+use crate::film::ID_LAYERS;
+use crate::sum::value;
+use crate::{Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
+
+/// The depth of pixels in which nothing is hit: the usual number for "infinitely far" in
+/// compositing, where infinity itself would spoil arithmetic.
+const FAR: f32 = 1e10;
+
+impl Film {
+    /// The picture as it stands: linear R, G and B in the film's colour space, without layers.
+    pub fn develop(&self) -> Image {
+        let development = Development::new(self, LayerSet::NONE);
+        let (width, height) = (development.width(), development.height());
+        let mut row = vec![0.0; 3 * width as usize];
+        let image = Image::from_fn(width, height, ["R", "G", "B"], |x, y| {
+            if x == 0 {
+                development.row(y, &mut row);
+            }
+            [0, 1, 2].map(|c| row[3 * x as usize + c])
+        });
+        let mut image = if self.half_floats() { image.to_f16() } else { image };
+        image.metadata = development.metadata;
+        image
+    }
+
+    /// The picture with all layers, row by row while it is written, so that a large one needs no
+    /// copy in memory.
+    pub fn development(&self) -> Development<'_> {
+        Development::new(self, self.layers())
+    }
+}
+
+/// A film that is developed while it is written.
+///
+/// Beside R, G and B there are the channels of the layers: A; Z; N, P, uv and motion; albedo;
+/// samples and variance; and for identifiers those of Cryptomatte. All but the colours, alpha and
+/// albedo are single floats.
+#[derive(Debug)]
+pub struct Development<'film> {
+    film: &'film Film,
+    layers: LayerSet,
+    output_from_sensor: Matrix3,
+    channels: Vec<Channel>,
+    /// What the picture knows about itself.
+    pub metadata: ImageMetadata,
+}
+
+impl<'film> Development<'film> {
+    fn new(film: &'film Film, layers: LayerSet) -> Self {
+        let color_space = film.color_space();
+        let [red, green, blue] = color_space.primaries();
+        let bounds = film.pixel_bounds();
+        let mut metadata = ImageMetadata {
+            chromaticities: Some(Chromaticities { red, green, blue, white: color_space.white() }),
+            data_window: Some(Window { min: bounds.min, max: bounds.max }),
+            display_window: Some(Window { min: [0, 0], max: film.full_resolution() }),
+            ..ImageMetadata::default()
+        };
+        let color_depth = if film.half_floats() { SampleDepth::F16 } else { SampleDepth::F32 };
+        let channel = |name: &str, depth| Channel { name: name.to_owned(), depth };
+        let mut channels = ["R", "G", "B"].map(|name| channel(name, color_depth)).to_vec();
+        for layer in layers.iter() {
+            let depth =
+                if matches!(layer, Layer::Alpha | Layer::Albedo) { color_depth } else { SampleDepth::F32 };
+            channels.extend(layer.channels().iter().map(|name| channel(name, depth)));
+            if layer.is_id() {
+                channels.extend(cryptomatte::channels(layer).map(|name| channel(&name, depth)));
+                cryptomatte::describe(layer, &mut metadata);
+            }
+        }
+        let output_from_sensor = color_space.rgb_from_xyz() * film.exposure.sensor.xyz_from_sensor_rgb();
+        Self { film, layers, output_from_sensor, channels, metadata }
+    }
+
+    /// Colour and layers of a pixel of a tile, channel by channel.
+    fn pixel(&self, tile: usize, first: usize, pixel: usize, mut put: impl FnMut(f32)) {
+        let film = self.film;
+        let color = |c| value(film.color.units(tile, first, pixel, c));
+        let weight = if film.counts.is_empty() { 0.0 } else { color(3) };
+        let mean = if weight == 0.0 { [0.0; 3] } else { [0, 1, 2].map(|c| color(c) / weight) };
+        let splat = film.splats.value(tile, pixel);
+        let response = [0, 1, 2].map(|c| mean[c] + splat[c]);
+        let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
+        let rgb = if film.half_floats() { within_half(rgb) } else { rgb };
+        rgb.to_array().into_iter().for_each(&mut put);
+        for layer in self.layers.iter() {
+            self.layer(layer, [tile, first, pixel], weight, &mut put);
+        }
+    }
+
+    fn layer(&self, layer: Layer, [tile, first, pixel]: [usize; 3], weight: f64, mut put: impl FnMut(f32)) {
+        let film = self.film;
+        let sum = |c| value(film.data.units(tile, first, pixel, c));
+        let quotient = |a: f64, b: f64| if b == 0.0 { 0.0 } else { (a / b) as f32 };
+        let offset = film.layout.offset(layer).unwrap_or(0);
+        match layer {
+            Layer::Samples => put(film.counts[first + pixel] as f32),
+            Layer::Variance => {
+                let moments = [0, 1, 2].map(|i| sum(offset + i));
+                put(self.variance([tile, first, pixel], moments, weight));
+            }
+            Layer::ObjectId | Layer::MaterialId => {
+                let ids = &film.ids[usize::from(layer == ID_LAYERS[1])][tile];
+                let covered = ids.range(keys(pixel)).map(|(&(_, id), &weight)| (id, value(weight)));
+                cryptomatte::ranks(covered, sum(1)).for_each(put);
+            }
+            _ => {
+                let divisor = if layer.is_mean_of_hits() { sum(0) } else { weight };
+                if layer == Layer::Depth && divisor == 0.0 {
+                    return put(FAR);
+                }
+                (0..layer.sums()).for_each(|i| put(quotient(sum(offset + i), divisor)));
+            }
+        }
+    }
+
+    /// The variance of a pixel's luminance, the mean of n samples yᵢ of weights wᵢ: n/(n−1) Σ wᵢ²
+    /// (yᵢ − ȳ)² / (Σ wᵢ)².
+    fn variance(&self, [tile, first, pixel]: [usize; 3], [ww, wwy, wwyy]: [f64; 3], weight: f64) -> f32 {
+        let count = f64::from(self.film.counts[first + pixel]);
+        if count < 2.0 || weight == 0.0 {
+            return 0.0;
+        }
+        let mean = value(self.film.color.units(tile, first, pixel, 1)) / weight;
+        let squares = (wwyy - 2.0 * mean * wwy + mean * mean * ww).max(0.0);
+        (count / (count - 1.0) * squares / (weight * weight)) as f32
+    }
+}
+
+/// The identifiers of a pixel among those of its tile.
+fn keys(pixel: usize) -> RangeInclusive<(u16, u32)> {
+    (pixel as u16, 0)..=(pixel as u16, u32::MAX)
+}
+
+impl PixelSource for Development<'_> {
+    fn width(&self) -> u32 {
+        self.film.pixel_bounds().width() as u32
+    }
+
+    fn height(&self) -> u32 {
+        self.film.pixel_bounds().height() as u32
+    }
+
+    fn channels(&self) -> Vec<Channel> {
+        self.channels.clone()
+    }
+
+    fn metadata(&self) -> &ImageMetadata {
+        &self.metadata
+    }
+
+    fn row(&self, y: u32, values: &mut [f32]) {
+        let (grid, side) = (self.film.grid, TILE_SIZE as usize);
+        let mut values = values.iter_mut();
+        for tile in grid.row(y as usize / side) {
+            let (first, width) = (grid.range(tile).start, grid.bounds(tile).width() as usize);
+            let row = y as usize % side * width;
+            for pixel in row..row + width {
+                self.pixel(tile, first, pixel, |number| {
+                    if let Some(value) = values.next() {
+                        *value = number;
+                    }
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! The layers that a film can have beside its colour.
+
+use std::fmt;
+
+/// A layer beside the colour: what is known of the samples of a pixel, or of what they hit first.
+///
+/// Alpha, albedo and variance are means as the colour is. The other quantities of a first hit are
+/// means over the samples that hit something, of which those with a negative filter weight do not
+/// count: such a mean never lies outside the range of its values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Layer {
+    /// Opacity: which part of a pixel is covered.
+    Alpha,
+    /// Distance from the camera, in units of the scene.
+    Depth,
+    /// Shading normal in world space.
+    Normal,
+    /// Reflectance under white light.
+    Albedo,
+    /// Position in world space.
+    Position,
+    /// Surface parameters (u, v).
+    Uv,
+    /// How far the point moves on the film while the shutter is open, in pixels.
+    Motion,
+    /// Which objects are in the pixel, and how much of it they cover.
+    ObjectId,
+    /// Which materials are in the pixel, and how much of it they cover.
+    MaterialId,
+    /// Number of samples.
+    Samples,
+    /// Estimated variance of the pixel's luminance, as far as it comes from samples.
+    Variance,
+}
+
+impl Layer {
+    /// Every layer.
+    pub const ALL: [Self; 11] = [
+        Self::Alpha,
+        Self::Depth,
+        Self::Normal,
+        Self::Albedo,
+        Self::Position,
+        Self::Uv,
+        Self::Motion,
+        Self::ObjectId,
+        Self::MaterialId,
+        Self::Samples,
+        Self::Variance,
+    ];
+
+    /// Its name, as the command line and film files have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Alpha => "alpha",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Albedo => "albedo",
+            Self::Position => "position",
+            Self::Uv => "uv",
+            Self::Motion => "motion",
+            Self::ObjectId => "object-id",
+            Self::MaterialId => "material-id",
+            Self::Samples => "samples",
+            Self::Variance => "variance",
+        }
+    }
+
+    /// The layer of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|layer| layer.name() == name)
+    }
+
+    /// The names of its channels in a picture; none where they depend on the pixels.
+    pub(crate) fn channels(self) -> &'static [&'static str] {
+        match self {
+            Self::Alpha => &["A"],
+            Self::Depth => &["Z"],
+            Self::Normal => &["N.X", "N.Y", "N.Z"],
+            Self::Albedo => &["albedo.R", "albedo.G", "albedo.B"],
+            Self::Position => &["P.X", "P.Y", "P.Z"],
+            Self::Uv => &["uv.U", "uv.V"],
+            Self::Motion => &["motion.X", "motion.Y"],
+            Self::Samples => &["samples"],
+            Self::Variance => &["variance"],
+            Self::ObjectId | Self::MaterialId => &[],
+        }
+    }
+
+    /// How many sums it has for a pixel.
+    pub(crate) fn sums(self) -> usize {
+        match self {
+            // Σ w², Σ w² y and Σ w² y² of the luminance y.
+            Self::Variance => 3,
+            // Samples are counted in any case.
+            Self::Samples => 0,
+            _ => self.channels().len(),
+        }
+    }
+
+    /// Whether it is a mean over the samples that hit something.
+    pub(crate) fn is_mean_of_hits(self) -> bool {
+        matches!(self, Self::Depth | Self::Normal | Self::Position | Self::Uv | Self::Motion)
+    }
+
+    /// Whether it counts identifiers.
+    pub(crate) fn is_id(self) -> bool {
+        matches!(self, Self::ObjectId | Self::MaterialId)
+    }
+
+    /// Whether it takes what a sample hits first.
+    fn is_of_first_hit(self) -> bool {
+        self.is_mean_of_hits() || self.is_id() || self == Self::Albedo
+    }
+}
+
+impl fmt::Display for Layer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A set of layers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LayerSet(u16);
+
+impl LayerSet {
+    /// No layers.
+    pub const NONE: Self = Self(0);
+
+    /// Whether the layer is in the set.
+    pub fn has(self, layer: Layer) -> bool {
+        self.0 >> layer as u16 & 1 == 1
+    }
+
+    /// The set with this layer.
+    #[must_use]
+    pub fn with(self, layer: Layer) -> Self {
+        Self(self.0 | 1 << layer as u16)
+    }
+
+    /// The layers, in their order.
+    pub fn iter(self) -> impl Iterator<Item = Layer> {
+        Layer::ALL.into_iter().filter(move |&layer| self.has(layer))
+    }
+
+    /// Whether some layer takes what samples hit first.
+    pub fn has_first_hit(self) -> bool {
+        self.iter().any(Layer::is_of_first_hit)
+    }
+}
+
+impl FromIterator<Layer> for LayerSet {
+    fn from_iter<I: IntoIterator<Item = Layer>>(layers: I) -> Self {
+        layers.into_iter().fold(Self::NONE, Self::with)
+    }
+}
+
+/// Where the sums of each layer are among those of a pixel. The first two are the weights of the
+/// samples that hit something, and of all, where a layer needs them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout {
+    layers: LayerSet,
+    offsets: [usize; Layer::ALL.len()],
+    count: usize,
+}
+
+impl Layout {
+    /// The layout of these layers.
+    pub(crate) fn new(layers: LayerSet) -> Self {
+        let coverage = layers.iter().any(|layer| layer.is_mean_of_hits() || layer.is_id());
+        let mut count = if coverage { 2 } else { 0 };
+        let mut offsets = [0; Layer::ALL.len()];
+        for layer in layers.iter() {
+            offsets[layer as usize] = count;
+            count += layer.sums();
+        }
+        Self { layers, offsets, count }
+    }
+
+    /// The layers.
+    pub(crate) fn layers(&self) -> LayerSet {
+        self.layers
+    }
+
+    /// How many sums a pixel has.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Whether the sums begin with the weights of samples.
+    pub(crate) fn has_coverage(&self) -> bool {
+        self.layers.iter().any(|layer| layer.is_mean_of_hits() || layer.is_id())
+    }
+
+    /// The first sum of a layer, if the film has it.
+    pub(crate) fn offset(&self, layer: Layer) -> Option<usize> {
+        self.layers.has(layer).then(|| self.offsets[layer as usize])
+    }
+}

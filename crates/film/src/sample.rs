@@ -1,0 +1,48 @@
+//! What a film takes for one sample of a pixel.
+
+use std::slice::from_ref;
+
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// A sample of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// Radiance, at one or more groups of wavelengths that count alike.
+    pub l: &'a [SampledSpectrum],
+    /// The wavelengths of each group.
+    pub lambda: &'a [SampledWavelengths],
+    /// Weight in the pixel, by its filter.
+    pub weight: f32,
+    /// Opacity of what the sample sees, from 0 to 1.
+    pub alpha: f32,
+    /// What the sample hits first; only films that have a layer of it look at it.
+    pub first_hit: Option<FirstHit>,
+}
+
+impl<'a> Sample<'a> {
+    /// A sample of radiance alone, which sees nothing that is opaque.
+    pub fn new(l: &'a SampledSpectrum, lambda: &'a SampledWavelengths, weight: f32) -> Self {
+        Self { l: from_ref(l), lambda: from_ref(lambda), weight, alpha: 0.0, first_hit: None }
+    }
+}
+
+/// What a sample hits first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// Distance from the camera, in units of the scene.
+    pub depth: f32,
+    /// Position in world space.
+    pub position: [f32; 3],
+    /// Shading normal in world space, of unit length.
+    pub normal: [f32; 3],
+    /// Reflectance at the sample's first group of wavelengths.
+    pub albedo: SampledSpectrum,
+    /// Surface parameters.
+    pub uv: [f32; 2],
+    /// How far the point moves on the film while the shutter is open, in pixels.
+    pub motion: [f32; 2],
+    /// Identifier of the object; [`id_of_name`](crate::id_of_name) makes one of a name.
+    pub object: u32,
+    /// Identifier of the material.
+    pub material: u32,
+}

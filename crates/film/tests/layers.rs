@@ -1,0 +1,235 @@
+//! Layers beside the colour: means, identifiers, variance, and how they are written.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
+
+use alhazen_film::{
+    Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstHit, Layer, LayerSet, PIXEL_BYTES, PassSet,
+    ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,
+};
+use description::SceneDesc;
+use image::{Attribute, Format, Image, PixelSource, ReadOptions, WriteOptions, encode, read};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+use testkit::Random;
+
+const RESOLUTION: [i32; 2] = [21, 18];
+
+fn settings() -> FilmSettings {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = RESOLUTION;
+    desc.film.save_fp16 = false;
+    compile(&desc).unwrap().film.settings()
+}
+
+fn film(layers: impl IntoIterator<Item = Layer>) -> Film {
+    Film::new(FilmSettings { layers: layers.into_iter().collect(), ..settings() }).unwrap()
+}
+
+fn hit(depth: f32, object: &str) -> FirstHit {
+    FirstHit {
+        depth,
+        position: [depth, 2.0, -3.0],
+        normal: [0.0, 0.6, 0.8],
+        albedo: SampledSpectrum::splat(0.5),
+        uv: [0.25, 0.75],
+        motion: [-2.0, 4.0],
+        object: id_of_name(object),
+        material: id_of_name("gold"),
+    }
+}
+
+fn add(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<FirstHit>) {
+    add_light(film, pixel, weight, first_hit, 1.0, 0.5);
+}
+
+fn add_light(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<FirstHit>, l: f32, u: f32) {
+    let (l, lambda) = (SampledSpectrum::splat(l), SampledWavelengths::sample_visible(u));
+    let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
+    film.add(pixel, &Sample { alpha, first_hit, ..Sample::new(&l, &lambda, weight) });
+}
+
+/// The picture with all layers, as a reader of its file sees it.
+fn written(film: &Film) -> Image {
+    let bytes = encode(&film.development(), Format::Exr, &WriteOptions::default()).unwrap();
+    read(&bytes, "", &ReadOptions::default()).unwrap()
+}
+
+fn at(image: &Image, channel: &str, [x, y]: [u32; 2]) -> f32 {
+    let index = image.channel_index(channel).unwrap_or_else(|| panic!("{channel} of {:?}", image.channels()));
+    image.channel(x, y, index)
+}
+
+#[test]
+fn means_of_first_hits_are_over_the_samples_that_hit() {
+    let mut film = film(Layer::ALL);
+    add(&mut film, [17, 16], 1.0, Some(hit(2.0, "cube")));
+    add(&mut film, [17, 16], 3.0, Some(hit(4.0, "ball")));
+    add(&mut film, [17, 16], 4.0, None);
+    add(&mut film, [17, 16], -0.5, Some(hit(1000.0, "ball")));
+    let image = written(&film);
+    let at = |channel| at(&image, channel, [17, 16]);
+    assert_eq!(at("Z"), 3.5, "a negative weight does not count");
+    assert_eq!(["P.X", "P.Y", "P.Z"].map(at), [3.5, 2.0, -3.0]);
+    assert_eq!(["N.X", "N.Y", "N.Z"].map(at), [0.0, 0.6, 0.8]);
+    assert_eq!(["uv.U", "uv.V"].map(at), [0.25, 0.75]);
+    assert_eq!(["motion.X", "motion.Y"].map(at), [-2.0, 4.0]);
+    assert_eq!(at("samples"), 4.0);
+    assert!((at("A") - 3.5 / 7.5).abs() < 1e-6, "weighted as colours are: {}", at("A"));
+}
+
+#[test]
+fn pixels_without_hits_are_far_and_black() {
+    let mut film = film(Layer::ALL);
+    add(&mut film, [0, 0], 1.0, None);
+    let image = written(&film);
+    for pixel in [[0, 0], [20, 17]] {
+        for channel in image.channels() {
+            let value = at(&image, channel, pixel);
+            match channel.as_str() {
+                "Z" => assert_eq!(value, 1e10),
+                "samples" => assert_eq!(value, if pixel == [0, 0] { 1.0 } else { 0.0 }),
+                "R" | "G" | "B" => (),
+                _ => assert_eq!(value, 0.0, "{channel}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_albedo_of_a_grey_surface_is_grey() {
+    let mut film = film([Layer::Albedo]);
+    const COUNT: u32 = 4096;
+    for i in 0..COUNT {
+        let u = (i as f32 + 0.5) / COUNT as f32;
+        add_light(&mut film, [0, 0], 1.0, Some(hit(1.0, "cube")), 7.0, u);
+    }
+    let image = written(&film);
+    for channel in ["albedo.R", "albedo.G", "albedo.B"] {
+        let value = at(&image, channel, [0, 0]);
+        assert!((value - 0.5).abs() < 0.005, "{channel}: {value}");
+    }
+}
+
+#[test]
+fn identifiers_are_listed_by_coverage_as_cryptomatte_has_them() {
+    let mut film = film([Layer::ObjectId, Layer::MaterialId]);
+    for (object, count) in [("cube", 1), ("ball", 4), ("floor", 2)] {
+        (0..count).for_each(|_| add(&mut film, [4, 3], 1.0, Some(hit(1.0, object))));
+    }
+    add(&mut film, [4, 3], 1.0, None);
+    let image = written(&film);
+    let at = |channel: &str| at(&image, channel, [4, 3]);
+    let ids = ["00.r", "00.b", "01.r"].map(|c| at(&format!("CryptoObject{c}")).to_bits());
+    assert_eq!(ids, ["ball", "floor", "cube"].map(id_of_name));
+    let coverage = ["00.g", "00.a", "01.g", "01.a"].map(|c| at(&format!("CryptoObject{c}")));
+    assert_eq!(coverage, [0.5, 0.25, 0.125, 0.0]);
+    assert_eq!(at("CryptoMaterial00.g"), 0.875);
+    let key = format!("cryptomatte/{}/", &format!("{:08x}", id_of_name("CryptoObject"))[..7]);
+    for (name, value) in
+        [("name", "CryptoObject"), ("hash", "MurmurHash3_32"), ("conversion", "uint32_to_float32")]
+    {
+        let attribute = image.metadata.get(&format!("{key}{name}"));
+        assert_eq!(attribute, Some(&Attribute::Text(value.into())));
+    }
+}
+
+#[test]
+fn the_variance_is_that_of_the_mean() {
+    // Independent pixels of equally distributed samples: the variance of their means is what each
+    // of them estimates.
+    let mut film = film([Layer::Variance]);
+    let mut random = Random::new(12);
+    let bounds = film.pixel_bounds();
+    for y in bounds.min[1]..bounds.max[1] {
+        for x in bounds.min[0]..bounds.max[0] {
+            for _ in 0..64 {
+                let weight = if random.get_1d() < 0.1 { -1.0 } else { 1.0 };
+                add_light(&mut film, [x, y], weight, None, random.get_1d(), 0.5);
+            }
+        }
+    }
+    let image = written(&film);
+    let pixels = || (0..18).flat_map(|y| (0..21).map(move |x| [x, y]));
+    let space = film.color_space();
+    let luminance = |pixel: [u32; 2]| {
+        let rgb = ["R", "G", "B"].map(|c| at(&image, c, pixel));
+        f64::from(space.to_xyz(rgb.into()).y)
+    };
+    let count = pixels().count() as f64;
+    let mean = pixels().map(luminance).sum::<f64>() / count;
+    let spread = pixels().map(|p| (luminance(p) - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let estimate = pixels().map(|p| f64::from(at(&image, "variance", p))).sum::<f64>() / count;
+    // The sample variance of `count` values is off by √(2/count), a sigma.
+    assert!((estimate / spread - 1.0).abs() < 4.0 * (2.0 / count).sqrt(), "{estimate} {spread}");
+}
+
+/// Adds samples that depend on the pass.
+fn add_pass(film: &mut Film, pass: u32) {
+    let mut random = Random::new(pass.into());
+    for _ in 0..200 {
+        let pixel = RESOLUTION.map(|size| (random.get_1d() * size as f32) as i32);
+        let object = format!("object-{}", (3.0 * random.get_1d()) as u32);
+        let first_hit = (random.get_1d() < 0.7).then(|| hit(100.0 * random.get_1d(), &object));
+        add_light(film, pixel, 1.5 * random.get_1d() - 0.25, first_hit, random.get_1d(), random.get_1d());
+    }
+}
+
+fn bits(film: &Film) -> Vec<u32> {
+    written(film).values().map(f32::to_bits).collect()
+}
+
+#[test]
+fn order_merging_and_files_do_not_change_a_bit() {
+    let whole = (0..6).fold(film(Layer::ALL), |mut film, pass| {
+        add_pass(&mut film, pass);
+        film
+    });
+    let parts = [[4, 1, 5], [3, 0, 2]].map(|passes| {
+        passes.into_iter().fold(film(Layer::ALL), |mut film, pass| {
+            add_pass(&mut film, pass);
+            film
+        })
+    });
+    let mut merged = whole.blank();
+    parts.iter().for_each(|part| merged.merge(part));
+    assert!(bits(&merged) == bits(&whole));
+
+    let files = [0, 1].map(|part| {
+        let done = PassSet::from(3 * part..3 * part + 3);
+        let header = FilmHeader { scene_hash: [0; 32], settings: String::new(), seed: 0, planned: 6, done };
+        FilmWriter::new(Vec::new(), &header, &parts[part as usize]).unwrap().finish().unwrap()
+    });
+    let limits = ReadLimits::default();
+    let mut file = FilmFile::read(&files[1][..], &limits).unwrap();
+    file.merge(&files[0][..], &limits).unwrap();
+    assert!(bits(&file.picture) == bits(&whole));
+    let mut other = FilmFile::read(&files[0][..], &limits).unwrap();
+    other.picture = film([Layer::Depth]);
+    let error = other.merge(&files[1][..], &limits).unwrap_err();
+    assert!(error.to_string().contains("the settings of the films differ"), "{error}");
+}
+
+#[test]
+fn layers_do_not_change_the_colours() {
+    let (mut plain, mut layered) = (film([]), film(Layer::ALL));
+    (0..3).for_each(|pass| {
+        add_pass(&mut plain, pass);
+        add_pass(&mut layered, pass);
+    });
+    let colors = |film: &Film| film.develop().values().map(f32::to_bits).collect::<Vec<_>>();
+    assert!(colors(&plain) == colors(&layered));
+    assert!(plain.development().channels().len() == 3);
+}
+
+#[test]
+fn the_memory_of_a_pixel_is_what_the_documents_say() {
+    assert_eq!((PIXEL_BYTES, SPLAT_BYTES), (52, 36));
+}
+
+#[test]
+fn layers_are_known_by_their_names() {
+    for layer in Layer::ALL {
+        assert_eq!(Layer::from_name(layer.name()), Some(layer));
+        assert_eq!(LayerSet::NONE.with(layer).iter().collect::<Vec<_>>(), [layer]);
+    }
+    assert_eq!(Layer::from_name("colour"), None);
+}
