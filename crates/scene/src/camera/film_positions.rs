@@ -1,10 +1,9 @@
-//! All places of the film that see the same.
+//! All film positions of one ray.
 //!
 //! A film that shows all directions has no border: beyond it, where reconstruction filters reach,
-//! the picture goes on with what lies at another place of it. A ray that enters the camera is thus
-//! seen at many film positions, one on the film and others around it, and light that comes along it
-//! reaches the pixels near each of them. These are the ways in which the plane of film positions
-//! covers the sphere again and again, for a film of W × H pixels:
+//! the picture continues with another part of itself. A ray thus has many film positions, one on
+//! the film and others around it, and its light reaches the pixels near each of them. The plane of
+//! film positions covers the sphere periodically, for a film of W × H pixels:
 //!
 //! | mapping | (x, y) is seen at | repeated every |
 //! |---|---|---|
@@ -15,14 +14,14 @@ use super::{Camera, Projection};
 use description::SphericalMapping;
 use math::{Bounds2, Point2, Vec2};
 
-/// The film positions that see along one ray.
+/// The film positions of one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmPositions {
     first: Point2,
     around: Option<Around>,
 }
 
-/// How a film goes on beyond its border.
+/// How a film continues beyond its border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Around {
     mapping: SphericalMapping,
@@ -37,7 +36,7 @@ impl From<Point2> for FilmPositions {
 }
 
 impl Camera {
-    /// All film positions that see what `film` does.
+    /// All film positions of the ray of `film`.
     pub fn film_positions(&self, film: Point2) -> FilmPositions {
         let around = match &self.projection {
             Projection::Perspective(_) | Projection::Orthographic(_) => None,
@@ -51,7 +50,7 @@ impl FilmPositions {
     /// Those of them within a part of the plane.
     pub fn within(&self, bounds: Bounds2) -> impl Iterator<Item = Point2> {
         let (x, y) = (self.first.x, self.first.y);
-        let (places, count, period) = match self.around {
+        let (positions, count, period) = match self.around {
             None => ([self.first; 4], 1, None),
             Some(Around { mapping, resolution }) => {
                 let Vec2 { x: w, y: h } = resolution;
@@ -62,26 +61,28 @@ impl FilmPositions {
                     }
                     SphericalMapping::EqualArea => {
                         let turned = [Vec2::new(w - x, -y), Vec2::new(-x, h - y)];
-                        let places = [self.first, self.first + resolution, turned[0], turned[1]];
-                        (places, 4, Some(2.0 * resolution))
+                        let positions = [self.first, self.first + resolution, turned[0], turned[1]];
+                        (positions, 4, Some(2.0 * resolution))
                     }
                 }
             }
         };
-        let places = places.into_iter().take(count);
-        places.flat_map(move |place| repeated(place, period, bounds)).filter(move |&p| bounds.contains(p))
+        let positions = positions.into_iter().take(count);
+        positions
+            .flat_map(move |position| repeated(position, period, bounds))
+            .filter(move |&p| bounds.contains(p))
     }
 }
 
-/// A place and, where there is a period, its repetitions, as far as they may lie within the bounds.
-fn repeated(place: Point2, period: Option<Vec2>, bounds: Bounds2) -> impl Iterator<Item = Point2> {
+/// A position and, where there is a period, its repetitions that may lie within the bounds.
+fn repeated(position: Point2, period: Option<Vec2>, bounds: Bounds2) -> impl Iterator<Item = Point2> {
     let (low, high, period) = match period {
         None => (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO),
         Some(period) => {
-            (((bounds.min - place) / period).ceil(), ((bounds.max - place) / period).floor(), period)
+            (((bounds.min - position) / period).ceil(), ((bounds.max - position) / period).floor(), period)
         }
     };
     let columns = move || (low.x as i32)..=(high.x as i32);
     let rows = (low.y as i32)..=(high.y as i32);
-    rows.flat_map(move |j| columns().map(move |i| place + period * Vec2::new(i as f32, j as f32)))
+    rows.flat_map(move |j| columns().map(move |i| position + period * Vec2::new(i as f32, j as f32)))
 }

@@ -1,4 +1,4 @@
-//! The camera as light finds it: the way from a point of the scene to the film.
+//! Importance: the camera as paths from the lights find it.
 //!
 //! A pixel's value is an integral over the rays (p, ω) that enter the camera through its lens, in
 //! which the importance W_e says what radiance counts and h, of integral 1 over the film in pixels,
@@ -35,10 +35,10 @@ use super::Camera;
 use super::projection::{Aperture, Projection};
 use math::{Mat3, Normal3, Point2, Point3, Ray, Transform, Vec2, Vec3, Vector3};
 
-/// A way from a point of the scene into the camera.
+/// A sample of the lens from a point of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraWiSample {
-    /// Importance along the way.
+    /// Importance along the direction.
     pub we: f32,
     /// Unit direction from the point to the camera.
     pub wi: Vector3,
@@ -54,7 +54,7 @@ pub struct CameraWiSample {
     pub n: Normal3,
 }
 
-/// What the film sees along a ray.
+/// Film position and densities of a ray.
 struct Seen {
     film: Point2,
     n: Normal3,
@@ -92,8 +92,8 @@ impl Camera {
         self.seen_along(ray).map_or((0.0, 0.0), |seen| (seen.pdf_position, seen.pdf_direction))
     }
 
-    /// The way from `p` to a point of the lens, chosen by `u`, at a time; `None` where `p` is not
-    /// in front of the camera.
+    /// Samples a point of the lens by `u`, as seen from `p` at a time; `None` where `p` is not in
+    /// front of the camera.
     #[doc(alias = "SampleWi")]
     pub fn sample_wi(&self, p: Point3, time: f32, u: Vec2) -> Option<CameraWiSample> {
         let render_from_camera = self.transform.render_from_camera(time);

@@ -1,17 +1,16 @@
-//! What the observer sees through.
+//! Cameras.
 //!
-//! A [`Camera`] turns a position on the film into a ray of light that arrives there, followed
-//! backwards. It is a [`Projection`], which knows camera space alone, placed in the scene by a
-//! [`CameraTransform`] and opened for a while by a shutter.
+//! A [`Camera`] generates the ray of a film position. It is a [`Projection`], which knows camera
+//! space alone, placed in render space by a [`CameraTransform`], with a shutter.
 //!
 //! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in
 //! pbrt). Film positions are in pixels, x to the right and y down, (0, 0) at the top left corner of
 //! the picture, so that the centre of pixel (i, j) is (i + ½, j + ½). Rays are in render space,
-//! their directions have unit length, and their `time` is in the scene's time. For light that comes
-//! from the other side, [`Camera::we`] is the importance of a ray and [`Camera::sample_wi`] the way
-//! from a point to the lens: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of integral
-//! 1 over the film in pixels. Differentials are one pixel wide; bring them nearer by
-//! [`differential_scale`] when a pixel takes many samples.
+//! their directions have unit length, and their `time` is in the scene's units. For paths from the
+//! lights, [`Camera::we`] is the importance of a ray and [`Camera::sample_wi`] samples the lens
+//! from a point: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of integral 1 over the
+//! film in pixels. Differentials are one pixel wide, to be scaled by [`differential_scale`] when a
+//! pixel takes many samples.
 
 mod compile;
 mod film_positions;
@@ -42,14 +41,14 @@ pub use screen::{Screen, ThinLens};
 pub use spherical::Spherical;
 pub use transform::{CameraTransform, world_from_render};
 
-/// Where and when light arrives at a camera.
+/// A sample of film, lens and shutter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraSample {
     /// Position on the film, in pixels.
     pub film: Point2,
     /// Sample value in [0, 1)² for the position on the lens.
     pub lens: Vec2,
-    /// Sample value in [0, 1) for the time within the shutter's.
+    /// Sample value in [0, 1) for the shutter time.
     pub time: f32,
     /// Weight of the sample in its pixel, from the reconstruction filter.
     pub filter_weight: f32,
@@ -95,7 +94,8 @@ impl Camera {
         Self { projection, transform, shutter, minimum_differentials }
     }
 
-    /// The same camera with pixels `n` times as wide and high: the film position x is seen at x/n.
+    /// The same camera with pixels `n` times as wide and high: film position x shows what n·x
+    /// showed.
     pub fn coarser(&self, n: u32) -> Self {
         Self {
             projection: self.projection.coarser(n),
@@ -110,7 +110,7 @@ impl Camera {
         &self.projection
     }
 
-    /// How camera, render and world space lie to each other.
+    /// The transforms between camera, render and world space.
     pub fn transform(&self) -> &CameraTransform {
         &self.transform
     }
@@ -120,7 +120,7 @@ impl Camera {
         self.shutter
     }
 
-    /// The moment of a sample value in [0, 1).
+    /// The shutter time of a sample value in [0, 1), in the scene's units.
     #[inline]
     pub fn sample_time(&self, u: f32) -> f32 {
         lerp(u, self.shutter[0], self.shutter[1])
@@ -136,7 +136,7 @@ impl Camera {
     }
 
     /// The ray of a sample with the rays one pixel to the right and one pixel down, through the
-    /// same point of the lens at the same moment.
+    /// same point of the lens at the same time.
     #[doc(alias = "GenerateRayDifferential")]
     pub fn generate_ray_differential(&self, sample: &CameraSample) -> Option<CameraRayDifferential> {
         let time = self.sample_time(sample.time);

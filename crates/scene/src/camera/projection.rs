@@ -6,7 +6,7 @@ use super::orthographic::Orthographic;
 use super::perspective::Perspective;
 use super::spherical::Spherical;
 
-/// How a point of the film sees camera space.
+/// How film positions map to rays of camera space.
 #[derive(Clone, Debug)]
 pub enum Projection {
     /// Through one point.
@@ -47,7 +47,7 @@ impl Projection {
         }
     }
 
-    /// What rays pass when they enter.
+    /// What rays pass to reach the film.
     pub(super) fn aperture(&self) -> Aperture {
         match self {
             Self::Perspective(p) => p.lens().area().map_or(Aperture::Pinhole, Aperture::Lens),
@@ -66,8 +66,8 @@ impl Projection {
         }
     }
 
-    /// Unit direction and length of the way from the camera to `p`, in camera space, through the
-    /// centre of a lens.
+    /// Unit direction and distance from the camera, at the centre of its lens, to `p` in camera
+    /// space.
     pub(super) fn way_to(&self, p: Point3) -> (Vector3, f32) {
         match self {
             Self::Orthographic(o) if o.is_parallel() => (Vec3::Z, p.z),
@@ -99,7 +99,7 @@ impl Projection {
     }
 }
 
-/// What rays pass when they enter the camera.
+/// What rays pass to reach the film.
 pub(super) enum Aperture {
     /// A point, from any direction.
     Point,
