@@ -22,8 +22,10 @@ pub struct Cli {
 }
 
 /// Ends the help of every command.
-pub const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
-     wrong, 130 interrupted.";
+pub const EXIT_CODES: &str = concat!(
+    "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, ",
+    "2 the command line is wrong, 130 interrupted."
+);
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -211,7 +213,7 @@ pub struct Compare {
     pub integrators: Vec<Contender>,
     /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each
     /// algorithm renders two pictures, from different seeds, so that noise and bias can be told
-    /// apart. Samplers `stratified` and `paddedsobol` are as uneven as `independent` here.
+    /// apart.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Samples per pixel of each picture.

@@ -46,7 +46,8 @@ const FIRST_ESTIMATE: u32 = 16;
 pub struct Progress {
     /// Passes done, drafts included.
     pub pass: u32,
-    /// Passes to do in all: an estimate where the limit is time or noise.
+    /// Passes to do in all: an estimate where the limit is time or noise, `u32::MAX` where it is
+    /// not known yet.
     pub passes: u32,
     /// Pixel samples taken by this session.
     pub samples: u64,
@@ -271,7 +272,7 @@ impl Session {
         let passes = [by_time, by_noise].into_iter().flatten().fold(planned, f64::min).max(done).ceil();
         Progress {
             pass: self.drafts + self.state.done.count(),
-            passes: self.integrator.drafts() + passes as u32,
+            passes: self.integrator.drafts().saturating_add(passes as u32),
             samples: u64::from(self.passes) * self.state.film.pixel_bounds().area() as u64,
             stats: self.stats,
             elapsed: self.elapsed,
@@ -324,8 +325,8 @@ struct Stopwatch<'a> {
 /// sixteenth more are done. It depends on nothing else, so that a render that was resumed ends as
 /// one that was not.
 fn is_estimated_after(passes: u32) -> bool {
-    let step = (1 << passes.max(1).ilog2().saturating_sub(4)).max(2);
-    passes >= FIRST_ESTIMATE && passes % step == 0
+    let step = (1_u32 << passes.max(1).ilog2().saturating_sub(4)).max(2);
+    passes >= FIRST_ESTIMATE && passes.is_multiple_of(step)
 }
 
 /// The noise of the mean of two independent pictures of so many passes each.

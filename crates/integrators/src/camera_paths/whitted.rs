@@ -21,7 +21,7 @@ use crate::{RayIntegrator, Tracer};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Whitted(pub WhittedDesc);
 
-/// A ray that is still to be followed.
+/// A ray that is still to be traced.
 struct Pending {
     ray: RayDifferential,
     beta: SampledSpectrum,

@@ -13,10 +13,10 @@
 //! interpolation between vertices, or by a final gather. Light is carried at fixed
 //! [wavelengths](bands).
 //!
-//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white,
-//! grey or coloured plaster; glass becomes a sheet that passes light diffusely. Surfaces reflect on
-//! both sides. Shading normals count in the final gather alone. Things that move are where they are
-//! in the middle of the shutter's time.
+//! Everything is diffuse here. A BSDF that is not is replaced by its mean albedo ρ_hh; glass
+//! becomes a sheet that transmits light diffusely. Surfaces reflect on both sides. Shading normals
+//! count in the final gather alone. Moving shapes stand where they are in the middle of the shutter
+//! time.
 //!
 //! It has no noise but that of a final gather, and is biased: light is even over each quarter of a
 //! patch that sends it and of an element that receives it, and visibility is known from a few rays.
