@@ -216,18 +216,18 @@ mod tests {
         let mut photons =
             PhotonMappingDesc { max_depth: 9, radius: Some(3.0), ..PhotonMappingDesc::default() };
         let called = |photons: &PhotonMappingDesc, name| {
-            integrator_called(name, &IntegratorDesc::PhotonMapping(photons.clone())).unwrap()
+            integrator_called(name, &IntegratorDesc::PhotonMapping(*photons)).unwrap()
         };
         let vcm = VcmDesc { max_depth: 9, radius: Some(3.0), ..VcmDesc::default() };
         assert_eq!(called(&photons, "vcm"), IntegratorDesc::Vcm(vcm));
         let mut sppm = SppmDesc { max_depth: 9, radius: Some(3.0), ..SppmDesc::default() };
-        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm.clone()), "no default goes over");
+        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm), "no default goes over");
         photons.photons = 1000;
         photons.gather = 4;
         sppm.photons_per_iteration = Some(1000);
-        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm.clone()));
+        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm));
         let back = integrator_called("photon-mapping", &IntegratorDesc::Sppm(sppm)).unwrap();
-        assert_eq!(back, IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 0, ..photons.clone() }));
+        assert_eq!(back, IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 0, ..photons }));
         let radiosity = RadiosityDesc { max_depth: 9, gather: 4, ..RadiosityDesc::default() };
         assert_eq!(called(&photons, "radiosity"), IntegratorDesc::Radiosity(radiosity));
         photons.max_depth = 101;

@@ -39,7 +39,7 @@ fn mean(scenes: &[String], integrator: &str, first_seed: i32) -> Moments {
             seed: Some(seed),
             ..Overrides::default()
         };
-        f64::from(means(&render_text(text, &overrides))[0])
+        means(&render_text(text, &overrides))[0]
     };
     let of_seed = |seed| scenes.iter().map(|text| picture(text, seed)).sum::<f64>() / scenes.len() as f64;
     (first_seed..first_seed + RUNS).map(of_seed).collect()

@@ -120,7 +120,7 @@ fn the_mean_is_that_of_path_tracing() {
         let path: Moments = (0..6).map(|seed| mean(&with(&scene, path.clone(), seed))).collect();
         for technique in TECHNIQUES {
             let desc = MltDesc { mutations_per_pixel: 80, ..mlt(technique, 4) };
-            let desc = |seed| with(&scene, IntegratorDesc::Mlt(desc.clone()), seed);
+            let desc = |seed| with(&scene, IntegratorDesc::Mlt(desc), seed);
             let found: Moments = (0..8).map(|seed| mean(&desc(seed))).collect();
             let error = found.variance_of_mean().sqrt() / path.mean;
             assert!(error < 0.015, "{name} {technique:?}: {error} says nothing");
@@ -134,7 +134,7 @@ fn long_paths_may_be_allowed() {
     let scene = diffuse_box();
     let found = |max_depth| -> Moments {
         let desc = MltDesc { mutations_per_pixel: 40, ..mlt(MltTechnique::Bdpt, max_depth) };
-        (0..8).map(|seed| mean(&with(&scene, IntegratorDesc::Mlt(desc.clone()), seed))).collect()
+        (0..8).map(|seed| mean(&with(&scene, IntegratorDesc::Mlt(desc), seed))).collect()
     };
     let expected = found(30);
     let error = expected.variance_of_mean().sqrt() / expected.mean;

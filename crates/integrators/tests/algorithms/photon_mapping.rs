@@ -33,16 +33,16 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 fn small(desc: &PhotonMappingDesc) -> PhotonMappingDesc {
-    PhotonMappingDesc { photons: 1500, caustic_photons: 500, ..desc.clone() }
+    PhotonMappingDesc { photons: 1500, caustic_photons: 500, ..*desc }
 }
 
 /// The mean of a grey picture over that of what shines in it, for one seed after another.
 fn brightness(desc: &SceneDesc, integrator: &PhotonMappingDesc, seeds: i32) -> Moments {
-    let lamps = PhotonMappingDesc { max_depth: 0, photons: 0, caustic_photons: 0, ..integrator.clone() };
+    let lamps = PhotonMappingDesc { max_depth: 0, photons: 0, caustic_photons: 0, ..*integrator };
     let ratio = |seed| {
         // The same seed has the same wavelengths.
-        let all = luminances(desc, &IntegratorDesc::PhotonMapping(integrator.clone()), seed, 1);
-        mean(&all) / mean(&luminances(desc, &IntegratorDesc::PhotonMapping(lamps.clone()), seed, 1))
+        let all = luminances(desc, &IntegratorDesc::PhotonMapping(*integrator), seed, 1);
+        mean(&all) / mean(&luminances(desc, &IntegratorDesc::PhotonMapping(lamps), seed, 1))
     };
     (0..seeds).map(ratio).collect()
 }
@@ -123,7 +123,7 @@ fn indirect(integrator: &PhotonMappingDesc) -> f64 {
     from_above(&mut desc, 1.0, 16);
     let [direct, all] = [1, 4].map(|max_depth| mean(&luminances(&desc, &path(max_depth), 1, 1024)));
     let find = |photons| {
-        let default = PhotonMappingDesc { max_depth: 4, radius: Some(1.0), ..integrator.clone() };
+        let default = PhotonMappingDesc { max_depth: 4, radius: Some(1.0), ..*integrator };
         let integrator = PhotonMappingDesc { photons, caustic_photons: 0, ..default };
         mean(&luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 2, 16))
     };
@@ -145,7 +145,7 @@ fn with_more_photons_a_room_comes_closer_to_what_path_finds() {
 #[test]
 fn a_final_gather_sees_less_of_edges() {
     let integrator = PhotonMappingDesc { photons: 4000, nearest: 40, ..PhotonMappingDesc::default() };
-    let found = [0, 4].map(|gather| indirect(&PhotonMappingDesc { gather, ..integrator.clone() }));
+    let found = [0, 4].map(|gather| indirect(&PhotonMappingDesc { gather, ..integrator }));
     assert!(1.0 - found[1] < 0.6 * (1.0 - found[0]), "{found:?}");
 }
 
@@ -192,7 +192,7 @@ fn a_caustic_holds_the_light_that_light_tracing_finds() {
     };
     for alpha in [1.0, 0.25] {
         let desc = ball_in_a_beam(alpha);
-        let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons.clone()), 4);
+        let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons), 4);
         let expected = caustic(&desc, &IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 4 }), 16);
         welch_test(&found, &expected, 2).unwrap_or_else(|error| panic!("alpha {alpha}: {error}"));
         let without = caustic(&desc, &path(4), 4).mean;
@@ -267,7 +267,7 @@ fn without_lights_it_is_dark_and_without_photons_there_is_direct_light_alone() {
             let picture = luminances(&dark, &IntegratorDesc::PhotonMapping(integrator), 1, 1);
             assert!(picture.iter().all(|&value| value == 0.0));
         }
-        let integrator = PhotonMappingDesc { gather, ..none.clone() };
+        let integrator = PhotonMappingDesc { gather, ..none };
         let mut desc = room();
         from_above(&mut desc, 1.0, 16);
         let found = mean(&luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 1, 64));
