@@ -1,13 +1,12 @@
 //! What the header of a picture says: the scene's camera, and settings.
 
+use description::schema::Settings;
 use description::{CameraKind, SceneDesc};
 use film::Film;
 use image::{Attribute, Image, ImageMetadata};
 use integrators::SessionState;
 use math::Mat4;
 use serde_json::{Map, Value, json};
-
-use crate::{integrator_name, sampler_name};
 
 /// What the header of a picture says: the scene's camera, and settings.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +26,8 @@ impl Header {
             (ImageMetadata::SOFTWARE, Attribute::Text(concat!("alhazen ", env!("CARGO_PKG_VERSION")).into())),
             (ImageMetadata::WORLD_TO_CAMERA, Attribute::Matrix(transform)),
             ("camera", Attribute::Text(camera)),
-            ("integrator", Attribute::Text(integrator_name(&desc.integrator).into())),
-            ("sampler", Attribute::Text(sampler_name(&desc.sampler.kind).into())),
+            ("integrator", Attribute::Text(desc.integrator.name().into())),
+            ("sampler", Attribute::Text(desc.sampler.name().into())),
             ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
         ];
         Self(attributes.map(|(name, value)| (name.to_owned(), value)).to_vec())

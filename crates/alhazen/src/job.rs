@@ -112,10 +112,10 @@ impl Job {
 fn is_arranged(desc: &SceneDesc, needs_footprints: bool) -> bool {
     use SamplerKind::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified, ZSobol};
     match desc.integrator.value {
-        IntegratorDesc::Bdpt { .. } | IntegratorDesc::Vcm(_) => true,
+        IntegratorDesc::Bdpt(_) | IntegratorDesc::Vcm(_) => true,
         _ => match desc.sampler.kind {
-            Independent | Halton { .. } | Sobol { .. } => needs_footprints,
-            Stratified { .. } | PaddedSobol { .. } | ZSobol { .. } | Pmj02Bn => true,
+            Independent { .. } | Halton { .. } | Sobol { .. } => needs_footprints,
+            Stratified { .. } | PaddedSobol { .. } | ZSobol { .. } | Pmj02Bn { .. } => true,
         },
     }
 }

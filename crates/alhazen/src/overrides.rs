@@ -2,18 +2,18 @@
 
 use std::fmt;
 
-use description::{Diagnostic, FileId, IntegratorDesc, SceneDesc, Span};
+use description::{AcceleratorDesc, Diagnostic, FileId, IntegratorDesc, SceneDesc, Span};
 
-use crate::names::{ACCELERATORS, INTEGRATORS, integrator_called};
-use crate::settings::{SETTINGS, Setting, set_samples_per_pixel};
+use crate::settings::{self, Unset, called, drawn, integrator_called};
 
 /// Changes to a scene. `None` leaves what the scene says.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// The name of the algorithm, as in [`INTEGRATORS`]. Settings that both algorithms have are
-    /// kept, all if it is the scene's own.
+    /// The name of the integrator, as in [`integrator_names`](crate::integrator_names). Settings
+    /// that both integrators have are kept, all if it is the scene's own.
     pub integrator: Option<String>,
-    /// Settings by their names in [`SETTINGS`], with their values as text.
+    /// Settings by their names in [`PARTS`](crate::PARTS), with their values as text. `sampler` and
+    /// `filter` choose another sampler and another filter.
     pub settings: Vec<(String, String)>,
     /// The name of the acceleration structure: `bvh` or `none`.
     pub accelerator: Option<String>,
@@ -52,26 +52,26 @@ impl Overrides {
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
         if let Some(name) = &self.integrator {
             let changed = integrator_called(name, &desc.integrator)
-                .ok_or_else(|| unknown("integrator", name, &INTEGRATORS))?;
+                .ok_or_else(|| unknown("integrator", name, &drawn::<IntegratorDesc>()))?;
             desc.integrator.value = changed;
         }
         if let Some(name) = &self.accelerator {
-            let called = ACCELERATORS.into_iter().find(|(known, _)| known == name);
-            let (_, changed) =
-                called.ok_or_else(|| unknown("accelerator", name, &ACCELERATORS.map(|(name, _)| name)))?;
-            desc.accelerator.value = changed;
+            let changed = called(name);
+            desc.accelerator.value =
+                changed.ok_or_else(|| unknown("accelerator", name, &drawn::<AcceleratorDesc>()))?;
         }
         for (index, (name, value)) in self.settings.iter().enumerate() {
-            let setting = Setting::named(name)
-                .ok_or_else(|| unknown("setting", name, &SETTINGS.each_ref().map(|setting| setting.name)))?;
-            setting.apply(desc, value).map_err(|reason| cannot_set(name, value, &reason))?;
-            setting.blame(desc, Span::new(FileId::CALLER, index as u32, index as u32));
+            let span = Span::new(FileId::CALLER, index as u32, index as u32);
+            settings::set(desc, name, value, span).map_err(|unset| match unset {
+                Unset::Unknown => unknown("setting", name, &settings::keys()),
+                Unset::Value(reason) => cannot_set(name, value, &reason),
+            })?;
         }
         if let Some(samples) = self.samples_per_pixel {
-            let samples = i32::try_from(samples).ok().filter(|&samples| samples > 0);
-            let samples = samples
-                .ok_or_else(|| OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)))?;
-            set_samples_per_pixel(desc, samples);
+            if !(1..=i32::MAX as u32).contains(&samples) {
+                return Err(OverrideError(format!("samples per pixel are from 1 to {}", i32::MAX)));
+            }
+            desc.sampler.kind.set_samples_per_pixel(samples);
             if let IntegratorDesc::Mlt(mlt) = &mut desc.integrator.value {
                 mlt.mutations_per_pixel = samples;
             }
@@ -131,8 +131,9 @@ fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{max_depth, regularize};
-    use description::{AcceleratorDesc, FilterDesc, LightSamplerDesc, SamplerKind, SppmDesc};
+    use crate::integrator_names;
+    use description::schema::{Settings, Value};
+    use description::{FilterDesc, LightSamplerDesc, PathDesc, SamplerKind, SppmDesc};
 
     fn changed(overrides: Overrides) -> Result<SceneDesc, OverrideError> {
         let mut desc = SceneDesc::default();
@@ -147,18 +148,24 @@ mod tests {
     #[test]
     fn another_algorithm_keeps_the_settings_that_it_shares() {
         let mut desc = SceneDesc::default();
+        let light_sampler = LightSamplerDesc::Power;
         desc.integrator.value =
-            IntegratorDesc::Path { max_depth: 9, regularize: true, light_sampler: LightSamplerDesc::Power };
-        for name in INTEGRATORS {
+            IntegratorDesc::Path(PathDesc { max_depth: 9, regularize: true, light_sampler });
+        for name in integrator_names() {
             let mut copy = desc.clone();
             let integrator = Some(name.to_owned());
             Overrides { integrator, ..Overrides::default() }.apply(&mut copy).unwrap();
-            assert!(max_depth(&mut copy.integrator).is_none_or(|depth| *depth == 9), "{name}");
-            assert!(regularize(&mut copy.integrator).is_none_or(|regularize| *regularize), "{name}");
+            for setting in copy.integrator.settings() {
+                match setting.field.name {
+                    "maxdepth" => assert_eq!(setting.value, Value::Integer(9), "{name}"),
+                    "regularize" => assert_eq!(setting.value, Value::Bool(true), "{name}"),
+                    _ => (),
+                }
+            }
         }
         let integrator = Some("volpath".to_owned());
         let desc = changed(Overrides { integrator, ..Overrides::default() }).unwrap();
-        assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath { max_depth: 5, .. }));
+        assert_eq!(desc.integrator.value, IntegratorDesc::VolPath(PathDesc::default()));
     }
 
     #[test]
@@ -173,34 +180,11 @@ mod tests {
     }
 
     #[test]
-    fn every_setting_has_a_value_that_it_takes_and_one_that_it_refuses() {
-        for setting in &SETTINGS {
-            let mut scenes = INTEGRATORS.map(|name| {
-                let mut desc = SceneDesc::default();
-                desc.integrator.value = integrator_called(name, &IntegratorDesc::default()).unwrap();
-                desc
-            });
-            let mut takes = |value| scenes.iter_mut().any(|desc| setting.apply(desc, value).is_ok());
-            assert!(
-                [
-                    "7", "true", "power", "sobol", "box", "fast", "path", "cone", "photons", "hemicube",
-                    "a.ply"
-                ]
-                .into_iter()
-                .any(&mut takes),
-                "{}",
-                setting.name
-            );
-            assert!(!takes("nonsense"), "{}", setting.name);
-        }
-    }
-
-    #[test]
     fn settings_reach_the_scene_in_order() {
         let desc =
             with_settings(&[("maxdepth", "3"), ("filter", "box"), ("filterradius", "2"), ("iso", "400")])
                 .unwrap();
-        assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath { max_depth: 3, .. }));
+        assert!(matches!(desc.integrator.value, IntegratorDesc::VolPath(PathDesc { max_depth: 3, .. })));
         assert_eq!(desc.filter.value, FilterDesc::Box { radius: [2.0, 2.0] });
         assert_eq!(desc.film.sensor.iso, 400.0);
     }
@@ -208,11 +192,14 @@ mod tests {
     #[test]
     fn what_makes_no_sense_is_told() {
         let message = |settings| with_settings(settings).unwrap_err().to_string();
-        assert_eq!(message(&[("maxdepth", "deep")]), "cannot set maxdepth to `deep`: it is a whole number");
+        assert_eq!(
+            message(&[("maxdepth", "deep")]),
+            "cannot set maxdepth to `deep`: it is a whole number of 0 or more"
+        );
         assert!(message(&[("depth", "5")]).starts_with("no setting is called `depth`; there are maxdepth, "));
         assert_eq!(
             message(&[("cossample", "true")]),
-            "cannot set cossample to `true`: the scene's algorithm has no such setting"
+            "cannot set cossample to `true`: the scene's integrator has no such setting"
         );
         let pixel = Overrides { pixel: Some([2000, 0]), ..Overrides::default() };
         assert_eq!(

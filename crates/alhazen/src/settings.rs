@@ -1,436 +1,271 @@
-//! Settings of a scene that can be changed by name: one table.
+//! Settings of a scene by their names, in whatever part of the scene they are.
 
+use description::schema::{Member, Setting, Settings, Value};
 use description::{
-    FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, RadiosityDesc, SamplerKind,
-    SceneDesc, Span, SppmDesc, VcmDesc,
+    AcceleratorDesc, CameraDesc, FilmDesc, FilterDesc, IntegratorDesc, OptionsDesc, Origin, SamplerDesc,
+    SamplerKind, SceneDesc, Span, Stated,
 };
 
-use crate::names::{FILTERS, QUALITIES, SAMPLERS};
-use crate::values::{At, Flags, PlyFile, Value, choose};
-
-/// A setting that can be changed by name.
-pub struct Setting {
-    /// Its name: the one that the pbrt-v4 format has for it.
+/// A part of a scene that has settings.
+pub struct Part {
+    /// Its name. Where settings of several parts share a name, `part.name` says which one is meant.
     pub name: &'static str,
-    /// What it means, with its unit and values.
-    pub help: &'static str,
-    place: Place,
+    members: fn() -> Vec<Group>,
+    of: fn(&mut SceneDesc) -> (&mut dyn Settings, &mut Origin),
 }
 
-/// Where the value of a setting stands.
-enum Place {
-    /// In those algorithms that have it.
-    Integrator(for<'a> fn(&'a mut IntegratorDesc) -> Option<Box<dyn Value + 'a>>),
-    /// Elsewhere in any scene.
-    Scene(fn(&mut SceneDesc, &str) -> Result<(), String>),
+/// Settings that belong together, with their defaults.
+pub struct Group {
+    /// The member of a set that has them; `None` of settings that all members have.
+    pub member: Option<&'static Member>,
+    /// The settings.
+    pub settings: Vec<Setting>,
 }
 
-impl Setting {
-    /// The one of that name.
-    pub(crate) fn named(name: &str) -> Option<&'static Self> {
-        SETTINGS.iter().find(|setting| setting.name == name)
-    }
-
-    /// Changes the scene.
-    pub(crate) fn apply(&self, desc: &mut SceneDesc, text: &str) -> Result<(), String> {
-        match self.place {
-            Place::Integrator(place) => {
-                place(&mut desc.integrator).ok_or("the scene's algorithm has no such setting")?.set(text)
-            }
-            Place::Scene(set) => set(desc, text),
-        }
-    }
-
-    /// Whether it changes a scene with such an algorithm.
-    pub(crate) fn is_of(&self, integrator: &IntegratorDesc) -> bool {
-        match self.place {
-            Place::Integrator(place) => place(&mut integrator.clone()).is_some(),
-            Place::Scene(_) => true,
-        }
-    }
-
-    /// From now on what is wrong with the setting is the fault of what stands at `span`.
-    pub(crate) fn blame(&self, desc: &mut SceneDesc, span: Span) {
-        // Names that the format has for what has another one here.
-        let parameters: &[_] = match self.name {
-            "photons" => &["photons", "photonsperiteration"],
-            "techniques" => &["visualizestrategies", "visualizeweights"],
-            "filterradius" => &["xradius", "yradius"],
-            _ => &[self.name],
-        };
-        for &parameter in parameters {
-            match self.place {
-                Place::Integrator(_) => desc.integrator.origin.set_parameter(parameter, span),
-                Place::Scene(_) => {
-                    desc.film.origin.set_parameter(parameter, span);
-                    desc.filter.origin.set_parameter(parameter, span);
-                }
-            }
-        }
-    }
-}
-
-/// The settings of an algorithm with their values; `None` for what is left to it.
-pub(crate) fn settings_of(integrator: &IntegratorDesc) -> Vec<(&'static str, Option<String>)> {
-    let mut integrator = integrator.clone();
-    let value = |setting: &Setting| match setting.place {
-        Place::Integrator(place) => Some((setting.name, place(&mut integrator)?.get())),
-        Place::Scene(_) => None,
-    };
-    SETTINGS.iter().filter_map(value).collect()
-}
-
-/// Gives an algorithm a setting of another one, if it has it, too.
-pub(crate) fn keep(integrator: &mut IntegratorDesc, (name, value): &(&'static str, Option<String>)) {
-    let Some(Setting { place: Place::Integrator(place), .. }) = Setting::named(name) else { return };
-    if let (Some(mut place), Some(value)) = (place(integrator), value) {
-        // A value that means nothing here is not shared.
-        let _ = place.set(value);
-    }
-}
-
-/// Everything that [`Overrides`](crate::Overrides) can change by name.
-pub static SETTINGS: [Setting; 40] = [
-    Setting {
-        name: "maxdepth",
-        help: "most bounces of a path after the camera's ray",
-        place: Place::Integrator(|desc| at(max_depth(desc))),
+/// The parts of a scene that have settings.
+pub static PARTS: [Part; 7] = [
+    Part { name: "integrator", members: members::<IntegratorDesc>, of: |desc| split(&mut desc.integrator) },
+    Part { name: "sampler", members: members::<SamplerDesc>, of: |desc| split(&mut desc.sampler) },
+    Part { name: "filter", members: members::<FilterDesc>, of: |desc| split(&mut desc.filter) },
+    Part { name: "film", members: members::<FilmDesc>, of: |desc| split(&mut desc.film) },
+    Part { name: "camera", members: members::<CameraDesc>, of: |desc| split(&mut desc.camera) },
+    Part {
+        name: "accelerator",
+        members: members::<AcceleratorDesc>,
+        of: |desc| split(&mut desc.accelerator),
     },
-    Setting {
-        name: "regularize",
-        help: "roughen surfaces after the first rough bounce: true or false",
-        place: Place::Integrator(|desc| at(regularize(desc))),
-    },
-    Setting {
-        name: "lightsampler",
-        help: "how a light is chosen: uniform, power, bvh or exhaustive",
-        place: Place::Integrator(|desc| at(light_sampler(desc))),
-    },
-    Setting {
-        name: "samplelights",
-        help: "simple-path: sample lights at each surface: true or false",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::SimplePath { sample_lights, .. } => at(Some(sample_lights)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "samplebsdf",
-        help: "simple-path: sample directions by the BSDF: true or false",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::SimplePath { sample_bsdf, .. } => at(Some(sample_bsdf)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "cossample",
-        help: "ambient-occlusion: sample directions by the cosine: true or false",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::AmbientOcclusion { cos_sample, .. } => at(Some(cos_sample)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "maxdistance",
-        help: "ambient-occlusion: how far away a surface hides the sky, in scene units",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::AmbientOcclusion { max_distance, .. } => at(Some(max_distance)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "techniques",
-        help: "bdpt: one picture per strategy of up to 8 bounces, weighted and unweighted, 2.4 KiB a pixel at 5 bounces: true or false",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
-                Some(Box::new(Flags([visualize_strategies, visualize_weights])))
-            }
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "technique",
-        help: "mlt: what chains move through: path or bdpt",
-        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.technique))),
-    },
-    Setting {
-        name: "bootstrapsamples",
-        help: "mlt: most paths among which the chains of a pass choose where to start",
-        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.bootstrap_samples))),
-    },
-    Setting {
-        name: "chains",
-        help: "mlt: most chains of a pass, which has a mutation per pixel",
-        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.chains))),
-    },
-    Setting {
-        name: "mutationsperpixel",
-        help: "mlt: mutations per pixel, on average; --spp sets it, too",
-        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.mutations_per_pixel))),
-    },
-    Setting {
-        name: "largestepprobability",
-        help: "mlt: probability of a mutation to an independent path",
-        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.large_step_probability))),
-    },
-    Setting {
-        name: "sigma",
-        help: "mlt: standard deviation of small mutations in the unit cube of random numbers",
-        place: Place::Integrator(|desc| at(mlt(desc).map(|mlt| &mut mlt.sigma))),
-    },
-    Setting {
-        name: "photons",
-        help: "photon-mapping: paths of the global map; sppm: paths; in each pass",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::PhotonMapping(photon_mapping) => at(Some(&mut photon_mapping.photons)),
-            IntegratorDesc::Sppm(sppm) => at(Some(&mut sppm.photons_per_iteration)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "causticphotons",
-        help: "photon-mapping: paths of the caustic map in each pass",
-        place: Place::Integrator(|desc| {
-            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.caustic_photons))
-        }),
-    },
-    Setting {
-        name: "nearest",
-        help: "photon-mapping: how many of the nearest photons make an estimate",
-        place: Place::Integrator(|desc| {
-            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.nearest))
-        }),
-    },
-    Setting {
-        name: "radius",
-        help: "photon-mapping, sppm, vcm: how far away photons count (at first), in scene units; else a part of the scene's size",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::PhotonMapping(PhotonMappingDesc { radius, .. })
-            | IntegratorDesc::Sppm(SppmDesc { radius, .. })
-            | IntegratorDesc::Vcm(VcmDesc { radius, .. }) => at(Some(radius)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "kernel",
-        help: "photon-mapping: how photons are weighed: cone or epanechnikov",
-        place: Place::Integrator(|desc| {
-            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.kernel))
-        }),
-    },
-    Setting {
-        name: "gather",
-        help: "photon-mapping, radiosity: rays of a final gather; 0 for none",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather, .. })
-            | IntegratorDesc::Radiosity(RadiosityDesc { gather, .. }) => at(Some(gather)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "show",
-        help: "photon-mapping: radiance or photons",
-        place: Place::Integrator(|desc| {
-            at(photon_mapping(desc).map(|photon_mapping| &mut photon_mapping.show))
-        }),
-    },
-    Setting {
-        name: "alpha",
-        help: "vcm: how slowly the radius shrinks, from 0 to 1",
-        place: Place::Integrator(|desc| match desc {
-            IntegratorDesc::Vcm(vcm) => at(Some(&mut vcm.alpha)),
-            _ => None,
-        }),
-    },
-    Setting {
-        name: "formfactors",
-        help: "radiosity: how form factors are found: analytic or hemicube",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.form_factors))),
-    },
-    Setting {
-        name: "hemicuberesolution",
-        help: "radiosity: pixels along an edge of a hemicube",
-        place: Place::Integrator(|desc| {
-            at(radiosity(desc).map(|radiosity| &mut radiosity.hemicube_resolution))
-        }),
-    },
-    Setting {
-        name: "patchsize",
-        help: "radiosity: longest side of a patch, in scene units",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.patch_size))),
-    },
-    Setting {
-        name: "subdivision",
-        help: "radiosity: how often an element may be quartered",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.subdivision))),
-    },
-    Setting {
-        name: "gradient",
-        help: "radiosity: change of light across an element, in parts of what is there, above which it is quartered",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.gradient))),
-    },
-    Setting {
-        name: "maxpatches",
-        help: "radiosity: most elements; of more primitives than half of it the smallest pass no light on",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.max_patches))),
-    },
-    Setting {
-        name: "tolerance",
-        help: "radiosity: share of light that need not be sent",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.tolerance))),
-    },
-    Setting {
-        name: "steps",
-        help: "radiosity: passes in which light is sent",
-        place: Place::Integrator(|desc| at(radiosity(desc).map(|radiosity| &mut radiosity.steps))),
-    },
-    Setting {
-        name: "mesh-out",
-        help: "radiosity: a file (.ply) for patches with their radiosity as vertex colours",
-        place: Place::Integrator(|desc| {
-            radiosity(desc).map(|radiosity| -> Box<dyn Value> { Box::new(PlyFile(&mut radiosity.mesh_out)) })
-        }),
-    },
-    Setting {
-        name: "sampler",
-        help: "independent, stratified, halton, paddedsobol, sobol or zsobol",
-        place: Place::Scene(|desc, text| {
-            desc.sampler.kind = choose(text, &SAMPLERS)?;
-            let samples = desc.sampler.pixel_samples;
-            set_samples_per_pixel(desc, samples);
-            Ok(())
-        }),
-    },
-    Setting {
-        name: "filter",
-        help: "pixel filter with its usual radius: box, triangle, gaussian, mitchell or sinc",
-        place: Place::Scene(|desc, text| {
-            desc.filter.value = choose(text, &FILTERS)?;
-            Ok(())
-        }),
-    },
-    Setting {
-        name: "filterradius",
-        help: "radius of the pixel filter in both directions, in pixels",
-        place: Place::Scene(|desc, text| {
-            let (FilterDesc::Box { radius }
-            | FilterDesc::Triangle { radius }
-            | FilterDesc::Gaussian { radius, .. }
-            | FilterDesc::Mitchell { radius, .. }
-            | FilterDesc::LanczosSinc { radius, .. }) = &mut desc.filter.value;
-            radius[0].set(text)?;
-            radius[1] = radius[0];
-            Ok(())
-        }),
-    },
-    Setting {
-        name: "quality",
-        help: "how much time the tree over the scene is worth: fast, balanced or high",
-        place: Place::Scene(|desc, text| {
-            desc.accelerator.value.set_quality(choose(text, &QUALITIES)?);
-            Ok(())
-        }),
-    },
-    Setting {
-        name: "maxcomponentvalue",
-        help: "samples are scaled down so that no sensor response exceeds this",
-        place: Place::Scene(|desc, text| desc.film.max_component_value.set(text)),
-    },
-    Setting {
-        name: "iso",
-        help: "sensitivity of the film, ISO",
-        place: Place::Scene(|desc, text| desc.film.sensor.iso.set(text)),
-    },
-    Setting {
-        name: "whitebalance",
-        help: "temperature in kelvin of the light that shall look white; 0 changes nothing",
-        place: Place::Scene(|desc, text| desc.film.sensor.white_balance.set(text)),
-    },
-    Setting {
-        name: "savefp16",
-        help: "store half floats (true) or single floats (false)",
-        place: Place::Scene(|desc, text| desc.film.save_fp16.set(text)),
-    },
-    Setting {
-        name: "disablepixeljitter",
-        help: "sample every pixel at its centre only: true or false",
-        place: Place::Scene(|desc, text| desc.options.disable_pixel_jitter.set(text)),
-    },
+    Part { name: "options", members: members::<OptionsDesc>, of: |desc| split(&mut desc.options) },
 ];
 
-/// A place where there is one.
-fn at<'a>(place: Option<&'a mut (impl Value + 'a)>) -> Option<Box<dyn Value + 'a>> {
-    place.map(|place| -> Box<dyn Value> { Box::new(At(place)) })
+fn members<T: Settings + Clone>() -> Vec<Group> {
+    T::members().iter().map(|desc| Group { member: desc.member(), settings: desc.settings() }).collect()
 }
 
-/// Sets the number of samples; the strata of a stratified sampler become as nearly square as the
-/// number allows.
-pub(crate) fn set_samples_per_pixel(desc: &mut SceneDesc, samples: i32) {
-    desc.sampler.pixel_samples = samples;
-    if let SamplerKind::Stratified { strata, .. } = &mut desc.sampler.kind {
-        let root = f64::from(samples).sqrt() as i32;
-        let side = (1..=root).rev().find(|side| samples % side == 0).unwrap_or(1);
-        *strata = [samples / side, side];
-    }
+fn split<T: Settings>(stated: &mut Stated<T>) -> (&mut dyn Settings, &mut Origin) {
+    (&mut stated.value, &mut stated.origin)
 }
 
-fn mlt(desc: &mut IntegratorDesc) -> Option<&mut MltDesc> {
-    match desc {
-        IntegratorDesc::Mlt(mlt) => Some(mlt),
-        _ => None,
-    }
-}
-
-fn radiosity(desc: &mut IntegratorDesc) -> Option<&mut RadiosityDesc> {
-    match desc {
-        IntegratorDesc::Radiosity(radiosity) => Some(radiosity),
-        _ => None,
-    }
-}
-
-fn photon_mapping(desc: &mut IntegratorDesc) -> Option<&mut PhotonMappingDesc> {
-    match desc {
-        IntegratorDesc::PhotonMapping(photon_mapping) => Some(photon_mapping),
-        _ => None,
-    }
-}
-
-pub(crate) fn max_depth(desc: &mut IntegratorDesc) -> Option<&mut i32> {
-    match desc {
-        IntegratorDesc::Whitted { max_depth }
-        | IntegratorDesc::RandomWalk { max_depth }
-        | IntegratorDesc::SimplePath { max_depth, .. }
-        | IntegratorDesc::Path { max_depth, .. }
-        | IntegratorDesc::SimpleVolPath { max_depth }
-        | IntegratorDesc::VolPath { max_depth, .. }
-        | IntegratorDesc::LightTracing { max_depth }
-        | IntegratorDesc::Bdpt { max_depth, .. }
-        | IntegratorDesc::Mlt(MltDesc { max_depth, .. })
-        | IntegratorDesc::PhotonMapping(PhotonMappingDesc { max_depth, .. })
-        | IntegratorDesc::Vcm(VcmDesc { max_depth, .. })
-        | IntegratorDesc::Radiosity(RadiosityDesc { max_depth, .. })
-        | IntegratorDesc::Sppm(SppmDesc { max_depth, .. }) => Some(max_depth),
-        IntegratorDesc::RayCasting
-        | IntegratorDesc::AmbientOcclusion { .. }
-        | IntegratorDesc::Function { .. } => None,
-    }
-}
-
-pub(crate) fn regularize(desc: &mut IntegratorDesc) -> Option<&mut bool> {
-    match desc {
-        IntegratorDesc::Path { regularize, .. }
-        | IntegratorDesc::VolPath { regularize, .. }
-        | IntegratorDesc::Bdpt { regularize, .. }
-        | IntegratorDesc::Mlt(MltDesc { regularize, .. }) => Some(regularize),
-        _ => None,
-    }
-}
-
-fn light_sampler(desc: &mut IntegratorDesc) -> Option<&mut LightSamplerDesc> {
-    match desc {
-        IntegratorDesc::Path { light_sampler, .. } | IntegratorDesc::VolPath { light_sampler, .. } => {
-            Some(light_sampler)
+impl Part {
+    /// The settings that all members of the set have, and then what else each member has that can
+    /// be chosen.
+    pub fn groups(&self) -> Vec<Group> {
+        let mut groups = (self.members)();
+        let has = |group: &Group, shared: &Setting| group.settings.iter().any(|setting| setting == shared);
+        let mut common = groups.first().map_or(Vec::new(), |first| first.settings.clone());
+        common.retain(|setting| groups.iter().all(|group| has(group, setting)));
+        groups.retain(|group| group.member.is_some_and(|member| member.is_drawn));
+        for group in &mut groups {
+            group.settings.retain(|setting| !common.contains(setting));
         }
-        _ => None,
+        groups.insert(0, Group { member: None, settings: common });
+        groups
+    }
+
+    fn has(&self, name: &str) -> bool {
+        (self.members)().iter().flat_map(|group| &group.settings).any(|setting| setting.field.is_called(name))
+    }
+}
+
+/// The names of the integrators that can be chosen.
+pub fn integrator_names() -> Vec<&'static str> {
+    drawn::<IntegratorDesc>()
+}
+
+/// The names of the members of a set that can be chosen.
+pub(crate) fn drawn<T: Settings>() -> Vec<&'static str> {
+    let members = T::members();
+    let drawn = members.iter().filter_map(Settings::member).filter(|member| member.is_drawn);
+    drawn.map(|member| member.names[0]).collect()
+}
+
+/// The member of a set that has the name, with default settings, if it can be chosen.
+pub(crate) fn called<T: Settings>(name: &str) -> Option<T> {
+    T::called(name).filter(|desc| desc.member().is_some_and(|member| member.is_drawn))
+}
+
+/// The integrator called `name`: `current` if it is that, else one that has those settings of
+/// `current` that both have and that are not at their defaults.
+pub(crate) fn integrator_called(name: &str, current: &IntegratorDesc) -> Option<IntegratorDesc> {
+    let mut integrator: IntegratorDesc = called(name)?;
+    if integrator.name() == current.name() {
+        return Some(current.clone());
+    }
+    let unchanged = IntegratorDesc::called(current.name()).map_or(Vec::new(), |desc| desc.settings());
+    for (setting, default) in current.settings().iter().zip(unchanged) {
+        if setting.value != default.value {
+            integrator.visit(&mut |field, slot| {
+                let old = setting.field;
+                if field.is_called(old.name) || old.is_called(field.name) {
+                    // A value that means nothing here is not shared.
+                    let _ = field.assign(slot, &setting.value);
+                }
+            });
+        }
+    }
+    Some(integrator)
+}
+
+/// The part of which the setting is that users call `key`, and its name there. Of parts that have
+/// settings of the same name the first one is meant, whichever of its members the scene has.
+fn find(key: &str) -> Option<(&'static Part, &str)> {
+    if let Some((part, name)) = key.split_once('.') {
+        let part = PARTS.iter().find(|known| known.name == part)?;
+        return part.has(name).then_some((part, name));
+    }
+    PARTS.iter().find(|part| part.has(key)).map(|part| (part, key))
+}
+
+/// What users can set by name: settings, and the sets from which sampler and filter are chosen.
+pub(crate) fn keys() -> Vec<&'static str> {
+    let settings = PARTS.iter().flat_map(|part| (part.members)()).flat_map(|group| group.settings);
+    let mut keys = Vec::new();
+    for field in settings.map(|setting| setting.field) {
+        for &name in [field.name].iter().chain(field.aliases) {
+            if !keys.contains(&name) {
+                keys.push(name);
+            }
+        }
+    }
+    keys.extend(["sampler", "filter"]);
+    keys
+}
+
+/// Whether the setting is one of a scene with that integrator.
+pub(crate) fn applies(key: &str, integrator: &IntegratorDesc) -> bool {
+    match find(key) {
+        Some((part, name)) if part.name == "integrator" => {
+            integrator.settings().iter().any(|setting| setting.field.is_called(name))
+        }
+        _ => true,
+    }
+}
+
+/// Why a setting was not set.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Unset {
+    /// There is no such setting.
+    Unknown,
+    /// What is wrong with the value.
+    Value(String),
+}
+
+/// Sets what users call `key`. From now on what is wrong with it is the fault of what stands at
+/// `span`.
+pub(crate) fn set(desc: &mut SceneDesc, key: &str, text: &str, span: Span) -> Result<(), Unset> {
+    let no_member = |known: Vec<&str>| Unset::Value(format!("it is one of {}", known.join(", ")));
+    match key {
+        "sampler" => {
+            let mut kind: SamplerKind = called(text).ok_or_else(|| no_member(drawn::<SamplerKind>()))?;
+            kind.set_samples_per_pixel(desc.sampler.kind.samples_per_pixel());
+            desc.sampler.kind = kind;
+        }
+        "filter" => {
+            desc.filter.value = called(text).ok_or_else(|| no_member(drawn::<FilterDesc>()))?;
+        }
+        _ => {
+            let (part, name) = find(key).ok_or(Unset::Unknown)?;
+            let (settings, origin) = (part.of)(desc);
+            let names =
+                settings.set_text(name, text).map_err(|values| Unset::Value(format!("it is {values}")))?;
+            if names.is_empty() {
+                return Err(Unset::Value(format!("the scene's {} has no such setting", part.name)));
+            }
+            names.into_iter().for_each(|name| origin.set_parameter(name, span));
+        }
+    }
+    Ok(())
+}
+
+/// Names and values of the settings of a part, as reports show them; first, as `name`, that of the
+/// member of its set.
+pub(crate) fn listed<T: Settings + Clone>(desc: &T) -> Vec<(&'static str, Value)> {
+    let member = desc.member().map(|member| ("name", Value::Text(member.names[0].to_owned())));
+    let settings = desc.settings().into_iter().map(|setting| (setting.field.name, setting.value));
+    member.into_iter().chain(settings).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use description::{PathDesc, PhotonMappingDesc, RadiosityDesc, SppmDesc, VcmDesc};
+
+    #[test]
+    fn integrators_are_called_by_all_their_names() {
+        assert!(integrator_names().contains(&"photon-mapping") && !integrator_names().contains(&"function"));
+        for (name, shown) in [
+            ("vol-path", "vol-path"),
+            ("volpath", "vol-path"),
+            ("photonmapping", "photon-mapping"),
+            ("lightpath", "light-tracing"),
+        ] {
+            assert_eq!(integrator_called(name, &IntegratorDesc::RayCasting).unwrap().name(), shown);
+        }
+        assert_eq!(integrator_called("function", &IntegratorDesc::RayCasting), None);
+    }
+
+    #[test]
+    fn the_same_integrator_keeps_all_that_was_set() {
+        let sppm =
+            SppmDesc { photons_per_iteration: Some(7), radius: Some(3.0), seed: Some(5), max_depth: 9 };
+        let sppm = IntegratorDesc::Sppm(sppm);
+        assert_eq!(integrator_called("sppm", &sppm), Some(sppm));
+    }
+
+    #[test]
+    fn another_integrator_keeps_what_both_have() {
+        let mut photons =
+            PhotonMappingDesc { max_depth: 9, radius: Some(3.0), ..PhotonMappingDesc::default() };
+        let called = |photons: &PhotonMappingDesc, name| {
+            integrator_called(name, &IntegratorDesc::PhotonMapping(photons.clone())).unwrap()
+        };
+        let vcm = VcmDesc { max_depth: 9, radius: Some(3.0), ..VcmDesc::default() };
+        assert_eq!(called(&photons, "vcm"), IntegratorDesc::Vcm(vcm));
+        let mut sppm = SppmDesc { max_depth: 9, radius: Some(3.0), ..SppmDesc::default() };
+        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm.clone()), "no default goes over");
+        photons.photons = 1000;
+        photons.gather = 4;
+        sppm.photons_per_iteration = Some(1000);
+        assert_eq!(called(&photons, "sppm"), IntegratorDesc::Sppm(sppm.clone()));
+        let back = integrator_called("photon-mapping", &IntegratorDesc::Sppm(sppm)).unwrap();
+        assert_eq!(back, IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 0, ..photons.clone() }));
+        let radiosity = RadiosityDesc { max_depth: 9, gather: 4, ..RadiosityDesc::default() };
+        assert_eq!(called(&photons, "radiosity"), IntegratorDesc::Radiosity(radiosity));
+        photons.max_depth = 101;
+        let radiosity = RadiosityDesc { gather: 4, ..RadiosityDesc::default() };
+        assert_eq!(called(&photons, "radiosity"), IntegratorDesc::Radiosity(radiosity), "no depth of 101");
+    }
+
+    #[test]
+    fn every_setting_takes_its_default_by_name_and_refuses_nonsense() {
+        for part in &PARTS {
+            for setting in part.groups().iter().flat_map(|group| &group.settings) {
+                assert!(part.has(setting.field.name), "{}.{}", part.name, setting.field.name);
+            }
+        }
+        for name in ["path", "sppm", "radiosity"] {
+            let mut integrator = IntegratorDesc::called(name).unwrap();
+            for setting in integrator.settings() {
+                let (key, text) = (setting.field.name, setting.value.to_string());
+                if setting.value != Value::Automatic {
+                    assert_eq!(integrator.set_text(key, &text), Ok(vec![key]));
+                }
+                assert!(integrator.set_text(key, "nonsense").is_err(), "{key}");
+            }
+            assert_eq!(Some(integrator), IntegratorDesc::called(name));
+        }
+    }
+
+    #[test]
+    fn a_name_of_several_parts_means_the_first_unless_a_part_is_named() {
+        let mut desc = SceneDesc::default();
+        let mut set = |key, text| set(&mut desc, key, text, Span::NONE);
+        assert_eq!(set("sigma", "2"), Err(Unset::Value("the scene's integrator has no such setting".into())));
+        assert_eq!(set("filter.sigma", "2"), Ok(()));
+        assert_eq!(set("filter.maxdepth", "2"), Err(Unset::Unknown));
+        assert_eq!(set("film.iso", "0"), Err(Unset::Value("it is a number above 0".into())));
+        assert_eq!(set("integrator.maxdepth", "2"), Ok(()));
+        assert_eq!(desc.filter.value, FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 2.0 });
+        let path = PathDesc { max_depth: 2, ..PathDesc::default() };
+        assert_eq!(desc.integrator.value, IntegratorDesc::VolPath(path));
     }
 }

@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use description::{IntegratorDesc, RadiosityDesc, SceneDesc};
+use description::{BdptDesc, IntegratorDesc, RadiosityDesc, SceneDesc};
 use film::Film;
 use image::{Image, Pixels, Window};
 use integrators::{Control, Limits, Session, SessionState};
@@ -81,16 +81,16 @@ fn div_ceil(x: i32, n: i32) -> i32 {
 /// Takes the work that pixels do not share out, and what is made beside the picture, from an
 /// algorithm.
 fn lighten(integrator: &mut IntegratorDesc, n: i32) {
-    let fewer = |count: &mut i32| *count = div_ceil(*count, n.saturating_mul(n));
+    let fewer = |count: &mut u32| *count = count.div_ceil((n as u32).saturating_pow(2));
     match integrator {
         // Glass doubles its rays at each event.
-        IntegratorDesc::Whitted { max_depth } => *max_depth = (*max_depth).min(5),
+        IntegratorDesc::Whitted(desc) => desc.max_depth = desc.max_depth.min(5),
         IntegratorDesc::PhotonMapping(desc) => {
             fewer(&mut desc.photons);
             fewer(&mut desc.caustic_photons);
         }
         IntegratorDesc::Sppm(desc) => desc.photons_per_iteration.iter_mut().for_each(fewer),
-        IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
+        IntegratorDesc::Bdpt(BdptDesc { visualize_strategies, visualize_weights, .. }) => {
             (*visualize_strategies, *visualize_weights) = (false, false);
         }
         IntegratorDesc::Radiosity(desc) => {

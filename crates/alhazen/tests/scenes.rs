@@ -38,7 +38,7 @@ fn every_scene_is_without_fault_and_shows_something() {
     for (path, name) in &scenes {
         let Imported { mut desc, diagnostics, .. } = import(path, &Files);
         silent(name, &diagnostics);
-        assert_eq!(desc.film.filename.value, format!("{name}.png"));
+        assert_eq!(desc.film.filename, format!("{name}.png"));
         small.apply(&mut desc).expect("changes that every scene can take");
         let CompiledJob { mut job, warnings } = match Job::compile(&desc) {
             Ok(compiled) => compiled,

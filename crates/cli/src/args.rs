@@ -7,6 +7,7 @@ use alhazen::compare::Contender;
 use alhazen::{Overrides, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::help;
 use crate::merge::Merge;
 use crate::resume::Resume;
 
@@ -21,8 +22,10 @@ pub struct Cli {
 }
 
 /// Ends the help of every command.
-pub const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
-     wrong, 130 interrupted.";
+pub const EXIT_CODES: &str = concat!(
+    "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, ",
+    "2 the command line is wrong, 130 interrupted."
+);
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -381,15 +384,7 @@ pub struct Man {
 }
 
 fn render_long_help() -> String {
-    let mut text = String::from("Algorithms:\n");
-    for name in alhazen::INTEGRATORS {
-        text += &format!("  {name}\n");
-    }
-    text += "\nSettings:\n";
-    for setting in &alhazen::SETTINGS {
-        text += &format!("  {:<18} {}\n", setting.name, setting.help);
-    }
-    text + "\n" + EXIT_CODES
+    help::settings() + "\n" + EXIT_CODES
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use alhazen::description::schema::Settings;
 use alhazen::description::{IntegratorDesc, RadiosityDesc};
 use alhazen::import::{AssetSource, Imported, import};
 use alhazen::integrators::{Control, Limits, Session};
-use alhazen::{Header, Job, Overrides, integrator_name, system_clock};
+use alhazen::{Header, Job, Overrides, system_clock};
 
 use crate::bar::Bar;
 use crate::checkpoint::Checkpoint;
@@ -75,7 +76,7 @@ impl Prepared {
         match Job::compile(&self.imported.desc) {
             Ok(compiled) => {
                 self.imported.diagnostics.extend(compiled.warnings);
-                let integrator = integrator_name(&self.imported.desc.integrator);
+                let integrator = self.imported.desc.integrator.name();
                 let Self { imported, begin, imported_at, .. } = self;
                 let compiled_at = Instant::now();
                 Ok((compiled.job, Compiled { imported, integrator, begin, imported_at, compiled_at }))

@@ -8,6 +8,7 @@ mod console;
 mod diagnostics;
 mod drive;
 mod failure;
+mod help;
 mod image;
 mod inspect;
 mod interrupt;

@@ -87,8 +87,8 @@ fn all_passes(job: &Job, arguments: &Render) -> u32 {
 /// Where the picture goes if the command line does not say: where the scene's film says, else to
 /// the scene's name with the extension of OpenEXR, in the current folder.
 fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
-    let name = &desc.film.filename;
-    let path = if name.span.is_none() { named_after(scene, "exr") } else { PathBuf::from(&name.value) };
+    let is_stated = desc.film.origin.states("filename");
+    let path = if is_stated { PathBuf::from(&desc.film.filename) } else { named_after(scene, "exr") };
     output::check(&path).map_err(|problem| {
         Failure::Input(format!("{problem}\nThe scene names this output; `-o FILE` names another."))
     })?;

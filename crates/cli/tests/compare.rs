@@ -79,7 +79,7 @@ fn what_cannot_be_is_told_before_anything_is_rendered() {
     fails(
         &["--integrators", "path,vcm:alpha=2"],
         2,
-        "vcm:alpha=2: cannot set alpha to `2`: `alpha` is above 0",
+        "vcm:alpha=2: cannot set alpha to `2`: it is a number above 0",
     );
     fails(
         &["--integrators", "path,vcm", "--set", "sigma=1"],

@@ -1,84 +1,78 @@
 //! Structures that find what a ray hits. They do not change the picture.
 
-/// How a bounding volume hierarchy is split.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BvhSplit {
-    /// By the surface area heuristic.
-    #[default]
-    Sah,
-    /// By Morton codes, with the heuristic above them.
-    Hlbvh,
-    /// At the middle of the longest axis.
-    Middle,
-    /// Into halves of equal count.
-    Equal,
+use crate::schema::{at_least, choices, from, settings};
+
+choices! {
+    /// How a bounding volume hierarchy is split.
+    pub enum BvhSplit {
+        /// By the surface area heuristic.
+        #[default]
+        Sah = "sah",
+        /// By Morton codes, with the heuristic above them.
+        Hlbvh = "hlbvh",
+        /// At the middle of the longest axis.
+        Middle = "middle",
+        /// Into halves of equal count.
+        Equal = "equal",
+    }
 }
 
-/// How much time a hierarchy is worth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BuildQualityDesc {
-    /// Built soonest.
-    Fast,
-    /// Good in little time.
-    #[default]
-    Balanced,
-    /// Traced soonest where triangles are long and thin.
-    High,
+choices! {
+    /// How much time the build of a hierarchy may take.
+    pub enum BuildQualityDesc {
+        /// The shortest build.
+        Fast = "fast",
+        /// Good rays per second after a short build.
+        #[default]
+        Balanced = "balanced",
+        /// The most rays per second where triangles are long and thin.
+        High = "high",
+    }
 }
 
-/// An acceleration structure.
-#[derive(Clone, Debug, PartialEq)]
-pub enum AcceleratorDesc {
-    /// A bounding volume hierarchy.
-    Bvh {
-        /// Most primitives in a leaf.
-        max_node_prims: i32,
-        /// How nodes are split.
-        split: BvhSplit,
-        /// How much time it is worth; `None` lets `split` say.
-        quality: Option<BuildQualityDesc>,
-    },
-    /// A k-d tree.
-    KdTree {
-        /// Cost of a primitive test.
-        intersect_cost: i32,
-        /// Cost of a step down.
-        traversal_cost: i32,
-        /// Part of the cost saved where one side is empty, 0 to 1.
-        empty_bonus: f32,
-        /// Most primitives in a leaf.
-        max_prims: i32,
-        /// Greatest depth; −1 chooses it from the number of primitives.
-        max_depth: i32,
-    },
-    /// None: every ray is tested against every primitive, so that one sees what the others save.
-    None,
-}
-
-impl Default for AcceleratorDesc {
-    fn default() -> Self {
-        Self::Bvh { max_node_prims: 4, split: BvhSplit::Sah, quality: None }
+settings! {
+    /// An acceleration structure.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum AcceleratorDesc = Bvh {
+        /// A bounding volume hierarchy.
+        Bvh = "bvh" {
+            /// Most primitives in a leaf. Has no effect: the format's setting.
+            max_node_prims: i32 = 4 => ["maxnodeprims": from(1.0, 255.0)];
+            /// How nodes are split. `hlbvh` asks for the quality `fast`, all others for `balanced`.
+            split: BvhSplit = BvhSplit::Sah => ["splitmethod"];
+            /// How much time the build may take. If absent, what `splitmethod` asks for.
+            quality: Option<BuildQualityDesc> = None => ["quality"];
+        },
+        /// A k-d tree. A bounding volume hierarchy is built in its place.
+        KdTree = "kdtree" (not drawn) {
+            /// Cost of a primitive test.
+            intersect_cost: i32 = 5 => ["intersectcost": at_least(0.0)];
+            /// Cost of a step down.
+            traversal_cost: i32 = 1 => ["traversalcost": at_least(0.0)];
+            /// Part of the cost saved where one side is empty.
+            empty_bonus: f32 = 0.5 => ["emptybonus"];
+            /// Most primitives in a leaf.
+            max_prims: i32 = 1 => ["maxprims": at_least(1.0)];
+            /// Greatest depth. −1 chooses it by the number of primitives.
+            max_depth: i32 = -1 => ["maxdepth": at_least(-1.0)];
+            /// How much time the build of the hierarchy in its place may take.
+            quality: Option<BuildQualityDesc> = None => ["quality"];
+        },
+        /// None: every ray is tested against every primitive, for comparison.
+        None = "none",
     }
 }
 
 impl AcceleratorDesc {
-    /// How much time the structure is worth: as said, or as what was asked for takes in other
+    /// How much time the build may take: as stated, or as long as what was asked for takes in other
     /// programs.
     pub fn quality(&self) -> BuildQualityDesc {
         match self {
-            Self::Bvh { quality: Some(quality), .. } => *quality,
+            Self::Bvh { quality: Some(quality), .. } | Self::KdTree { quality: Some(quality), .. } => {
+                *quality
+            }
             Self::Bvh { split: BvhSplit::Hlbvh, .. } => BuildQualityDesc::Fast,
             _ => BuildQualityDesc::Balanced,
-        }
-    }
-
-    /// Asks for a hierarchy of that quality.
-    pub fn set_quality(&mut self, chosen: BuildQualityDesc) {
-        if let Self::KdTree { .. } = self {
-            *self = Self::default();
-        }
-        if let Self::Bvh { quality, .. } = self {
-            *quality = Some(chosen);
         }
     }
 }

@@ -28,6 +28,11 @@ impl Origin {
         self.parameters.push((name, span));
     }
 
+    /// Whether the author gave a parameter.
+    pub fn states(&self, name: &str) -> bool {
+        self.parameters.iter().any(|(given, _)| *given == name)
+    }
+
     /// The place to blame for a parameter: where it was given, or the whole statement if it was
     /// left out.
     pub fn parameter(&self, name: &str) -> Span {

@@ -2,96 +2,103 @@
 
 use std::sync::Arc;
 
+use crate::schema::{above, at_least, between, choices, settings};
 use crate::{Handle, ImageDesc, MediumDesc, TransformDesc};
 
-/// A camera.
-#[derive(Clone, Debug)]
-pub struct CameraDesc {
-    /// Which one.
-    pub kind: CameraKind,
-    /// From world to camera space.
-    pub camera_from_world: TransformDesc,
-    /// Time at which the shutter opens.
-    pub shutter_open: f32,
-    /// Time at which it closes.
-    pub shutter_close: f32,
-    /// The medium around the camera.
-    pub medium: Option<Handle<MediumDesc>>,
-}
-
-/// The cameras of the format.
-#[derive(Clone, Debug)]
-pub enum CameraKind {
-    /// All rays through one point.
-    Perspective {
-        /// Angle in degrees over the shorter side of the image (over `[−1, 1]` of the screen).
-        fov: f32,
-        /// The screen.
-        screen: ScreenDesc,
-        /// A thin lens.
-        lens: LensDesc,
-    },
-    /// Parallel rays.
-    Orthographic {
-        /// The screen, in camera-space units.
-        screen: ScreenDesc,
-        /// A thin lens.
-        lens: LensDesc,
-    },
-    /// All directions at once.
-    Spherical {
-        /// How directions fill the image.
-        mapping: SphericalMapping,
-    },
-    /// Rays refracted through lens elements.
-    Realistic(RealisticCameraDesc),
-}
-
-/// The part of the screen that the image shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ScreenDesc {
-    /// Width over height; that of the film if absent.
-    pub frame_aspect_ratio: Option<f32>,
-    /// `[x0, x1, y0, y1]`; if absent, `[−1, 1]` over the shorter side and more over the other.
-    pub window: Option<[f32; 4]>,
-}
-
-/// A thin lens.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LensDesc {
-    /// Radius; 0 is a pinhole.
-    pub radius: f32,
-    /// Distance to what is sharp.
-    pub focal_distance: f32,
-}
-
-impl Default for LensDesc {
-    fn default() -> Self {
-        Self { radius: 0.0, focal_distance: 1e6 }
+settings! {
+    /// A camera.
+    #[derive(Clone, Debug)]
+    pub struct CameraDesc {
+        /// Which one.
+        kind: CameraKind = CameraKind::default() => ..;
+        /// From world to camera space.
+        camera_from_world: TransformDesc = TransformDesc::default();
+        /// Time at which the shutter opens.
+        shutter_open: f32 = 0.0 => ["shutteropen"];
+        /// Time at which the shutter closes.
+        shutter_close: f32 = 1.0 => ["shutterclose"];
+        /// The medium around the camera.
+        medium: Option<Handle<MediumDesc>> = None;
     }
 }
 
-/// How a spherical camera's directions fill its image.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SphericalMapping {
-    /// The equal-area octahedral mapping.
-    #[default]
-    EqualArea,
-    /// Latitude and longitude.
-    EquiRectangular,
+settings! {
+    /// The cameras of the format.
+    #[derive(Clone, Debug)]
+    pub enum CameraKind = Perspective {
+        /// All rays through one point.
+        Perspective = "perspective" {
+            /// The screen.
+            screen: ScreenDesc = ScreenDesc::default() => ..;
+            /// A thin lens.
+            lens: LensDesc = LensDesc::default() => ..;
+            /// Field of view over the shorter side of the image (over [−1, 1] of the screen).
+            fov: f32 = 90.0 => ["fov": between(0.0, 180.0).unit("degrees")];
+        },
+        /// Parallel rays.
+        Orthographic = "orthographic" {
+            /// The screen, in camera-space units.
+            screen: ScreenDesc = ScreenDesc::default() => ..;
+            /// A thin lens.
+            lens: LensDesc = LensDesc::default() => ..;
+        },
+        /// All directions at once.
+        Spherical = "spherical" {
+            /// How directions fill the image.
+            mapping: SphericalMapping = SphericalMapping::EqualArea => ["mapping"];
+        },
+        /// Rays refracted through lens elements.
+        Realistic(RealisticCameraDesc) = "realistic" (not drawn),
+    }
 }
 
-/// A camera with a lens system.
-#[derive(Clone, Debug)]
-pub struct RealisticCameraDesc {
-    /// The elements, from the scene to the film.
-    pub lenses: Arc<[LensElement]>,
-    /// Diameter of the aperture stop in millimetres.
-    pub aperture_diameter: f32,
-    /// Distance in metres to what is sharp.
-    pub focus_distance: f32,
-    /// Shape of the aperture stop.
-    pub aperture: ApertureDesc,
+settings! {
+    /// The part of the screen that the image shows.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct ScreenDesc {
+        /// Width of the image over its height. If absent, that of the film.
+        frame_aspect_ratio: Option<f32> = None => ["frameaspectratio": above(0.0)];
+        /// The part of the screen, x0, x1, y0, y1. If absent, [−1, 1] over the shorter side and
+        /// more over the other.
+        window: Option<[f32; 4]> = None => ["screenwindow"];
+    }
+}
+
+settings! {
+    /// A thin lens.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct LensDesc {
+        /// Radius of the lens. 0 is a pinhole.
+        radius: f32 = 0.0 => ["lensradius": at_least(0.0).unit("scene units")];
+        /// Distance to what is in focus.
+        focal_distance: f32 = 1e6 => ["focaldistance": above(0.0).unit("scene units")];
+    }
+}
+
+choices! {
+    /// How a spherical camera's directions fill its image.
+    pub enum SphericalMapping {
+        /// The equal-area octahedral mapping.
+        #[default]
+        EqualArea = "equalarea",
+        /// Latitude and longitude.
+        EquiRectangular = "equirectangular",
+    }
+}
+
+settings! {
+    /// A camera with a lens system.
+    #[derive(Clone, Debug)]
+    pub struct RealisticCameraDesc {
+        /// The elements, from the scene to the film.
+        lenses: Arc<[LensElement]> = Arc::from([]);
+        /// Diameter of the aperture stop.
+        aperture_diameter: f32 = 1.0 => ["aperturediameter": above(0.0).unit("mm")];
+        /// Distance to what is in focus.
+        focus_distance: f32 = 10.0 => ["focusdistance": above(0.0).unit("m")];
+        /// Shape of the aperture stop.
+        aperture: ApertureDesc = ApertureDesc::Circular;
+    }
 }
 
 /// One interface of a lens system; lengths in millimetres.
@@ -123,20 +130,4 @@ pub enum ApertureDesc {
     Star,
     /// What an image shows.
     Image(Handle<ImageDesc>),
-}
-
-impl Default for CameraDesc {
-    fn default() -> Self {
-        Self {
-            kind: CameraKind::Perspective {
-                fov: 90.0,
-                screen: ScreenDesc::default(),
-                lens: LensDesc::default(),
-            },
-            camera_from_world: TransformDesc::default(),
-            shutter_open: 0.0,
-            shutter_close: 1.0,
-            medium: None,
-        }
-    }
 }

@@ -1,97 +1,109 @@
 //! The film: what is stored of the light that arrives.
 
-use crate::{ColorSpaceDesc, Spanned};
+use crate::ColorSpaceDesc;
+use crate::schema::{above, choices, from, one_of, settings};
 
-/// A film.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FilmDesc {
-    /// What is stored per pixel.
-    pub kind: FilmKind,
-    /// Width and height of the whole image in pixels.
-    pub resolution: [i32; 2],
-    /// The pixels to render, `[x0, x1, y0, y1)` in pixels of the whole image; all if absent.
-    pub pixel_bounds: Option<[i32; 4]>,
-    /// The part to render as fractions `[x0, x1, y0, y1]` of the whole image, used if
-    /// `pixel_bounds` is absent.
-    pub crop_window: Option<[f32; 4]>,
-    /// Diagonal of the film in millimetres, for physical cameras.
-    pub diagonal: f32,
-    /// The file to write.
-    pub filename: Spanned<String>,
-    /// Store half floats.
-    pub save_fp16: bool,
-    /// Samples are scaled down so that no sensor component exceeds this.
-    pub max_component_value: f32,
-    /// How light becomes sensor values.
-    pub sensor: SensorDesc,
-    /// The colour space of the image.
-    pub color_space: ColorSpaceDesc,
-}
+/// The sensors of the format: an ideal one with the responses of CIE 1931 XYZ, and measured
+/// cameras.
+const SENSORS: &[&str] = &[
+    "cie1931",
+    "canon_eos_100d",
+    "canon_eos_1dx_mkii",
+    "canon_eos_200d_mkii",
+    "canon_eos_200d",
+    "canon_eos_5d",
+    "canon_eos_5d_mkii",
+    "canon_eos_5d_mkiii",
+    "canon_eos_5d_mkiv",
+    "canon_eos_5ds",
+    "canon_eos_m",
+    "hasselblad_l1d_20c",
+    "nikon_d810",
+    "nikon_d850",
+    "sony_ilce_6400",
+    "sony_ilce_7m3",
+    "sony_ilce_7rm3",
+    "sony_ilce_9",
+];
 
-/// What a film stores per pixel.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum FilmKind {
-    /// Colour.
-    #[default]
-    Rgb,
-    /// Colour and geometry.
-    GBuffer {
-        /// The space of positions and normals.
-        space: GBufferSpace,
-    },
-    /// Radiance in wavelength buckets.
-    Spectral {
-        /// Number of buckets.
-        buckets: i32,
-        /// Lower end of the first bucket in nanometres.
-        lambda_min: f32,
-        /// Upper end of the last bucket in nanometres.
-        lambda_max: f32,
-    },
-}
-
-/// The coordinate system of a geometry buffer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum GBufferSpace {
-    /// The camera's.
-    #[default]
-    Camera,
-    /// The world's.
-    World,
-}
-
-/// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the exposure
-/// time is that of the camera's shutter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SensorDesc {
-    /// `cie1931` (an ideal XYZ sensor) or the name of a measured camera.
-    pub name: Spanned<String>,
-    /// Sensitivity.
-    pub iso: f32,
-    /// Temperature in kelvin of the light that shall look white; 0 leaves colours as they are
-    /// (`cie1931`) or takes 6500 (measured cameras).
-    pub white_balance: f32,
-}
-
-impl Default for SensorDesc {
-    fn default() -> Self {
-        Self { name: Spanned::new("cie1931".into(), crate::Span::NONE), iso: 100.0, white_balance: 0.0 }
+settings! {
+    /// A film.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct FilmDesc {
+        /// What is stored per pixel.
+        kind: FilmKind = FilmKind::Rgb => ..;
+        /// Width or height of the whole image.
+        resolution: [i32; 2] = [1280, 720] => [
+            "xresolution"[0]: from(1.0, 1e6).unit("pixels"),
+            "yresolution"[1]: from(1.0, 1e6).unit("pixels")
+        ];
+        /// The pixels to render, x0, x1, y0, y1 in pixels of the whole image, without x1 and y1. If
+        /// absent, all.
+        pixel_bounds: Option<[i32; 4]> = None => ["pixelbounds"];
+        /// The part to render as fractions x0, x1, y0, y1 of the whole image, instead of
+        /// `pixelbounds`.
+        crop_window: Option<[f32; 4]> = None => ["cropwindow"];
+        /// Diagonal of the film, for physical cameras.
+        diagonal: f32 = 35.0 => ["diagonal": above(0.0).unit("mm")];
+        /// The file to write.
+        filename: String = "pbrt.exr".to_owned() => ["filename"];
+        /// Store half floats instead of single floats.
+        save_fp16: bool = true => ["savefp16"];
+        /// Samples are scaled down so that no sensor response exceeds this.
+        max_component_value: f32 = f32::INFINITY
+            => ["maxcomponentvalue": above(0.0).at_most(f64::INFINITY)];
+        /// How light becomes sensor values.
+        sensor: SensorDesc = SensorDesc::default() => ..;
+        /// The colour space of the image.
+        color_space: ColorSpaceDesc = ColorSpaceDesc::Srgb;
     }
 }
 
-impl Default for FilmDesc {
-    fn default() -> Self {
-        Self {
-            kind: FilmKind::Rgb,
-            resolution: [1280, 720],
-            pixel_bounds: None,
-            crop_window: None,
-            diagonal: 35.0,
-            filename: Spanned::new("pbrt.exr".into(), crate::Span::NONE),
-            save_fp16: true,
-            max_component_value: f32::INFINITY,
-            sensor: SensorDesc::default(),
-            color_space: ColorSpaceDesc::Srgb,
-        }
+settings! {
+    /// What a film stores per pixel.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum FilmKind = Rgb {
+        /// Colour.
+        Rgb = "rgb",
+        /// Colour and geometry.
+        GBuffer = "gbuffer" (not drawn) {
+            /// The space of positions and normals.
+            space: GBufferSpace = GBufferSpace::Camera => ["coordinatesystem"];
+        },
+        /// Radiance in wavelength buckets.
+        Spectral = "spectral" (not drawn) {
+            /// Number of buckets.
+            buckets: i32 = 16 => ["nbuckets": from(1.0, 1e5)];
+            /// Lower end of the first bucket.
+            lambda_min: f32 = 360.0 => ["lambdamin": above(0.0).unit("nm")];
+            /// Upper end of the last bucket.
+            lambda_max: f32 = 830.0 => ["lambdamax": above(0.0).unit("nm")];
+        },
+    }
+}
+
+choices! {
+    /// The coordinate system of a geometry buffer.
+    pub enum GBufferSpace {
+        /// The camera's.
+        #[default]
+        Camera = "camera",
+        /// The world's.
+        World = "world",
+    }
+}
+
+settings! {
+    /// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the
+    /// exposure time is that of the camera's shutter.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct SensorDesc {
+        /// The sensor: `cie1931`, an ideal one, or a measured camera.
+        name: String = "cie1931".to_owned() => ["sensor": one_of(SENSORS)];
+        /// Sensitivity.
+        iso: f32 = 100.0 => ["iso": above(0.0).unit("ISO")];
+        /// Temperature of the light that is to look white. 0 leaves colours as they are (`cie1931`)
+        /// or takes 6500 (measured cameras).
+        white_balance: f32 = 0.0 => ["whitebalance": from(0.0, 1e5).unit("K")];
     }
 }

@@ -1,45 +1,58 @@
-//! Pixel reconstruction filters; radii are in pixels.
+//! Pixel reconstruction filters.
 
-/// A filter.
-#[derive(Clone, Debug, PartialEq)]
-pub enum FilterDesc {
-    /// Constant.
-    Box {
-        /// Half width and half height.
-        radius: [f32; 2],
-    },
-    /// Linear to zero at the edge.
-    Triangle {
-        /// Half width and half height.
-        radius: [f32; 2],
-    },
-    /// A Gaussian, moved down to zero at the edge.
-    Gaussian {
-        /// Half width and half height.
-        radius: [f32; 2],
-        /// Standard deviation.
-        sigma: f32,
-    },
-    /// The family of piecewise cubics of Mitchell and Netravali.
-    Mitchell {
-        /// Half width and half height.
-        radius: [f32; 2],
-        /// Their B.
-        b: f32,
-        /// Their C.
-        c: f32,
-    },
-    /// A windowed sinc.
-    LanczosSinc {
-        /// Half width and half height.
-        radius: [f32; 2],
-        /// Cycles of the sinc under the window.
-        tau: f32,
-    },
-}
+use crate::schema::{above, settings};
 
-impl Default for FilterDesc {
-    fn default() -> Self {
-        Self::Gaussian { radius: [1.5, 1.5], sigma: 0.5 }
+settings! {
+    /// A filter.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum FilterDesc = Gaussian {
+        /// Constant.
+        Box = "box" {
+            /// Half of the filter's width or height.
+            radius: [f32; 2] = [0.5, 0.5] => [
+                "xradius"[0] | "filterradius": above(0.0).unit("pixels"),
+                "yradius"[1] | "filterradius": above(0.0).unit("pixels")
+            ];
+        },
+        /// Linear to zero at the edge.
+        Triangle = "triangle" {
+            /// Half of the filter's width or height.
+            radius: [f32; 2] = [2.0, 2.0] => [
+                "xradius"[0] | "filterradius": above(0.0).unit("pixels"),
+                "yradius"[1] | "filterradius": above(0.0).unit("pixels")
+            ];
+        },
+        /// A Gaussian, lowered to zero at the edge.
+        Gaussian = "gaussian" {
+            /// Half of the filter's width or height.
+            radius: [f32; 2] = [1.5, 1.5] => [
+                "xradius"[0] | "filterradius": above(0.0).unit("pixels"),
+                "yradius"[1] | "filterradius": above(0.0).unit("pixels")
+            ];
+            /// Standard deviation.
+            sigma: f32 = 0.5 => ["sigma": above(0.0).unit("pixels")];
+        },
+        /// The family of piecewise cubics of Mitchell and Netravali.
+        Mitchell = "mitchell" {
+            /// Half of the filter's width or height.
+            radius: [f32; 2] = [2.0, 2.0] => [
+                "xradius"[0] | "filterradius": above(0.0).unit("pixels"),
+                "yradius"[1] | "filterradius": above(0.0).unit("pixels")
+            ];
+            /// Their parameter B.
+            b: f32 = 1.0 / 3.0 => ["B"];
+            /// Their parameter C.
+            c: f32 = 1.0 / 3.0 => ["C"];
+        },
+        /// A windowed sinc.
+        LanczosSinc = "sinc" {
+            /// Half of the filter's width or height.
+            radius: [f32; 2] = [4.0, 4.0] => [
+                "xradius"[0] | "filterradius": above(0.0).unit("pixels"),
+                "yradius"[1] | "filterradius": above(0.0).unit("pixels")
+            ];
+            /// Cycles of the sinc under the window.
+            tau: f32 = 3.0 => ["tau": above(0.0)];
+        },
     }
 }

@@ -1,311 +1,315 @@
-//! Light transport algorithms and their settings. `max_depth` counts the edges of a path after the
-//! camera's: 0 shows emission only, 1 adds direct light.
+//! Light transport algorithms and their settings.
+//!
+//! The depth of a path is the number of its scattering events: 0 shows emission only, 1 adds direct
+//! light.
 
-/// How a light is chosen among many.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LightSamplerDesc {
-    /// All alike.
-    Uniform,
-    /// By power.
-    Power,
-    /// By a tree of bounds on emission.
-    #[default]
-    Bvh,
-    /// Every light in turn.
-    Exhaustive,
+use crate::schema::{above, at_least, between, choices, from, settings, with_extension};
+
+settings! {
+    /// An algorithm with its settings.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum IntegratorDesc = VolPath {
+        /// Primary rays only; lights are added without shadows.
+        RayCasting = "ray-casting" | "raycasting",
+        /// Primary and shadow rays, mirror reflection and refraction.
+        Whitted(WhittedDesc) = "whitted",
+        /// How much of the sky each point sees.
+        AmbientOcclusion(AmbientOcclusionDesc) = "ambient-occlusion" | "ambientocclusion",
+        /// Paths that find light only by chance, with uniform directions.
+        RandomWalk(RandomWalkDesc) = "random-walk" | "randomwalk",
+        /// Paths that sample lights or the BSDF, without weighting one against the other.
+        SimplePath(SimplePathDesc) = "simple-path" | "simplepath",
+        /// Path tracing with next-event estimation and multiple importance sampling.
+        Path(PathDesc) = "path",
+        /// As `path`, and light of point lights passes interfaces between media: the format's
+        /// default.
+        VolPath(PathDesc) = "vol-path" | "volpath",
+        /// Paths from lights, each vertex connected to the camera.
+        LightTracing(LightTracingDesc) = "light-tracing" | "lighttracing" | "lightpath",
+        /// Bidirectional path tracing.
+        Bdpt(BdptDesc) = "bdpt",
+        /// Metropolis light transport in primary sample space.
+        Mlt(MltDesc) = "mlt",
+        /// Photon mapping with a caustic and a global map.
+        PhotonMapping(PhotonMappingDesc) = "photon-mapping" | "photonmapping",
+        /// Stochastic progressive photon mapping.
+        Sppm(SppmDesc) = "sppm",
+        /// Vertex connection and merging.
+        Vcm(VcmDesc) = "vcm",
+        /// Radiosity by progressive shooting.
+        Radiosity(RadiosityDesc) = "radiosity",
+        /// Paths through media that find light only by chance.
+        SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath" (not drawn),
+        /// The integral of an analytic function over the unit square instead of a scene, for the
+        /// study of samplers.
+        Function(FunctionDesc) = "function" (not drawn),
+    }
 }
 
-/// An algorithm with its settings.
-#[derive(Clone, Debug, PartialEq)]
-pub enum IntegratorDesc {
-    /// Primary rays only; lights are added without shadows.
-    RayCasting,
-    /// Primary and shadow rays, mirror reflection and refraction.
-    Whitted {
-        /// Most reflections and refractions.
-        max_depth: i32,
-    },
-    /// How much of the sky each point sees.
-    AmbientOcclusion {
-        /// Sample directions by the cosine instead of uniformly.
-        cos_sample: bool,
-        /// Hits farther than this do not count.
-        max_distance: f32,
-    },
-    /// Paths that only find light by chance, directions uniform.
-    RandomWalk {
-        /// See above.
-        max_depth: i32,
-    },
-    /// Paths that can be told what to sample.
-    SimplePath {
-        /// See above.
-        max_depth: i32,
+settings! {
+    /// Settings of Whitted's ray tracing.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct WhittedDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+    }
+}
+
+settings! {
+    /// Settings of ambient occlusion.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct AmbientOcclusionDesc {
+        /// Sample directions by the cosine (less noise) instead of uniformly.
+        cos_sample: bool = true => ["cossample"];
+        /// Surfaces farther away than this do not hide the sky.
+        max_distance: f32 = f32::INFINITY
+            => ["maxdistance": above(0.0).at_most(f64::INFINITY).unit("scene units")];
+    }
+}
+
+settings! {
+    /// Settings of the random walk.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct RandomWalkDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+    }
+}
+
+settings! {
+    /// Settings of the simple path tracer.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SimplePathDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
         /// Sample lights at each vertex.
-        sample_lights: bool,
+        sample_lights: bool = true => ["samplelights"];
         /// Sample directions from the BSDF instead of uniformly.
-        sample_bsdf: bool,
-    },
-    /// Paths with light sampling and multiple importance sampling.
-    Path {
-        /// See above.
-        max_depth: i32,
-        /// Roughen surfaces after the first non-specular bounce.
-        regularize: bool,
-        /// How lights are chosen.
-        light_sampler: LightSamplerDesc,
-    },
-    /// Paths through media that only find light by chance.
-    SimpleVolPath {
-        /// See above.
-        max_depth: i32,
-    },
-    /// `Path` with participating media: the format's default.
-    VolPath {
-        /// See above.
-        max_depth: i32,
-        /// Roughen surfaces after the first non-specular bounce.
-        regularize: bool,
-        /// How lights are chosen.
-        light_sampler: LightSamplerDesc,
-    },
-    /// Paths from lights only.
-    LightTracing {
-        /// See above.
-        max_depth: i32,
-    },
-    /// Bidirectional path tracing.
-    Bdpt {
-        /// See above.
-        max_depth: i32,
-        /// Roughen surfaces after the first non-specular bounce.
-        regularize: bool,
-        /// Write one image per strategy.
-        visualize_strategies: bool,
-        /// Write one image per strategy, weighted.
-        visualize_weights: bool,
-    },
-    /// Metropolis light transport in primary sample space.
-    Mlt(MltDesc),
-    /// Photon maps.
-    PhotonMapping(PhotonMappingDesc),
-    /// Stochastic progressive photon mapping.
-    Sppm(SppmDesc),
-    /// Vertex connection and merging.
-    Vcm(VcmDesc),
-    /// Radiosity by progressive shooting.
-    Radiosity(RadiosityDesc),
-    /// Integrates an analytic function over the unit square instead of a scene: for the study of
-    /// samplers.
-    Function {
+        sample_bsdf: bool = true => ["samplebsdf"];
+    }
+}
+
+choices! {
+    /// How a light is chosen among many.
+    pub enum LightSamplerDesc {
+        /// All alike.
+        Uniform = "uniform",
+        /// By power.
+        Power = "power",
+        /// By a tree of bounds on emission.
+        #[default]
+        Bvh = "bvh",
+        /// Every light in turn.
+        Exhaustive = "exhaustive",
+    }
+}
+
+settings! {
+    /// Settings of path tracing.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct PathDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+        /// Roughen surfaces after the first bounce that is not specular.
+        regularize: bool = false => ["regularize"];
+        /// How a light is chosen for next-event estimation.
+        light_sampler: LightSamplerDesc = LightSamplerDesc::Bvh => ["lightsampler"];
+    }
+}
+
+settings! {
+    /// Settings of the simple path tracer for media.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SimpleVolPathDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+    }
+}
+
+settings! {
+    /// Settings of light tracing.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct LightTracingDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+    }
+}
+
+settings! {
+    /// Settings of bidirectional path tracing.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct BdptDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+        /// Roughen surfaces after the first bounce that is not specular.
+        regularize: bool = false => ["regularize"];
+        /// Write a picture of each strategy of up to 8 scattering events. All of them take 2.4 KiB
+        /// a pixel at a depth of 5.
+        visualize_strategies: bool = false => ["visualizestrategies" | "techniques"];
+        /// Write a weighted picture of each strategy of up to 8 scattering events.
+        visualize_weights: bool = false => ["visualizeweights" | "techniques"];
+    }
+}
+
+choices! {
+    /// The path space that Metropolis light transport explores.
+    pub enum MltTechnique {
+        /// Path tracing.
+        Path = "path",
+        /// Bidirectional path tracing, one strategy at a time.
+        #[default]
+        Bdpt = "bdpt",
+    }
+}
+
+settings! {
+    /// Settings of Metropolis light transport.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct MltDesc {
+        /// The sampling technique whose paths the chains mutate.
+        technique: MltTechnique = MltTechnique::Bdpt => ["technique"];
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+        /// Most paths among which the chains of a pass choose where to start.
+        bootstrap_samples: u32 = 100_000 => ["bootstrapsamples": at_least(1.0)];
+        /// Most Markov chains of a pass, which has as many mutations as there are pixels.
+        chains: u32 = 1000 => ["chains": at_least(1.0)];
+        /// Mutations per pixel on average. `--spp` sets it, too.
+        mutations_per_pixel: u32 = 100 => ["mutationsperpixel": at_least(1.0)];
+        /// Probability of a large step: a mutation to an independent path.
+        large_step_probability: f32 = 0.3 => ["largestepprobability": from(0.0, 1.0)];
+        /// Standard deviation of a small step in the unit cube of random numbers.
+        sigma: f32 = 0.01 => ["sigma": above(0.0)];
+        /// Roughen surfaces after the first bounce that is not specular.
+        regularize: bool = false => ["regularize"];
+    }
+}
+
+choices! {
+    /// How photons are weighted by their distance.
+    pub enum PhotonKernel {
+        /// Linearly to zero at the greatest distance.
+        Cone = "cone",
+        /// Quadratically to zero at the greatest distance.
+        #[default]
+        Epanechnikov = "epanechnikov",
+    }
+}
+
+choices! {
+    /// What photon mapping shows.
+    pub enum PhotonMappingShow {
+        /// Radiance.
+        #[default]
+        Radiance = "radiance",
+        /// The photons themselves, as dots.
+        Photons = "photons",
+    }
+}
+
+settings! {
+    /// Settings of photon mapping.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct PhotonMappingDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+        /// Light paths for the global map in each pass.
+        photons: u32 = 200_000 => ["photons"];
+        /// Light paths for the caustic map in each pass.
+        caustic_photons: u32 = 100_000 => ["causticphotons"];
+        /// How many of the nearest photons make an estimate.
+        nearest: u32 = 50 => ["nearest": at_least(1.0)];
+        /// The greatest distance of a photon that counts. If absent, a share of the scene's size.
+        radius: Option<f32> = None => ["radius": above(0.0).unit("scene units")];
+        /// How photons are weighted by their distance.
+        kernel: PhotonKernel = PhotonKernel::Epanechnikov => ["kernel"];
+        /// Rays of a final gather at the first diffuse surface. 0 is none.
+        gather: u32 = 0 => ["gather"];
+        /// What the picture shows.
+        show: PhotonMappingShow = PhotonMappingShow::Radiance => ["show"];
+    }
+}
+
+settings! {
+    /// Settings of stochastic progressive photon mapping.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct SppmDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+        /// Light paths in each pass. If absent, as many as pixels.
+        photons_per_iteration: Option<u32> = None => ["photonsperiteration" | "photons": at_least(1.0)];
+        /// The greatest distance of a photon that counts in the first pass. If absent, 5/√n of the
+        /// radius of a scene with n light paths, at most 0.05 of it (in pbrt-v4: 1).
+        radius: Option<f32> = None => ["radius": above(0.0).unit("scene units")];
+        /// Seed of the photons. If absent, that of the sampler.
+        seed: Option<i32> = None => ["seed"];
+    }
+}
+
+settings! {
+    /// Settings of vertex connection and merging.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct VcmDesc {
+        /// Most scattering events of a path.
+        max_depth: u32 = 5 => ["maxdepth"];
+        /// The distance within which vertices are merged in the first pass. If absent, 0.003 of the
+        /// scene's radius.
+        radius: Option<f32> = None => ["radius": above(0.0).unit("scene units")];
+        /// How slowly the radius shrinks: after i passes its square is about i^(α − 1) of what it
+        /// was.
+        alpha: f32 = 0.75 => ["alpha": above(0.0).at_most(1.0)];
+    }
+}
+
+choices! {
+    /// How radiosity computes form factors.
+    pub enum FormFactorsDesc {
+        /// By the closed form for polygons, with rays for visibility.
+        #[default]
+        Analytic = "analytic",
+        /// By a hemicube.
+        Hemicube = "hemicube",
+    }
+}
+
+settings! {
+    /// Settings of radiosity.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct RadiosityDesc {
+        /// Most scattering events of light.
+        max_depth: u32 = 5 => ["maxdepth": from(0.0, 100.0)];
+        /// How form factors are computed.
+        form_factors: FormFactorsDesc = FormFactorsDesc::Analytic => ["formfactors"];
+        /// Resolution of a hemicube along an edge.
+        hemicube_resolution: u32 = 128 => ["hemicuberesolution": from(2.0, 1024.0).unit("pixels")];
+        /// Longest side of a patch. If absent, a tenth of the scene's radius.
+        patch_size: Option<f32> = None => ["patchsize": above(0.0).unit("scene units")];
+        /// How often an element may be quartered.
+        subdivision: u32 = 3 => ["subdivision": from(0.0, 10.0)];
+        /// The relative change of radiosity across an element above which it is quartered.
+        gradient: f32 = 0.1 => ["gradient": above(0.0)];
+        /// Most elements; more do not fit into the memory of a large machine.
+        max_patches: u32 = 50_000 => ["maxpatches": from(1.0, 1e6)];
+        /// Share of the light that need not be shot.
+        tolerance: f32 = 0.002 => ["tolerance": between(0.0, 1.0)];
+        /// Passes in which light is shot.
+        steps: u32 = 8 => ["steps": at_least(1.0)];
+        /// Rays of a final gather for each sample of a pixel. 0 interpolates the elements instead.
+        gather: u32 = 0 => ["gather"];
+        /// A PLY file for the elements with their radiosity as vertex colours.
+        mesh_out: Option<String> = None => ["mesh-out": with_extension(".ply")];
+    }
+}
+
+settings! {
+    /// Settings of the integration of a function.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct FunctionDesc {
         /// The function's name.
-        function: String,
-        /// Leave sample counts out for which the sampler is not made.
-        skip_bad: bool,
+        function: String = "step".to_owned() => ["function"];
+        /// Leave out sample counts for which the sampler is not made.
+        skip_bad: bool = true => ["skipbad"];
         /// A picture to integrate instead.
-        image_filename: Option<String>,
-    },
-}
-
-/// What Metropolis light transport asks for paths.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum MltTechnique {
-    /// Path tracing.
-    Path,
-    /// Bidirectional path tracing, one strategy at a time.
-    #[default]
-    Bdpt,
-}
-
-/// Settings of Metropolis light transport.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MltDesc {
-    /// Where paths come from.
-    pub technique: MltTechnique,
-    /// Greatest depth of a path.
-    pub max_depth: i32,
-    /// Most samples among which the chains of a pass choose where to start.
-    pub bootstrap_samples: i32,
-    /// Most chains of a pass; it has as many mutations as there are pixels.
-    pub chains: i32,
-    /// Mutations per pixel on average.
-    pub mutations_per_pixel: i32,
-    /// Probability of a large step.
-    pub large_step_probability: f32,
-    /// Standard deviation of a small step.
-    pub sigma: f32,
-    /// Roughen surfaces after the first non-specular bounce.
-    pub regularize: bool,
-}
-
-impl Default for MltDesc {
-    fn default() -> Self {
-        Self {
-            technique: MltTechnique::default(),
-            max_depth: 5,
-            bootstrap_samples: 100_000,
-            chains: 1000,
-            mutations_per_pixel: 100,
-            large_step_probability: 0.3,
-            sigma: 0.01,
-            regularize: false,
-        }
-    }
-}
-
-/// How photons near a point are weighed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PhotonKernel {
-    /// Linearly to zero at the greatest distance.
-    Cone,
-    /// Quadratically to zero at the greatest distance.
-    #[default]
-    Epanechnikov,
-}
-
-/// What photon mapping shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PhotonMappingShow {
-    /// Radiance.
-    #[default]
-    Radiance,
-    /// The photons themselves, as dots.
-    Photons,
-}
-
-/// Settings of photon mapping.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PhotonMappingDesc {
-    /// Greatest depth of a path.
-    pub max_depth: i32,
-    /// Photon paths for the global map, in each pass.
-    pub photons: i32,
-    /// Photon paths for the caustic map, in each pass.
-    pub caustic_photons: i32,
-    /// How many of the nearest photons make an estimate.
-    pub nearest: i32,
-    /// The farthest that a photon may be away, in world units; if absent, a share of the scene's
-    /// size.
-    pub radius: Option<f32>,
-    /// How photons are weighed.
-    pub kernel: PhotonKernel,
-    /// Rays of a final gather at the first diffuse surface; 0 for none.
-    pub gather: i32,
-    /// What the picture shows.
-    pub show: PhotonMappingShow,
-}
-
-impl Default for PhotonMappingDesc {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            photons: 200_000,
-            caustic_photons: 100_000,
-            nearest: 50,
-            radius: None,
-            kernel: PhotonKernel::default(),
-            gather: 0,
-            show: PhotonMappingShow::default(),
-        }
-    }
-}
-
-/// Settings of vertex connection and merging.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VcmDesc {
-    /// Greatest depth of a path.
-    pub max_depth: i32,
-    /// Distance within which vertices are merged in the first pass, in world units; if absent, a
-    /// share of the scene's size.
-    pub radius: Option<f32>,
-    /// How slowly the radius shrinks, in (0, 1]: after i passes its square is about i^(α − 1) of
-    /// what it was.
-    pub alpha: f32,
-}
-
-impl Default for VcmDesc {
-    fn default() -> Self {
-        Self { max_depth: 5, radius: None, alpha: 0.75 }
-    }
-}
-
-/// Settings of stochastic progressive photon mapping.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SppmDesc {
-    /// Greatest depth of a path.
-    pub max_depth: i32,
-    /// Photons per pass; as many as pixels if absent.
-    pub photons_per_iteration: Option<i32>,
-    /// First search radius in world units; if absent, a share of the scene's size (1 in pbrt-v4).
-    pub radius: Option<f32>,
-    /// Seed of the photons; the scene's if absent.
-    pub seed: Option<i32>,
-}
-
-impl Default for SppmDesc {
-    fn default() -> Self {
-        Self { max_depth: 5, photons_per_iteration: None, radius: None, seed: None }
-    }
-}
-
-/// How radiosity finds form factors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FormFactorsDesc {
-    /// By the closed form for polygons, with rays for what lies between.
-    #[default]
-    Analytic,
-    /// By a hemicube.
-    Hemicube,
-}
-
-/// Settings of radiosity.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RadiosityDesc {
-    /// See above.
-    pub max_depth: i32,
-    /// How form factors are found.
-    pub form_factors: FormFactorsDesc,
-    /// Pixels along an edge of a hemicube.
-    pub hemicube_resolution: i32,
-    /// Longest side of a patch in scene units; a tenth of the scene's radius if absent.
-    pub patch_size: Option<f32>,
-    /// How often an element may be quartered.
-    pub subdivision: i32,
-    /// The change of light across an element, in parts of what is there, above which it is
-    /// quartered.
-    pub gradient: f32,
-    /// Most elements.
-    pub max_patches: i32,
-    /// Share of light that need not be sent.
-    pub tolerance: f32,
-    /// Passes in which light is sent.
-    pub steps: i32,
-    /// Rays of a final gather for each sample of a pixel; 0 shows by interpolation instead.
-    pub gather: i32,
-    /// File for the elements with their radiosity as vertex colours.
-    pub mesh_out: Option<String>,
-}
-
-impl Default for RadiosityDesc {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            form_factors: FormFactorsDesc::Analytic,
-            hemicube_resolution: 128,
-            patch_size: None,
-            subdivision: 3,
-            gradient: 0.1,
-            max_patches: 50_000,
-            tolerance: 0.002,
-            steps: 8,
-            gather: 0,
-            mesh_out: None,
-        }
-    }
-}
-
-impl Default for IntegratorDesc {
-    fn default() -> Self {
-        Self::VolPath { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh }
+        image_filename: Option<String> = None => ["imagefilename"];
     }
 }

@@ -25,6 +25,7 @@ mod medium;
 mod options;
 mod sampler;
 mod scene;
+pub mod schema;
 mod shape;
 mod source;
 mod texture;
@@ -42,8 +43,9 @@ pub use diagnostic::{Diagnostic, DiagnosticList, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
 pub use integrator::{
-    FormFactorsDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, PhotonKernel,
-    PhotonMappingDesc, PhotonMappingShow, RadiosityDesc, SppmDesc, VcmDesc,
+    AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, IntegratorDesc, LightSamplerDesc,
+    LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc, PhotonMappingShow,
+    RadiosityDesc, RandomWalkDesc, SimplePathDesc, SimpleVolPathDesc, SppmDesc, VcmDesc, WhittedDesc,
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
 pub use material::{
@@ -52,7 +54,7 @@ pub use material::{
 };
 pub use medium::{CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, TemperatureDesc};
 pub use options::{OptionsDesc, RenderSpace};
-pub use sampler::{Randomization, SamplerDesc, SamplerKind};
+pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
 pub use shape::{
     CurveBasis, CurveDesc, CurveProfile, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, PatchMeshDesc,

@@ -1,71 +1,126 @@
 //! Samplers: which points of the unit square a pixel's samples take.
 
-/// How a low-discrepancy sequence is randomised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Randomization {
-    /// Not at all.
-    None,
-    /// Each digit permuted by its place.
-    PermuteDigits,
-    /// Owen scrambling by a hash.
-    FastOwen,
-    /// Owen scrambling.
-    Owen,
+use crate::schema::{at_least, choices, from, settings};
+
+choices! {
+    /// How a low-discrepancy sequence is randomised.
+    pub enum Randomization {
+        /// Not at all.
+        None = "none",
+        /// A random permutation of each digit.
+        PermuteDigits = "permutedigits",
+        /// Owen scrambling by a hash.
+        #[default]
+        FastOwen = "fastowen",
+        /// Owen scrambling.
+        Owen = "owen",
+    }
 }
 
-/// A sampler.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SamplerDesc {
-    /// Which one.
-    pub kind: SamplerKind,
-    /// Samples per pixel; for the stratified sampler the product of its two numbers of strata.
-    pub pixel_samples: i32,
-    /// Its seed; the scene's if absent.
-    pub seed: Option<i32>,
+choices! {
+    /// How the Halton sequence is randomised.
+    pub enum HaltonRandomization {
+        /// Not at all.
+        None = "none",
+        /// A random permutation of each digit.
+        #[default]
+        PermuteDigits = "permutedigits",
+        /// Owen scrambling.
+        Owen = "owen",
+    }
 }
 
-/// The samplers of the format.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SamplerKind {
-    /// Uniform random points.
-    Independent,
-    /// One point per cell of a grid.
-    Stratified {
-        /// Cells in x and y.
-        strata: [i32; 2],
-        /// Random places in the cells instead of their centres.
-        jitter: bool,
-    },
-    /// The Halton sequence.
-    Halton {
-        /// Its randomisation; `FastOwen` does not occur.
-        randomization: Randomization,
-    },
-    /// Two-dimensional Sobol' points, padded.
-    PaddedSobol {
-        /// Its randomisation.
-        randomization: Randomization,
-    },
-    /// One Sobol' sequence over the image.
-    Sobol {
-        /// Its randomisation.
-        randomization: Randomization,
-    },
-    /// Sobol' points in an order that leaves blue noise in the image.
-    ZSobol {
-        /// Its randomisation.
-        randomization: Randomization,
-    },
-    /// Progressive multi-jittered points with blue noise.
-    Pmj02Bn,
+settings! {
+    /// A sampler.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct SamplerDesc {
+        /// Which one.
+        kind: SamplerKind = SamplerKind::default() => ..;
+        /// Its seed. If absent, that of the options.
+        seed: Option<i32> = None => ["seed"];
+    }
 }
 
-impl Default for SamplerDesc {
-    fn default() -> Self {
-        Self {
-            kind: SamplerKind::ZSobol { randomization: Randomization::FastOwen },
-            pixel_samples: 16,
-            seed: None,
+settings! {
+    /// The samplers of the format.
+    #[derive(Clone, Debug, PartialEq)]
+    pub enum SamplerKind = ZSobol {
+        /// Uniform random points.
+        Independent = "independent" {
+            /// Samples per pixel.
+            pixel_samples: u32 = 4 => ["pixelsamples": at_least(1.0)];
+        },
+        /// One point in each cell of a grid.
+        Stratified = "stratified" {
+            /// Cells along an axis of the grid. Their product is the number of samples per pixel.
+            strata: [u32; 2] = [4, 4] => ["xsamples"[0]: from(1.0, 3e4), "ysamples"[1]: from(1.0, 3e4)];
+            /// Random positions in the cells instead of their centres.
+            jitter: bool = true => ["jitter"];
+        },
+        /// The Halton sequence.
+        Halton = "halton" {
+            /// Samples per pixel.
+            pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
+            /// How the sequence is randomised.
+            randomization: HaltonRandomization = HaltonRandomization::PermuteDigits => ["randomization"];
+        },
+        /// Two-dimensional Sobol' points, padded.
+        PaddedSobol = "paddedsobol" {
+            /// Samples per pixel.
+            pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
+            /// How the points are randomised.
+            randomization: Randomization = Randomization::FastOwen => ["randomization"];
+        },
+        /// One Sobol' sequence over the image.
+        Sobol = "sobol" {
+            /// Samples per pixel.
+            pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
+            /// How the sequence is randomised.
+            randomization: Randomization = Randomization::FastOwen => ["randomization"];
+        },
+        /// Sobol' points in an order that leaves blue noise in the image.
+        ZSobol = "zsobol" {
+            /// Samples per pixel.
+            pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
+            /// How the points are randomised.
+            randomization: Randomization = Randomization::FastOwen => ["randomization"];
+        },
+        /// Progressive multi-jittered points with blue noise.
+        Pmj02Bn = "pmj02bn" (not drawn) {
+            /// Samples per pixel.
+            pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
+        },
+    }
+}
+
+impl SamplerKind {
+    /// Samples per pixel.
+    pub fn samples_per_pixel(&self) -> u32 {
+        match *self {
+            Self::Stratified { strata: [x, y], .. } => x.saturating_mul(y),
+            Self::Independent { pixel_samples }
+            | Self::Halton { pixel_samples, .. }
+            | Self::PaddedSobol { pixel_samples, .. }
+            | Self::Sobol { pixel_samples, .. }
+            | Self::ZSobol { pixel_samples, .. }
+            | Self::Pmj02Bn { pixel_samples } => pixel_samples,
+        }
+    }
+
+    /// Sets the samples per pixel; strata become as nearly square as the number allows.
+    pub fn set_samples_per_pixel(&mut self, samples: u32) {
+        match self {
+            Self::Stratified { strata, .. } => {
+                let side =
+                    (1..=samples.isqrt()).rev().find(|side| samples.is_multiple_of(*side)).unwrap_or(1);
+                *strata = [samples / side, side];
+            }
+            Self::Independent { pixel_samples }
+            | Self::Halton { pixel_samples, .. }
+            | Self::PaddedSobol { pixel_samples, .. }
+            | Self::Sobol { pixel_samples, .. }
+            | Self::ZSobol { pixel_samples, .. }
+            | Self::Pmj02Bn { pixel_samples } => *pixel_samples = samples,
         }
     }
 }

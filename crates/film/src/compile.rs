@@ -114,9 +114,9 @@ fn sensor(
     if diagnostics.len() > count {
         return None;
     }
-    if sensor.name.value != "cie1931" {
-        let message = format!("sensor `{}` is not drawn yet; drawn as `cie1931`", sensor.name.value);
-        diagnostics.push(Diagnostic::warning("not-drawn", message, sensor.name.span));
+    if sensor.name != "cie1931" {
+        let message = format!("sensor `{}` is not drawn yet; drawn as `cie1931`", sensor.name);
+        diagnostics.push(Diagnostic::warning("not-drawn", message, origin.parameter("sensor")));
     }
     Some(PixelSensor::cie1931(color_space, (white != 0.0).then_some(white), imaging_ratio))
 }

@@ -235,7 +235,7 @@ fn what_makes_no_film_is_an_error() {
 fn what_is_not_drawn_is_a_warning() {
     let mut desc = scene([10, 10]);
     desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
-    desc.film.sensor.name.value = "canon_eos_100d".into();
+    desc.film.sensor.name = "canon_eos_100d".into();
     let said = said(&desc);
     assert_eq!(said.len(), 2);
     assert!(said.iter().all(|(severity, code, _)| *severity == Severity::Warning && *code == "not-drawn"));

@@ -3,7 +3,8 @@
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{
     CameraKind, ColorSpaceDesc, FilmKind, Handle, ImageChannel, IntegratorDesc, LightKind, MaterialKind,
-    MediumKind, Parameter, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc, TextureKind, TransformDesc,
+    MediumKind, Parameter, PathDesc, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc, TextureKind,
+    TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -52,9 +53,9 @@ fn settings_before_the_world() {
     assert_eq!((desc.film.color_space, desc.film.sensor.iso), (ColorSpaceDesc::Rec2020, 200.0));
     assert_eq!(desc.film.pixel_bounds, Some([1, 5, 2, 6]));
     assert_eq!(desc.sampler.kind, SamplerKind::Stratified { strata: [2, 4], jitter: true });
-    assert_eq!(desc.sampler.pixel_samples, 8);
+    assert_eq!(desc.sampler.kind.samples_per_pixel(), 8);
     assert!(matches!(*desc.filter, description::FilterDesc::Mitchell { b: 0.5, .. }));
-    assert!(matches!(*desc.integrator, IntegratorDesc::Path { max_depth: 9, .. }));
+    assert!(matches!(*desc.integrator, IntegratorDesc::Path(PathDesc { max_depth: 9, .. })));
     assert!(matches!(*desc.accelerator, description::AcceleratorDesc::KdTree { max_prims: 3, .. }));
     assert!(
         matches!(&desc.camera.kind, CameraKind::Orthographic { screen, .. } if screen.window == Some([-2.0, 2.0, -1.0, 1.0]))
@@ -74,18 +75,18 @@ fn the_quality_of_the_tree() {
         let desc = read(&format!(r#"Accelerator "bvh" {parameters} WorldBegin"#));
         assert_eq!(desc.accelerator.quality(), quality, "{parameters}");
     }
-    let mut desc = read(r#"Accelerator "kdtree" WorldBegin"#);
-    assert_eq!(desc.accelerator.quality(), Balanced);
-    desc.accelerator.set_quality(High);
-    assert_eq!(desc.accelerator.quality(), High);
+    for (parameters, quality) in [("", Balanced), (r#""string quality" "high""#, High)] {
+        let desc = read(&format!(r#"Accelerator "kdtree" {parameters} WorldBegin"#));
+        assert_eq!(desc.accelerator.quality(), quality, "{parameters}");
+    }
 }
 
 #[test]
 fn what_is_left_out_has_the_default_of_the_format() {
     let desc = read("WorldBegin");
-    assert_eq!((desc.film.resolution, desc.sampler.pixel_samples), ([1280, 720], 16));
+    assert_eq!((desc.film.resolution, desc.sampler.kind.samples_per_pixel()), ([1280, 720], 16));
     assert_eq!(*desc.filter, description::FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 });
-    assert!(matches!(*desc.integrator, IntegratorDesc::VolPath { max_depth: 5, .. }));
+    assert!(matches!(*desc.integrator, IntegratorDesc::VolPath(PathDesc { max_depth: 5, .. })));
 }
 
 #[test]

@@ -70,7 +70,40 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Sampler "sobol" "integer pixelsamples" 0"#,
-        "1:17 error[parameter-value] `pixelsamples` must be at least 1",
+        "1:17 error[parameter-value] `pixelsamples` is a whole number of 1 or more, not 0",
+    ),
+    (
+        r#"Sampler "stratified" "integer xsamples" 40000"#,
+        "1:22 error[parameter-value] `xsamples` is a whole number from 1 to 30000, not 40000",
+    ),
+    (
+        r#"Film "rgb" "integer xresolution" 0"#,
+        "1:12 error[parameter-value] `xresolution` is a whole number from 1 to 1000000, not 0",
+    ),
+    (
+        r#"Film "rgb" "float maxcomponentvalue" -1"#,
+        "1:12 error[parameter-value] `maxcomponentvalue` is a number above 0, not -1",
+    ),
+    (r#"Film "rgb" "float iso" 0"#, "1:12 error[parameter-value] `iso` is a number above 0, not 0"),
+    (
+        r#"Film "rgb" "string sensor" "canon_eos_10d""#,
+        "1:28 error[unknown-choice] `sensor` cannot be `canon_eos_10d` (did you mean `canon_eos_100d`?)",
+    ),
+    (
+        r#"PixelFilter "box" "float xradius" 0"#,
+        "1:19 error[parameter-value] `xradius` is a number above 0, not 0",
+    ),
+    (
+        r#"Camera "perspective" "float fov" 180"#,
+        "1:22 error[parameter-value] `fov` is a number between 0 and 180, not 180",
+    ),
+    (
+        r#"Camera "orthographic" "float shutteropen" 2"#,
+        "1:1 warning[ignored] the shutter closes before it opens: the two times are exchanged",
+    ),
+    (
+        r#"Integrator "vcm" "float alpha" 2"#,
+        "1:18 error[parameter-value] `alpha` is a number above 0 and at most 1, not 2",
     ),
     (
         r#"Sampler "sobol" "integer seed" 1 "integer seed" 2"#,

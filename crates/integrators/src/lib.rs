@@ -37,17 +37,16 @@ mod radiosity;
 mod session;
 mod transport;
 
-pub use bidirectional::{Bdpt, BdptSettings};
+pub use bidirectional::Bdpt;
 pub use build::{Built, build};
 pub use camera_paths::{
-    AmbientOcclusion, Path, PathSettings, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath,
-    Whitted,
+    AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
 };
 pub use control::{Cancelled, Clock, Control};
 pub use integrator::{Integrator, OutputFile};
 pub use light_paths::LightTracing;
-pub use metropolis::{Mlt, MltSettings};
-pub use photons::{Kernel, PhotonMapping, PhotonMappingSettings, Sppm, SppmSettings, Vcm, VcmSettings};
-pub use radiosity::{FormFactors, Radiosity, RadiositySettings};
+pub use metropolis::Mlt;
+pub use photons::{MAX_PHOTON_PATHS, PhotonMapping, Sppm, Vcm};
+pub use radiosity::Radiosity;
 pub use session::{Limits, Progress, Session, SessionState, Stop};
 pub use transport::Tracer;

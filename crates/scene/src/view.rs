@@ -76,14 +76,14 @@ pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
 /// sampler, of which Sobol' sequences over the whole image round up to a power of two.
 pub fn samples_per_pixel(desc: &SceneDesc) -> u32 {
     if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
-        return mlt.mutations_per_pixel.max(1) as u32;
+        return mlt.mutations_per_pixel.max(1);
     }
-    let samples = desc.sampler.pixel_samples.max(1) as u32;
+    let samples = desc.sampler.kind.samples_per_pixel().max(1);
     match desc.sampler.kind {
-        SamplerKind::Sobol { .. } | SamplerKind::ZSobol { .. } | SamplerKind::Pmj02Bn => {
+        SamplerKind::Sobol { .. } | SamplerKind::ZSobol { .. } | SamplerKind::Pmj02Bn { .. } => {
             samples.next_power_of_two()
         }
-        SamplerKind::Independent
+        SamplerKind::Independent { .. }
         | SamplerKind::Stratified { .. }
         | SamplerKind::Halton { .. }
         | SamplerKind::PaddedSobol { .. } => samples,

@@ -29,7 +29,7 @@ fn with_parameter<T>(value: T, name: &'static str, start: u32) -> Stated<T> {
     Stated::new(value, Origin { span: span(1000), parameters: vec![(name, span(start))] })
 }
 
-fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
+fn all_diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     let errors = |diagnostics: Vec<Diagnostic>| {
         assert!(diagnostics.iter().any(Diagnostic::is_error));
         diagnostics
@@ -40,6 +40,13 @@ fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
         compile(desc).map_or_else(errors, |scene| scene.warnings),
     ]
     .concat()
+}
+
+/// Without those of scenes without light, which have a test of their own.
+fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
+    let mut all = all_diagnostics(desc);
+    all.retain(|diagnostic| !matches!(diagnostic.code, "empty-scene" | "no-light"));
+    all
 }
 
 /// The one message about a scene.
@@ -669,4 +676,32 @@ fn hits_of_instances_find_the_light_that_was_sampled() {
         }
     }
     assert_eq!(ids.len(), 15);
+}
+
+#[test]
+fn scenes_without_light_say_so() {
+    let codes = |desc: &SceneDesc| all_diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
+    assert_eq!(codes(&SceneDesc::default()), ["empty-scene"]);
+    assert_eq!(codes(&with(|desc| desc.shapes.push(sphere(1.0).into()))), ["no-light"]);
+    let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
+    assert_eq!(codes(&with(|desc| desc.lights.push(point.into()))), [""; 0]);
+}
+
+#[test]
+fn brightness_that_makes_no_sense_is_refused() {
+    let light = |scale, power| {
+        with(|desc| {
+            let kind = LightKind::Point { intensity: 1.0.into(), power, from: Vec3::ZERO };
+            desc.lights.push_stated(with_parameter(LightDesc { scale, ..kind.into() }, "scale", 7));
+        })
+    };
+    let refused = |desc: &SceneDesc, message| check(desc, Severity::Error, "invalid-value", message, 7);
+    refused(&light(-2.0, None), "`scale` of a light is -2; it must be finite and not negative");
+    let codes = |desc: &SceneDesc| diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
+    assert_eq!(codes(&light(1.0, Some(-1.0))), ["invalid-value"]);
+    let glaring = with(|desc| {
+        let light = AreaLightDesc { scale: f32::MAX, ..AreaLightDesc::new(1e-20.into()) };
+        desc.area_lights.push(light);
+    });
+    assert_eq!(codes(&glaring)[0], "invalid-value");
 }

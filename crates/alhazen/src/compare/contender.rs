@@ -3,10 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use description::{IntegratorDesc, SceneDesc};
+use description::schema::Settings;
+use description::{BdptDesc, IntegratorDesc, SceneDesc};
 
-use crate::names::{integrator_called, integrator_name};
-use crate::{OverrideError, Overrides, Setting};
+use crate::settings::{applies, integrator_called};
+use crate::{OverrideError, Overrides};
 
 /// An integrator with settings of its own, written `NAME` or `NAME:KEY=VALUE:KEY=VALUE`, as in
 /// `path:maxdepth=8`.
@@ -22,8 +23,7 @@ impl Contender {
     pub(super) fn overrides(&self, scene: &SceneDesc, shared: &Overrides) -> Overrides {
         let mut overrides = Overrides { integrator: Some(self.integrator.clone()), ..shared.clone() };
         if let Some(integrator) = integrator_called(&self.integrator, &scene.integrator) {
-            let has = |name: &str| Setting::named(name).is_none_or(|setting| setting.is_of(&integrator));
-            overrides.settings.retain(|(name, _)| has(name));
+            overrides.settings.retain(|(name, _)| applies(name, &integrator));
         }
         overrides.settings.extend_from_slice(&self.settings);
         overrides
@@ -62,14 +62,14 @@ impl Contender {
     /// What it is called in a report, once its scene is known to make sense.
     pub(super) fn title(&self, desc: &SceneDesc) -> String {
         let settings = self.settings.iter().map(|(key, value)| format!(":{key}={value}"));
-        settings.fold(integrator_name(&desc.integrator).to_owned(), |title, setting| title + &setting)
+        settings.fold(desc.integrator.name().to_owned(), |title, setting| title + &setting)
     }
 }
 
 /// Turns off what would be written beside pictures; tells whether there was something.
 fn write_nothing_beside(integrator: &mut IntegratorDesc) -> bool {
     match integrator {
-        IntegratorDesc::Bdpt { visualize_strategies, visualize_weights, .. } => {
+        IntegratorDesc::Bdpt(BdptDesc { visualize_strategies, visualize_weights, .. }) => {
             std::mem::take(visualize_strategies) | std::mem::take(visualize_weights)
         }
         IntegratorDesc::Radiosity(radiosity) => radiosity.mesh_out.take().is_some(),
@@ -104,7 +104,7 @@ impl fmt::Display for Contender {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use description::VcmDesc;
+    use description::{PathDesc, VcmDesc};
 
     fn scene(text: &str) -> Result<SceneDesc, String> {
         let contender: Contender = text.parse()?;
@@ -123,7 +123,7 @@ mod tests {
         let shared = [("radius", "3"), ("maxdepth", "2"), ("alpha", "0.5")];
         let [path, vcm] =
             ["path", "vcm:alpha=0.75"].map(|name| with(&name.parse().unwrap(), &shared).unwrap());
-        assert!(matches!(path.integrator.value, IntegratorDesc::Path { max_depth: 2, .. }));
+        assert!(matches!(path.integrator.value, IntegratorDesc::Path(PathDesc { max_depth: 2, .. })));
         let expected = VcmDesc { max_depth: 2, radius: Some(3.0), alpha: 0.75 };
         assert_eq!(vcm.integrator.value, IntegratorDesc::Vcm(expected));
     }

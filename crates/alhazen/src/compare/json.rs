@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Budget, Checkpoint, Comparison, Measure, Run, said};
+use super::{Budget, Checkpoint, Comparison, Measure, Run, settings};
 
 impl Comparison {
     /// Everything in numbers: the setup, the reference, and for each run its figures at the end and
@@ -22,7 +22,7 @@ impl Comparison {
             },
             "seed": setup.seed,
             "threads": setup.threads,
-            "filter": said::json(&setup.filter),
+            "filter": settings::json(&setup.filter),
             "settings": setup.changes,
             "reference": {
                 "source": self.reference.source,
@@ -43,8 +43,8 @@ impl Comparison {
         let mut value = checkpoint(run.last());
         let more = json!({
             "name": run.name,
-            "settings": said::json(&run.settings),
-            "sampler": said::json(&run.sampler),
+            "settings": settings::json(&run.settings),
+            "sampler": settings::json(&run.sampler),
             "notes": run.notes.iter().map(|(name, note)| ((*name).to_owned(), json!(note))).collect::<Map<_, _>>(),
             "status": if run.interrupted { "interrupted" } else { "done" },
             "flip": run.flip,

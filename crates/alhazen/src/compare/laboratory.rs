@@ -11,9 +11,10 @@ use scene::{Scene, View};
 use super::measure::{measure, reference_noise};
 use super::paired_renders::PairedRenders;
 use super::{
-    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup, said,
+    Budget, Checkpoint, Comparison, Contender, Plan, PlanError, Reference, ReferenceSource, Run, Setup,
+    settings,
 };
-use crate::settings::settings_of;
+use crate::settings::listed;
 use crate::{OverrideError, Overrides};
 
 /// How many times a contender's budget a reference gets that is not told otherwise: its noise is
@@ -91,7 +92,7 @@ impl Laboratory {
             budget: plan.budget,
             seed: desc.sampler.seed.unwrap_or(desc.options.seed),
             threads: plan.threads,
-            filter: said::filter(&desc.filter),
+            filter: listed(&desc.filter.value),
             changes: changes(&plan.overrides),
         };
         let reference = match plan.reference {
@@ -280,8 +281,8 @@ fn run(
     let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
     Some(Run {
         name: entry.name.clone(),
-        settings: settings_of(&entry.desc.integrator),
-        sampler: said::sampler(&entry.desc.sampler.kind),
+        settings: listed(&entry.desc.integrator.value).split_off(1),
+        sampler: settings::of_sampler(&entry.desc.sampler.kind),
         notes: pair.notes(),
         checkpoints,
         pictures,

@@ -23,7 +23,7 @@ mod laboratory;
 mod measure;
 mod page;
 mod paired_renders;
-mod said;
+mod settings;
 
 use std::fmt;
 use std::time::Duration;
@@ -34,7 +34,7 @@ use image::Image;
 pub use contender::Contender;
 pub use laboratory::Laboratory;
 pub use measure::{Bias, Measure, Parts, ReferenceNoise};
-pub use said::Settings;
+pub use settings::Settings;
 
 use crate::Overrides;
 

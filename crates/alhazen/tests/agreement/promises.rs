@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use alhazen::image::Image;
-use alhazen::{INTEGRATORS, Overrides};
+use alhazen::{Overrides, integrator_names};
 use testkit::{Moments, t_test, welch_test};
 
 use crate::common::{means, render_text};
@@ -28,7 +28,7 @@ fn picture(text: &str, integrator: &str, seed: i32, threads: usize) -> Vec<u32> 
 fn threads_never_change_a_bit() {
     let scene = SCENES.iter().find(|scene| scene.name == "a sky and a sun");
     let text = scene.unwrap().text();
-    for integrator in INTEGRATORS {
+    for integrator in integrator_names() {
         let one = picture(&text, integrator, 0, 1);
         assert!(one == picture(&text, integrator, 0, 3), "{integrator}: threads changed the picture");
         let is_random = !["radiosity"].contains(&integrator);
@@ -144,7 +144,7 @@ fn a_closed_furnace_shows_all_paths_up_to_a_depth_once() {
     let members = Member::all();
     // These do not follow light from surface to surface.
     let others = ["ray-casting", "whitted", "ambient-occlusion"];
-    for integrator in INTEGRATORS {
+    for integrator in integrator_names() {
         let is_member = members.iter().any(|member| member.integrator == integrator);
         assert!(is_member != others.contains(&integrator), "{integrator}");
     }

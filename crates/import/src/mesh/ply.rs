@@ -235,7 +235,9 @@ fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
         return invalid(format!("a face has vertex {bad} of {vertices}"));
     }
     let mut start = 0;
-    for (face, &end) in faces.ends.iter().enumerate() {
+    mesh.triangles.reserve_exact(faces.lengths.iter().filter(|&&corners| corners == 3).count());
+    for (face, &corners) in faces.lengths.iter().enumerate() {
+        let end = start + corners as usize;
         mesh.push_face(&faces.corners[start..end], faces.numbers.get(face).copied());
         start = end;
     }
@@ -357,21 +359,26 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
 struct Faces {
     /// The corners of all faces.
     corners: Vec<u32>,
-    /// Where in `corners` each face ends.
-    ends: Vec<usize>,
+    /// How many corners each face has.
+    lengths: Vec<u32>,
     /// Their numbers, if the file has any.
     numbers: Vec<i32>,
 }
 
 fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
     let mut faces = Faces::default();
-    faces.ends.reserve_exact(if element.properties.is_empty() { 0 } else { element.count });
+    if !element.properties.is_empty() {
+        // Nearly all meshes are of triangles: what they need at once, as growing would copy it.
+        faces.lengths.reserve_exact(element.count);
+        faces.corners.reserve_exact(3 * element.count);
+    }
     let is_corners =
         |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
     if !element.properties.iter().any(is_corners) {
         return invalid("the faces have no list property `vertex_indices`");
     }
     for _ in 0..element.count {
+        let before = faces.corners.len();
         for property in &element.properties {
             match property.kind {
                 PropertyKind::List { count, item } if is_corners(property) => {
@@ -396,7 +403,7 @@ fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshErr
                 _ => skip_property(property, body)?,
             }
         }
-        faces.ends.push(faces.corners.len());
+        faces.lengths.push((faces.corners.len() - before) as u32);
     }
     Ok(faces)
 }
@@ -424,7 +431,7 @@ fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshEr
                 // Every second triangle of a strip has the opposite winding.
                 let [a, b] = if length % 2 == 0 { last } else { [last[1], last[0]] };
                 faces.corners.extend([a, b, corner]);
-                faces.ends.push(faces.corners.len());
+                faces.lengths.push(3);
             }
             last = [last[1], corner];
             length += 1;

@@ -11,8 +11,8 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 use description::{
-    CameraDesc, CameraKind, ImageDesc, InfiniteRadiance, IntegratorDesc, LensDesc, LightKind,
-    LightSamplerDesc, MaterialDesc, MaterialKind, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind, TransformDesc,
+    CameraDesc, CameraKind, ImageDesc, InfiniteRadiance, IntegratorDesc, LensDesc, LightKind, MaterialDesc,
+    MaterialKind, PathDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind, TransformDesc,
 };
 use image::Image;
 use math::{DMat4, DVec3, Vec2, Vec3, equal_area_square_to_sphere};
@@ -61,9 +61,8 @@ pub(super) fn furnish(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     }
     .into();
     desc.film.resolution = [640, 480];
-    desc.integrator =
-        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh }.into();
-    desc.sampler.pixel_samples = 64;
+    desc.integrator = IntegratorDesc::Path(PathDesc::default()).into();
+    desc.sampler.kind.set_samples_per_pixel(64);
     add_ground(desc, DVec3::new(center.x, low.y, center.z), radius);
     let key = (0.3 * -direction + 0.75 * up - 0.75 * right).normalize();
     let image = Arc::new(environment(key.as_vec3()));

@@ -4,7 +4,8 @@
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
-use description::{ColorSpaceDesc, Diagnostic, Span, Spanned};
+use description::schema::{Kind, Settings};
+use description::{ColorSpaceDesc, Diagnostic, OptionsDesc, Span, Spanned};
 
 use super::interpreter::{Abandoned, Interpreter, Step};
 use super::names;
@@ -16,21 +17,6 @@ use super::statement::{
 };
 use super::token::{TokenKind, Tokens};
 use crate::suggest::did_you_mean;
-
-/// All options and the types of their values.
-const OPTIONS: [(&str, ParameterType); 11] = [
-    ("disablepixeljitter", ParameterType::Bool),
-    ("disabletexturefiltering", ParameterType::Bool),
-    ("disablewavelengthjitter", ParameterType::Bool),
-    ("displacementedgescale", ParameterType::Float),
-    ("forcediffuse", ParameterType::Bool),
-    ("msereferenceimage", ParameterType::String),
-    ("msereferenceout", ParameterType::String),
-    ("pixelstats", ParameterType::Bool),
-    ("rendercoordsys", ParameterType::String),
-    ("seed", ParameterType::Integer),
-    ("wavefront", ParameterType::Bool),
-];
 
 const COLOR_SPACES: [(&str, ColorSpaceDesc); 4] = [
     ("srgb", ColorSpaceDesc::Srgb),
@@ -87,13 +73,21 @@ impl Interpreter<'_> {
         let name = self.string(tokens, "the option's name")?;
         let plain: String =
             name.value.chars().filter(|c| !matches!(c, '-' | '_')).map(|c| c.to_ascii_lowercase()).collect();
-        let Some(&(known, kind)) = OPTIONS.iter().find(|(known, _)| *known == plain) else {
+        let options = OptionsDesc::default().settings();
+        let Some(option) = options.iter().find(|option| option.field.name == plain) else {
             let message = format!("there is no option `{}`", name.value);
             self.report.push(Diagnostic {
-                help: did_you_mean(&plain, OPTIONS.map(|(known, _)| known)),
+                help: did_you_mean(&plain, options.iter().map(|option| option.field.name)),
                 ..Diagnostic::error("unknown-option", message, name.span)
             });
             return Err(Abandoned);
+        };
+        let known = option.field.name;
+        let kind = match option.kind {
+            Kind::Bool => ParameterType::Bool,
+            Kind::Integer | Kind::Count => ParameterType::Integer,
+            Kind::Number | Kind::List(..) => ParameterType::Float,
+            Kind::Choice(_) | Kind::Text => ParameterType::String,
         };
         let (values, end) =
             parameter::values(tokens, kind, known, name.span, &mut self.report).ok_or(Abandoned)?;

@@ -5,6 +5,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use description::schema::{Field, Kind, Settings, Value};
 use description::{
     ColorSpaceDesc, Diagnostic, EncodingDesc, FloatParameter, Handle, ImageDesc, Origin, Parameter, Span,
     Spanned, SpectrumDesc, SpectrumParameter,
@@ -191,6 +192,65 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.given.iter().any(|given| given.parameter.name == name)
     }
 
+    /// The member of a set that the statement's type names, with its settings.
+    pub(crate) fn member<T: Settings>(&mut self, set: &str, what: &str) -> Option<T> {
+        let Some(mut desc) = T::called(&self.kind.value) else {
+            let members = T::members();
+            let known: Vec<&str> = members
+                .iter()
+                .filter_map(Settings::member)
+                .flat_map(|member| member.names)
+                .copied()
+                .collect();
+            self.unknown_type(set, what, &known);
+            return None;
+        };
+        self.settings(&mut desc);
+        Some(desc)
+    }
+
+    /// Reads those settings that are given.
+    pub(crate) fn settings(&mut self, desc: &mut impl Settings) {
+        desc.visit(&mut |field, slot| {
+            let Some(value) = self.setting(field, slot.kind()) else { return };
+            // In the format, a number that counts nothing leaves a count to the renderer.
+            let is_count = slot.kind() == Kind::Count && slot.get() == Value::Automatic;
+            if is_count && matches!(value, Value::Integer(..=0)) {
+                return;
+            }
+            if let Err(values) = field.assign(slot, &value) {
+                self.refuse(field.name, format!("`{}` is {values}, not {value}", field.name));
+            }
+        });
+    }
+
+    fn setting(&mut self, field: &Field, kind: Kind) -> Option<Value> {
+        let name = field.name;
+        match kind {
+            Kind::Bool => self.optional_boolean(name).map(Value::Bool),
+            Kind::Integer | Kind::Count => {
+                self.optional_integer(name).map(|value| Value::Integer(value.into()))
+            }
+            Kind::Number => self.optional_float(name).map(Value::Number),
+            Kind::Choice(names) => self.name_of(name, names).map(Value::Text),
+            Kind::Text if !field.domain.names.is_empty() => {
+                self.name_of(name, field.domain.names).map(Value::Text)
+            }
+            Kind::Text => self.string(name).map(|text| Value::Text(text.value)),
+            Kind::List(kind, count) => {
+                let values: Vec<Value> = match kind {
+                    Kind::Number => self.floats(name)?.into_iter().map(Value::Number).collect(),
+                    _ => self.integers(name)?.into_iter().map(|value| Value::Integer(value.into())).collect(),
+                };
+                if values.len() != count {
+                    self.count(name, count, values.len(), self.origin.parameter(name));
+                    return None;
+                }
+                Some(Value::List(values))
+            }
+        }
+    }
+
     /// Numbers.
     pub(crate) fn floats(&mut self, name: &'static str) -> Option<Vec<f32>> {
         match self.take(name, &[ParameterType::Float])? {
@@ -262,18 +322,23 @@ impl<'b, 'a> Reader<'b, 'a> {
         default
     }
 
-    /// A Boolean.
-    pub(crate) fn boolean(&mut self, name: &'static str, default: bool) -> bool {
-        match self.take(name, &[ParameterType::Bool]) {
-            Some((_, Values::Bools(values), span)) => match values[..] {
-                [value] => value,
+    /// A Boolean that may be absent.
+    fn optional_boolean(&mut self, name: &'static str) -> Option<bool> {
+        match self.take(name, &[ParameterType::Bool])? {
+            (_, Values::Bools(values), span) => match values[..] {
+                [value] => Some(value),
                 _ => {
                     self.count(name, 1, values.len(), span);
-                    default
+                    None
                 }
             },
-            _ => default,
+            _ => None,
         }
+    }
+
+    /// A Boolean.
+    pub(crate) fn boolean(&mut self, name: &'static str, default: bool) -> bool {
+        self.optional_boolean(name).unwrap_or(default)
     }
 
     /// Strings with their spans.
@@ -294,18 +359,25 @@ impl<'b, 'a> Reader<'b, 'a> {
         values.pop()
     }
 
-    /// One of some names.
+    /// One of some values that have names.
     pub(crate) fn choice<T: Copy>(&mut self, name: &'static str, default: T, known: &[(&str, T)]) -> T {
-        let Some(given) = self.string(name) else { return default };
-        if let Some(&(_, value)) = known.iter().find(|(choice, _)| *choice == given.value) {
-            return value;
+        let names: Vec<&str> = known.iter().map(|&(choice, _)| choice).collect();
+        let Some(given) = self.name_of(name, &names) else { return default };
+        known.iter().find(|(choice, _)| *choice == given).map_or(default, |&(_, value)| value)
+    }
+
+    /// One of some names.
+    fn name_of(&mut self, name: &'static str, known: &[&str]) -> Option<String> {
+        let given = self.string(name)?;
+        if known.contains(&given.value.as_str()) {
+            return Some(given.value);
         }
         let message = format!("`{name}` cannot be `{}`", given.value);
         self.builder.report.push(Diagnostic {
-            help: did_you_mean(&given.value, known.iter().map(|(choice, _)| *choice)),
+            help: did_you_mean(&given.value, known.iter().copied()),
             ..Diagnostic::error("unknown-choice", message, given.span)
         });
-        default
+        None
     }
 
     /// Pairs of numbers.

@@ -42,8 +42,8 @@ mod tests;
 mod vertex;
 mod walk;
 
+pub use bdpt::Bdpt;
 pub(crate) use bdpt::techniques;
-pub use bdpt::{Bdpt, BdptSettings};
 pub(crate) use connect::Found;
 pub(crate) use light_vertex::LightVertex;
 pub(crate) use partial::{Balance, Merges, Partial};

@@ -1,14 +1,12 @@
 //! Ambient occlusion: how much of the sky each point sees.
 //!
 //! A = 1/π ∫ V(p, ω) (n·ω) dω over the hemisphere around the geometric normal n on the camera's
-//! side, where the visibility V is 0 for directions that meet a surface nearer than `max_distance`.
+//! side, where the visibility V is 0 for directions that hit a surface nearer than `max_distance`.
 //! A point with a free view is white (A = 1): the result is A times the illuminant of the film's
 //! colour space at unit luminance. Lights and materials do not matter; a camera ray that meets
-//! nothing is black.
-//!
-//! Settings: `cos_sample`, directions by the cosine (the default, less noise) or uniform;
-//! `max_distance` in scene units, default infinite. Sources: [Zhukov 1998], [Pharr 2023 §13].
+//! nothing is black. Sources: [Zhukov 1998], [Pharr 2023 §13].
 
+use description::AmbientOcclusionDesc;
 use math::{Frame, RayDifferential};
 use sampling::warp;
 use scene::Interfaces;
@@ -21,18 +19,17 @@ use crate::{RayIntegrator, Tracer};
 /// Ambient occlusion.
 #[derive(Clone, Debug)]
 pub struct AmbientOcclusion {
-    cos_sample: bool,
-    max_distance: f32,
+    settings: AmbientOcclusionDesc,
     white: Spectrum,
     white_scale: f32,
 }
 
 impl AmbientOcclusion {
     /// Shows a free view as white of `color_space`.
-    pub fn new(cos_sample: bool, max_distance: f32, color_space: &RgbColorSpace) -> Self {
+    pub fn new(settings: AmbientOcclusionDesc, color_space: &RgbColorSpace) -> Self {
         let white = color_space.illuminant();
         let white_scale = 1.0 / white.to_photometric();
-        Self { cos_sample, max_distance, white, white_scale }
+        Self { settings, white, white_scale }
     }
 }
 
@@ -53,7 +50,7 @@ impl RayIntegrator for AmbientOcclusion {
             ray = pass_through(&ray, &surface, t);
         };
         let u = tracer.sampler.get_2d();
-        let (wi, pdf) = if self.cos_sample {
+        let (wi, pdf) = if self.settings.cos_sample {
             let wi = warp::sample_cosine_hemisphere(u);
             (wi, warp::cosine_hemisphere_pdf(wi.z))
         } else {
@@ -61,7 +58,7 @@ impl RayIntegrator for AmbientOcclusion {
         };
         let n = if surface.n.dot(surface.wo) < 0.0 { -surface.n } else { surface.n };
         let outward = surface.spawn_ray(Frame::from_z(n).from_local(wi));
-        if pdf == 0.0 || tracer.occluded(&outward, self.max_distance, Interfaces::Stop) {
+        if pdf == 0.0 || tracer.occluded(&outward, self.settings.max_distance, Interfaces::Stop) {
             return SampledSpectrum::ZERO;
         }
         self.white.sample(lambda) * (self.white_scale * wi.z / (PI * pdf))

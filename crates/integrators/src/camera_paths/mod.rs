@@ -9,7 +9,7 @@ mod simple_path;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
-pub use path::{Path, PathSettings};
+pub use path::Path;
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;

@@ -7,9 +7,9 @@
 //! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
 //! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
 
+use description::PathDesc;
 use math::RayDifferential;
 use scattering::{Bsdf, each_bxdf};
-use scene::light_sampler::LightSamplerKind;
 use scene::{Interfaces, Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -17,41 +17,19 @@ use crate::transport::direct::{DirectLighting, light_context};
 use crate::transport::path_state::{PathState, Scattered};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
-/// Settings of [`Path`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PathSettings {
-    /// Most scattering events; default 5.
-    pub max_depth: u32,
-    /// Roughen surfaces after the first rough bounce; default false.
-    pub regularize: bool,
-    /// How a light is chosen; by default through the tree of lights.
-    pub light_sampler: LightSamplerKind,
-    /// What interfaces do to the light of delta lights; by default they stop it.
-    pub interfaces: Interfaces,
-}
-
-impl Default for PathSettings {
-    fn default() -> Self {
-        Self {
-            max_depth: 5,
-            regularize: false,
-            light_sampler: LightSamplerKind::Bvh,
-            interfaces: Interfaces::Stop,
-        }
-    }
-}
-
 /// Path tracing.
 #[derive(Clone, Debug)]
 pub struct Path {
-    settings: PathSettings,
+    settings: PathDesc,
+    interfaces: Interfaces,
     direct: DirectLighting,
 }
 
 impl Path {
-    /// Knows no lights until it is prepared for a scene.
-    pub fn new(settings: PathSettings) -> Self {
-        Self { settings, direct: DirectLighting::none() }
+    /// Knows no lights until it is prepared for a scene. `interfaces` says what interfaces do to
+    /// the light of delta lights.
+    pub fn new(settings: PathDesc, interfaces: Interfaces) -> Self {
+        Self { settings, interfaces, direct: DirectLighting::none() }
     }
 
     /// The radiance along the ray of paths that scatter at least `min_depth` times.
@@ -108,8 +86,7 @@ impl Path {
 
 impl RayIntegrator for Path {
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        let PathSettings { light_sampler, interfaces, .. } = self.settings;
-        self.direct = DirectLighting::new(scene, light_sampler, interfaces);
+        self.direct = DirectLighting::new(scene, self.settings.light_sampler.into(), self.interfaces);
         control.check()
     }
 

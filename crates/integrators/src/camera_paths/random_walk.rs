@@ -2,11 +2,10 @@
 //!
 //! L(p, ω_o) = L_e + ∫ f(ω_o, ω_i) L(p', −ω_i) |cos θ_i| dω_i over the whole sphere, estimated by
 //! one direction of density 1/4π at each surface. Unbiased up to its depth but very noisy; light in
-//! single directions (point and distant lights, smooth metal and glass) is never met, and is
-//! missing.
-//!
-//! Settings: `max_depth`, most scattering events, default 5. Source: [Pharr 2023 §1.3.6].
+//! single directions (point and distant lights, smooth metal and glass) is never hit, and is
+//! missing. Source: [Pharr 2023 §1.3.6].
 
+use description::RandomWalkDesc;
 use math::RayDifferential;
 use sampling::warp;
 use scattering::TransportMode;
@@ -16,17 +15,8 @@ use crate::transport::path_state::pass_through;
 use crate::{RayIntegrator, Tracer};
 
 /// A walk in uniform directions.
-#[derive(Clone, Copy, Debug)]
-pub struct RandomWalk {
-    /// Most scattering events.
-    pub max_depth: u32,
-}
-
-impl Default for RandomWalk {
-    fn default() -> Self {
-        Self { max_depth: 5 }
-    }
-}
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RandomWalk(pub RandomWalkDesc);
 
 impl RayIntegrator for RandomWalk {
     fn li(
@@ -47,7 +37,7 @@ impl RayIntegrator for RandomWalk {
                 ray = pass_through(&ray, &surface, t);
                 continue;
             };
-            if depth == self.max_depth {
+            if depth == self.0.max_depth {
                 return l;
             }
             depth += 1;

@@ -6,9 +6,9 @@
 //! scatter light that comes straight from lights only, so that there is no indirect light and there
 //! are no caustics. The tree of rays grows as 2^depth in glass.
 //!
-//! Settings: `max_depth`, most scattering events of a path, default 5: with 1, mirrors are black.
-//! Source: [Whitted 1980].
+//! With a `max_depth` of 1, mirrors are black. Source: [Whitted 1980].
 
+use description::WhittedDesc;
 use math::RayDifferential;
 use scattering::{Directions, TransportMode};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -18,19 +18,10 @@ use crate::transport::path_state::pass_through;
 use crate::{RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
-#[derive(Clone, Copy, Debug)]
-pub struct Whitted {
-    /// Most scattering events of a path.
-    pub max_depth: u32,
-}
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Whitted(pub WhittedDesc);
 
-impl Default for Whitted {
-    fn default() -> Self {
-        Self { max_depth: 5 }
-    }
-}
-
-/// A ray that is still to be followed.
+/// A ray that is still to be traced.
 struct Pending {
     ray: RayDifferential,
     beta: SampledSpectrum,
@@ -57,7 +48,7 @@ impl RayIntegrator for Whitted {
                 next = Some(Pending { ray: pass_through(&ray, &surface, t), beta, depth });
                 continue;
             };
-            if depth == self.max_depth {
+            if depth == self.0.max_depth {
                 continue;
             }
             l += beta * all_lights(tracer, &surface, &bsdf, Shadows::Cast, lambda);

@@ -1,5 +1,6 @@
 //! The chains of a pass: where they start, and what all of them add to the film.
 
+use description::MltDesc;
 use film::Splatter;
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -8,33 +9,32 @@ use sampling::{Sampler, hash, hash_float};
 use scene::{Scene, View};
 
 use super::chain::{Acceptance, Chain, Steps, Streams};
-use super::settings::MltSettings;
 use super::target::{Contribution, Target};
 use crate::transport::Tracer;
 use crate::{Cancelled, Control};
 
-/// Runs chains, and remembers how they fared.
+/// Runs the chains of passes, and keeps their statistics.
 #[derive(Debug)]
 pub(super) struct Chains {
-    settings: MltSettings,
+    settings: MltDesc,
     seed: u32,
     b0: Option<f32>,
     passes: u32,
     /// Sum of the b of these passes.
     b_sum: f64,
-    /// Steps of the last of them.
+    /// Mutations of the last of them.
     mutations: usize,
     acceptance: Acceptance,
 }
 
-/// The number of the pass whose starting points tell b₀: no other has it.
+/// The number of a pass whose candidates estimate b₀: no other pass has it.
 const BEFORE_ALL: u32 = u32::MAX;
 
-/// A share of the time that goes into the choice of starts: with fewer candidates, chains start too
-/// often at the same one.
+/// Mutations for each candidate start, at least. With fewer candidates, chains start too often at
+/// the same one.
 const MUTATIONS_PER_CANDIDATE: usize = 4;
 
-/// Shorter chains than this leave too little of the place where they start.
+/// Shorter chains than this move too little away from their start.
 const FEWEST_MUTATIONS: usize = 256;
 
 /// Points that a thread evaluates in a row.
@@ -48,7 +48,7 @@ pub(super) struct Targeted<'a> {
 }
 
 impl Targeted<'_> {
-    /// What is found at the point that the streams are.
+    /// What is found at the point of primary sample space that the streams hold.
     fn contribution(
         &self,
         [first, others @ ..]: &mut Streams,
@@ -61,7 +61,7 @@ impl Targeted<'_> {
 }
 
 impl Chains {
-    pub fn new(settings: MltSettings, seed: u32) -> Self {
+    pub fn new(settings: MltDesc, seed: u32) -> Self {
         Self {
             settings,
             seed,
@@ -75,7 +75,7 @@ impl Chains {
 
     /// Among how many points the chains of a pass choose, and how many chains.
     fn starts(&self, mutations: usize) -> (usize, usize) {
-        let MltSettings { bootstrap_samples, chains, .. } = self.settings;
+        let MltDesc { bootstrap_samples, chains, .. } = self.settings;
         let candidates = (bootstrap_samples as usize).min(mutations / MUTATIONS_PER_CANDIDATE);
         (candidates.max(1), (chains as usize).min(mutations / FEWEST_MUTATIONS).max(1))
     }
@@ -171,7 +171,7 @@ impl Chains {
     }
 
     fn streams(&self) -> Streams {
-        let MltSettings { mutations_per_pixel, sigma, .. } = self.settings;
+        let MltDesc { mutations_per_pixel, sigma, .. } = self.settings;
         [0, 1, 2].map(|stream| {
             let seed = hash(&[self.seed, stream]) as u32;
             Sampler::PrimarySample(PrimarySample::new(mutations_per_pixel, sigma, seed))

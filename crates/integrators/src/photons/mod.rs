@@ -10,7 +10,6 @@ mod specular_paths;
 mod sppm;
 mod vcm;
 
-pub use photon_map::Kernel;
-pub use photon_mapping::{PhotonMapping, PhotonMappingSettings};
-pub use sppm::{Sppm, SppmSettings};
-pub use vcm::{Vcm, VcmSettings};
+pub use photon_mapping::PhotonMapping;
+pub use sppm::Sppm;
+pub use vcm::{MAX_PHOTON_PATHS, Vcm};

@@ -1,55 +1,55 @@
-//! Vertex connection and merging: bidirectional path tracing and progressive photon mapping as one.
+//! Vertex connection and merging: bidirectional path tracing and progressive photon mapping in one.
 //!
-//! A pass has two steps. First, light subpaths are made, one for each pixel, and leave their
-//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel makes a camera
+//! A pass has two steps. First, light subpaths are sampled, one for each pixel, and leave their
+//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel samples a camera
 //! subpath and connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and
 //! vertices of the camera subpath are merged with the photons within the radius. Merging is one
 //! more family of strategies: a path whose vertex x is made from both ends is found if the two ends
-//! come within r of each other, so the density of such a path is that of its two subpaths, times π
-//! r² (the chance to meet, if all is smooth), times the number n of photon paths. (Where a texture
-//! cuts x out in part, both ends must meet it, and the part that remains is one more factor of η.)
-//! With that, the balance heuristic weighs merging against connecting as it weighs connections
-//! against each other:
+//! lie within r of each other, so its density is that of the two subpaths, times π r² (the
+//! probability of being that near, if all is smooth), times the number n of photon paths. (Where
+//! alpha cuts x out in part, both ends must hit it, and alpha is one more factor of η.) The balance
+//! heuristic then weighs merging against connecting as it weighs connections against each other:
 //!
 //! ```text
 //! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
 //! η   = n π r²
 //! ```
 //!
-//! Merging can do what no connection can: a photon behind glass, seen through glass. Every pixel
-//! uses all photons, so it does not mind how small the lamp is. Where connecting is good it is
-//! better, and gets the weight: η shrinks with the radius, and photons with it. Without merging (r
-//! → 0) it is `bdpt`; with nothing but merging it would be photon mapping. Photons that come
-//! straight from a light are not merged: a choice of a point on the light finds the same paths with
-//! less noise.
+//! Merging finds what no connection can: a caustic seen through glass. Every pixel uses all
+//! photons, so the size of the light does not matter. Where connecting is good it is better, and
+//! gets the weight: η shrinks with the radius, and the weight of photons with it. Without merging
+//! (r → 0) this is `bdpt`; with nothing but merging it would be photon mapping. Photons that come
+//! straight from a light are not merged: next-event estimation finds the same paths with less
+//! noise.
 //!
-//! Nor is anything merged beyond the first diffuse surface that a camera subpath comes to. From
-//! there it goes anywhere, and where it comes by chance on a bright spot, as the caustic on the far
-//! wall, it would bring all the spot's photons at once. They have one camera subpath in common, but
-//! the balance heuristic takes them for thousands of independent samples, gives merging nearly all
-//! the weight, and single pixels are too bright until very many passes are made. [Grittmann 2021]
-//! tell it how much subpaths have in common, by a factor for each merge that depends on the
-//! densities of both; here the factor is 1 or 0, which a subpath's recursion can know. What is left
-//! out is found all the same, by photons that the bright spot has sent to the first diffuse
-//! surface, and by connections. In the mirror room, at 300 × 200 pixels, variance is half of what
-//! it is with merges everywhere.
+//! Nor is anything merged beyond the first diffuse surface of a camera subpath. From there it goes
+//! anywhere, and where it hits a bright spot by chance, such as the caustic on the far wall,
+//! merging would add all photons of the spot at once. They share one camera subpath, but the
+//! balance heuristic takes them for thousands of independent samples, gives merging nearly all the
+//! weight, and single pixels are too bright until very many passes are made. [Grittmann 2021]
+//! account for this correlation by a factor for each merge that depends on the densities of both
+//! subpaths; here the factor is 1 or 0, which the recursion of a subpath can know. What is left out
+//! is found all the same, by photons that the bright spot has sent to the first diffuse surface,
+//! and by connections. In the mirror room, at 300 × 200 pixels, the variance is half of what it is
+//! with merges everywhere.
 //!
-//! What camera rays alone find, light that comes by specular surfaces all the way, has more of them
-//! ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at 96 × 64 pixels nine
-//! tenths of the error were such glints, and five rays instead of one take a third of it or more
-//! for a seventh more time.
+//! Light that reaches the camera by specular surfaces alone is found by camera rays alone, which
+//! get more samples ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at
+//! 96 × 64 pixels it made nine tenths of the error, and five rays instead of one take a third of it
+//! or more for a seventh more time.
 //!
-//! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
-//! third of the variance; behind a door, light seeps under it then.
+//! What remains hard: choosing the radius. In the mirror room one three times the default leaves a
+//! third of the variance; behind a door, light then leaks under it.
 //!
-//! At most `photon_paths` paths of a pass leave photons, which bounds memory: 180 bytes for each of
-//! at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they are
-//! sorted. In larger pictures the other pixels make their light subpaths when they need them.
+//! At most [`MAX_PHOTON_PATHS`] paths of a pass leave photons, which bounds memory: 180 bytes for
+//! each of at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they
+//! are sorted. In larger pictures the other pixels sample their light subpaths when they need them.
 //!
 //! Biased: light that merging finds is blurred over the radius, which shrinks as `merging` says;
-//! consistent. Depth of field and motion are right, because all paths of a pass have one time.
+//! consistent. Depth of field and motion are right, because all paths of a pass share one time.
 //! Sources: [Georgiev 2012]; [Georgiev 2012b]; [Hachisuka 2012]; [Grittmann 2021].
 
+use description::VcmDesc;
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -68,31 +68,14 @@ use crate::{Cancelled, Control, Integrator};
 /// times the bias, squared, in 64 passes.
 const SHARE_OF_SCENE: f32 = 0.003;
 
-/// Settings of [`Vcm`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct VcmSettings {
-    /// Most scattering events; default 5.
-    pub max_depth: u32,
-    /// Distance in the scene within which vertices are merged in the first pass, above 0; by
-    /// default 0.003 of the scene's radius.
-    pub radius: Option<f32>,
-    /// How slowly the radius shrinks, in (0, 1]: its square goes with i^(α − 1) over the passes i;
-    /// default 0.75.
-    pub alpha: f32,
-    /// Most light subpaths that leave photons in a pass, above 0; default 2¹⁹.
-    pub photon_paths: usize,
-}
-
-impl Default for VcmSettings {
-    fn default() -> Self {
-        Self { max_depth: 5, radius: None, alpha: 0.75, photon_paths: 1 << 19 }
-    }
-}
+/// Most light subpaths of a pass that leave photons, which bounds memory.
+pub const MAX_PHOTON_PATHS: usize = 1 << 19;
 
 /// Vertex connection and merging.
 #[derive(Debug)]
 pub struct Vcm {
-    settings: VcmSettings,
+    settings: VcmDesc,
+    photon_paths: usize,
     sampler: Sampler,
     light_sampler: Sampler,
     specular_paths: SpecularPaths,
@@ -102,19 +85,18 @@ pub struct Vcm {
 }
 
 impl Vcm {
-    /// With a sampler for each end of what is connected, and a seed for photons and glints.
-    pub fn new(settings: VcmSettings, sampler: Sampler, light_sampler: Sampler, photon_seed: u32) -> Self {
+    /// With a sampler for each end of what is connected, a seed for photons and glints, and the
+    /// most light subpaths of a pass that leave photons, above 0; [`MAX_PHOTON_PATHS`] is usual.
+    pub fn new(
+        settings: VcmDesc,
+        [sampler, light_sampler]: [Sampler; 2],
+        photon_seed: u32,
+        photon_paths: usize,
+    ) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
         let specular_paths = SpecularPaths::new(sampler.samples_per_pixel(), !photon_seed);
-        Self {
-            settings,
-            sampler,
-            light_sampler,
-            specular_paths,
-            photon_seed,
-            lights: Lights::none(),
-            merging,
-        }
+        let lights = Lights::none();
+        Self { settings, photon_paths, sampler, light_sampler, specular_paths, photon_seed, lights, merging }
     }
 }
 
@@ -141,7 +123,7 @@ impl Integrator for Vcm {
     ) -> Result<RayStats, Cancelled> {
         let bounds = film.pixel_bounds();
         let pixel_count = bounds.area();
-        let photon_paths = pixel_count.min(self.settings.photon_paths);
+        let photon_paths = pixel_count.min(self.photon_paths);
         let paths = Bidirectional {
             scene,
             view,

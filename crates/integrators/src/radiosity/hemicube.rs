@@ -32,7 +32,7 @@ use crate::{Cancelled, Control};
 /// An element seen through this many pixels at least is cut by what they show.
 const ENOUGH: u32 = 16;
 
-/// A way of looking around.
+/// A hemicube of pixels.
 pub(crate) struct Hemicube {
     /// Pixels along an edge, an even number.
     resolution: u32,
@@ -40,7 +40,7 @@ pub(crate) struct Hemicube {
     angle: f32,
 }
 
-/// What is seen through a pixel.
+/// What is visible through a pixel.
 struct Pixel {
     /// The first cell of the primitive there, and where on it.
     root: u32,
@@ -50,7 +50,7 @@ struct Pixel {
     factor: f32,
 }
 
-/// What a patch sees.
+/// What is visible from a patch.
 pub(crate) struct VisiblePixels(Vec<Pixel>);
 
 impl Hemicube {
@@ -90,7 +90,7 @@ impl Hemicube {
         self.resolution + 4 * (self.resolution / 2)
     }
 
-    /// Looks around from the middle of a cell, on one side of it.
+    /// Casts a ray through each pixel from the centre of a cell, on one side of it.
     pub fn cast(
         &self,
         scene: &Scene,

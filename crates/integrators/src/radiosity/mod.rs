@@ -13,10 +13,10 @@
 //! interpolation between vertices, or by a final gather. Light is carried at fixed
 //! [wavelengths](bands).
 //!
-//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white,
-//! grey or coloured plaster; glass becomes a sheet that passes light diffusely. Surfaces reflect on
-//! both sides. Shading normals count in the final gather alone. Things that move are where they are
-//! in the middle of the shutter's time.
+//! Everything is diffuse here. A BSDF that is not is replaced by its mean albedo ρ_hh; glass
+//! becomes a sheet that transmits light diffusely. Surfaces reflect on both sides. Shading normals
+//! count in the final gather alone. Moving shapes stand where they are in the middle of the shutter
+//! time.
 //!
 //! It has no noise but that of a final gather, and is biased: light is even over each quarter of a
 //! patch that sends it and of an element that receives it, and visibility is known from a few rays.
@@ -24,20 +24,6 @@
 //! shadow of the blocks to 2 %, with the settings' defaults; interpolated, shadows are as blurred
 //! as their elements are large. `max_depth` counts as in all algorithms: light that was scattered
 //! more often is missing.
-//!
-//! | setting | meaning | default |
-//! |---|---|---|
-//! | `max_depth` | most scattering events, up to 100 | 5 |
-//! | `form_factors` | `analytic` or `hemicube` | analytic |
-//! | `hemicube_resolution` | pixels along an edge of the hemicube | 128 |
-//! | `patch_size` | longest side of a patch, in scene units | a tenth of the scene's radius |
-//! | `subdivision` | how often an element may be quartered | 3 |
-//! | `gradient` | change of light across an element, in parts of what is there, above which it is quartered | 0.1 |
-//! | `max_patches` | most elements, and twice the number of primitives that are cut | 50 000 |
-//! | `tolerance` | share of light that need not be sent | 0.002 |
-//! | `steps` | passes in which light is sent | 8 |
-//! | `gather` | rays of a final gather for each sample of a pixel; 0 shows by interpolation | 0 |
-//! | `mesh_out` | file for the elements with their radiosity as vertex colours, in the PLY format | |
 //!
 //! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering
 //! event more, and again 2 kB if it is cut. Where there are more primitives than half of
@@ -55,7 +41,6 @@ mod light_samples;
 mod mesh;
 mod ply;
 mod primitives;
-mod settings;
 mod shooting;
 mod show;
 mod subdivide;
@@ -63,6 +48,7 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
+use description::RadiosityDesc;
 use film::{Film, FilmTile};
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -76,14 +62,13 @@ use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, OutputFile};
 use bands::Bands;
-pub(crate) use described::{settings, warnings};
-pub use settings::{FormFactors, RadiositySettings};
+pub(crate) use described::warnings;
 use shooting::Solution;
 use show::{Interpolation, SolutionRadiance};
 
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
-    settings: RadiositySettings,
+    settings: RadiosityDesc,
     sampler: Sampler,
     color_space: &'static RgbColorSpace,
     state: Option<State>,
@@ -109,7 +94,7 @@ impl State {
     fn new(
         scene: &Scene,
         view: &View,
-        settings: &RadiositySettings,
+        settings: &RadiosityDesc,
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let solution = Solution::new(scene, view, settings, control)?;
@@ -128,7 +113,7 @@ impl State {
         color_space: &RgbColorSpace,
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
-        let RadiositySettings { steps, tolerance, gather, .. } = self.solution.settings;
+        let RadiosityDesc { steps, tolerance, gather, .. } = self.solution.settings;
         let mut stats = RayStats::default();
         while self.sent < steps.min(pass + 1) {
             let share = tolerance.powf((self.sent + 1) as f32 / steps as f32);
@@ -151,7 +136,7 @@ impl State {
 
 impl Radiosity {
     /// With a mesh whose colours are those of `color_space`, if one is kept.
-    pub fn new(settings: RadiositySettings, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
+    pub fn new(settings: RadiosityDesc, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
         Self { settings, sampler, color_space, state: None, draft_is_shown: false }
     }
 }
@@ -225,7 +210,7 @@ impl Integrator for Radiosity {
     fn files(&self) -> Vec<OutputFile> {
         let mesh = self.state.as_ref().map(|state| &state.mesh).filter(|mesh| !mesh.is_empty());
         let file = self.settings.mesh_out.iter().zip(mesh);
-        file.map(|(path, mesh)| OutputFile { path: path.clone(), contents: mesh.clone() }).collect()
+        file.map(|(path, mesh)| OutputFile { path: path.into(), contents: mesh.clone() }).collect()
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

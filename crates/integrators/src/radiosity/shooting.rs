@@ -30,6 +30,7 @@
 //!
 //! Sources: [Cohen 1988], [Cohen 1986] for elements.
 
+use description::{FormFactorsDesc, RadiosityDesc};
 use geometry::RayStats;
 use math::Normal3;
 use rayon::prelude::*;
@@ -41,7 +42,6 @@ use super::element::{Albedo, Element, Patch};
 use super::form_factor::{Emitter, Received};
 use super::hemicube::Hemicube;
 use super::light_samples::from_light;
-use super::settings::{FormFactors, RadiositySettings};
 use super::subdivide::Cut;
 use crate::{Cancelled, Control};
 
@@ -56,7 +56,7 @@ const UNCUT: f32 = 0.04;
 pub(crate) struct Solution {
     pub wavelengths: Wavelengths,
     pub cut: Cut,
-    pub settings: RadiositySettings,
+    pub settings: RadiosityDesc,
     /// Whether the lights that are no surfaces have shone.
     begun: bool,
     /// Brightness of all light that there is to send.
@@ -70,7 +70,7 @@ impl Solution {
     pub fn new(
         scene: &Scene,
         view: &View,
-        settings: &RadiositySettings,
+        settings: &RadiosityDesc,
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let wavelengths = Wavelengths::new(!view.options.disable_wavelength_jitter);
@@ -158,7 +158,7 @@ impl Solution {
         // What patches receive as wholes.
         let mut wholes = Vec::new();
         let received = match self.settings.form_factors {
-            FormFactors::Analytic => {
+            FormFactorsDesc::Analytic => {
                 let careful = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[source as usize], side);
                 let unit = self.even() / brightness;
                 let hasty = careful.clone().hastily(FAINT * unit, self.shots);
@@ -182,8 +182,8 @@ impl Solution {
                     })
                 })?
             }
-            FormFactors::Hemicube { resolution } => {
-                let hemicube = Hemicube::new(resolution, self.shots);
+            FormFactorsDesc::Hemicube => {
+                let hemicube = Hemicube::new(self.settings.hemicube_resolution, self.shots);
                 let seen = hemicube.cast(scene, &self.cut.mesh, cell, side, control, stats)?;
                 self.receive(scene, view, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }

@@ -108,7 +108,7 @@ impl Interpolation {
     }
 }
 
-/// The radiance of a solution along rays.
+/// Estimates the radiance of a solution along rays.
 pub(crate) struct SolutionRadiance<'a> {
     pub interpolation: &'a Interpolation,
     pub solution: &'a Solution,

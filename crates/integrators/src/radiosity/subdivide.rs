@@ -1,13 +1,13 @@
 //! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller
 //! and smaller elements.
 
+use description::RadiosityDesc;
 use rayon::prelude::*;
 use scene::{Scene, View};
 
 use super::bands::Wavelengths;
 use super::element::{Element, Patch, PatchPart};
 use super::mesh::Mesh;
-use super::settings::RadiositySettings;
 use crate::{Cancelled, Control};
 
 /// How long patches are, unless the settings say so: the radius of the scene in patches.
@@ -27,7 +27,7 @@ impl Cut {
     pub fn new(
         scene: &Scene,
         view: &View,
-        settings: &RadiositySettings,
+        settings: &RadiosityDesc,
         wavelengths: &Wavelengths,
         control: &Control,
     ) -> Result<Self, Cancelled> {
@@ -113,7 +113,7 @@ impl Cut {
     pub fn lagging(
         &self,
         scene: &Scene,
-        settings: &RadiositySettings,
+        settings: &RadiosityDesc,
         is_asked: impl Fn(u32) -> bool + Sync,
     ) -> Vec<u32> {
         let lags = |&id: &u32| {
@@ -131,7 +131,7 @@ impl Cut {
         &mut self,
         scene: &Scene,
         view: &View,
-        settings: &RadiositySettings,
+        settings: &RadiosityDesc,
         wavelengths: &Wavelengths,
         coarse: &[u32],
     ) -> Vec<u32> {

@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use description::{
-    AreaLightDesc, InfiniteRadiance, LightKind, MaterialKind, MeshDesc, PatchMeshDesc, SceneDesc, ShapeDesc,
-    ShapeKind, SpectrumDesc,
+    AreaLightDesc, FormFactorsDesc, InfiniteRadiance, LightKind, MaterialKind, MeshDesc, PatchMeshDesc,
+    RadiosityDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
 };
 use geometry::RayStats;
 use math::{Point3, Vec2};
@@ -20,9 +20,9 @@ use super::element::Patch;
 use super::form_factor::Emitter;
 use super::hemicube::Hemicube;
 use super::mesh::Corner;
+use super::ply;
 use super::shooting::Solution;
 use super::show::Interpolation;
-use super::{FormFactors, RadiositySettings, ply};
 use crate::Control;
 use scene::light_sampler::LightSamplerKind;
 
@@ -69,15 +69,15 @@ fn view() -> View {
     View::compile(&SceneDesc::default(), math::DMat4::IDENTITY).unwrap().view
 }
 
-fn settings(patch_size: f32) -> RadiositySettings {
-    RadiositySettings { patch_size: Some(patch_size), ..RadiositySettings::default() }
+fn settings(patch_size: f32) -> RadiosityDesc {
+    RadiosityDesc { patch_size: Some(patch_size), ..RadiosityDesc::default() }
 }
 
-fn unsolved(scene: &Scene, settings: &RadiositySettings) -> Solution {
+fn unsolved(scene: &Scene, settings: &RadiosityDesc) -> Solution {
     Solution::new(scene, &view(), settings, &Control::default()).unwrap()
 }
 
-fn solved(scene: &Scene, settings: &RadiositySettings) -> Solution {
+fn solved(scene: &Scene, settings: &RadiosityDesc) -> Solution {
     let mut solution = unsolved(scene, settings);
     solution.shoot(scene, &view(), settings.tolerance, &Control::default()).unwrap();
     solution
@@ -145,8 +145,14 @@ fn a_hemicube_agrees_within_its_resolution() {
 fn energy_is_conserved_while_shooting() {
     let reflectances = [0.7, 0.4, 0.6, 0.3, 0.5, 0.8];
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), reflectances));
-    for form_factors in [FormFactors::Analytic, FormFactors::Hemicube { resolution: 64 }] {
-        let settings = RadiositySettings { max_depth: 12, form_factors, subdivision: 1, ..settings(0.5) };
+    for form_factors in [FormFactorsDesc::Analytic, FormFactorsDesc::Hemicube] {
+        let settings = RadiosityDesc {
+            max_depth: 12,
+            form_factors,
+            hemicube_resolution: 64,
+            subdivision: 1,
+            ..settings(0.5)
+        };
         let mut solution = unsolved(&scene, &settings);
         let power = |solution: &Solution| {
             let unshot =
@@ -178,7 +184,7 @@ fn a_furnace_is_even() {
         desc.shapes.push(ShapeDesc { area_light: Some(light), ..kind });
     }
     let scene = compile(&desc);
-    let settings = RadiositySettings { max_depth: 20, tolerance: 1e-4, subdivision: 0, ..settings(0.25) };
+    let settings = RadiosityDesc { max_depth: 20, tolerance: 1e-4, subdivision: 0, ..settings(0.25) };
     let solution = solved(&scene, &settings);
     let emitted = solution.cut.patches[0].emitted[0].mean();
     for element in &solution.cut.elements {
@@ -197,7 +203,7 @@ fn the_sky_is_an_emitter() {
     let ball = ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 360.0 };
     desc.shapes.push(ball.into());
     let scene = compile(&desc);
-    let solution = solved(&scene, &RadiositySettings { subdivision: 0, ..settings(0.2) });
+    let solution = solved(&scene, &RadiosityDesc { subdivision: 0, ..settings(0.2) });
     let sky = solution.wavelengths.sample(|lambda| {
         scene.light(scene::light::LightId(0)).le(&math::Ray::new(Point3::ZERO, Point3::Z, 0.0), lambda)
     });
@@ -212,7 +218,7 @@ fn the_sky_is_an_emitter() {
 #[test]
 fn there_are_no_cracks() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.7, 0.4, 0.6, 0.3, 0.5, 0.8]));
-    let settings = RadiositySettings { tolerance: 0.02, ..settings(0.5) };
+    let settings = RadiosityDesc { tolerance: 0.02, ..settings(0.5) };
     let solution = solved(&scene, &settings);
     let interpolation = interpolation(&scene, &solution);
     let mut sides: HashMap<[u32; 2], Vec<Vec<f32>>> = HashMap::new();
@@ -268,7 +274,7 @@ fn fine_elements_are_followed() {
 #[test]
 fn every_point_has_its_leaf() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
-    let solution = solved(&scene, &RadiositySettings { tolerance: 0.1, ..settings(0.5) });
+    let solution = solved(&scene, &RadiosityDesc { tolerance: 0.1, ..settings(0.5) });
     let rng = &mut Rng::new(1, 0);
     let area: f32 = solution.cut.patches.iter().map(|patch| patch.area).sum();
     let expected = 6.0 + 0.12 + 4.0 * std::f32::consts::PI * 0.04;
@@ -330,7 +336,7 @@ fn many_primitives_do_not_make_more_patches_than_there_may_be() {
     let mut desc = room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]);
     desc.shapes.push(ShapeKind::Triangles(mesh).into());
     let scene = furnished(desc);
-    let solution = solved(&scene, &RadiositySettings { max_patches: 200, tolerance: 0.1, ..settings(1e-6) });
+    let solution = solved(&scene, &RadiosityDesc { max_patches: 200, tolerance: 0.1, ..settings(1e-6) });
     // The room, the lamp and the ball.
     assert_eq!(solution.cut.mesh.left_out(), 400 + 6 + 2 + 1 - 100);
     assert!(solution.cut.patches.len() > 100 && solution.cut.elements.len() <= 200);

@@ -1,8 +1,8 @@
 //! Algorithms that claim the same light, against each other.
 
-use alhazen_integrators::{Path, PathSettings, SimplePath};
-use description::{LightKind, SceneDesc, ShapeDesc, SpectrumDesc};
-use scene::Scene;
+use alhazen_integrators::{Path, SimplePath};
+use description::{LightKind, PathDesc, SceneDesc, ShapeDesc, SimplePathDesc, SpectrumDesc};
+use scene::{Interfaces, Scene};
 use testkit::welch_test;
 
 use crate::support::{
@@ -30,7 +30,7 @@ pub fn room() -> SceneDesc {
 fn in_a_room_of_rough_walls_all_paths_agree() {
     let scene = compile(&room());
     let (o, d) = (v(-0.7, -0.3, 0.0), v(0.7, 0.45, -0.95));
-    let mut reference = Path::new(PathSettings { max_depth: 3, ..PathSettings::default() });
+    let mut reference = Path::new(PathDesc { max_depth: 3, ..PathDesc::default() }, Interfaces::Stop);
     let reference = radiance(&mut reference, &scene, o, d, 30_000);
     let all = Unbiased::all(3);
     let tests = all.len();
@@ -81,10 +81,11 @@ fn light_samplers_find_the_same_light() {
     let scene = bazaar();
     let views = [v(0.2, 1.0, -0.6), v(0.0, 1.2, 0.3), v(0.05, 0.9, -0.35)];
     for d in views {
-        let mut simple = SimplePath { max_depth: 3, ..SimplePath::default() };
+        let mut simple = SimplePath(SimplePathDesc { max_depth: 3, ..SimplePathDesc::default() });
         let reference = radiance(&mut simple, &scene, v(0.0, -1.5, 0.0), d, 30_000);
         for light_sampler in LIGHT_SAMPLERS {
-            let mut path = Path::new(PathSettings { max_depth: 3, light_sampler, ..PathSettings::default() });
+            let mut path =
+                Path::new(PathDesc { max_depth: 3, regularize: false, light_sampler }, Interfaces::Stop);
             let found = radiance(&mut path, &scene, v(0.0, -1.5, 0.0), d, 40_000);
             welch_test(&found, &reference, views.len() * LIGHT_SAMPLERS.len())
                 .unwrap_or_else(|difference| panic!("{light_sampler:?} along {d}: {difference}"));

@@ -1,7 +1,7 @@
 //! Ambient occlusion of points whose view is known.
 
 use alhazen_integrators::{AmbientOcclusion, Control, RayIntegrator, Tracer};
-use description::{SceneDesc, ShapeKind};
+use description::{AmbientOcclusionDesc, SceneDesc, ShapeKind};
 use geometry::RayStats;
 use math::{Ray, RayDifferential};
 use sampling::Sampler;
@@ -25,7 +25,7 @@ fn on_a_floor(shapes: impl IntoIterator<Item = ShapeKind>) -> Scene {
 /// The brightness of the floor's centre, 1 being white of the colour space.
 fn brightness(scene: &Scene, cos_sample: bool, max_distance: f32) -> Moments {
     let space = RgbColorSpace::rec2020();
-    let rays = AmbientOcclusion::new(cos_sample, max_distance, space);
+    let rays = AmbientOcclusion::new(AmbientOcclusionDesc { cos_sample, max_distance }, space);
     let ((_, view), control) = (viewed(&SceneDesc::default()), Control::default());
     let mut stats = RayStats::default();
     let mut sampler = Sampler::Independent(Independent::new(1, 3));

@@ -3,8 +3,8 @@
 
 use alhazen_integrators::build;
 use description::{
-    CameraKind, FilterDesc, IntegratorDesc, LightSamplerDesc, MltDesc, MltTechnique, SamplerDesc,
-    SamplerKind, SceneDesc, ShapeDesc, SphericalMapping, VcmDesc,
+    BdptDesc, CameraKind, FilterDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc,
+    MltTechnique, PathDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, SphericalMapping, VcmDesc,
 };
 use testkit::{Moments, welch_test};
 
@@ -30,10 +30,10 @@ fn all_around(mapping: SphericalMapping) -> SceneDesc {
 }
 
 /// Means of the rows and columns at the border.
-fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: i32, seed: i32) -> [f64; 4] {
+fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: u32, seed: i32) -> [f64; 4] {
     let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
-    let kind = SamplerKind::Independent;
-    desc.sampler.value = SamplerDesc { kind, pixel_samples: samples, seed: Some(seed) };
+    let kind = SamplerKind::Independent { pixel_samples: samples };
+    desc.sampler.value = SamplerDesc { kind, seed: Some(seed) };
     let image = finished(&desc, build(&desc).unwrap().integrator).state().film.develop();
     let [width, height] = RESOLUTION.map(|n| n as u32);
     let row = |y| (0..width).map(|x| f64::from(image.rgb(x, y)[1])).sum::<f64>() / f64::from(width);
@@ -44,7 +44,7 @@ fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: i32, seed: i3
 #[test]
 fn light_reaches_the_border_from_both_sides_of_it() {
     let light_sampler = LightSamplerDesc::Bvh;
-    let path = IntegratorDesc::Path { max_depth: 2, regularize: false, light_sampler };
+    let path = IntegratorDesc::Path(PathDesc { max_depth: 2, regularize: false, light_sampler });
     let mlt = MltDesc {
         technique: MltTechnique::Bdpt,
         max_depth: 2,
@@ -52,14 +52,14 @@ fn light_reaches_the_border_from_both_sides_of_it() {
         ..MltDesc::default()
     };
     let algorithms = [
-        (IntegratorDesc::LightTracing { max_depth: 2 }, 32),
+        (IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 2 }), 32),
         (
-            IntegratorDesc::Bdpt {
+            IntegratorDesc::Bdpt(BdptDesc {
                 max_depth: 2,
                 regularize: false,
                 visualize_strategies: false,
                 visualize_weights: false,
-            },
+            }),
             32,
         ),
         (IntegratorDesc::Vcm(VcmDesc { max_depth: 2, radius: Some(0.01), ..VcmDesc::default() }), 32),

@@ -1,10 +1,12 @@
 //! What becomes of each algorithm and sampler that can be described.
 
 use alhazen_integrators::build;
+use description::schema::Settings;
 use description::{
-    Diagnostic, Handle, InstanceDesc, IntegratorDesc, LightSamplerDesc, MltDesc, ObjectDesc, Origin,
-    PhotonMappingDesc, RadiosityDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind,
-    SolidOperation, Span, Spanned, SppmDesc, Stated, TransformDesc, VcmDesc,
+    AmbientOcclusionDesc, Diagnostic, Handle, InstanceDesc, IntegratorDesc, LightSamplerDesc,
+    LightTracingDesc, MltDesc, ObjectDesc, Origin, PathDesc, PhotonMappingDesc, RadiosityDesc,
+    RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc,
+    SimpleVolPathDesc, SolidOperation, Span, Spanned, SppmDesc, Stated, TransformDesc, VcmDesc, WhittedDesc,
 };
 
 use crate::support::{diffuse, glass, mirror, sphere, white_sky};
@@ -23,12 +25,12 @@ fn what_is_drawn_is_drawn_without_a_word() {
     let light_sampler = LightSamplerDesc::Power;
     for integrator in [
         IntegratorDesc::RayCasting,
-        IntegratorDesc::Whitted { max_depth: 0 },
-        IntegratorDesc::AmbientOcclusion { cos_sample: false, max_distance: 1.0 },
-        IntegratorDesc::RandomWalk { max_depth: 5 },
-        IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
-        IntegratorDesc::Path { max_depth: 5, regularize: true, light_sampler },
-        IntegratorDesc::VolPath { max_depth: 5, regularize: true, light_sampler },
+        IntegratorDesc::Whitted(WhittedDesc { max_depth: 0 }),
+        IntegratorDesc::AmbientOcclusion(AmbientOcclusionDesc { cos_sample: false, max_distance: 1.0 }),
+        IntegratorDesc::RandomWalk(RandomWalkDesc { max_depth: 5 }),
+        IntegratorDesc::SimplePath(SimplePathDesc { max_depth: 5, sample_lights: true, sample_bsdf: true }),
+        IntegratorDesc::Path(PathDesc { max_depth: 5, regularize: true, light_sampler }),
+        IntegratorDesc::VolPath(PathDesc { max_depth: 5, regularize: true, light_sampler }),
         IntegratorDesc::Mlt(MltDesc::default()),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
         IntegratorDesc::Sppm(SppmDesc::default()),
@@ -40,10 +42,10 @@ fn what_is_drawn_is_drawn_without_a_word() {
 
 #[test]
 fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
-    let found = warnings(IntegratorDesc::SimpleVolPath { max_depth: 5 });
-    assert_eq!(messages(&found), ["integrator `simplevolpath` is not drawn yet; drawn as `path`"]);
+    let found = warnings(IntegratorDesc::SimpleVolPath(SimpleVolPathDesc { max_depth: 5 }));
+    assert_eq!(messages(&found), ["integrator `simple-vol-path` is not drawn yet; drawn as `path`"]);
     let light_sampler = LightSamplerDesc::Exhaustive;
-    let found = warnings(IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler });
+    let found = warnings(IntegratorDesc::Path(PathDesc { max_depth: 5, regularize: false, light_sampler }));
     assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
 }
 
@@ -90,7 +92,7 @@ fn light_from_infinity_tells_where_it_does_not_reach() {
         desc.shapes.push_stated(Stated::new(shape, Origin::new(Span { start, ..Span::NONE })));
     }
     let algorithms = [
-        ("light-tracing", IntegratorDesc::LightTracing { max_depth: 5 }),
+        ("light-tracing", IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 5 })),
         ("photon-mapping", IntegratorDesc::PhotonMapping(PhotonMappingDesc::default())),
         ("sppm", IntegratorDesc::Sppm(SppmDesc::default())),
     ];
@@ -116,12 +118,12 @@ fn light_from_infinity_tells_where_it_does_not_reach() {
 #[test]
 fn radiosity_refuses_settings_without_sense() {
     let settings = RadiosityDesc {
-        max_depth: -1,
+        max_depth: 101,
         patch_size: Some(0.0),
         tolerance: 1.0,
         steps: 0,
         hemicube_resolution: 2_000_000_000,
-        max_patches: i32::MAX,
+        max_patches: 2_000_000,
         mesh_out: Some("room.obj".into()),
         ..RadiosityDesc::default()
     };
@@ -130,79 +132,66 @@ fn radiosity_refuses_settings_without_sense() {
     assert_eq!(
         messages(&errors),
         [
-            "`hemicuberesolution` is from 2 to 1024, not 2000000000",
-            "`maxdepth` is from 0 to 100, not -1",
-            "`maxpatches` is from 1 to 1000000, not 2147483647",
-            "`steps` is 1 or more, not 0",
+            "`maxdepth` is a whole number from 0 to 100, not 101",
+            "`hemicuberesolution` is a whole number from 2 to 1024, not 2000000000",
             "`patchsize` is a number above 0, not 0",
-            "`tolerance` is between 0 and 1, not 1",
-            "the name of `mesh-out` ends in .ply, not as `room.obj`",
+            "`maxpatches` is a whole number from 1 to 1000000, not 2000000",
+            "`tolerance` is a number between 0 and 1, not 1",
+            "`steps` is a whole number of 1 or more, not 0",
+            "`mesh-out` is a name that ends in .ply, not room.obj",
         ]
     );
 }
 
-fn with_sampler(kind: SamplerKind, pixel_samples: i32) -> SceneDesc {
-    let sampler = SamplerDesc { kind, pixel_samples, seed: None }.into();
-    SceneDesc { sampler, ..SceneDesc::default() }
+fn with_sampler(kind: SamplerKind) -> SceneDesc {
+    SceneDesc { sampler: SamplerDesc { kind, seed: None }.into(), ..SceneDesc::default() }
 }
 
 #[test]
 fn samplers_decide_the_number_of_passes() {
-    let randomization = description::Randomization::FastOwen;
-    for (kind, passes) in [
-        (SamplerKind::Independent, 6),
-        (SamplerKind::Stratified { strata: [3, 2], jitter: true }, 6),
-        (SamplerKind::Halton { randomization: description::Randomization::Owen }, 6),
-        (SamplerKind::PaddedSobol { randomization }, 6),
-        (SamplerKind::Sobol { randomization }, 8),
-        (SamplerKind::ZSobol { randomization }, 8),
-        (SamplerKind::Pmj02Bn, 8),
-    ] {
-        let built = build(&with_sampler(kind.clone(), 6)).ok().unwrap();
+    for mut kind in SamplerKind::members() {
+        kind.set_samples_per_pixel(6);
+        let passes = match kind {
+            SamplerKind::Sobol { .. } | SamplerKind::ZSobol { .. } | SamplerKind::Pmj02Bn { .. } => 8,
+            _ => 6,
+        };
+        let is_drawn = kind.member().is_some_and(|member| member.is_drawn);
+        let built = build(&with_sampler(kind.clone())).ok().unwrap();
         assert_eq!(built.integrator.passes(), passes, "{kind:?}");
-        assert_eq!(built.warnings.len(), usize::from(kind == SamplerKind::Pmj02Bn));
+        assert_eq!(built.warnings.len(), usize::from(!is_drawn), "{kind:?}");
     }
 }
 
 #[test]
 fn settings_without_sense_are_errors_at_their_place() {
     let span = Span { start: 7, ..Span::NONE };
-    let origin = Origin { span: Span::NONE, parameters: vec![("maxdepth", span), ("pixelsamples", span)] };
-    let mut desc = with_sampler(SamplerKind::Independent, 0);
+    let origin = Origin { span: Span::NONE, parameters: vec![("alpha", span), ("pixelsamples", span)] };
+    let mut desc = with_sampler(SamplerKind::Independent { pixel_samples: 0 });
     desc.sampler.origin = origin.clone();
-    desc.integrator = Stated::new(IntegratorDesc::Whitted { max_depth: -1 }, origin);
+    let vcm = VcmDesc { alpha: f32::NAN, ..VcmDesc::default() };
+    desc.integrator = Stated::new(IntegratorDesc::Vcm(vcm), origin);
     let errors = build(&desc).err().unwrap();
     assert_eq!(
         messages(&errors),
-        ["`pixelsamples` is a number above 0, not 0", "`maxdepth` is 0 or more, not -1"]
+        [
+            "`pixelsamples` is a whole number of 1 or more, not 0",
+            "`alpha` is a number above 0 and at most 1, not NaN"
+        ]
     );
     assert!(errors.iter().all(|error| error.is_error() && error.span() == span));
 }
 
 #[test]
 fn photons_without_sense_are_errors_at_their_place() {
-    let names = ["photons", "causticphotons", "nearest", "radius", "gather"];
+    let names = ["nearest", "radius"];
     let spans = names.map(|name| (name, Span { start: name.len() as u32, ..Span::NONE }));
     let origin = Origin { span: Span::NONE, parameters: spans.to_vec() };
-    let photons = PhotonMappingDesc {
-        photons: -1,
-        caustic_photons: -2,
-        nearest: 0,
-        radius: Some(f32::NAN),
-        gather: -3,
-        ..PhotonMappingDesc::default()
-    };
+    let photons = PhotonMappingDesc { nearest: 0, radius: Some(f32::NAN), ..PhotonMappingDesc::default() };
     let integrator = Stated::new(IntegratorDesc::PhotonMapping(photons), origin);
     let errors = build(&SceneDesc { integrator, ..SceneDesc::default() }).err().unwrap();
     assert_eq!(
         messages(&errors),
-        [
-            "`photons` is 0 or more, not -1",
-            "`causticphotons` is 0 or more, not -2",
-            "`nearest` is 1 or more, not 0",
-            "`radius` is a distance above 0, not NaN",
-            "`gather` is 0 or more, not -3",
-        ]
+        ["`nearest` is a whole number of 1 or more, not 0", "`radius` is a number above 0, not NaN"]
     );
     assert!(errors.iter().zip(spans).all(|(error, (_, span))| error.is_error() && error.span() == span));
 }
@@ -221,13 +210,13 @@ fn merging_needs_a_radius_a_rate_and_photons() {
     for (radius, alpha) in [(0.0, 0.0), (-1.0, 1.5), (f32::INFINITY, f32::NAN)] {
         let vcm = VcmDesc { radius: Some(radius), alpha, ..VcmDesc::default() };
         let expected = format!(
-            "`alpha` is above 0 and at most 1, not {alpha}; `radius` is a distance above 0, not {radius}"
+            "`radius` is a number above 0, not {radius}; `alpha` is a number above 0 and at most 1, not {alpha}"
         );
         assert_eq!(errors(IntegratorDesc::Vcm(vcm)), expected);
     }
     let sppm = SppmDesc { photons_per_iteration: Some(0), radius: Some(f32::NAN), ..SppmDesc::default() };
     assert_eq!(
         errors(IntegratorDesc::Sppm(sppm)),
-        "the photons of a pass are a number above 0, not 0; `radius` is a distance above 0, not NaN"
+        "`photonsperiteration` is a whole number of 1 or more, not 0; `radius` is a number above 0, not NaN"
     );
 }

@@ -5,16 +5,18 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 use alhazen_integrators::{
-    Bdpt, BdptSettings, Cancelled, Control, Integrator, LightTracing, Mlt, MltSettings, Path, PathSettings,
-    PhotonMapping, PhotonMappingSettings, PixelLoop, RayIntegrator, SimplePath, Sppm, SppmSettings, Tracer,
-    Vcm, VcmSettings,
+    Bdpt, Cancelled, Control, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping,
+    PixelLoop, RayIntegrator, SimplePath, Sppm, Tracer, Vcm,
 };
-use description::{MltTechnique, SceneDesc, ShapeDesc};
+use description::{
+    BdptDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonMappingDesc, SceneDesc, ShapeDesc,
+    SimplePathDesc, SppmDesc, VcmDesc,
+};
 use film::Film;
 use math::RayDifferential;
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use scene::{Scene, View};
+use scene::{Interfaces, Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::support::{at, diffuse, emission, sphere, v, viewed};
@@ -37,29 +39,29 @@ fn sampler() -> Sampler {
 }
 
 fn algorithms() -> [(&'static str, Box<dyn Integrator>); 9] {
-    let path = PathSettings { max_depth: MAX_DEPTH, ..PathSettings::default() };
-    let simple = |sample_lights| SimplePath { max_depth: MAX_DEPTH, sample_lights, sample_bsdf: true };
-    let bdpt = BdptSettings { max_depth: MAX_DEPTH, ..BdptSettings::default() };
-    let vcm = VcmSettings { max_depth: MAX_DEPTH, ..VcmSettings::default() };
-    let sppm = SppmSettings { max_depth: MAX_DEPTH, ..SppmSettings::default() };
-    let photons = PhotonMappingSettings { max_depth: MAX_DEPTH, ..PhotonMappingSettings::default() };
-    let mlt = MltSettings {
+    let path = PathDesc { max_depth: MAX_DEPTH, ..PathDesc::default() };
+    let simple =
+        |sample_lights| SimplePath(SimplePathDesc { max_depth: MAX_DEPTH, sample_lights, sample_bsdf: true });
+    let light_tracing = LightTracingDesc { max_depth: MAX_DEPTH };
+    let bdpt = BdptDesc { max_depth: MAX_DEPTH, ..BdptDesc::default() };
+    let vcm = VcmDesc { max_depth: MAX_DEPTH, ..VcmDesc::default() };
+    let sppm = SppmDesc { max_depth: MAX_DEPTH, ..SppmDesc::default() };
+    let photons = PhotonMappingDesc { max_depth: MAX_DEPTH, ..PhotonMappingDesc::default() };
+    let mlt = MltDesc {
         technique: MltTechnique::Path,
         max_depth: MAX_DEPTH,
-        regularize: false,
         bootstrap_samples: 100,
         chains: 4,
         mutations_per_pixel: 1,
-        large_step_probability: 0.3,
-        sigma: 0.01,
+        ..MltDesc::default()
     };
     [
-        ("path", Box::new(PixelLoop::new(Path::new(path), sampler()))),
+        ("path", Box::new(PixelLoop::new(Path::new(path, Interfaces::Stop), sampler()))),
         ("simple-path", Box::new(PixelLoop::new(simple(true), sampler()))),
         ("simple-path by chance", Box::new(PixelLoop::new(simple(false), sampler()))),
-        ("light-tracing", Box::new(LightTracing::new(MAX_DEPTH, sampler(), sampler()))),
+        ("light-tracing", Box::new(LightTracing::new(light_tracing, sampler(), sampler()))),
         ("bdpt", Box::new(Bdpt::new(bdpt, sampler(), sampler()))),
-        ("vcm", Box::new(Vcm::new(vcm, sampler(), sampler(), 3))),
+        ("vcm", Box::new(Vcm::new(vcm, [sampler(), sampler()], 3, MAX_PHOTON_PATHS))),
         ("sppm", Box::new(Sppm::new(sppm, sampler(), 3))),
         ("photon-mapping", Box::new(PhotonMapping::new(photons, sampler(), 3))),
         ("mlt", Box::new(Mlt::new(mlt, sampler(), 3))),

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use alhazen_integrators::{RayCasting, RayIntegrator, Whitted};
 use description::{
     LightKind, MaterialDesc, MaterialKind, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+    WhittedDesc,
 };
 use scene::Scene;
 
@@ -113,9 +114,13 @@ fn lights_at_a_point_and_far_away() {
 #[test]
 fn whitted_counts_scattering_events_as_all_do() {
     let scene = under_delta_lights(|_| ());
-    assert_eq!(look(&mut Whitted { max_depth: 0 }, &scene, 10).mean, 0.0, "direct light is scattered once");
+    assert_eq!(
+        look(&mut Whitted(WhittedDesc { max_depth: 0 }), &scene, 10).mean,
+        0.0,
+        "direct light is scattered once"
+    );
     let expected = f64::from(RHO) / PI * (0.25 + 0.5);
-    assert_mean(&look(&mut Whitted { max_depth: 1 }, &scene, 10), expected, 1, "Whitted");
+    assert_mean(&look(&mut Whitted(WhittedDesc { max_depth: 1 }), &scene, 10), expected, 1, "Whitted");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Furnaces: scenes whose radiance is known everywhere, however light goes.
 
-use alhazen_integrators::{Path, PathSettings, RayCasting, Whitted};
-use description::{MaterialKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc};
-use scene::Scene;
+use alhazen_integrators::{Path, RayCasting, Whitted};
+use description::{MaterialKind, PathDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, WhittedDesc};
+use scene::{Interfaces, Scene};
 use testkit::Moments;
 
 use crate::support::{
@@ -44,7 +44,12 @@ fn without_indirect_light_a_furnace_shows_one_reflection() {
     let scene = closed_box(0.5);
     let (o, d) = (v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7));
     assert_mean(&radiance(&mut RayCasting, &scene, o, d, 20_000), 1.5, 2, "ray casting");
-    assert_mean(&radiance(&mut Whitted { max_depth: 9 }, &scene, o, d, 20_000), 1.5, 2, "Whitted");
+    assert_mean(
+        &radiance(&mut Whitted(WhittedDesc { max_depth: 9 }), &scene, o, d, 20_000),
+        1.5,
+        2,
+        "Whitted",
+    );
 }
 
 /// The means of rays from all around to a thing at the origin, under a sky of radiance 1.
@@ -82,7 +87,7 @@ fn what_absorbs_nothing_cannot_be_seen_under_a_white_sky() {
         }),
     ];
     for (name, make) in materials {
-        let mut path = Path::new(PathSettings { max_depth: 200, ..PathSettings::default() });
+        let mut path = Path::new(PathDesc { max_depth: 200, ..PathDesc::default() }, Interfaces::Stop);
         let found = under_white_sky(sphere(1.0), &mut path, make);
         assert!((found.mean - 1.0).abs() < 1e-4, "path, {name}: {}", found.mean);
         assert!(found.variance() < 1e-6, "path, {name}: variance {}", found.variance());
@@ -91,6 +96,6 @@ fn what_absorbs_nothing_cannot_be_seen_under_a_white_sky() {
 
 #[test]
 fn whitted_follows_all_rays_in_glass() {
-    let found = under_white_sky(sphere(1.0), &mut Whitted { max_depth: 12 }, glass);
+    let found = under_white_sky(sphere(1.0), &mut Whitted(WhittedDesc { max_depth: 12 }), glass);
     assert!((found.mean - 1.0).abs() < 2e-3 && found.variance() < 1e-4, "{found:?}");
 }

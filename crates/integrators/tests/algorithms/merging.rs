@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Vcm, VcmSettings, build};
+use alhazen_integrators::{Cancelled, Control, Vcm, build};
 use description::{
-    CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc,
-    ShapeDesc, SpectrumDesc, SppmDesc, TextureDesc, TextureKind, TransformDesc, VcmDesc,
+    BdptDesc, CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc,
+    ScreenDesc, ShapeDesc, SpectrumDesc, SppmDesc, TextureDesc, TextureKind, TransformDesc, VcmDesc,
 };
 use film::Film;
 use math::{DMat4, DVec3};
@@ -33,7 +33,7 @@ fn means<const N: usize>(
     seed: i32,
     after: [u32; N],
 ) -> [f64; N] {
-    let sampler = SamplerDesc { kind: SamplerKind::Independent, pixel_samples: 1, seed: Some(seed) };
+    let sampler = SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 1 }, seed: Some(seed) };
     let desc = SceneDesc { integrator: integrator.into(), sampler: sampler.into(), ..desc.clone() };
     let ((scene, view), mut film) = (viewed(&desc), film::compile(&desc).unwrap().film);
     let mut integrator = build(&desc).ok().unwrap().integrator;
@@ -60,12 +60,12 @@ fn one() -> f64 {
     one
 }
 
-fn sppm(max_depth: i32, radius: f32, photons: i32) -> IntegratorDesc {
+fn sppm(max_depth: u32, radius: f32, photons: u32) -> IntegratorDesc {
     let (photons_per_iteration, radius) = (Some(photons), Some(radius));
     IntegratorDesc::Sppm(SppmDesc { max_depth, photons_per_iteration, radius, seed: None })
 }
 
-fn vcm(max_depth: i32, radius: f32, alpha: f32) -> IntegratorDesc {
+fn vcm(max_depth: u32, radius: f32, alpha: f32) -> IntegratorDesc {
     IntegratorDesc::Vcm(VcmDesc { max_depth, radius: Some(radius), alpha })
 }
 
@@ -184,12 +184,12 @@ fn without_a_radius_nothing_is_merged_and_all_is_connected() {
     }
     let lamp = quad(v(-0.5, 0.9, -0.5), v(1.0, 0.0, 0.0), v(0.0, 0.0, 1.0));
     desc.shapes.push(ShapeDesc { area_light, ..lamp.into() });
-    let bdpt = IntegratorDesc::Bdpt {
+    let bdpt = IntegratorDesc::Bdpt(BdptDesc {
         max_depth: 4,
         regularize: false,
         visualize_strategies: false,
         visualize_weights: false,
-    };
+    });
     let [connected] = means(&desc, bdpt, 3, [8]);
     let [merged] = means(&desc, vcm(4, 1e-6, 0.75), 3, [8]);
     assert!((merged - connected).abs() < 1e-5 * connected, "{merged} {connected}");
@@ -204,9 +204,8 @@ fn pixels_whose_light_subpaths_leave_no_photons_see_the_same() {
     for seed in 0..16 {
         let sampler = Sampler::Independent(Independent::new(8, seed));
         let light_sampler = Sampler::Independent(Independent::new(8, seed + 100));
-        let settings =
-            VcmSettings { max_depth: 3, radius: Some(0.4), photon_paths: 7, ..VcmSettings::default() };
-        let vcm = finished(&desc, Box::new(Vcm::new(settings, sampler, light_sampler, seed)));
+        let settings = VcmDesc { max_depth: 3, radius: Some(0.4), ..VcmDesc::default() };
+        let vcm = finished(&desc, Box::new(Vcm::new(settings, [sampler, light_sampler], seed, 7)));
         assert!(vcm.integrator().summary()[0].1.contains("from 7 paths"));
         means.push(mean(&vcm.state().film));
     }

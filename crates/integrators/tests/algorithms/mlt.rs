@@ -4,8 +4,8 @@ use std::sync::atomic::Ordering;
 
 use alhazen_integrators::{Cancelled, Control, Integrator, build};
 use description::{
-    IntegratorDesc, LightKind, LightSamplerDesc, MltDesc, MltTechnique, Origin, SamplerDesc, SamplerKind,
-    SceneDesc, ShapeDesc, Span, SpectrumDesc, Stated,
+    IntegratorDesc, LightKind, LightSamplerDesc, MltDesc, MltTechnique, Origin, PathDesc, SamplerDesc,
+    SamplerKind, SceneDesc, ShapeDesc, Span, SpectrumDesc, Stated,
 };
 use film::Film;
 use math::Vec3;
@@ -25,13 +25,14 @@ fn view(resolution: [i32; 2]) -> SceneDesc {
     desc
 }
 
-fn mlt(technique: MltTechnique, max_depth: i32) -> MltDesc {
+fn mlt(technique: MltTechnique, max_depth: u32) -> MltDesc {
     MltDesc { technique, max_depth, mutations_per_pixel: 4, ..MltDesc::default() }
 }
 
 fn with(desc: &SceneDesc, integrator: IntegratorDesc, seed: i32) -> SceneDesc {
     let mut desc = SceneDesc { integrator: integrator.into(), ..desc.clone() };
-    desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent, pixel_samples: 64, seed: Some(seed) };
+    desc.sampler.value =
+        SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 64 }, seed: Some(seed) };
     desc
 }
 
@@ -111,8 +112,11 @@ fn sky() -> SceneDesc {
 #[test]
 fn the_mean_is_that_of_path_tracing() {
     for (name, scene) in [("box", diffuse_box()), ("caustic", caustic()), ("sky", sky())] {
-        let path =
-            IntegratorDesc::VolPath { max_depth: 4, regularize: false, light_sampler: LightSamplerDesc::Bvh };
+        let path = IntegratorDesc::VolPath(PathDesc {
+            max_depth: 4,
+            regularize: false,
+            light_sampler: LightSamplerDesc::Bvh,
+        });
         let path: Moments = (0..6).map(|seed| mean(&with(&scene, path.clone(), seed))).collect();
         for technique in TECHNIQUES {
             let desc = MltDesc { mutations_per_pixel: 80, ..mlt(technique, 4) };
@@ -199,7 +203,7 @@ fn settings_without_sense_are_errors_at_their_place() {
     let origin = Origin { span: Span::NONE, parameters: spans.collect() };
     let senseless = MltDesc {
         bootstrap_samples: 0,
-        chains: -1,
+        chains: 0,
         mutations_per_pixel: 0,
         large_step_probability: 1.5,
         sigma: f32::NAN,
@@ -213,10 +217,10 @@ fn settings_without_sense_are_errors_at_their_place() {
     assert_eq!(
         found,
         [
-            (1, "`bootstrapsamples` is 1 or more, not 0"),
-            (2, "`chains` is 1 or more, not -1"),
-            (3, "`mutationsperpixel` is 1 or more, not 0"),
-            (4, "`largestepprobability` is from 0 to 1, not 1.5"),
+            (1, "`bootstrapsamples` is a whole number of 1 or more, not 0"),
+            (2, "`chains` is a whole number of 1 or more, not 0"),
+            (3, "`mutationsperpixel` is a whole number of 1 or more, not 0"),
+            (4, "`largestepprobability` is a number from 0 to 1, not 1.5"),
             (5, "`sigma` is a number above 0, not NaN"),
         ]
     );

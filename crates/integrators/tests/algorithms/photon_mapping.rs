@@ -3,9 +3,9 @@
 
 use alhazen_integrators::{Control, build};
 use description::{
-    CameraKind, IntegratorDesc, LensDesc, LightKind, LightSamplerDesc, PhotonKernel, PhotonMappingDesc,
-    PhotonMappingShow, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc, ShapeDesc, SpectrumDesc,
-    TransformDesc,
+    CameraKind, IntegratorDesc, LensDesc, LightKind, LightSamplerDesc, LightTracingDesc, PathDesc,
+    PhotonKernel, PhotonMappingDesc, PhotonMappingShow, SamplerDesc, SamplerKind, SceneDesc, ScreenDesc,
+    ShapeDesc, SpectrumDesc, TransformDesc,
 };
 use math::{DMat4, DVec3};
 use testkit::{Moments, t_test, welch_test};
@@ -15,12 +15,12 @@ use crate::session::picture;
 use crate::support::{at, diffuse, emission, glass, quad, sphere, v, walls};
 
 /// The picture's luminances, row by row, of one thread's rendering with as many passes.
-fn luminances(desc: &SceneDesc, integrator: &IntegratorDesc, seed: i32, passes: i32) -> Vec<f64> {
+fn luminances(desc: &SceneDesc, integrator: &IntegratorDesc, seed: i32, passes: u32) -> Vec<f64> {
     let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
     desc.film.save_fp16 = false;
     desc.film.max_component_value = f32::INFINITY;
     desc.sampler.value =
-        SamplerDesc { kind: SamplerKind::Independent, pixel_samples: passes, seed: Some(seed) };
+        SamplerDesc { kind: SamplerKind::Independent { pixel_samples: passes }, seed: Some(seed) };
     let (film, _) = picture(&desc, 1);
     let image = film.develop();
     let luminance = |[r, g, b]: [f32; 3]| f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b);
@@ -70,7 +70,7 @@ fn in_a_sphere_that_shines_all_over_photons_make_no_difference() {
             let default = PhotonMappingDesc { photons: 6000, ..small(&PhotonMappingDesc::default()) };
             let integrator = PhotonMappingDesc { max_depth, gather, nearest, radius, kernel, ..default };
             let found = brightness(&desc, &integrator, 12);
-            let expected = (0..=max_depth).map(|k| 0.5f64.powi(k)).sum();
+            let expected = (0..=max_depth).map(|k| 0.5f64.powi(k as i32)).sum();
             t_test(&found, expected, 2 * cases.len())
                 .unwrap_or_else(|difference| panic!("{integrator:?}: {difference}"));
         }
@@ -85,7 +85,7 @@ fn what_a_wall_lacks_is_the_part_of_the_disk_beyond_its_edges() {
     let bias = radii.map(|radius| {
         let integrator = PhotonMappingDesc {
             max_depth: 24,
-            nearest: i32::MAX - 1,
+            nearest: i32::MAX as u32 - 1,
             radius: Some(radius),
             ..small(&PhotonMappingDesc::default())
         };
@@ -111,8 +111,8 @@ fn from_above(desc: &mut SceneDesc, s: f32, resolution: i32) {
     desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_scale(DVec3::new(1.0, -1.0, -1.0)));
 }
 
-fn path(max_depth: i32) -> IntegratorDesc {
-    IntegratorDesc::Path { max_depth, regularize: false, light_sampler: LightSamplerDesc::Bvh }
+fn path(max_depth: u32) -> IntegratorDesc {
+    IntegratorDesc::Path(PathDesc { max_depth, regularize: false, light_sampler: LightSamplerDesc::Bvh })
 }
 
 /// The part of a room's indirect light that photon mapping finds, seen from above.
@@ -172,7 +172,7 @@ fn ball_in_a_beam(alpha: f32) -> SceneDesc {
 }
 
 /// The mean over the caustic, beside the ball, of each seed's picture.
-fn caustic(desc: &SceneDesc, integrator: &IntegratorDesc, passes: i32) -> Moments {
+fn caustic(desc: &SceneDesc, integrator: &IntegratorDesc, passes: u32) -> Moments {
     let of_region = |seed| {
         let picture = luminances(desc, integrator, seed, passes);
         let region = (0..32 * 32).filter(|i| i % 32 > 20 && (8..24).contains(&(i / 32)));
@@ -193,7 +193,7 @@ fn a_caustic_holds_the_light_that_light_tracing_finds() {
     for alpha in [1.0, 0.25] {
         let desc = ball_in_a_beam(alpha);
         let found = caustic(&desc, &IntegratorDesc::PhotonMapping(photons.clone()), 4);
-        let expected = caustic(&desc, &IntegratorDesc::LightTracing { max_depth: 4 }, 16);
+        let expected = caustic(&desc, &IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 4 }), 16);
         welch_test(&found, &expected, 2).unwrap_or_else(|error| panic!("alpha {alpha}: {error}"));
         let without = caustic(&desc, &path(4), 4).mean;
         assert!(found.mean > 1.2 * without, "{} with the caustic, {without} without", found.mean);

@@ -10,8 +10,9 @@ use alhazen_integrators::{
     Cancelled, Control, Limits, PixelLoop, RayIntegrator, Session, Stop, Tracer, build,
 };
 use description::{
-    IntegratorDesc, LightSamplerDesc, MltDesc, PhotonMappingDesc, PhotonMappingShow, SamplerDesc,
-    SamplerKind, SceneDesc, ShapeDesc, SppmDesc, VcmDesc,
+    AmbientOcclusionDesc, BdptDesc, IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc, PathDesc,
+    PhotonMappingDesc, PhotonMappingShow, RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc,
+    SimplePathDesc, SppmDesc, VcmDesc, WhittedDesc,
 };
 use film::{Film, PassSet};
 use geometry::RayStats;
@@ -27,9 +28,12 @@ fn balls() -> SceneDesc {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [40, 24];
     desc.film.save_fp16 = false;
-    desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent, pixel_samples: 4, seed: Some(1) };
-    desc.integrator.value =
-        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh };
+    desc.sampler.value = SamplerDesc { kind: SamplerKind::Independent { pixel_samples: 4 }, seed: Some(1) };
+    desc.integrator.value = IntegratorDesc::Path(PathDesc {
+        max_depth: 5,
+        regularize: false,
+        light_sampler: LightSamplerDesc::Bvh,
+    });
     white_sky(&mut desc);
     let material = diffuse(&mut desc, 0.5);
     desc.shapes.push(ShapeDesc { material, ..at(sphere(1.0), v(-1.0, 0.0, 3.0)) });
@@ -62,10 +66,13 @@ fn threads_never_change_a_bit() {
     let integrators = [
         balls().integrator.value,
         IntegratorDesc::RayCasting,
-        IntegratorDesc::Whitted { max_depth: 5 },
-        IntegratorDesc::AmbientOcclusion { cos_sample: true, max_distance: f32::INFINITY },
-        IntegratorDesc::RandomWalk { max_depth: 5 },
-        IntegratorDesc::SimplePath { max_depth: 5, sample_lights: true, sample_bsdf: true },
+        IntegratorDesc::Whitted(WhittedDesc { max_depth: 5 }),
+        IntegratorDesc::AmbientOcclusion(AmbientOcclusionDesc {
+            cos_sample: true,
+            max_distance: f32::INFINITY,
+        }),
+        IntegratorDesc::RandomWalk(RandomWalkDesc { max_depth: 5 }),
+        IntegratorDesc::SimplePath(SimplePathDesc { max_depth: 5, sample_lights: true, sample_bsdf: true }),
         IntegratorDesc::PhotonMapping(photons.clone()),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { gather: 2, ..photons.clone() }),
         IntegratorDesc::PhotonMapping(PhotonMappingDesc { show: PhotonMappingShow::Photons, ..photons }),
@@ -143,7 +150,7 @@ fn passes_can_be_done_in_any_order_and_in_parts() {
     let photons = PhotonMappingDesc { photons: 900, caustic_photons: 900, ..PhotonMappingDesc::default() };
     for integrator in [
         balls().integrator.value,
-        IntegratorDesc::LightTracing { max_depth: 3 },
+        IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 3 }),
         IntegratorDesc::Mlt(MltDesc { mutations_per_pixel: 4, ..MltDesc::default() }),
         IntegratorDesc::PhotonMapping(photons),
         IntegratorDesc::Sppm(SppmDesc::default()),
@@ -190,16 +197,17 @@ fn noise_is_the_relative_standard_error() {
         (session.state().noise().unwrap(), error)
     };
     let mut long = desc.clone();
-    (long.sampler.pixel_samples, long.sampler.seed) = (4096, Some(7));
+    long.sampler.kind.set_samples_per_pixel(4096);
+    long.sampler.seed = Some(7);
     let (reference, _) = picture(&long, 2);
     for integrator in [
         desc.integrator.value.clone(),
-        IntegratorDesc::Bdpt {
+        IntegratorDesc::Bdpt(BdptDesc {
             max_depth: 5,
             regularize: false,
             visualize_strategies: false,
             visualize_weights: false,
-        },
+        }),
         IntegratorDesc::Mlt(MltDesc::default()),
     ] {
         let (noise, error) = error(integrator.clone(), &reference);
@@ -231,7 +239,7 @@ fn a_render_stopped_between_passes_is_one_of_fewer_passes() {
     let mut sink = |session: &Session| control.cancel.store(session.progress().pass == 2, Ordering::Relaxed);
     assert_eq!(session.run(0..4, &Limits::default(), &control, &mut sink), Err(Cancelled));
     let mut short = balls();
-    short.sampler.pixel_samples = 2;
+    short.sampler.kind.set_samples_per_pixel(2);
     // Differentials follow the number of samples; without textures they do not matter.
     assert!(bits(&session.state().film) == bits(&picture(&short, 2).0));
 }
@@ -294,7 +302,7 @@ fn what_has_not_begun_has_nothing_to_tell() {
 #[test]
 fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
     let mut desc = balls();
-    desc.integrator = IntegratorDesc::LightTracing { max_depth: 3 }.into();
+    desc.integrator = IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 3 }).into();
     let session = finished(&desc, build(&desc).unwrap().integrator);
     let (_, note) = session.integrator().summary().remove(0);
     let rays: u64 = note.rsplit(' ').next().unwrap().parse().unwrap();

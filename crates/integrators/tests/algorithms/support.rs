@@ -4,19 +4,19 @@
 use std::sync::Arc;
 
 use alhazen_integrators::{
-    Cancelled, Control, Integrator, Limits, Path, PathSettings, RandomWalk, RayIntegrator, Session,
-    SessionState, SimplePath, Tracer,
+    Cancelled, Control, Integrator, Limits, Path, RandomWalk, RayIntegrator, Session, SessionState,
+    SimplePath, Tracer,
 };
 use description::{
-    AreaLightDesc, ConductorDesc, ConductorReflectance, Handle, InfiniteRadiance, LightKind, MaterialDesc,
-    MaterialKind, MeshDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
+    AreaLightDesc, ConductorDesc, ConductorReflectance, Handle, InfiniteRadiance, LightKind,
+    LightSamplerDesc, MaterialDesc, MaterialKind, MeshDesc, PathDesc, RandomWalkDesc, RoughnessDesc,
+    SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc, SpectrumDesc, TransformDesc,
 };
 use geometry::RayStats;
 use math::{Point3, Ray, RayDifferential, Vec3, Vector3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use scene::light_sampler::LightSamplerKind;
-use scene::{Scene, View};
+use scene::{Interfaces, Scene, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledWavelengths};
 use testkit::{Moments, t_test};
 
@@ -138,8 +138,8 @@ pub fn assert_mean(found: &Moments, expected: f64, tests: usize, what: &str) {
     }
 }
 
-pub const LIGHT_SAMPLERS: [LightSamplerKind; 3] =
-    [LightSamplerKind::Uniform, LightSamplerKind::Power, LightSamplerKind::Bvh];
+pub const LIGHT_SAMPLERS: [LightSamplerDesc; 3] =
+    [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh];
 
 /// The algorithms that find all light between rough surfaces, and settings of theirs that find the
 /// same light.
@@ -153,14 +153,14 @@ impl Unbiased {
     pub fn all(max_depth: u32) -> Vec<(String, Self)> {
         let mut all = Vec::new();
         for light_sampler in LIGHT_SAMPLERS {
-            let settings = PathSettings { max_depth, light_sampler, ..PathSettings::default() };
-            all.push((format!("{settings:?}"), Self::Path(Path::new(settings))));
+            let settings = PathDesc { max_depth, regularize: false, light_sampler };
+            all.push((format!("{settings:?}"), Self::Path(Path::new(settings, Interfaces::Stop))));
         }
         for (sample_lights, sample_bsdf) in [(true, true), (true, false), (false, true), (false, false)] {
-            let simple = SimplePath { max_depth, sample_lights, sample_bsdf };
+            let simple = SimplePath(SimplePathDesc { max_depth, sample_lights, sample_bsdf });
             all.push((format!("{simple:?}"), Self::SimplePath(simple)));
         }
-        all.push(("random walk".into(), Self::RandomWalk(RandomWalk { max_depth })));
+        all.push(("random walk".into(), Self::RandomWalk(RandomWalk(RandomWalkDesc { max_depth }))));
         all
     }
 }

@@ -1,6 +1,7 @@
 //! Compiles the description of a camera.
 
-use super::{Camera, CameraTransform, Orthographic, Perspective, Projection, Screen, Spherical, ThinLens};
+use super::{Camera, CameraTransform, Orthographic, Perspective, Projection, Screen, Spherical};
+use description::schema::Settings;
 use description::{CameraDesc, CameraKind, Diagnostic, FilmDesc, LensDesc, Origin, ScreenDesc, Stated};
 use math::{Bounds2, DMat4};
 
@@ -14,6 +15,7 @@ pub fn compile(
 ) -> Option<Camera> {
     let origin = &camera.origin;
     let before = diagnostics.len();
+    diagnostics.extend(camera.check(origin));
     let resolution = resolution(film, diagnostics);
     let projection = projection(&camera.kind, origin, resolution, diagnostics);
     let transform = CameraTransform::new(&camera.camera_from_world, world_from_render);
@@ -25,9 +27,7 @@ pub fn compile(
         );
     }
     let mut shutter = [camera.shutter_open, camera.shutter_close];
-    if !shutter.iter().all(|t| t.is_finite()) {
-        diagnostics.push(invalid("the shutter must open and close at finite times", origin, "shutteropen"));
-    } else if shutter[1] < shutter[0] {
+    if shutter[1] < shutter[0] {
         let message =
             format!("the shutter closes at {} before it opens at {}; exchanged", shutter[1], shutter[0]);
         diagnostics.push(Diagnostic::warning("shutter", message, origin.parameter("shutterclose")));
@@ -59,18 +59,12 @@ fn projection(
 ) -> Projection {
     match kind {
         CameraKind::Perspective { fov, screen, lens } => {
-            if !(*fov > 0.0 && *fov < 180.0) {
-                let message = format!("the field of view must lie between 0 and 180 degrees, not be {fov}");
-                diagnostics.push(invalid(message, origin, "fov"));
-            }
             let window = window(screen, origin, resolution, diagnostics);
-            let lens = thin_lens(*lens, origin, diagnostics);
-            Projection::Perspective(Perspective::new(*fov, window, lens, resolution))
+            Projection::Perspective(Perspective::new(*fov, window, (*lens).into(), resolution))
         }
         CameraKind::Orthographic { screen, lens } => {
             let window = window(screen, origin, resolution, diagnostics);
-            let lens = thin_lens(*lens, origin, diagnostics);
-            Projection::Orthographic(Orthographic::new(window, lens, resolution))
+            Projection::Orthographic(Orthographic::new(window, (*lens).into(), resolution))
         }
         CameraKind::Spherical { mapping } => Projection::Spherical(Spherical::new(*mapping, resolution)),
         CameraKind::Realistic(_) => {
@@ -89,26 +83,11 @@ fn window(
     resolution: [u32; 2],
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Bounds2 {
-    if screen.window.is_none() && screen.frame_aspect_ratio.is_some_and(|a| !(a > 0.0 && a.is_finite())) {
-        let message = "the aspect ratio of the frame must be above zero";
-        diagnostics.push(invalid(message, origin, "frameaspectratio"));
-    }
     let window = Screen::window(screen, resolution);
     if !window.diagonal().is_finite() || window.diagonal().abs().min_element() == 0.0 {
         diagnostics.push(invalid("the screen window has no area", origin, "screenwindow"));
     }
     window
-}
-
-fn thin_lens(desc: LensDesc, origin: &Origin, diagnostics: &mut Vec<Diagnostic>) -> ThinLens {
-    if !(desc.radius >= 0.0 && desc.radius.is_finite()) {
-        let message = format!("the radius of a lens cannot be {}", desc.radius);
-        diagnostics.push(invalid(message, origin, "lensradius"));
-    } else if desc.radius > 0.0 && !(desc.focal_distance > 0.0 && desc.focal_distance.is_finite()) {
-        let message = format!("a lens cannot be focused at the distance {}", desc.focal_distance);
-        diagnostics.push(invalid(message, origin, "focaldistance"));
-    }
-    desc.into()
 }
 
 fn invalid(message: impl Into<String>, origin: &Origin, parameter: &str) -> Diagnostic {

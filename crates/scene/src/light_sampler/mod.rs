@@ -13,6 +13,7 @@ pub use power::PowerLightSampler;
 pub use uniform::UniformLightSampler;
 
 use crate::light::{LightId, LightSampleContext, Lights};
+use description::LightSamplerDesc;
 
 /// A way of choosing.
 #[derive(Clone, Debug)]
@@ -35,6 +36,17 @@ pub enum LightSamplerKind {
     /// By position, orientation and power.
     #[default]
     Bvh,
+}
+
+impl From<LightSamplerDesc> for LightSamplerKind {
+    /// The tree stands in for sampling every light, which is not drawn.
+    fn from(desc: LightSamplerDesc) -> Self {
+        match desc {
+            LightSamplerDesc::Uniform => Self::Uniform,
+            LightSamplerDesc::Power => Self::Power,
+            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => Self::Bvh,
+        }
+    }
 }
 
 impl Default for LightSampler {

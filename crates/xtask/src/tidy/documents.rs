@@ -1,5 +1,5 @@
 //! Rules of documents: their links lead somewhere, the licences are there, and README tells every
-//! option and algorithm that the program has and no others.
+//! option that the program has and no others.
 
 use std::collections::BTreeSet;
 
@@ -12,8 +12,6 @@ const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 const ARGUMENTS: &str = "crates/cli/src/args.rs";
 /// Options that clap adds by itself.
 const CLAPS_OWN: [&str; 2] = ["help", "version"];
-/// Where the algorithms are listed, in one of its files.
-const LIBRARY: &str = "crates/alhazen/src/";
 
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -40,17 +38,8 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     for option in defined.difference(&told) {
         findings.push(Finding::new(README, 0, format!("the option `--{option}` is not told")));
     }
-    let library = tree.texts().filter(|(path, _)| path.starts_with(LIBRARY));
-    let integrators: Vec<&str> = library.flat_map(|(_, text)| integrators(text)).collect();
-    for (path, none) in [(ARGUMENTS, defined.is_empty()), (LIBRARY, integrators.is_empty())] {
-        if none {
-            findings.push(Finding::new(path, 0, "tells nothing to hold README to; see tidy's documents.rs"));
-        }
-    }
-    for name in integrators {
-        if !readme.contains(&format!("`{name}`")) {
-            findings.push(Finding::new(README, 0, format!("the integrator `{name}` is not told")));
-        }
+    if defined.is_empty() {
+        findings.push(Finding::new(ARGUMENTS, 0, "tells nothing to hold README to; see tidy's documents.rs"));
     }
     findings
 }
@@ -112,13 +101,6 @@ fn told_options(text: &str) -> BTreeSet<String> {
     options
 }
 
-/// The names in the list `integrators!` of a source, as far as they can be chosen.
-fn integrators(source: &str) -> Vec<&str> {
-    let list = source.split_once("\nintegrators! {").and_then(|(_, rest)| rest.split_once("\n    ;"));
-    let lines = list.map_or("", |(list, _)| list).lines();
-    lines.filter_map(|line| Some(line.trim_start().strip_prefix('"')?.split_once("\":")?.0)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -139,11 +121,5 @@ mod tests {
         assert_eq!(defined_options(source), expected);
         let text = "| `--spp N`, `-o` or `--output` |\n|---|---|\ncargo run --release\n`--max-time`\n";
         assert_eq!(told_options(text), expected);
-    }
-
-    #[test]
-    fn integrators_are_listed() {
-        let source = "m\nintegrators! {\n    \"a\": A =\n        A {},\n    \"b-c\": B = B(1),\n    ;\n    \"d\": D,\n}\n";
-        assert_eq!(integrators(source), ["a", "b-c"]);
     }
 }

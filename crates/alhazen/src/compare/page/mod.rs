@@ -10,7 +10,7 @@ use std::fmt::Write;
 use self::chart::{Chart, Series, Shape};
 use self::figure::{count, escape, figure, percent};
 use self::map::Maps;
-use super::{Bias, Comparison, Parts, Run, said};
+use super::{Bias, Comparison, Parts, Run, settings};
 
 /// How many colours the style has for runs; further runs start again.
 const COLORS: usize = 8;
@@ -253,7 +253,7 @@ impl Comparison {
             ("each picture".into(), setup.budget.to_string()),
             ("seeds".into(), format!("{} and {}", setup.seed, setup.seed.wrapping_add(1))),
             ("threads".into(), setup.threads.to_string()),
-            ("filter".into(), said::text(&setup.filter)),
+            ("filter".into(), settings::text(&setup.filter)),
             ("changed for all".into(), changes),
             ("reference".into(), self.reference.source.clone()),
             ("its noise".into(), noise),
@@ -261,7 +261,7 @@ impl Comparison {
         for run in &self.runs {
             rows.push((
                 run.name.clone(),
-                format!("{}; sampler {}", said::text(&run.settings), said::text(&run.sampler)),
+                format!("{}; sampler {}", settings::text(&run.settings), settings::text(&run.sampler)),
             ));
             rows.extend(run.notes.iter().map(|(name, note)| (format!("{}: {name}", run.name), note.clone())));
         }

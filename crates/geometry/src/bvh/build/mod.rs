@@ -4,7 +4,7 @@
 //! which is then collapsed into wide nodes ([`widen`]).
 //!
 //! Temporary memory for n primitives: 32 n bytes of references and 24 n of binary nodes while the
-//! tree grows, then 8 n of ids while the blocks are made; `high` takes twice as much. `fast` has
+//! tree is built, then 8 n of ids while the blocks are made; `high` takes twice as much. `fast` has
 //! one reference and one binary node per block, and takes 16 n bytes to sort.
 
 mod balanced;

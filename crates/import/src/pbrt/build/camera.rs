@@ -1,8 +1,7 @@
 //! Cameras.
 
 use description::{
-    ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc,
-    SphericalMapping, Stated,
+    ApertureDesc, CameraDesc, CameraKind, LensDesc, LensElement, RealisticCameraDesc, ScreenDesc, Stated,
 };
 
 use super::Builder;
@@ -14,17 +13,16 @@ impl Builder<'_> {
         let medium = camera.medium.as_ref().and_then(|name| self.named_medium(name));
         let camera_from_world = camera.camera_from_world.over(times);
         let mut stated = self.read_or_default(camera.statement, |reader| {
-            let kind = kind(reader)?;
-            let [mut shutter_open, mut shutter_close] =
-                [reader.float("shutteropen", 0.0), reader.float("shutterclose", 1.0)];
-            if shutter_close < shutter_open {
+            let mut camera: CameraDesc = reader.member("camera", "camera")?;
+            complete(&mut camera.kind, reader)?;
+            if camera.shutter_close < camera.shutter_open {
                 reader.ignored(
                     "shutterclose",
                     "the shutter closes before it opens: the two times are exchanged",
                 );
-                std::mem::swap(&mut shutter_open, &mut shutter_close);
+                std::mem::swap(&mut camera.shutter_open, &mut camera.shutter_close);
             }
-            Some(CameraDesc { kind, shutter_open, shutter_close, ..CameraDesc::default() })
+            Some(camera)
         });
         stated.camera_from_world = camera_from_world;
         stated.medium = medium;
@@ -32,68 +30,39 @@ impl Builder<'_> {
     }
 }
 
-fn kind(reader: &mut Reader) -> Option<CameraKind> {
-    Some(match reader.kind.value.as_str() {
-        "perspective" => {
-            let (screen, lens) = (screen(reader), lens(reader));
-            let mut fov = reader.float("fov", 90.0);
+/// Reads what is no setting, and checks what concerns several settings.
+fn complete(kind: &mut CameraKind, reader: &mut Reader) -> Option<()> {
+    match kind {
+        CameraKind::Perspective { screen, fov, .. } => {
+            window(screen, reader);
             if let Some(half) = reader.optional_float("halffov") {
-                fov = 2.0 * half;
+                *fov = 2.0 * half;
+                if !(*fov > 0.0 && *fov < 180.0) {
+                    reader.refuse("halffov", format!("`halffov` is a number between 0 and 90, not {half}"));
+                }
             }
-            if !(fov > 0.0 && fov < 180.0) {
-                reader.refuse("fov", "`fov` must lie between 0 and 180 degrees");
-                fov = 90.0;
-            }
-            CameraKind::Perspective { fov, screen, lens }
         }
-        "orthographic" => CameraKind::Orthographic { screen: screen(reader), lens: lens(reader) },
-        "spherical" => {
+        CameraKind::Orthographic { screen, .. } => window(screen, reader),
+        CameraKind::Spherical { .. } => {
             // The format lets a spherical camera have a screen and a lens, and ignores them.
-            let _ = (screen(reader), lens(reader));
-            CameraKind::Spherical {
-                mapping: reader.choice(
-                    "mapping",
-                    SphericalMapping::EqualArea,
-                    &[
-                        ("equalarea", SphericalMapping::EqualArea),
-                        ("equirectangular", SphericalMapping::EquiRectangular),
-                    ],
-                ),
-            }
+            reader.settings(&mut ScreenDesc::default());
+            reader.settings(&mut LensDesc::default());
         }
-        "realistic" => CameraKind::Realistic(realistic(reader)?),
-        _ => {
-            let known = ["perspective", "orthographic", "spherical", "realistic"];
-            reader.unknown_type("camera", "camera", &known);
-            return None;
-        }
-    })
+        CameraKind::Realistic(camera) => realistic(camera, reader)?,
+    }
+    Some(())
 }
 
-fn screen(reader: &mut Reader) -> ScreenDesc {
-    let frame_aspect_ratio =
-        if reader.has("frameaspectratio") { Some(reader.positive("frameaspectratio", 1.0)) } else { None };
-    let window = reader.float_array::<4>("screenwindow");
-    if let Some([x0, x1, y0, y1]) = window
+fn window(screen: &ScreenDesc, reader: &mut Reader) {
+    if let Some([x0, x1, y0, y1]) = screen.window
         && (x0 == x1 || y0 == y1)
     {
         reader.refuse("screenwindow", "`screenwindow` (x0, x1, y0, y1) is empty");
     }
-    ScreenDesc { frame_aspect_ratio, window }
 }
 
-fn lens(reader: &mut Reader) -> LensDesc {
-    let default = LensDesc::default();
-    LensDesc {
-        radius: reader.float("lensradius", default.radius),
-        focal_distance: reader.positive("focaldistance", default.focal_distance),
-    }
-}
-
-fn realistic(reader: &mut Reader) -> Option<RealisticCameraDesc> {
-    let aperture_diameter = reader.positive("aperturediameter", 1.0);
-    let focus_distance = reader.positive("focusdistance", 10.0);
-    let aperture = match reader.string("aperture") {
+fn realistic(camera: &mut RealisticCameraDesc, reader: &mut Reader) -> Option<()> {
+    camera.aperture = match reader.string("aperture") {
         None => ApertureDesc::Circular,
         Some(name) => match name.value.as_str() {
             "" | "circular" => ApertureDesc::Circular,
@@ -114,6 +83,6 @@ fn realistic(reader: &mut Reader) -> Option<RealisticCameraDesc> {
         eta,
         aperture_diameter,
     };
-    let lenses = reader.builder.lens_file(&file)?.into_iter().map(element).collect();
-    Some(RealisticCameraDesc { lenses, aperture_diameter, focus_distance, aperture })
+    camera.lenses = reader.builder.lens_file(&file)?.into_iter().map(element).collect();
+    Some(())
 }

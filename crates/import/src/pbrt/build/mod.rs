@@ -3,12 +3,10 @@
 
 mod camera;
 mod files;
-mod film;
-mod integrator;
 mod light;
 mod material;
 mod medium;
-mod sampler;
+mod settings;
 mod shape;
 mod texture;
 

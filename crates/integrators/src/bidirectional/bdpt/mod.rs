@@ -21,6 +21,7 @@
 
 pub(crate) mod techniques;
 
+use description::BdptDesc;
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -33,29 +34,10 @@ use crate::bidirectional::{Balance, Bidirectional, Encounter, Found, Lights};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
-/// Settings of [`Bdpt`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BdptSettings {
-    /// Most scattering events; default 5.
-    pub max_depth: u32,
-    /// Roughen surfaces after the first rough one of each subpath; default false.
-    pub regularize: bool,
-    /// Whether each strategy's picture is kept as it would be without the others; default false.
-    pub unweighted: bool,
-    /// Whether each strategy's contribution is kept; default false.
-    pub weighted: bool,
-}
-
-impl Default for BdptSettings {
-    fn default() -> Self {
-        Self { max_depth: 5, regularize: false, unweighted: false, weighted: false }
-    }
-}
-
 /// Bidirectional path tracing.
 #[derive(Debug)]
 pub struct Bdpt {
-    settings: BdptSettings,
+    settings: BdptDesc,
     sampler: Sampler,
     light_sampler: Sampler,
     lights: Lights,
@@ -64,8 +46,9 @@ pub struct Bdpt {
 
 impl Bdpt {
     /// With a sampler for each end.
-    pub fn new(settings: BdptSettings, sampler: Sampler, light_sampler: Sampler) -> Self {
-        let techniques = Techniques::new(settings.max_depth, settings.unweighted, settings.weighted);
+    pub fn new(settings: BdptDesc, sampler: Sampler, light_sampler: Sampler) -> Self {
+        let techniques =
+            Techniques::new(settings.max_depth, settings.visualize_strategies, settings.visualize_weights);
         Self { settings, sampler, light_sampler, lights: Lights::none(), techniques }
     }
 

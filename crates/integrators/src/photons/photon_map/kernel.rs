@@ -11,25 +11,15 @@
 //! Epanechnikov's makes the least mean square error of a density; the cone is sharper in the
 //! middle. [Silverman 1986 §3.3], [Jensen 2001a §7.2]
 
-/// How photons are weighed by their distance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Kernel {
-    /// Linearly to zero at the radius.
-    Cone,
-    /// Quadratically to zero at the radius; the default.
-    #[default]
-    Epanechnikov,
-}
+use description::PhotonKernel;
 
-impl Kernel {
-    /// The kernel on the disk of radius 1 at a distance whose square is given; zero outside.
-    #[inline]
-    pub fn evaluate(self, distance_squared: f32) -> f32 {
-        use std::f32::consts::FRAC_1_PI;
-        match self {
-            Self::Cone => 3.0 * FRAC_1_PI * (1.0 - distance_squared.sqrt()).max(0.0),
-            Self::Epanechnikov => 2.0 * FRAC_1_PI * (1.0 - distance_squared).max(0.0),
-        }
+/// The kernel on the disk of radius 1 at a distance whose square is given; zero outside.
+#[inline]
+pub fn evaluate(kernel: PhotonKernel, distance_squared: f32) -> f32 {
+    use std::f32::consts::FRAC_1_PI;
+    match kernel {
+        PhotonKernel::Cone => 3.0 * FRAC_1_PI * (1.0 - distance_squared.sqrt()).max(0.0),
+        PhotonKernel::Epanechnikov => 2.0 * FRAC_1_PI * (1.0 - distance_squared).max(0.0),
     }
 }
 
@@ -40,13 +30,13 @@ mod tests {
 
     #[test]
     fn the_integral_over_the_disk_is_one() {
-        for kernel in [Kernel::Cone, Kernel::Epanechnikov] {
+        for kernel in [PhotonKernel::Cone, PhotonKernel::Epanechnikov] {
             let ring =
-                |r: f64, _: f64| 2.0 * std::f64::consts::PI * r * f64::from(kernel.evaluate((r * r) as f32));
+                |r: f64, _: f64| 2.0 * std::f64::consts::PI * r * f64::from(evaluate(kernel, (r * r) as f32));
             let integral = integrate(&ring, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
             assert!((integral - 1.0).abs() < 1e-5, "{kernel:?}: {integral}");
-            assert_eq!(kernel.evaluate(1.0), 0.0);
-            assert_eq!(kernel.evaluate(2.0), 0.0);
+            assert_eq!(evaluate(kernel, 1.0), 0.0);
+            assert_eq!(evaluate(kernel, 2.0), 0.0);
         }
     }
 }

@@ -7,9 +7,9 @@
 //! 1/n Σ K(dᵢ/r)/r² · βᵢ
 //! ```
 //!
-//! over the photons i at the distances dᵢ < r, K being a [`Kernel`]. The radius r is the distance
-//! of the photon that comes after the `nearest` nearest, so that where photons lie densely little
-//! is blurred; but at most `radius`.
+//! over the photons i at the distances dᵢ < r, K being a [`PhotonKernel`]. The radius r is the
+//! distance of the photon that comes after the `nearest` nearest, so that where photons lie densely
+//! little is blurred; but at most `radius`.
 //!
 //! A given radius has a bias, that of the blur: on a plane inside which the density is linear there
 //! is none, elsewhere it falls with r². At edges of surfaces the disk hangs over and finds too
@@ -23,11 +23,10 @@
 mod kd_tree;
 mod kernel;
 
+use description::PhotonKernel;
 use math::Point3;
 use rayon::prelude::*;
 use spectrum::SampledSpectrum;
-
-pub use kernel::Kernel;
 
 use crate::photons::photon::Photon;
 use crate::{Cancelled, Control};
@@ -51,7 +50,7 @@ pub(crate) struct Neighbourhood {
     /// The farthest that they may be away.
     pub radius: f32,
     /// How they are weighed.
-    pub kernel: Kernel,
+    pub kernel: PhotonKernel,
 }
 
 impl PhotonMap {
@@ -92,7 +91,8 @@ impl PhotonMap {
         let sum: SampledSpectrum = found
             .iter()
             .map(|&Neighbour { distance_squared, index }| {
-                weigh(&self.photons[index as usize]) * kernel.evaluate(distance_squared / radius_squared)
+                weigh(&self.photons[index as usize])
+                    * kernel::evaluate(kernel, distance_squared / radius_squared)
             })
             .sum();
         Some((sum / (radius_squared * self.paths as f32), radius_squared.sqrt()))
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn an_even_density_is_found_without_bias_however_many_photons_count() {
-        for kernel in [Kernel::Cone, Kernel::Epanechnikov] {
+        for kernel in [PhotonKernel::Cone, PhotonKernel::Epanechnikov] {
             // The nearest k alone, the radius alone, and now the one and now the other.
             for (nearest, radius) in [(3, 0.9), (5, 0.9), (1000, 0.5), (12, 0.35)] {
                 let neighbourhood = Neighbourhood { nearest, radius, kernel };
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn where_the_density_bends_the_error_goes_with_the_square_of_the_radius() {
         // Of (1 + x²)/2 the kernel finds (1 + r² E[x²])/2 at x = 0, E[x²] being its second moment.
-        for (kernel, moment) in [(Kernel::Cone, 0.15), (Kernel::Epanechnikov, 1.0 / 6.0)] {
+        for (kernel, moment) in [(PhotonKernel::Cone, 0.15), (PhotonKernel::Epanechnikov, 1.0 / 6.0)] {
             for radius in [0.9f32, 0.45] {
                 let neighbourhood = Neighbourhood { nearest: 1000, radius, kernel };
                 let bent = |seed| photons(100, seed, |p, u| 2.0 * u < 1.0 + p.x * p.x);
@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn nothing_is_found_where_nothing_is_or_all_is_in_one_point() {
-        let neighbourhood = Neighbourhood { nearest: 5, radius: 0.1, kernel: Kernel::Epanechnikov };
+        let neighbourhood = Neighbourhood { nearest: 5, radius: 0.1, kernel: PhotonKernel::Epanechnikov };
         assert_eq!(density(&PhotonMap::default(), &neighbourhood), 0.0);
         let mut photon = square(1, 1).photons[0];
         photon.p = Point3::ZERO;

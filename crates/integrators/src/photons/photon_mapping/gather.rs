@@ -1,30 +1,30 @@
-//! What camera rays gather from the photon maps.
+//! What camera paths gather from the photon maps.
 //!
-//! At a surface that is not purely specular the light that arrives falls into three:
+//! At a surface that is not purely specular, incident light has three parts:
 //!
-//! | light that comes | is found |
+//! | incident light | is found |
 //! |---|---|
-//! | straight from a light | by a light sample, weighted against the ray that goes on ([`DirectLighting`]) |
+//! | direct | by next-event estimation, weighted against the scattered ray ([`DirectLighting`]) |
 //! | from a light through specular surfaces alone | in the caustic map |
-//! | from other surfaces that are not purely specular | in the global map if there is a diffuse lobe; else by the ray that goes on |
+//! | from other surfaces that are not purely specular | in the global map if there is a diffuse lobe; else by the scattered ray |
 //!
-//! A ray goes on in any case, along a direction of the BSDF. What it may bring follows from the
-//! table: after a diffuse surface only a light that it meets at once; after a glossy one all but
-//! lights behind specular surfaces; after a specular one whatever was still to be found before. So
-//! each path of light is counted once.
+//! A ray is scattered in any case, along a direction of the BSDF. What it may find follows from the
+//! table: after a diffuse surface only a light that it hits at once; after a glossy one everything
+//! but lights behind specular surfaces; after a specular one whatever was still sought before. So
+//! each light path is counted once.
 //!
-//! With a final gather, the global map holds photons of all kinds and is looked at one surface
-//! later: rays leave the diffuse surface along directions of its BSDF, and where each meets a
-//! surface that is not purely specular the map tells all that it reflects.
+//! With a final gather, the global map holds photons of all kinds and is looked up one surface
+//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a
+//! surface that is not purely specular the map gives all that it reflects.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use description::PhotonMappingDesc;
 use math::{RayDifferential, Vec2};
 use scattering::{Bsdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::settings::PhotonMappingSettings;
 use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
@@ -74,23 +74,23 @@ pub(super) struct Gather<'a> {
     /// What finds direct light.
     pub direct: &'a DirectLighting,
     pub maps: &'a PhotonMaps,
-    pub settings: &'a PhotonMappingSettings,
+    pub settings: &'a PhotonMappingDesc,
     pub neighbourhood: Neighbourhood,
     pub mean_radius: &'a MeanRadius,
 }
 
-/// What is still to be found along a ray.
+/// What is still sought along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sought {
-    /// What every surface sends.
+    /// All radiance.
     Radiance,
-    /// What the next surface with photons reflects, as the global map tells it.
+    /// What the next surface with photons reflects, from the global map.
     Reflected,
-    /// What lights that it meets at once send.
+    /// The emission of lights that it hits at once.
     Emission,
 }
 
-/// Where photons are looked for.
+/// A point at which photons are looked up.
 #[derive(Clone, Copy)]
 struct GatherPoint<'a> {
     surface: &'a SurfaceInteraction,
@@ -111,7 +111,7 @@ impl Gather<'_> {
         self.follow(ray, *lambda, (Sought::Radiance, 0), tracer)
     }
 
-    /// What a ray brings that leaves the scattering event number `depth`.
+    /// The radiance along a ray that leaves scattering event number `depth`.
     fn follow(
         &self,
         ray: RayDifferential,
@@ -122,7 +122,7 @@ impl Gather<'_> {
         let (scene, direct) = (tracer.scene, self.direct);
         let mut l = SampledSpectrum::ZERO;
         let mut path = PathState::new(ray, depth);
-        // Whether a caustic map has already told of lights that the ray meets, unless it does so at
+        // Whether a caustic map has the light of emitters that the ray hits, unless it hits them at
         // once.
         let mut emission_is_known = sought == Sought::Reflected;
         loop {
@@ -190,7 +190,7 @@ impl Gather<'_> {
         }
     }
 
-    /// Light that other surfaces have scattered: what is reflected of it.
+    /// What is reflected of indirect light.
     fn indirect(&self, ray: &RayDifferential, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
         let count = self.settings.gather;
         if point.depth == self.settings.max_depth {
@@ -203,7 +203,7 @@ impl Gather<'_> {
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
-            // A lattice that is moved about: evenly spread in both coordinates.
+            // A randomly shifted rank-1 lattice: evenly spread in both coordinates.
             let step = i as f32 * GOLDEN;
             let u = Vec2::new((i as f32 + u.x) / count as f32, (u.y + step).fract());
             let uc = (uc + step).fract();
@@ -221,7 +221,7 @@ impl Gather<'_> {
         sum / count as f32
     }
 
-    /// What is reflected of the light that a map's photons have brought.
+    /// What is reflected of the light of the photons of a map.
     fn reflected(&self, map: &PhotonMap, point: &GatherPoint) -> SampledSpectrum {
         let &GatherPoint { surface, bsdf, depth, lambda } = point;
         let s = &surface.surface;

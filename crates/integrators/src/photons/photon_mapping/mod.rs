@@ -33,10 +33,10 @@
 
 mod emission;
 mod gather;
-mod settings;
 
 use std::ops::AddAssign;
 
+use description::{PhotonMappingDesc, PhotonMappingShow};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -52,7 +52,6 @@ use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, Integrator};
-pub use settings::PhotonMappingSettings;
 
 use emission::{Emission, Kind};
 use gather::{Gather, MeanRadius, PhotonMaps};
@@ -60,7 +59,7 @@ use gather::{Gather, MeanRadius, PhotonMaps};
 /// Photon mapping.
 #[derive(Debug)]
 pub struct PhotonMapping {
-    settings: PhotonMappingSettings,
+    settings: PhotonMappingDesc,
     sampler: Sampler,
     photon_seed: u32,
     lights: Lights,
@@ -96,7 +95,7 @@ impl AddAssign for Tally {
 
 impl PhotonMapping {
     /// With a sampler for the camera's rays, and a seed for photons.
-    pub fn new(settings: PhotonMappingSettings, sampler: Sampler, photon_seed: u32) -> Self {
+    pub fn new(settings: PhotonMappingDesc, sampler: Sampler, photon_seed: u32) -> Self {
         let (lights, direct) = (Lights::none(), DirectLighting::none());
         let (tally, mean_radius) = (Tally::default(), MeanRadius::new(1.0));
         Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, mean_radius }
@@ -182,9 +181,9 @@ impl Integrator for PhotonMapping {
         };
         let shutter = ShutterSample::of_pass(view, self.photon_seed, pass);
         // Photons that are shown stay, and their colours become right over the passes.
-        let generation = if settings.show_photons { 0 } else { pass };
+        let generation = if settings.show == PhotonMappingShow::Photons { 0 } else { pass };
         let emission = Emission { paths: &paths, shutter, seed: self.photon_seed, generation };
-        if settings.show_photons {
+        if settings.show == PhotonMappingShow::Photons {
             let (tally, stats) = self.draw(&emission, film, control)?;
             self.tally += tally;
             return Ok(stats);
@@ -215,7 +214,7 @@ impl Integrator for PhotonMapping {
         }
         let (global, caustic) = (global / passes, caustic / passes);
         let photons = format!("{global} in the global map of a pass, {caustic} in its caustic map");
-        if self.settings.show_photons {
+        if self.settings.show == PhotonMappingShow::Photons {
             return vec![("photons", photons)];
         }
         let mebibytes = largest_memory as f64 / f64::from(1 << 20);

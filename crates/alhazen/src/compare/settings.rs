@@ -1,0 +1,79 @@
+//! Settings as a report shows them: by the names that `--set` and the pbrt-v4 format have for them.
+
+use serde_json::{Map, Value as Json};
+
+use description::SamplerKind;
+use description::schema::Value;
+
+use crate::settings::listed;
+
+/// Names and values, in a fixed order.
+pub type Settings = Vec<(&'static str, Value)>;
+
+/// A sampler: its name and its settings but for the number of samples.
+pub(super) fn of_sampler(kind: &SamplerKind) -> Settings {
+    let mut settings = listed(kind);
+    settings.retain(|(name, _)| *name != "pixelsamples");
+    settings
+}
+
+/// For people: `maxdepth 5, radius automatic`.
+pub(super) fn text(settings: &Settings) -> String {
+    let texts = settings.iter().map(|(name, value)| match *name {
+        "name" => value.to_string(),
+        name => format!("{name} {value}"),
+    });
+    texts.collect::<Vec<_>>().join(", ")
+}
+
+/// For programs: an object of numbers, booleans and texts; null for what is left to the renderer.
+pub(super) fn json(settings: &Settings) -> Json {
+    Json::Object(
+        settings.iter().map(|(name, value)| ((*name).to_owned(), json_value(value))).collect::<Map<_, _>>(),
+    )
+}
+
+fn json_value(value: &Value) -> Json {
+    match value {
+        Value::Bool(value) => (*value).into(),
+        Value::Integer(value) => (*value).into(),
+        // By way of its text, which has no more digits than the number.
+        Value::Number(_) => {
+            let text = value.to_string();
+            serde_json::from_str(&text).unwrap_or(Json::String(text))
+        }
+        Value::Text(text) => text.as_str().into(),
+        Value::List(values) => values.iter().map(json_value).collect(),
+        Value::Automatic => Json::Null,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use description::FilterDesc;
+    use serde_json::json as object;
+
+    #[test]
+    fn both_show_the_same() {
+        let settings = listed(&FilterDesc::default());
+        assert_eq!(text(&settings), "gaussian, xradius 1.5, yradius 1.5, sigma 0.5");
+        let expected = object!({ "name": "gaussian", "xradius": 1.5, "yradius": 1.5, "sigma": 0.5 });
+        assert_eq!(json(&settings), expected);
+        assert_eq!(text(&of_sampler(&SamplerKind::default())), "zsobol, randomization fastowen");
+        let settings = vec![
+            ("radius", Value::Automatic),
+            ("photons", Value::Integer(7)),
+            ("kernel", Value::Text("cone".into())),
+            ("far", Value::Number(f32::INFINITY)),
+            ("part", Value::List(vec![Value::Number(0.1), Value::Integer(1)])),
+            ("fast", Value::Bool(true)),
+        ];
+        let expected = "radius automatic, photons 7, kernel cone, far inf, part 0.1,1, fast true";
+        assert_eq!(text(&settings), expected);
+        let expected = object!({
+            "radius": null, "photons": 7, "kernel": "cone", "far": "inf", "part": [0.1, 1], "fast": true
+        });
+        assert_eq!(json(&settings), expected);
+    }
+}

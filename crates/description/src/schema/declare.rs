@@ -1,0 +1,198 @@
+//! The macros that declare settings.
+
+/// Declares a struct of settings, or a closed set whose members have settings.
+///
+/// ```text
+/// settings! {
+///     /// What it is.
+///     #[derive(…)]
+///     pub struct Name {
+///         /// What the field means: documentation and help.
+///         field: Type = default => ["name" | "alias": domain];
+///         /// Settings that are elements of an array.
+///         array: [Type; 2] = default => ["first"[0], "second"[1]];
+///         /// Settings of their own, among those of this struct.
+///         part: OtherSettings = default => ..;
+///         /// What is no setting.
+///         other: Type = default;
+///     }
+/// }
+/// ```
+///
+/// A set is an `enum` with the name of its default member, whose members have no settings, those of
+/// a struct, or fields as above; `not drawn` marks a member that cannot be chosen:
+///
+/// ```text
+/// settings! {
+///     /// What it is.
+///     #[derive(…)]
+///     pub enum Set = First {
+///         /// What it is.
+///         First(FirstDesc) = "first" | "another-name",
+///         /// What it is.
+///         Second = "second" { /* fields */ },
+///         /// What it is.
+///         Third = "third" (not drawn),
+///     }
+/// }
+/// ```
+macro_rules! settings {
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[doc = $help:literal])+ $field:ident: $type:ty = $default:expr $(=> $keys:tt)?;)*
+    }) => {
+        $(#[$meta])*
+        pub struct $name {
+            $($(#[doc = $help])+ pub $field: $type,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)* }
+            }
+        }
+
+        impl $crate::schema::Settings for $name {
+            #[allow(unused_variables)]
+            fn visit(&mut self, visitor: $crate::schema::Visitor) {
+                let Self { $($field,)* } = self;
+                $($crate::schema::settings!(@visit visitor ($field) (concat!($($help),+)) $($keys)?);)*
+            }
+
+            fn member(&self) -> Option<&'static $crate::schema::Member> {
+                None $($(.or_else(|| $crate::schema::settings!(@member (self.$field) $keys)))?)*
+            }
+
+            fn members() -> Vec<Self> {
+                let members = vec![Self::default()];
+                $($($crate::schema::settings!(@members members $field $type, $keys);)?)*
+                members
+            }
+        }
+    };
+
+    ($(#[$meta:meta])* pub enum $name:ident = $first:ident {
+        $(
+            $(#[doc = $about:literal])+
+            $variant:ident $(($settings:ty))? = $($spelling:literal)|+ $(($not:ident drawn))? $({
+                $($(#[doc = $help:literal])+ $field:ident: $type:ty = $default:expr $(=> $keys:tt)?;)*
+            })?,
+        )*
+    }) => {
+        $(#[$meta])*
+        pub enum $name {
+            $($(#[doc = $about])+ $variant $(($settings))? $({ $($(#[doc = $help])+ $field: $type,)* })?,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                #[allow(dead_code)]
+                enum Member { $($variant,)* }
+                match Member::$first {
+                    $(Member::$variant => Self::$variant $((<$settings>::default()))? $({ $($field: $default,)* })?,)*
+                }
+            }
+        }
+
+        impl $crate::schema::Settings for $name {
+            fn visit(&mut self, visitor: $crate::schema::Visitor) {
+                match self {
+                    $(
+                        $(Self::$variant(settings) => <$settings as $crate::schema::Settings>::visit(settings, visitor),)?
+                        $(Self::$variant { $($field,)* } => {
+                            $($crate::schema::settings!(@visit visitor ($field) (concat!($($help),+)) $($keys)?);)*
+                        })?
+                    )*
+                    #[allow(unreachable_patterns)]
+                    _ => (),
+                }
+            }
+
+            fn member(&self) -> Option<&'static $crate::schema::Member> {
+                Some(match self {
+                    $(Self::$variant { .. } => const {
+                        &$crate::schema::Member {
+                            names: &[$($spelling),+],
+                            help: concat!($($about),+).trim_ascii(),
+                            is_drawn: $crate::schema::settings!(@drawn $($not)?),
+                        }
+                    },)*
+                })
+            }
+
+            fn members() -> Vec<Self> {
+                vec![$(Self::$variant $((<$settings>::default()))? $({ $($field: $default,)* })?,)*]
+            }
+        }
+    };
+
+    (@visit $visitor:ident ($field:expr) ($help:expr)) => {};
+    (@visit $visitor:ident ($field:expr) ($help:expr) ..) => {
+        $crate::schema::Settings::visit($field, $visitor)
+    };
+    (@visit $visitor:ident ($field:expr) ($help:expr) [
+        $($name:literal $([$element:literal])? $(| $alias:literal)* $(: $domain:expr)?),+
+    ]) => {
+        $($visitor(
+            const {
+                &$crate::schema::Field {
+                    name: $name,
+                    aliases: &[$($alias),*],
+                    help: $help.trim_ascii(),
+                    domain: $crate::schema::settings!(@domain $($domain)?),
+                }
+            },
+            &mut (*$field) $([$element])?,
+        );)+
+    };
+
+    (@domain) => { $crate::schema::Domain::ANY };
+    (@domain $domain:expr) => { $domain };
+
+    (@drawn) => { true };
+    (@drawn not) => { false };
+
+    (@member ($field:expr) ..) => { $crate::schema::Settings::member(&$field) };
+    (@member ($field:expr) $names:tt) => { None };
+
+    (@members $members:ident $field:ident $type:ty, ..) => {
+        let $members: Vec<Self> = $members
+            .into_iter()
+            .flat_map(|desc| {
+                <$type as $crate::schema::Settings>::members()
+                    .into_iter()
+                    .map(move |$field| Self { $field, ..desc.clone() })
+            })
+            .collect();
+    };
+    (@members $members:ident $field:ident $type:ty, $names:tt) => {};
+}
+
+/// Declares an `enum` whose values have the names by which a setting of this type is written.
+macro_rules! choices {
+    ($(#[$meta:meta])* pub enum $name:ident {
+        $($(#[$attribute:meta])* $variant:ident = $spelling:literal,)+
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[$attribute])* $variant,)+
+        }
+
+        impl $crate::schema::SettingType for $name {
+            const KIND: $crate::schema::Kind = $crate::schema::Kind::Choice(&[$($spelling),+]);
+
+            fn to_value(&self) -> $crate::schema::Value {
+                $crate::schema::Value::Text(match self { $(Self::$variant => $spelling,)+ }.to_owned())
+            }
+
+            fn from_value(value: &$crate::schema::Value) -> Option<Self> {
+                match value {
+                    $($crate::schema::Value::Text(text) if text == $spelling => Some(Self::$variant),)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+pub(crate) use {choices, settings};

@@ -1,0 +1,128 @@
+//! The values that a setting can have, of those of its type.
+
+use super::{Kind, Value};
+
+/// The values that a setting can have, of those of its type.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// Bounds of numbers.
+    least: f64,
+    most: f64,
+    has_least: bool,
+    has_most: bool,
+    /// The unit of numbers; empty where they have none.
+    pub unit: &'static str,
+    /// Texts that are allowed; empty if all are.
+    pub names: &'static [&'static str],
+    /// What a text ends in.
+    extension: &'static str,
+}
+
+/// Numbers from `least` on.
+pub(crate) const fn at_least(least: f64) -> Domain {
+    Domain { least, has_least: true, ..Domain::ANY }
+}
+
+/// Numbers above `least`.
+pub(crate) const fn above(least: f64) -> Domain {
+    Domain { least, ..Domain::ANY }
+}
+
+/// Numbers between two others, without these.
+pub(crate) const fn between(least: f64, most: f64) -> Domain {
+    Domain { least, most, ..Domain::ANY }
+}
+
+/// Numbers from `least` to `most`.
+pub(crate) const fn from(least: f64, most: f64) -> Domain {
+    at_least(least).at_most(most)
+}
+
+/// Some texts.
+pub(crate) const fn one_of(names: &'static [&'static str]) -> Domain {
+    Domain { names, ..Domain::ANY }
+}
+
+/// Names of files with an extension, which is given with its dot.
+pub(crate) const fn with_extension(extension: &'static str) -> Domain {
+    Domain { extension, ..Domain::ANY }
+}
+
+impl Domain {
+    /// All texts, and all numbers but NaN and infinity.
+    pub(crate) const ANY: Self = Self {
+        least: f64::NEG_INFINITY,
+        most: f64::INFINITY,
+        has_least: false,
+        has_most: false,
+        unit: "",
+        names: &[],
+        extension: "",
+    };
+
+    /// No number above `most`, which may be infinity.
+    pub(crate) const fn at_most(self, most: f64) -> Self {
+        Self { most, has_most: true, ..self }
+    }
+
+    /// With the unit of the numbers.
+    pub(crate) const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// Whether a value is one of the domain. What is left to the renderer always is.
+    pub fn contains(&self, value: &Value) -> bool {
+        match value {
+            Value::Integer(value) => self.contains_number(*value as f64),
+            Value::Number(value) => self.contains_number(f64::from(*value)),
+            Value::Text(text) => {
+                (self.names.is_empty() || self.names.contains(&text.as_str()))
+                    && text.to_ascii_lowercase().ends_with(self.extension)
+            }
+            Value::List(values) => values.iter().all(|value| self.contains(value)),
+            Value::Bool(_) | Value::Automatic => true,
+        }
+    }
+
+    fn contains_number(&self, value: f64) -> bool {
+        let least = value > self.least || (self.has_least && value == self.least);
+        least && (value < self.most || (self.has_most && value == self.most))
+    }
+
+    /// What the values are, as in “a number above 0”.
+    pub fn describe(&self, kind: Kind) -> String {
+        let range = self.range(kind);
+        let range = if range.is_empty() { range } else { format!(" {range}") };
+        match kind {
+            Kind::Bool => "true or false".into(),
+            Kind::Integer | Kind::Count => format!("a whole number{range}"),
+            Kind::Number if range.is_empty() => "a finite number".into(),
+            Kind::Number => format!("a number{range}"),
+            Kind::Choice(names) => format!("one of {}", names.join(", ")),
+            Kind::Text if !self.names.is_empty() => format!("one of {}", self.names.join(", ")),
+            Kind::Text if !self.extension.is_empty() => format!("a name that ends in {}", self.extension),
+            Kind::Text => "a text".into(),
+            Kind::List(kind, count) => {
+                format!("{count} values parted by commas, each {}", self.describe(*kind))
+            }
+        }
+    }
+
+    /// The bounds of numbers, as in “above 0”; empty if there are none.
+    pub fn range(&self, kind: Kind) -> String {
+        let any = self.least == f64::NEG_INFINITY && kind == Kind::Count;
+        let (least, has_least) = if any { (0.0, true) } else { (self.least, self.has_least) };
+        match (least.is_finite(), self.most.is_finite()) {
+            (false, false) => String::new(),
+            (true, false) if has_least => format!("of {least} or more"),
+            (true, false) => format!("above {least}"),
+            (true, true) => match (has_least, self.has_most) {
+                (true, true) => format!("from {least} to {}", self.most),
+                (true, false) => format!("of at least {least} and below {}", self.most),
+                (false, true) => format!("above {least} and at most {}", self.most),
+                (false, false) => format!("between {least} and {}", self.most),
+            },
+            (false, true) => format!("of at most {}", self.most),
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The schema of settings. A setting is declared once, by [`settings!`](declare), with its field,
+//! type, default, names, range, unit and help. Whoever reads, checks, lists or changes settings
+//! does so through [`Settings::visit`], and knows no setting by itself.
+
+mod declare;
+mod domain;
+mod value;
+
+pub(crate) use declare::{choices, settings};
+pub use domain::Domain;
+pub(crate) use domain::{above, at_least, between, from, one_of, with_extension};
+pub use value::{Kind, SettingType, Slot, Value};
+
+use crate::{Diagnostic, Origin};
+
+/// What is known of a setting, besides its type and value.
+#[derive(Debug, PartialEq)]
+pub struct Field {
+    /// Its name, which is the one that the pbrt-v4 format has for it where it has one.
+    pub name: &'static str,
+    /// Further names by which a user can set it. Several settings may share one.
+    pub aliases: &'static [&'static str],
+    /// What it means, in whole sentences.
+    pub help: &'static str,
+    /// The values it can have.
+    pub domain: Domain,
+}
+
+impl Field {
+    /// Whether it is set by that name.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.aliases.contains(&name)
+    }
+
+    /// Sets the value, or says what the values of this setting are.
+    pub fn assign(&self, slot: &mut dyn Slot, value: &Value) -> Result<(), String> {
+        if self.domain.contains(value) && slot.set(value) {
+            return Ok(());
+        }
+        Err(self.domain.describe(slot.kind()))
+    }
+
+    /// Sets the value by text, or says what the values of this setting are.
+    pub fn assign_text(&self, slot: &mut dyn Slot, text: &str) -> Result<(), String> {
+        match slot.kind().parse(text) {
+            Some(value) => self.assign(slot, &value),
+            None => Err(self.domain.describe(slot.kind())),
+        }
+    }
+}
+
+/// A setting with its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// What is known of it.
+    pub field: &'static Field,
+    /// Its type.
+    pub kind: Kind,
+    /// Its value.
+    pub value: Value,
+}
+
+/// A member of a closed set, such as one of the integrators.
+#[derive(Debug)]
+pub struct Member {
+    /// Its names; the first is the one that is shown.
+    pub names: &'static [&'static str],
+    /// What it is, in whole sentences.
+    pub help: &'static str,
+    /// Whether it can be chosen. Others can be described, but something else is drawn in their
+    /// place.
+    pub is_drawn: bool,
+}
+
+/// What [`Settings::visit`] calls for each setting.
+pub type Visitor<'a> = &'a mut dyn FnMut(&'static Field, &mut dyn Slot);
+
+/// A part of a scene's description that consists of settings.
+pub trait Settings {
+    /// Calls `visitor` for each setting, in the order of their declaration.
+    fn visit(&mut self, visitor: Visitor);
+
+    /// Which member of its set it is; `None` of what is no set.
+    fn member(&self) -> Option<&'static Member>;
+
+    /// Every member of the set with default settings; one value of what is no set.
+    fn members() -> Vec<Self>
+    where
+        Self: Sized;
+
+    /// The member of that name with default settings.
+    fn called(name: &str) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        Self::members()
+            .into_iter()
+            .find(|desc| desc.member().is_some_and(|member| member.names.contains(&name)))
+    }
+
+    /// The name that is shown for the member of the set; empty for what is no set.
+    fn name(&self) -> &'static str {
+        self.member().map_or("", |member| member.names[0])
+    }
+
+    /// All settings with their values.
+    fn settings(&self) -> Vec<Setting>
+    where
+        Self: Clone,
+    {
+        let mut settings = Vec::new();
+        self.clone().visit(&mut |field, slot| {
+            settings.push(Setting { field, kind: slot.kind(), value: slot.get() });
+        });
+        settings
+    }
+
+    /// Sets every setting of that name by text and returns their [`Field::name`]s, none if there is
+    /// no such setting. The error says what the values of the setting are.
+    fn set_text(&mut self, name: &str, text: &str) -> Result<Vec<&'static str>, String> {
+        let mut results = Vec::new();
+        self.visit(&mut |field, slot| {
+            if field.is_called(name) {
+                results.push(field.assign_text(slot, text).map(|()| field.name));
+            }
+        });
+        results.into_iter().collect()
+    }
+
+    /// An error for every value outside its domain, at the place of the parameter.
+    fn check(&self, origin: &Origin) -> Vec<Diagnostic>
+    where
+        Self: Clone,
+    {
+        let wrong = |setting: &Setting| !setting.field.domain.contains(&setting.value);
+        let error = |Setting { field, kind, value }: Setting| {
+            let message = format!("`{}` is {}, not {value}", field.name, field.domain.describe(kind));
+            Diagnostic::error("invalid-value", message, origin.parameter(field.name))
+        };
+        self.settings().into_iter().filter(wrong).map(error).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
