@@ -18,7 +18,7 @@ use crate::{Header, Overrides};
 /// The name of the film that takes turns with the picture's where noise is estimated.
 const SECOND: &str = "second";
 
-/// The name of the state that is a [`RenderOrder`].
+/// The name of the state that holds what parts of a render may differ in.
 const SESSION: &str = "session";
 
 /// Other versions may have other samples.

@@ -66,7 +66,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
             return Err(scene_failure(imported));
         }
     };
-    interrupt.begin_rendering();
+    interrupt.begin_rendering(false);
     if talkative {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }

@@ -125,7 +125,7 @@ impl Task<'_> {
     /// Renders, writes the results and reports.
     pub fn run(mut self, compiled: Compiled, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
         let Compiled { imported, integrator, begin, imported_at, compiled_at } = compiled;
-        interrupt.begin_rendering();
+        interrupt.begin_rendering(self.checkpoint.is_some());
         let is_talkative = self.verbosity.is_talkative();
         if is_talkative {
             diagnostics::print(&imported.diagnostics, &imported.sources)?;
@@ -146,6 +146,7 @@ impl Task<'_> {
             if let Some(checkpoint) = &mut self.checkpoint {
                 checkpoint.after_pass(session);
             }
+            interrupt.after_pass();
         });
         bar.finish();
         let rendered_at = Instant::now();
@@ -154,10 +155,10 @@ impl Task<'_> {
         let files = session.integrator().files();
         let films = if self.outputs.is_empty() { Vec::new() } else { session.integrator().films() };
         let beside = write_results(&self.job.picture(), &self.outputs, films, files);
-        // A cancelled pass has left a part of its light on the film, so that the last checkpoint
+        // Where a cancelled pass has left a part of its light on the film, the last checkpoint
         // stays as it is.
         let saved = match &mut self.checkpoint {
-            Some(checkpoint) if outcome.is_ok() => checkpoint.finish(session),
+            Some(checkpoint) if session.is_whole() => checkpoint.finish(session),
             _ => Ok(()),
         };
         let beside = beside?;

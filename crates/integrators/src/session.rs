@@ -88,6 +88,8 @@ pub struct Session {
     integrator: Box<dyn Integrator>,
     state: SessionState,
     is_prepared: bool,
+    /// Whether the film has no light of a pass that was cancelled.
+    is_whole: bool,
     /// Drafts done by this session.
     drafts: u32,
     /// Passes done by this session, drafts included.
@@ -153,6 +155,7 @@ impl Session {
             integrator,
             state,
             is_prepared: false,
+            is_whole: true,
             drafts: 0,
             passes: 0,
             stats: RayStats::default(),
@@ -168,8 +171,8 @@ impl Session {
     /// and calls `after_pass` after each.
     ///
     /// Pass 0 of an integrator that makes drafts is preceded by them. After `Err` the film is valid
-    /// all the same: it holds the light of the passes, and tiles, that were done. But no other
-    /// session can go on from it, as it holds a part of a pass.
+    /// all the same: it holds the light of the passes, and tiles, that were done. But unless it
+    /// [is whole](Self::is_whole), no other session can go on from it.
     pub fn run(
         &mut self,
         passes: Range<u32>,
@@ -212,6 +215,7 @@ impl Session {
             if self.state.done.contains(pass) {
                 continue;
             }
+            clock.control.check()?;
             if limits.time.is_some_and(|time| self.is_over(time)) {
                 return Ok(Stop::Time);
             }
@@ -240,7 +244,9 @@ impl Session {
             Some(second) if on_second => second,
             _ => &mut self.state.film,
         };
-        let stats = self.integrator.pass(pass, &self.scene, &self.view, film, clock.control)?;
+        let outcome = self.integrator.pass(pass, &self.scene, &self.view, film, clock.control);
+        self.is_whole &= outcome.is_ok();
+        let stats = outcome?;
         clock.control.take_counted();
         self.stats += stats;
         self.passes += 1;
@@ -293,6 +299,11 @@ impl Session {
     /// The film, and which passes it holds.
     pub fn state(&self) -> &SessionState {
         &self.state
+    }
+
+    /// Whether the film holds whole passes only, none that was cancelled on the way.
+    pub fn is_whole(&self) -> bool {
+        self.is_whole
     }
 
     /// Goes on with what another session of the same scene, view and algorithm has left, and with
