@@ -23,6 +23,22 @@ pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Res
     Ok(array)
 }
 
+/// Refuses work that takes so many bytes where there is no memory for them now.
+pub fn require_memory(bytes: usize) -> Result<(), ImageError> {
+    reserved::<u8>(bytes).map(drop)
+}
+
 fn no_memory(bytes: usize) -> ImageError {
     ImageError::Limits(format!("no memory for {bytes} bytes of pixels"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn work_without_memory_is_refused() {
+        assert!(require_memory(1 << 20).is_ok());
+        assert!(matches!(require_memory(1 << 62), Err(ImageError::Limits(_))));
+    }
 }
