@@ -26,6 +26,8 @@ pub struct FilmDesc {
     pub sensor: SensorDesc,
     /// The colour space of the image.
     pub color_space: ColorSpaceDesc,
+    /// The names of layers beside the colour.
+    pub layers: Vec<Spanned<String>>,
 }
 
 /// What a film stores per pixel.
@@ -92,6 +94,7 @@ impl Default for FilmDesc {
             max_component_value: f32::INFINITY,
             sensor: SensorDesc::default(),
             color_space: ColorSpaceDesc::Srgb,
+            layers: Vec::new(),
         }
     }
 }

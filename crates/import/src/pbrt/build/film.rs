@@ -142,6 +142,7 @@ fn film(reader: &mut Reader) -> Option<FilmDesc> {
             .unwrap_or(default.max_component_value),
         sensor: sensor(reader),
         color_space: reader.color_space,
+        layers: reader.strings("layers").unwrap_or_default(),
     })
 }
 
