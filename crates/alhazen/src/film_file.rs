@@ -150,6 +150,10 @@ impl SavedRender {
     /// Reads a film file.
     pub fn read(input: impl Read, limits: &ReadLimits) -> Result<Self, FilmFileError> {
         let file = FilmFile::read(input, limits)?;
+        let size = |film: &Film| (film.full_resolution(), film.pixel_bounds());
+        if file.films.iter().any(|(_, film)| size(film) != size(&file.picture)) {
+            return Err(FilmFileError::Mismatch("its films have not the same pixels".into()));
+        }
         let settings: Value = serde_json::from_str(&file.header.settings).unwrap_or_default();
         if let Some(version) = settings["alhazen"].as_str().filter(|&version| version != VERSION) {
             let problem = format!("alhazen {version} has rendered it; this is {VERSION}");

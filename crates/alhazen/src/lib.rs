@@ -2,9 +2,9 @@
 //!
 //! The crates of the house under their names, and what joins them into a program: [`Overrides`]
 //! change a scene before it is rendered, a [`Job`] takes it from description to picture,
-//! [`write_picture`] puts that into a file, a [`RenderOrder`] saves it so that it can go on later as
-//! a [`SavedRender`]. [`render_file`] does all of it but the last.
-//! [`compare`] renders one scene by several algorithms and measures them.
+//! [`write_picture`] puts that into a file, a [`RenderOrder`] saves it so that it can go on later
+//! as a [`SavedRender`]. [`render_file`] does all of it but the last. [`compare`] renders one scene
+//! by several algorithms and measures them.
 
 pub use description;
 pub use film;

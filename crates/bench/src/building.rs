@@ -1,5 +1,5 @@
-//! Building and refitting: seconds on one thread and on two, and the memory that primitives and
-//! tree take.
+//! Benchmarks of building and refitting: time on one and two threads, and the memory of primitives
+//! and tree.
 
 use crate::embree::{Embree, Quality, SceneOptions};
 use crate::mesh::{BenchMesh, spheres};
@@ -8,7 +8,7 @@ use crate::timing::Seconds;
 use geometry::{BuildQuality, Geometry, GeometryId, GroupId, RefitError, World};
 use std::error::Error;
 
-/// How Embree builds what we build balanced.
+/// Embree's counterpart of our quality `Balanced`.
 const MEDIUM: SceneOptions = SceneOptions { quality: Quality::Medium, robust: false };
 
 /// A world of one geometry.
@@ -18,7 +18,7 @@ pub fn world(geometry: impl Into<Geometry>, quality: BuildQuality) -> World {
     builder.build()
 }
 
-/// Builds with us and with Embree in turn, so many times, and makes a table of the medians.
+/// Builds with our engine and Embree in alternation, and returns a table of the medians.
 pub fn table(mesh: &BenchMesh, embree: Option<&Embree>, repeats: usize) -> Result<Table, Box<dyn Error>> {
     let triangles = Geometry::from(mesh.triangles()?);
     let mut ours = Ours::default();
@@ -45,7 +45,7 @@ pub fn table(mesh: &BenchMesh, embree: Option<&Embree>, repeats: usize) -> Resul
     Ok(table)
 }
 
-/// The same for a million spheres, with us alone.
+/// The same for a million spheres, with our engine alone.
 pub fn spheres_table(repeats: usize) -> Result<Table, Box<dyn Error>> {
     let set = Geometry::from(spheres(1_000_000)?);
     let mut ours = Ours::default();
@@ -58,7 +58,7 @@ pub fn spheres_table(repeats: usize) -> Result<Table, Box<dyn Error>> {
     Ok(ours.table("a million spheres"))
 }
 
-/// What we are measured at.
+/// Measurements of our engine.
 #[derive(Default)]
 struct Ours {
     balanced: Runs,
@@ -92,7 +92,7 @@ impl Ours {
     }
 }
 
-/// Runs on one thread, then as many on two.
+/// Measurements on one thread and on two.
 #[derive(Default)]
 struct Runs {
     seconds: Vec<Seconds>,

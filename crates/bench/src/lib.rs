@@ -1,8 +1,7 @@
-//! Measures the ray engine: the meshes and rays that it is measured by, Embree to hold it against,
-//! and the clock.
+//! Benchmarks of the ray engine: meshes, rays, Embree for comparison, and timing.
 //!
 //! `cargo xtask bench rays` runs the program of this crate; `cargo bench --package alhazen-bench`
-//! measures the parts.
+//! runs microbenchmarks of its parts.
 
 pub mod building;
 pub mod embree;

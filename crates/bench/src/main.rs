@@ -1,4 +1,4 @@
-//! `rays`: alhazen's ray engine beside Embree, on the same meshes and the same rays.
+//! `rays`: alhazen's ray engine compared with Embree on the same meshes and rays.
 
 use alhazen_bench::embree::Embree;
 use alhazen_bench::mesh::BenchMesh;
@@ -9,21 +9,21 @@ use std::error::Error;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Million rays a second of one thread, seconds to build, memory: alhazen's, Embree's, and their
+/// Million rays per second on one thread, build times and memory: alhazen's, Embree's and their
 /// ratios.
 #[derive(Parser)]
 #[command(name = "cargo xtask bench rays")]
 struct Arguments {
-    /// Which meshes; all of them, and spheres, when none is named.
+    /// Meshes to measure; by default all of them, and spheres.
     #[arg(value_name = "MESH", value_parser = PossibleValuesParser::new(BenchMesh::NAMES))]
     meshes: Vec<String>,
-    /// How often everything is measured; the median counts.
+    /// Number of measurements, of which the median is reported.
     #[arg(long, default_value_t = 7, value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     repeats: usize,
-    /// A sixteenth of the rays.
+    /// Trace a sixteenth of the rays.
     #[arg(long)]
     quick: bool,
-    /// Embree's library; without one, alhazen alone is measured.
+    /// Embree's shared library; without it, alhazen alone is measured.
     #[arg(long, value_name = "FILE")]
     embree: Option<OsString>,
 }
@@ -41,7 +41,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let embree = arguments.embree.as_deref().map(Embree::load).transpose()?;
     if embree.is_none() {
-        println!("No library of Embree's: alhazen alone is measured.\n");
+        println!("Embree's library is not given: alhazen alone is measured.\n");
     }
     let wanted =
         |name: &&str| arguments.meshes.is_empty() || arguments.meshes.iter().any(|mesh| mesh == name);

@@ -16,27 +16,27 @@ use math::{DVec3, Point3, Transform, Vec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A mesh and how rays are sent at it.
+/// A mesh, and the camera and light that its rays are made with.
 pub struct BenchMesh {
-    /// What it is called.
+    /// Name.
     pub name: &'static str,
     /// Vertices.
     pub positions: Arc<[Point3]>,
     /// Triangles.
     pub indices: Arc<[[u32; 3]]>,
-    /// Where it is seen from.
+    /// Camera.
     pub view: View,
-    /// A corner of a parallelogram that shines, and its two edges.
+    /// A corner of a parallelogram light, and its two edges.
     pub light: [Vec3; 3],
 }
 
-/// A perspective view of square pictures.
+/// A perspective camera with a square image.
 pub struct View {
-    /// Where the eye is.
+    /// Position.
     pub eye: Point3,
-    /// What it looks at.
+    /// Target.
     pub target: Point3,
-    /// What is up.
+    /// Up direction.
     pub up: Vec3,
     /// Field of view in degrees.
     pub fov: f32,
@@ -55,7 +55,7 @@ impl BenchMesh {
         }
     }
 
-    /// The mesh that the engine takes; shares the arrays.
+    /// The same mesh for our engine; shares the arrays.
     pub fn triangles(&self) -> Result<TriangleMesh, MeshError> {
         let (positions, indices) = (self.positions.clone(), self.indices.clone());
         TriangleMesh::new(positions, indices, MeshAttributes::default(), &Transform::IDENTITY, false)
@@ -145,8 +145,7 @@ impl Arrays {
     }
 }
 
-/// So many spheres within the unit cube, each as large as to fill a hundredth of what is its share
-/// of it.
+/// Random spheres in the unit cube, which fill a hundredth of its volume.
 pub fn spheres(count: usize) -> Result<SphereSet, SphereSetError> {
     let random = &mut SplitMix64(7);
     let point = |_| DVec3::from_array([0; 3].map(|_| random.uniform())).as_vec3();

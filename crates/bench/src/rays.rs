@@ -1,21 +1,21 @@
-//! The rays: five sets, as a path tracer would ask for them.
+//! Five sets of rays, as a path tracer traces them.
 //!
 //! - *primary*: one through the centre of each pixel, by rows;
-//! - *diffuse*: from each primary hit, 10⁻⁴ above the surface, along a direction that follows the
-//!   cosine;
-//! - *shuffled*: the same in random order, so that neighbours have nothing in common;
+//! - *diffuse*: from each primary hit, 10⁻⁴ above the surface, along a cosine-distributed
+//!   direction;
+//! - *shuffled*: the same in random order, so that consecutive rays are incoherent;
 //! - *shadow*: from the same points to random points of the light, t from 0 to 0.999 of the way;
-//! - *any-hit diffuse*: the diffuse rays again, asked only whether they meet anything.
+//! - *any-hit diffuse*: the diffuse rays again, as any-hit queries.
 
 use crate::mesh::{BenchMesh, SplitMix64};
 use math::{Ray, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// A ray and where it ends.
+/// A ray and its `t_max`.
 pub type BenchRay = (Ray, f32);
 
-/// What is asked about a ray.
+/// The query of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Query {
     /// The nearest hit.
@@ -24,36 +24,36 @@ pub enum Query {
     Any,
 }
 
-/// Rays of one kind.
+/// A set of rays.
 #[derive(Clone, Debug)]
 pub struct RaySet {
-    /// What it is called.
+    /// Name.
     pub name: &'static str,
-    /// What is asked.
+    /// Query.
     pub query: Query,
-    /// The rays.
+    /// Rays.
     pub rays: Arc<[BenchRay]>,
 }
 
-/// What tracing a set found.
+/// The result of tracing a set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Answer {
-    /// How many rays met something.
+    /// Number of rays that hit something.
     pub hits: u64,
     /// Sum of the distances of nearest hits.
     pub sum_t: f64,
 }
 
 impl Answer {
-    /// Counts a ray's nearest hit.
+    /// Adds the nearest hit of a ray.
     #[inline]
     pub fn add(&mut self, t: f32) {
         self.hits += 1;
         self.sum_t += f64::from(t);
     }
 
-    /// Whether two engines found the same but for rounding: it may decide at silhouettes, and of
-    /// leaking edges.
+    /// Whether the results of two engines agree up to rounding, which matters at silhouettes and
+    /// edges that are not watertight.
     pub fn agrees(&self, other: &Self) -> bool {
         let close = |a: f64, b: f64| (a - b).abs() <= 1e-4 * a.max(b);
         close(self.hits as f64, other.hits as f64) && close(self.sum_t, other.sum_t)
@@ -117,7 +117,7 @@ fn cosine_direction(n: Vec3, u1: f32, u2: f32) -> Vec3 {
     s * (r * phi.cos()) + t * (r * phi.sin()) + n * (1.0 - u1).sqrt()
 }
 
-/// Fisher and Yates's shuffle.
+/// Fisher–Yates shuffle.
 fn shuffled(mut rays: Vec<BenchRay>) -> Vec<BenchRay> {
     let random = &mut SplitMix64(42);
     for i in (1..rays.len()).rev() {

@@ -1,8 +1,8 @@
-//! Tables as Markdown has them, ready to be pasted into a document.
+//! Markdown tables.
 
 use std::fmt;
 
-/// A table: a head, then rows of a name and values.
+/// A table with a header, and rows of a name and values.
 pub struct Table {
     text: String,
 }
@@ -32,7 +32,7 @@ fn line(cells: impl Iterator<Item = impl fmt::Display>) -> String {
     format!("|{cells}\n")
 }
 
-/// Values over others, as text.
+/// The ratios of values, as text.
 pub fn ratios(values: &[f64], others: &[f64]) -> Vec<String> {
     values.iter().zip(others).map(|(value, other)| format!("{:.2}", value / other)).collect()
 }

@@ -1,11 +1,11 @@
-//! Processor seconds, which other programs' time slices do not inflate; several ways in turn, so
-//! that whatever slows the machine down slows all of them.
+//! Timing in CPU seconds, which other programs' time slices do not inflate, and with alternating
+//! runs, so that disturbances affect all candidates alike.
 
 use cpu_time::{ProcessTime, ThreadTime};
 use std::time::Instant;
 
-/// Runs each of `ways` in turn, `repeats` times over, on this thread. Gives for each the median of
-/// its processor seconds, and what it returned last.
+/// Runs each of `ways` in alternation, `repeats` times, on this thread. Returns for each the median
+/// of its CPU seconds, and its last result.
 pub fn in_turn<T>(ways: &[impl Fn() -> T], repeats: usize) -> Vec<(f64, T)> {
     let mut rounds: Vec<Vec<(f64, T)>> = ways.iter().map(|_| Vec::new()).collect();
     for _ in 0..repeats {
@@ -24,17 +24,17 @@ pub fn in_turn<T>(ways: &[impl Fn() -> T], repeats: usize) -> Vec<(f64, T)> {
         .collect()
 }
 
-/// What a piece of work took, on all threads of the program.
+/// Time taken by work on all threads of the program.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seconds {
-    /// By the clock.
+    /// Wall-clock time.
     pub wall: f64,
-    /// Of processors.
+    /// CPU time.
     pub cpu: f64,
 }
 
 impl Seconds {
-    /// Times `work`, and hands on what it made.
+    /// Times `work`, and returns its result.
     pub fn of<T>(work: impl FnOnce() -> T) -> (Self, T) {
         let (wall, cpu) = (Instant::now(), ProcessTime::now());
         let result = work();
@@ -50,7 +50,7 @@ impl Seconds {
     }
 }
 
-/// The middle value, the upper one of two; NaN where there is none.
+/// The median, the upper one of two; NaN where there is no value.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)

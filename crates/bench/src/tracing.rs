@@ -1,4 +1,5 @@
-//! Tracing: million rays per processor second of one thread, and whether all engines find the same.
+//! Benchmarks of tracing: million rays per CPU second on one thread. The engines must find the same
+//! hits.
 
 use crate::building;
 use crate::embree::{Embree, Quality, SceneOptions};
@@ -10,29 +11,29 @@ use geometry::{BuildQuality, Hit, RayStats, World};
 use math::Ray;
 use std::error::Error;
 
-/// Rays in a batch: those of a tile or a row, and a wave of paths.
+/// Rays in a batch: a tile or row of pixels, and a wavefront of paths.
 const BATCHES: [usize; 2] = [1024, 65536];
 
-/// What was measured on one mesh.
+/// Measurements on one mesh.
 pub struct Tracing {
     mesh: &'static str,
     sets: Vec<&'static str>,
-    /// Ours first.
+    /// Our engine first.
     engines: Vec<Measured>,
 }
 
-/// One engine's figures, set by set.
+/// Measurements of one engine, by set.
 struct Measured {
     name: String,
     rates: Vec<f64>,
     answers: Vec<Answer>,
 }
 
-/// An engine's name, and how it traces a set.
+/// An engine's name, and a function that traces a set.
 type Engine<'a> = (String, Box<dyn Fn(&RaySet) -> Answer + 'a>);
 
-/// Traces `width`² primary rays and those that follow from them with each engine in turn, so many
-/// times.
+/// Traces `width`² primary rays and the sets derived from them with each engine in alternation,
+/// `repeats` times.
 pub fn measure(
     mesh: &BenchMesh,
     embree: Option<&Embree>,
@@ -72,7 +73,7 @@ pub fn measure(
 }
 
 impl Tracing {
-    /// Million rays per processor second, and ours over the others'.
+    /// Million rays per CPU second, and the ratio of our engine to each other one.
     pub fn rates(&self) -> Table {
         let mut table = self.table("million rays per CPU second");
         for engine in &self.engines {
@@ -84,7 +85,7 @@ impl Tracing {
         table
     }
 
-    /// How many rays met something, and the sum of the distances.
+    /// The number of rays that hit something, and the sum of the distances.
     pub fn answers(&self) -> Table {
         let mut table = self.table("hits, Σt");
         for engine in &self.engines {
@@ -93,7 +94,7 @@ impl Tracing {
         table
     }
 
-    /// An error where an engine's answers are not ours.
+    /// An error where an engine's results differ from ours.
     pub fn check(&self) -> Result<(), String> {
         for other in &self.engines[1..] {
             for (set, (a, b)) in self.sets.iter().zip(self.engines[0].answers.iter().zip(&other.answers)) {

@@ -1,4 +1,4 @@
-//! The command line as clap sees it: every command, option, unit and default.
+//! The definition of the command line: every command, option, unit and default.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -10,19 +10,21 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::merge::Merge;
 use crate::resume::Resume;
 
-/// Renders scenes by following light.
+/// A physically based renderer.
 #[derive(Debug, Parser)]
 #[command(name = "alhazen", version = env!("ALHAZEN_VERSION"), subcommand_required = true)]
 #[command(after_help = EXIT_CODES)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
 /// Ends the help of every command.
-pub const EXIT_CODES: &str = "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, 2 the command line is \
-     wrong, 130 interrupted.";
+pub const EXIT_CODES: &str = concat!(
+    "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, ",
+    "2 the command line is wrong, 130 interrupted."
+);
 
 /// The commands.
 #[derive(Debug, Subcommand)]
@@ -50,7 +52,7 @@ pub enum Command {
     /// reference, maps of their errors, error over time, bias and noise apart, efficiency and rays.
     /// Ctrl-C ends with a report of what has been done.
     Compare(Box<Compare>),
-    /// Look at scene files.
+    /// Check scene files.
     #[command(subcommand)]
     Scene(Scene),
     /// Inspect, compare and convert pictures.
@@ -101,16 +103,16 @@ pub struct Render {
     #[command(flatten)]
     pub limits: RenderLimits,
     /// Save the render here while it runs, so that `alhazen resume` can go on with it: the film,
-    /// which samples it holds, the scene's path and the options. The file is replaced whole, so that
-    /// it is valid at any moment.
+    /// which samples it holds, the scene's path and the options. The file is replaced whole, so
+    /// that it is valid at any moment.
     #[arg(long, value_name = "FILE.film")]
     pub checkpoint: Option<PathBuf>,
     /// How often --checkpoint saves, unless a pass takes longer.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]
     pub every: Duration,
     /// Render one of N equal parts of the samples per pixel, counted from 1, into the film file of
-    /// --checkpoint; `alhazen merge` makes the picture of all. A picture of the part alone is written
-    /// to --output only.
+    /// --checkpoint; `alhazen merge` makes the picture of all. A picture of the part alone is
+    /// written to --output only.
     #[arg(long, value_name = "K/N", value_parser = shard, requires = "checkpoint", conflicts_with = "noise")]
     pub shard: Option<Shard>,
     /// Other changes to the scene.
@@ -138,15 +140,15 @@ impl Render {
 /// What ends a render beside its number of samples per pixel: whichever comes first.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct RenderLimits {
-    /// Render for so long: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do not
-    /// count; of a render that is resumed, the time before does. No pass (one sample of each pixel)
-    /// is begun that would probably end later.
+    /// Render for so long: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do
+    /// not count; of a render that is resumed, the time before does. No pass (one sample of each
+    /// pixel) is begun that would probably end later.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Render until the noise of the picture, its estimated relative standard error, is not above
-    /// this: 0.02 is 2 %. It is the root of the mean, over pixels and channels, of variance / (value²
-    /// + (mean / 10)²), measured by the difference of two pictures of half the samples each, from 16
-    /// samples per pixel on. The second picture doubles the memory of the film.
+    /// this: 0.02 is 2 %. It is the root of the mean, over pixels and channels, of variance /
+    /// (value² + (mean / 10)²), measured by the difference of two pictures of half the samples
+    /// each, from 16 samples per pixel on. The second picture doubles the memory of the film.
     #[arg(long, value_name = "NOISE", value_parser = noise)]
     pub noise: Option<f64>,
 }
@@ -154,8 +156,8 @@ pub struct RenderLimits {
 /// Options that change a scene, and how it is rendered, for one algorithm as for many.
 #[derive(Args, Debug)]
 pub struct Changes {
-    /// What spares rays the test of every primitive: bvh, or none, for the same picture without it.
-    /// [default: the scene's]
+    /// The acceleration structure: bvh, or none, which tests every ray against every primitive. The
+    /// picture is the same. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub accelerator: Option<String>,
     /// Change a setting; see the list below. Can be given several times.
@@ -209,13 +211,13 @@ pub struct Compare {
     /// The scene: a pbrt-v4 file (also packed by gzip), PLY or OBJ; `-` reads pbrt-v4 from standard
     /// input.
     pub scene: PathBuf,
-    /// The algorithms, see the list below, parted by commas. Each may have settings of its own:
+    /// The algorithms, see the list below, separated by commas. Each may have settings of its own:
     /// path,path:maxdepth=8.
     #[arg(long, value_name = "NAME,NAME,…", required = true, value_delimiter = ',')]
     pub integrators: Vec<Contender>,
     /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each
     /// algorithm renders two pictures, from different seeds, so that noise and bias can be told
-    /// apart. Samplers `stratified` and `paddedsobol` are as uneven as `independent` here.
+    /// apart.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Samples per pixel of each picture.
@@ -249,7 +251,7 @@ pub struct Compare {
 /// Commands about scene files.
 #[derive(Debug, Subcommand)]
 pub enum Scene {
-    /// Tell everything that is wrong with a scene, or not drawn as it says, without rendering it.
+    /// Report all errors and warnings of a scene without rendering it.
     Check(Check),
 }
 
@@ -270,7 +272,7 @@ pub struct Check {
 pub enum Image {
     /// Show what a picture file holds: size, layers, channels, storage and header.
     Info(Info),
-    /// Tell how far a picture is from a reference: MSE, relative MSE, FLIP.
+    /// Measure the difference of a picture to a reference: MSE, relative MSE, FLIP.
     ///
     /// MSE is the mean of (b - a)² over pixels and channels; relMSE the mean of (b - a)² / (a² +
     /// 0.01); FLIP the mean of the visible difference, from 0 to 1, over the exposures that show
@@ -314,7 +316,7 @@ pub struct Diff {
     pub json: bool,
 }
 
-/// What an error picture shows.
+/// The error that an error picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Metric {
     /// Squared error; the brightest colour is the largest.
@@ -398,7 +400,7 @@ fn render_long_help() -> String {
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("it is written KEY=VALUE")?;
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
@@ -416,7 +418,7 @@ pub fn time(text: &str) -> Result<Duration, String> {
     seconds
         .filter(|&seconds| seconds > 0.0)
         .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .ok_or_else(|| "it is written 30s, 1.5min or 2h".into())
+        .ok_or_else(|| "expected a duration such as 30s, 1.5min or 2h".into())
 }
 
 fn noise(text: &str) -> Result<f64, String> {
@@ -436,7 +438,9 @@ fn shard(text: &str) -> Result<Shard, String> {
 fn resolution(text: &str) -> Result<[i32; 2], String> {
     let numbers =
         text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
-    numbers.filter(|sides| sides.iter().all(|&side| side > 0)).ok_or_else(|| "it is written 640x480".into())
+    numbers
+        .filter(|sides| sides.iter().all(|&side| side > 0))
+        .ok_or_else(|| "expected WIDTHxHEIGHT, such as 640x480".into())
 }
 
 fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
@@ -449,13 +453,13 @@ fn crop(text: &str) -> Result<[f32; 4], String> {
         .filter(|&[x0, x1, y0, y1]: &[f32; 4]| {
             0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0
         })
-        .ok_or_else(|| "it is four fractions from 0 to 1: 0.25,0.75,0,1".into())
+        .ok_or_else(|| "expected four fractions from 0 to 1, such as 0.25,0.75,0,1".into())
 }
 
 fn pixel(text: &str) -> Result<[i32; 2], String> {
     numbers(text)
         .filter(|pixel: &[i32; 2]| pixel.iter().all(|&coordinate| coordinate >= 0))
-        .ok_or_else(|| "it is a column and a row: 120,45".into())
+        .ok_or_else(|| "expected a column and a row, such as 120,45".into())
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! The progress bar: passes, samples, rays per second, noise, elapsed and remaining time. Shown on a
-//! terminal only.
+//! The progress bar: passes, samples, rays per second, noise, elapsed and remaining time. Shown on
+//! a terminal only.
 
 use std::time::Duration;
 
@@ -42,7 +42,8 @@ impl Bar {
     pub fn show(&self, progress: &Progress) {
         let rays_per_second = progress.stats.rays as f64 / progress.elapsed.as_secs_f64().max(1e-9);
         // Where time or noise is the limit, the number of passes is an estimate that changes.
-        self.0.set_length(progress.passes.into());
+        let passes = if progress.passes == u32::MAX { progress.pass } else { progress.passes };
+        self.0.set_length(passes.into());
         self.0.set_position(progress.pass.into());
         let [samples, rays] = [progress.samples as f64, rays_per_second].map(count);
         let noise = progress.noise.map_or(String::new(), |noise| format!(", noise {noise:.4}"));

@@ -1,4 +1,4 @@
-//! `alhazen compare`: one scene by several algorithms, and a report of how they did.
+//! `alhazen compare`: one scene rendered by several algorithms, and a report of their errors.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -103,7 +103,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     } else if talkative {
         say(summary(&comparison, &report))?;
     } else if interrupted {
-        warn("interrupted; the report is of what had been done")?;
+        warn("interrupted; the report covers what was rendered")?;
     }
     Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }
@@ -115,7 +115,7 @@ struct Report {
 }
 
 impl Report {
-    /// The files that the command line asks for, once it is sure that they can be written.
+    /// The files that the command line asks for, checked to be writable.
     fn new(arguments: &Compare) -> Result<Self, Failure> {
         let page = arguments.output.clone().unwrap_or_else(|| named_after(&arguments.scene, "html"));
         let is_page = page.extension().is_some_and(|extension| {
@@ -147,7 +147,7 @@ fn summary(comparison: &Comparison, report: &Report) -> String {
     let [x0, x1, y0, y1] = setup.pixel_bounds;
     let mut lines = Vec::new();
     if comparison.interrupted() {
-        lines.push("interrupted; the report is of what had been done".into());
+        lines.push("interrupted; the report covers what was rendered".into());
     }
     lines.push(format!(
         "{}: {} × {} pixels, {} for each picture",
@@ -195,7 +195,7 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
     ]
 }
 
-/// Rows of columns as wide as what stands in them; the first to the left, numbers to the right.
+/// Rows with columns as wide as their contents: the first aligned left, numbers right.
 fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
     let widths: [usize; N] =
         std::array::from_fn(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));

@@ -42,7 +42,7 @@ pub fn info(arguments: &Info) -> Result<(), Failure> {
     }
 }
 
-/// Tells how far one picture is from another.
+/// Measures the difference of two pictures.
 pub fn diff(arguments: &Diff) -> Result<(), Failure> {
     if let Some(path) = &arguments.output {
         output::check(path).map_err(Failure::Usage)?;

@@ -76,7 +76,8 @@ impl fmt::Display for FileInfo<'_> {
         let main = &info.layers[0];
         let [width, height] = [main.data_window.width(), main.data_window.height()];
         let size = numbers::bytes(self.bytes);
-        write!(f, "{}: {:?}, {width} × {height} pixels, {size}", self.path.display(), info.format)?;
+        let format = format!("{:?}", info.format).to_uppercase();
+        write!(f, "{}: {format}, {width} × {height} pixels, {size}", self.path.display())?;
         if main.data_window != info.display_window {
             write!(f, "\n  data window     {}", shown(main.data_window))?;
             write!(f, "\n  display window  {}", shown(info.display_window))?;
@@ -119,7 +120,8 @@ fn write_layer(f: &mut fmt::Formatter<'_>, layer: &LayerInfo, main: &LayerInfo) 
 }
 
 fn attribute_text(value: &Attribute) -> String {
-    let joined = |numbers: &[f32]| numbers.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
+    let joined =
+        |numbers: &[f32]| numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(" ");
     match value {
         Attribute::Text(text) => text.clone(),
         Attribute::TextList(texts) => texts.join(", "),

@@ -1,13 +1,12 @@
-//! Where pictures and reports go: names and folders are checked before anything long begins.
+//! Paths of pictures and reports, checked before anything long begins.
 
 use std::fs::{self, OpenOptions};
 use std::path::Path;
 
 use alhazen::image::{Format, link_target};
 
-/// Whether a picture can be written to `path`: its extension names a format, its folder is there
-/// and takes files, and what stands in its place can be replaced. The error says which of these
-/// fails.
+/// Checks that a picture can be written to `path`: its extension names a format, its folder exists
+/// and is writable, and an existing file can be replaced.
 pub fn check(path: &Path) -> Result<(), String> {
     let shown = path.display();
     if Format::from_name(&path.to_string_lossy()).is_none() {
@@ -19,7 +18,7 @@ pub fn check(path: &Path) -> Result<(), String> {
     check_place(path)
 }
 
-/// Whether a file can be written to `path`, whatever its extension.
+/// Checks that a file can be written to `path`, whatever its extension.
 pub fn check_place(path: &Path) -> Result<(), String> {
     let shown = path.display();
     // The file is written where a symbolic link leads.
@@ -35,7 +34,7 @@ pub fn check_place(path: &Path) -> Result<(), String> {
     if path.is_dir() {
         return Err(format!("cannot write {shown}: it is a folder"));
     }
-    // Only an attempt tells whether the folder takes files: permissions, read-only and full file
+    // Only an attempt shows whether the folder is writable: permissions, read-only and full file
     // systems.
     let probe = folder.join(format!(".alhazen-{}.part", std::process::id()));
     let attempt = OpenOptions::new().write(true).create_new(true).open(&probe);

@@ -114,13 +114,12 @@ impl Summary<'_> {
     pub fn interruption(&self) -> Option<String> {
         let Progress { pass, passes, .. } = self.progress();
         let picture = if self.outputs.is_empty() { "" } else { "; the picture is written as it stands" };
+        let all = if passes == u32::MAX { String::new() } else { format!(" of {passes}") };
         let goes_on = match self.checkpoint {
             Some(path) => format!("; `alhazen resume {}` goes on from the last checkpoint", path.display()),
             None => String::new(),
         };
-        self.outcome
-            .is_err()
-            .then(|| format!("interrupted after {pass} of {passes} passes{picture}{goes_on}"))
+        self.outcome.is_err().then(|| format!("interrupted after {pass}{all} passes{picture}{goes_on}"))
     }
 
     fn rays_per_second(&self) -> f64 {

@@ -135,7 +135,7 @@ fn an_interruption_leaves_a_report() {
     let mut said = String::new();
     child.stdout.take().expect("standard output").read_to_string(&mut said).expect("text");
     assert_eq!(status.code(), Some(130), "{said}");
-    assert!(said.contains("interrupted; the report is of what had been done"), "{said}");
+    assert!(said.contains("interrupted; the report covers what was rendered"), "{said}");
     let (page, json) = report(&folder, "a");
     assert!(page.contains("Interrupted") && page.contains("<p class=\"warning\">Warning: "));
     assert_eq!((&json["status"], &json["missing"]), (&"interrupted".into(), &serde_json::json!(["whitted"])));

@@ -93,7 +93,7 @@ fn files_are_inspected() {
     write(&picture, folder.path().join("a.exr"), &WriteOptions::default()).expect("a picture for the test");
     let told = folder.alhazen(&["image", "info", "a.exr"]).expect(0).out;
     for part in [
-        "a.exr: Exr, 20 × 10 pixels, ",
+        "a.exr: EXR, 20 × 10 pixels, ",
         "data window     x 100 to 119, y 50 to 59\n",
         "display window  x 0 to 639, y 0 to 479\n",
         "compression     ZIP\n",

@@ -275,8 +275,8 @@ fn a_kill_loses_neither_passes_nor_files() {
         }
     }
     let arguments = match passes {
-        0 => [&start[..], &save, &["--checkpoint", "a.film"]].concat(),
-        _ => [&["resume", "a.film", "--quiet"], &save[..]].concat(),
+        0 => [&start[..], &["-o", "a.exr", "--checkpoint", "a.film"]].concat(),
+        _ => vec!["resume", "a.film", "--quiet", "-o", "a.exr"],
     };
     folder.alhazen(&arguments).expect(0);
     assert!(bytes(&folder, "a.exr") == bytes(&folder, "whole.exr"));

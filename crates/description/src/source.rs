@@ -9,8 +9,8 @@ use std::sync::{Arc, OnceLock};
 pub struct FileId(pub u32);
 
 impl FileId {
-    /// Of values that the caller gives, as on a command line, rather than a file. Their spans number
-    /// these values.
+    /// Of values that the caller gives, as on a command line, rather than a file. Their spans
+    /// number these values.
     pub const CALLER: Self = Self(u32::MAX - 1);
 }
 

@@ -8,9 +8,9 @@ use crate::{Handle, ImageDesc, SpectrumDesc};
 /// A value, or a texture that gives one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Parameter<V> {
-    /// The same everywhere.
+    /// A constant.
     Value(V),
-    /// Looked up.
+    /// The value of a texture at the point that is shaded.
     Texture(Handle<TextureDesc<V>>),
 }
 
@@ -24,7 +24,7 @@ pub type FloatTextureDesc = TextureDesc<f32>;
 pub type SpectrumTextureDesc = TextureDesc<SpectrumDesc>;
 
 impl<V> Parameter<V> {
-    /// The value, if it is the same everywhere.
+    /// The value, if it is a constant.
     pub fn value(&self) -> Option<&V> {
         match self {
             Self::Value(value) => Some(value),
@@ -60,12 +60,12 @@ impl<V> From<Handle<TextureDesc<V>>> for Parameter<V> {
 /// A texture.
 #[derive(Clone, Debug)]
 pub struct TextureDesc<V> {
-    /// The name it was given; may be empty.
+    /// Its name; empty for a texture that was built by hand.
     pub name: String,
-    /// Which one.
+    /// Its kind and the parameters of that.
     pub kind: TextureKind<V>,
-    /// From texture space to the world: the transform in force where the texture was named. It
-    /// places mappings and patterns that are functions of position.
+    /// From texture space to world space: the current transformation where the texture was
+    /// defined. Mappings and patterns that are functions of position use it.
     pub world_from_texture: DMat4,
 }
 
@@ -79,25 +79,25 @@ impl<V> TextureDesc<V> {
 /// The textures of the format.
 #[derive(Clone, Debug)]
 pub enum TextureKind<V> {
-    /// The same everywhere.
+    /// A constant.
     Constant(V),
     /// A product.
     Scale {
-        /// What is scaled.
+        /// The first factor.
         texture: Parameter<V>,
-        /// By how much.
+        /// The second factor.
         scale: FloatParameter,
     },
     /// `(1 − amount)·textures[0] + amount·textures[1]`.
     Mix {
-        /// What is mixed.
+        /// The two textures.
         textures: [Parameter<V>; 2],
-        /// How much of the second.
+        /// Weight of the second.
         amount: FloatParameter,
     },
     /// A mix by the angle between the normal and a direction: the first texture where they agree.
     DirectionMix {
-        /// What is mixed.
+        /// The two textures.
         textures: [Parameter<V>; 2],
         /// The direction, in texture space.
         direction: Vec3,
@@ -106,7 +106,7 @@ pub enum TextureKind<V> {
     Bilerp {
         /// Values at (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
         corners: [V; 4],
-        /// Where on the square a point lies.
+        /// Texture coordinates of a point.
         mapping: MappingDesc,
     },
     /// An image.
@@ -124,7 +124,7 @@ pub enum TextureKind<V> {
         inside: Parameter<V>,
         /// Elsewhere.
         outside: Parameter<V>,
-        /// Where on the plane a point lies.
+        /// Texture coordinates of a point.
         mapping: MappingDesc,
     },
     /// Fractional Brownian motion. Numbers only.
@@ -158,7 +158,7 @@ pub enum TextureKind<V> {
     Ptex {
         /// Its path.
         filename: String,
-        /// How stored values become linear ones.
+        /// How stored values are decoded to linear ones.
         encoding: EncodingDesc,
         /// Factor on the values.
         scale: f32,
@@ -170,21 +170,21 @@ pub enum TextureKind<V> {
 pub struct ImageTextureDesc {
     /// The image.
     pub image: Handle<ImageDesc>,
-    /// Where on the image a point lies.
+    /// Texture coordinates of a point.
     pub mapping: MappingDesc,
     /// Which channel gives the numbers of a texture of numbers. `None`: with the filters `Bilinear`
     /// and `Trilinear` the opacity, or the mean of red, green and blue where the image is opaque;
     /// with `Point` and `Ewa` the first channel.
     pub channel: Option<ImageChannel>,
-    /// How pixels are joined.
+    /// How texels are filtered.
     pub filter: TextureFilter,
-    /// Most elongated footprint that `Ewa` follows.
+    /// Largest ratio of the axes of the ellipse that `Ewa` filters over; at least 1.
     pub max_anisotropy: f32,
-    /// What lies beyond the image.
+    /// Value outside of the image.
     pub wrap: WrapMode,
     /// Factor on the values.
     pub scale: f32,
-    /// One minus the value (after the factor).
+    /// Subtract the scaled value from one.
     pub invert: bool,
 }
 
@@ -217,46 +217,46 @@ pub enum ImageChannel {
     Alpha,
 }
 
-/// How pixels are joined.
+/// How texels are filtered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TextureFilter {
-    /// The nearest one.
+    /// The nearest texel.
     Point,
-    /// Bilinear, finest level.
+    /// Bilinear interpolation in one level of the pyramid.
     #[default]
     Bilinear,
-    /// Bilinear in the two nearest levels.
+    /// Bilinear interpolation in two levels, and linear between them.
     Trilinear,
-    /// An elliptical Gaussian.
+    /// The elliptically weighted average: a Gaussian over the footprint.
     Ewa,
 }
 
-/// What lies beyond an image.
+/// The value of an image outside of its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum WrapMode {
-    /// The image again.
+    /// The image is repeated.
     #[default]
     Repeat,
     /// Zero.
     Black,
-    /// Its edge.
+    /// The texel at the edge.
     Clamp,
-    /// The other side of an octahedral map.
+    /// The neighbour on the sphere, for equal-area octahedral images.
     OctahedralSphere,
 }
 
-/// How stored values become linear ones.
+/// How stored values are decoded to linear ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EncodingDesc {
-    /// They are.
+    /// They are linear.
     Linear,
     /// The sRGB curve.
     Srgb,
-    /// A power.
+    /// linear = storedᵞ.
     Gamma(f32),
 }
 
-/// Where on the unit square of a texture a point lies.
+/// Map from points of a surface to texture coordinates (s, t).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MappingDesc {
     /// `(scale · uv + delta)` of the surface's own parameters.

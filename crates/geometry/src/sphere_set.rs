@@ -1,9 +1,8 @@
 //! Many whole spheres, as arrays of centres and radii.
 //!
-//! They stand in render space, so that a similarity is the only transform that leaves them spheres.
-//! Rays meet sphere i where the distance |o + t·d − cᵢ| = rᵢ, solved in doubles. One sphere as a
-//! [`Sphere`] has the very centre and radius that the set has, and its poles on the object's z
-//! axis.
+//! They are in render space, so that only similarities are allowed as transforms. Rays hit sphere i
+//! where |o + t·d − cᵢ| = rᵢ, solved in doubles. A single sphere as a [`Sphere`] has exactly the
+//! centre and radius of the set, and its poles on the object's z axis.
 
 use crate::placement::Placement;
 use crate::shape::{Sphere, first_root};
@@ -11,31 +10,31 @@ use math::{Bounds3, DMat3, MACHINE_EPSILON, Point3, Ray, Transform};
 use std::fmt;
 use std::sync::Arc;
 
-/// Why arrays are no set of spheres.
+/// Errors of the arrays of a sphere set.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SphereSetError {
-    /// There is neither one radius for all nor one for each.
+    /// The number of radii is neither one nor that of the spheres.
     RadiusCount {
-        /// How many radii there are.
+        /// The number of radii.
         radii: usize,
-        /// How many centres there are.
+        /// The number of centres.
         centers: usize,
     },
-    /// A radius that is not above zero, or not finite.
+    /// A radius is not positive and finite.
     Radius {
-        /// Which one.
+        /// The index of the sphere.
         index: usize,
-        /// What it is.
+        /// The radius.
         radius: f32,
     },
-    /// A centre that is not finite.
+    /// A centre is not finite.
     Center {
-        /// Which one.
+        /// The index of the sphere.
         index: usize,
     },
-    /// There are more spheres than an index of 32 bits can tell apart.
+    /// There are more spheres than indices of 32 bits.
     TooLarge,
-    /// The transform makes ellipsoids of spheres.
+    /// The transform is no similarity.
     NotSimilar,
 }
 
@@ -61,16 +60,16 @@ impl std::error::Error for SphereSetError {}
 #[derive(Clone, Debug)]
 pub struct SphereSet {
     centers: Arc<[Point3]>,
-    /// One for all, or one for each.
+    /// One for all spheres, or one for each.
     radii: Arc<[f32]>,
-    /// Turns (and may mirror) the axes of all spheres.
+    /// The axes of all spheres: a rotation, or a rotation and reflection.
     turn: DMat3,
     flips: bool,
 }
 
 impl SphereSet {
-    /// Brings an object's spheres into render space. `radii` has one radius for all or one for
-    /// each. Arrays that the transform leaves alone are shared, not copied.
+    /// Transforms an object's spheres to render space. `radii` has one radius for all or one for
+    /// each. Arrays that do not change are shared, not copied.
     ///
     /// Normals point outwards; with `reverse_orientation`, inwards.
     pub fn new(
@@ -103,7 +102,7 @@ impl SphereSet {
         })
     }
 
-    /// How many spheres there are.
+    /// The number of spheres.
     pub fn len(&self) -> usize {
         self.centers.len()
     }
@@ -144,20 +143,20 @@ impl SphereSet {
         Sphere::ball(placement, self.flips, self.radius(sphere))
     }
 
-    /// Where the ray meets a sphere first, at 0 < t < `t_max`.
+    /// The first hit on a sphere at 0 < t < `t_max`.
     #[inline]
     pub(crate) fn intersect(center: Point3, radius: f32, ray: &Ray, t_max: f32) -> Option<f32> {
         let o = ray.o.as_dvec3() - center.as_dvec3();
         first_root(o, ray.d.as_dvec3(), f64::from(radius), t_max)
     }
 
-    /// Bytes of memory that the arrays take.
+    /// Bytes of memory of the arrays.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.centers) + size_of_val(&*self.radii)
     }
 }
 
-/// Scale and turn of a similarity, the turn orthonormal to the last bits of doubles; `None` for
+/// Scale and rotation of a similarity, the rotation orthonormal in double precision; `None` for
 /// other transforms.
 fn similarity(transform: &Transform) -> Option<(f64, DMat3)> {
     let scale = Placement::new(transform).uniform_scale()?;

@@ -1,17 +1,15 @@
-//! What is known of a surface at one point.
+//! Surface points: position, normals and partial derivatives.
 //!
 //! Conventions are those of [Pharr 2023 §3.11, §6.5]: `n` is the geometric normal, dpdu × dpdv
-//! normalised, turned round when the shape's orientation is reversed or its transform swaps
-//! handedness, but not both. Interpolated shading normals have the last word on the side: `n` is
-//! turned to theirs.
+//! normalised, flipped when the shape's orientation is reversed or its transform swaps handedness,
+//! but not both. Where there are interpolated shading normals, `n` is flipped to their side.
 
 use crate::placement::Placement;
 use math::{
     DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, coordinate_system, face_forward,
 };
 
-/// The geometry that shading sees, where interpolated normals or tangents make it differ from the
-/// true one.
+/// The shading geometry, which interpolated normals or tangents make differ from the geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shading {
     /// Unit normal.
@@ -29,7 +27,7 @@ pub struct Shading {
 /// A point on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
-    /// Position, and how far it may be from the surface.
+    /// Position, with a bound of its error.
     pub p: Point3Error,
     /// Unit geometric normal.
     pub n: Normal3,
@@ -43,16 +41,16 @@ pub struct SurfacePoint {
     pub dndu: Normal3,
     /// ∂n/∂v.
     pub dndv: Normal3,
-    /// What shading sees.
+    /// Shading geometry.
     pub shading: Shading,
-    /// Unit vector back along the ray that came here.
+    /// Unit vector back along the ray.
     pub wo: Vector3,
-    /// Moment in the shutter's time.
+    /// Shutter time.
     pub time: f32,
 }
 
 impl SurfacePoint {
-    /// A point whose shading geometry is its true geometry, met by `ray`.
+    /// A point hit by `ray`, whose shading geometry is its geometry.
     pub(crate) fn new(
         p: Point3Error,
         n: Normal3,
@@ -65,20 +63,20 @@ impl SurfacePoint {
         Self { p, n, uv, dpdu, dpdv, dndu, dndv, shading, wo: (-ray.d).normalize_or_zero(), time: ray.time }
     }
 
-    /// Gives shading a geometry of its own, and turns `n` to the side of its normal.
+    /// Sets the shading geometry, and flips `n` to the side of its normal.
     pub(crate) fn set_shading(&mut self, shading: Shading) {
         self.n = face_forward(self.n, shading.n);
         self.shading = shading;
     }
 
-    /// The ray that leaves along `d`, clear of this surface.
+    /// A ray along `d` with its origin clear of this surface.
     #[inline]
     pub fn spawn_ray(&self, d: Vector3) -> Ray {
         Ray::spawn(self.p, self.n, d, self.time)
     }
 
-    /// The same point seen from outside of what is placed. The error grows by what a ray loses that
-    /// is spawned out there and brought back in again.
+    /// The same point in the space around an instance. The error grows by that of a ray that is
+    /// spawned there and transformed back.
     pub(crate) fn placed(&self, placement: &Placement, ray: &Ray) -> Self {
         let vector = |v: Vector3| placement.vector(v.as_dvec3());
         let change = |n: Normal3, dn: Normal3| placement.normal_change(n.as_dvec3(), dn.as_dvec3());
@@ -106,14 +104,14 @@ impl SurfacePoint {
     }
 }
 
-/// Tangents for a surface with the unit normal `n` whose parametrisation gives none.
+/// Tangents of a surface with unit normal `n` whose parametrisation is degenerate.
 pub(crate) fn any_tangents(n: Normal3) -> [Vector3; 2] {
     let (u, v) = coordinate_system(n);
     [u, v]
 }
 
 /// The derivatives by texture coordinates (s, t) from those by (u, v): the inverse of the Jacobian
-/// ∂(s,t)/∂(u,v). `None` where that has no inverse.
+/// ∂(s,t)/∂(u,v). `None` where it is singular.
 pub(crate) fn by_texture(d: [DVec3; 2], st_du: Vec2, st_dv: Vec2) -> Option<[DVec3; 2]> {
     let (du, dv) = (st_du.as_dvec2(), st_dv.as_dvec2());
     let determinant = du.x * dv.y - dv.x * du.y;

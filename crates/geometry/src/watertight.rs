@@ -95,8 +95,8 @@ impl Sheared {
         ShearedLanes { axes, shear: load(&shear), o: load(&o) }
     }
 
-    /// The hit on a triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1 and
-    /// 2.
+    /// The hit on a triangle at 0 < t < `t_max`: t, and the barycentric coordinates of corners 1
+    /// and 2.
     #[inline]
     pub fn triangle(&self, corners: &[Vec3; 3], t_max: f32) -> Option<(f32, Vec2)> {
         // SAFETY: every processor computes with single floats.

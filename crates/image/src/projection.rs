@@ -4,15 +4,15 @@
 //!
 //! - Equal-area: a square image in the octahedral mapping of [Clarberg 2008], as the pbrt-v4 format
 //!   has it ([Pharr 2023 §3.8.3]). Every pixel has the same solid angle.
-//! - Latitude–longitude: an image twice as wide as high, s = φ/2π with φ from +x towards +y, t = θ/π
-//!   with θ from +z, so that the top row is up: the convention of pbrt-v3 and of the conversion
-//!   `imgtool makeequiarea` of pbrt-v4. A pixel's solid angle goes with sin θ.
+//! - Latitude–longitude: an image twice as wide as high, s = φ/2π with φ from +x towards +y,
+//!   t = θ/π with θ from +z, so that the top row is up: the convention of pbrt-v3 and of the
+//!   conversion `imgtool makeequiarea` of pbrt-v4. A pixel's solid angle goes with sin θ.
 //!
 //! A pixel of a converted image is the mean over its footprint: of n × n positions spread over it,
 //! weighted by solid angle, at each of which the source is interpolated bilinearly. n is such that
 //! neighbouring positions are at most half a source pixel apart, so that every source pixel counts
-//! by its solid angle, to within 2 % except in the rows at the poles. At last each channel is scaled
-//! so that its mean over the sphere is exactly kept.
+//! by its solid angle, to within 2 % except in the rows at the poles. At last each channel is
+//! scaled so that its mean over the sphere is exactly kept.
 
 use crate::{
     error::ImageError,

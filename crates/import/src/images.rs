@@ -23,7 +23,7 @@ pub(crate) fn decode(
     image::read(&bytes, &path.to_string_lossy(), &options).map_err(|error| error.to_string())
 }
 
-/// What stands for an image that cannot be read.
+/// The substitute for an image that cannot be read.
 pub(crate) fn black_pixel() -> Image {
     Image::new(1, 1, ["R", "G", "B"], Pixels::F32(vec![0.0; 3]))
         .expect("invariant: one pixel of three values")

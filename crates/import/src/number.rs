@@ -13,10 +13,10 @@ pub(crate) fn double(text: &[u8]) -> Option<f64> {
 /// A float, correctly rounded; `None` if the text is not a decimal number.
 #[inline]
 pub(crate) fn float(text: &[u8]) -> Option<f32> {
-    /// The bits of a double that a float has not.
+    /// The mantissa bits of a double beyond those of a float.
     const BELOW: u64 = (1 << 29) - 1;
-    /// Where those bits stand half way between two floats. A double rounded to there may have lain
-    /// on either side.
+    /// Their value half way between two floats. A double rounded to it may have been on either
+    /// side.
     const HALFWAY: u64 = 1 << 28;
     if let Some(value) = exact(text)
         && value.to_bits() & BELOW != HALFWAY

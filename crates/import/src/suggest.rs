@@ -1,9 +1,9 @@
-//! "Did you mean …": the nearest of some names.
+//! "Did you mean …": corrections of misspelt names.
 
-/// The candidate that a mistyped name most likely means, if any is near enough.
+/// The candidate with the least edit distance to a misspelt name, if it is small.
 pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
-    // Long names would make the comparison slow, and nobody mistypes them this way.
+    // The edit distance takes quadratic time; so long a name is no typing error.
     if name.len() > 64 {
         return None;
     }

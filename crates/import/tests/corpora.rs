@@ -119,6 +119,6 @@ fn good_meshes_are_read() {
     for path in files(&folder, "ply").into_iter().chain(files(&folder, "obj")) {
         let scene = import(&path, &Files);
         assert!(!scene.has_errors(), "{}:\n{}", path.display(), shown(&scene));
-        assert_eq!(scene.desc.lights.len(), 2);
+        assert_eq!(scene.desc.lights.len(), 1);
     }
 }

@@ -1,5 +1,7 @@
 //! No bytes, however wrong, make the readers panic, hang or take much memory.
 
+use std::io::Write;
+
 use alhazen_import::{MemoryAssets, import, read_obj, read_ply};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -90,5 +92,42 @@ proptest! {
         let mut bytes = PLY[..PLY.find("0 0 0").unwrap()].replace("ascii", &format!("binary_{order}_endian")).into_bytes();
         bytes.extend(body);
         let _ = read_ply(&bytes).is_ok();
+    }
+}
+
+const MTL: &str =
+    "newmtl a\nKd 0.5 0.5 0.5\nKs 1 1 1\nKe 0 0 0\nNs 20\nNi 1.5\nd 0.2\nillum 7\nmap_Kd -s 1 1 a.png\n";
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    encoder.write_all(bytes).expect("memory takes bytes");
+    encoder.finish().expect("memory takes bytes")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, rng_seed: RngSeed::Fixed(2), failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_mesh_scenes_do_no_harm(obj in mutated(OBJ), mtl in mutated(MTL)) {
+        let assets = MemoryAssets::default().with("a.obj", obj).with("a.mtl", mtl);
+        let imported = import("a.obj", &assets);
+        prop_assert!(imported.has_errors() || imported.desc.shapes.len() >= 2, "the mesh and the ground");
+    }
+
+    #[test]
+    fn damaged_packed_scenes_do_no_harm(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..4)) {
+        let mut bytes = packed(SCENE.as_bytes());
+        for (at, byte) in changes {
+            let at = at % bytes.len();
+            bytes[at] = byte;
+        }
+        let _ = import_bytes(bytes);
+    }
+
+    #[test]
+    fn damaged_tables_do_no_harm(bytes in prop::collection::vec(prop::sample::select(&b"0123456789.-+e #\n,x\xff"[..]), 0..80)) {
+        let scene = "Camera \"realistic\" \"string lensfile\" \"a.dat\"\nWorldBegin\n\
+                     Material \"diffuse\" \"spectrum reflectance\" \"a.dat\"\nShape \"plymesh\" \"string filename\" \"a.dat\"\n";
+        let _ = import("a.pbrt", &MemoryAssets::default().with("a.pbrt", scene).with("a.dat", bytes)).has_errors();
     }
 }

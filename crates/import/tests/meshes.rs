@@ -134,7 +134,8 @@ fn an_obj_file_is_a_scene_with_its_materials() {
     let imported = import("a.obj", &MemoryAssets::default().with("a.obj", obj).with("a.mtl", mtl));
     assert!(imported.diagnostics.is_empty(), "{:#?}", imported.diagnostics);
     let desc = imported.desc;
-    assert_eq!((desc.shapes.len(), desc.materials.len(), desc.area_lights.len()), (2, 2, 1));
+    // With the ground and its material.
+    assert_eq!((desc.shapes.len(), desc.materials.len(), desc.area_lights.len()), (3, 3, 1));
     let camera = desc.camera.camera_from_world.start;
     for corner in [Vec3::ZERO, Vec3::X, Vec3::Y] {
         let seen = camera.transform_point3(corner.as_dvec3());

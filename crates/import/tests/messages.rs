@@ -1,4 +1,4 @@
-//! One pinned message for every kind of mistake: code, place, words and help.
+//! One pinned message for every kind of error: code, position, text and help.
 
 use alhazen_import::{MemoryAssets, import};
 use description::Severity;
@@ -35,7 +35,7 @@ fn messages(text: &str) -> Vec<String> {
     imported.diagnostics.iter().map(show).collect()
 }
 
-/// Mistakes before `WorldBegin`, and what is said about them.
+/// Errors before `WorldBegin`, and their messages.
 const BEFORE_WORLD: &[(&str, &str)] = &[
     (
         r#"Camra "perspective""#,
@@ -45,15 +45,12 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
         r#"SurfaceIntegrator "path""#,
         "1:1 error[old-name] there is no directive `SurfaceIntegrator` (write `Integrator`)",
     ),
-    ("17", "1:1 error[unexpected-token] a directive should stand here, not 17"),
-    ("LookAt 1 2 x", "1:12 error[unexpected-token] a number (9 in all) should stand here, not x"),
-    (
-        r#"Camera perspective"#,
-        "1:8 error[unexpected-token] its type in quotes should stand here, not perspective",
-    ),
-    (r#"Film "rgb"#, "1:6 error[unexpected-token] its type in quotes should stand here, not \"rgb"),
+    ("17", "1:1 error[unexpected-token] expected a directive, found 17"),
+    ("LookAt 1 2 x", "1:12 error[unexpected-token] expected a number (9 in all), found x"),
+    (r#"Camera perspective"#, "1:8 error[unexpected-token] expected its type in quotes, found perspective"),
+    (r#"Film "rgb"#, "1:6 error[unexpected-token] expected its type in quotes, found \"rgb"),
     (r#""Film"#, "1:1 error[unterminated-string] this string has no closing quote on its line"),
-    (r#"Shape "sphere""#, "1:1 error[misplaced-directive] `Shape` may only stand after `WorldBegin`"),
+    (r#"Shape "sphere""#, "1:1 error[misplaced-directive] `Shape` is only allowed after `WorldBegin`"),
     (r#"Sampler "sobel""#, "1:9 error[unknown-type] there is no sampler `sobel` (did you mean `sobol`?)"),
     (
         r#"Sampler "sobol" "integer pixelsample" 4"#,
@@ -69,7 +66,7 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Sampler "sobol" "integer pixelsamples" 1.5"#,
-        "1:40 error[parameter-value] `pixelsamples` is of type `integer` and takes a whole number, not 1.5",
+        "1:40 error[parameter-value] `pixelsamples` is of type `integer` and takes an integer, not `1.5`",
     ),
     (
         r#"Sampler "sobol" "integer pixelsamples" 0"#,
@@ -86,7 +83,7 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     (r#"Sampler "sobol" "integer seed""#, "1:17 error[parameter-value] the parameter `seed` has no value"),
     (
         r#"Sampler "sobol" "seed" 1"#,
-        "1:17 error[parameter-declaration] `seed` does not declare a parameter (a parameter is declared by its type and its name, as in `\"float radius\"`)",
+        "1:17 error[parameter-declaration] `seed` is not a parameter declaration (a parameter is declared by its type and its name, as in `\"float radius\"`)",
     ),
     (
         r#"Sampler "sobol" "int seed" 1"#,
@@ -108,11 +105,11 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
         r#"CoordSysTransform "camera""#,
         "1:19 error[unknown-reference] there is no coordinate system `camera` yet",
     ),
-    ("Scale 1 0 1", "1:1 error[singular-transform] this transform has no inverse: it makes space flat"),
+    ("Scale 1 0 1", "1:1 error[singular-transform] this transform is singular: it has no inverse"),
     ("Rotate 10 0 0 0", "1:1 error[singular-transform] the axis of this rotation has no direction"),
     (
         "LookAt 0 0 0 0 1 0 0 1 0",
-        "1:1 error[singular-transform] eye, target and up of this `LookAt` span no frame",
+        "1:1 error[singular-transform] eye, target and up vector of this `LookAt` do not define a frame",
     ),
     (r#"Film "rgb" Film "rgb""#, "1:12 warning[replaced-statement] this `Film` replaces an earlier one"),
     (
@@ -123,7 +120,7 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     (r#"Camera "realistic""#, "1:8 error[missing-parameter] `realistic` needs the parameter `lensfile`"),
     (
         r#"Camera "realistic" "string lensfile" "bad.dat""#,
-        "1:38 error[unreadable-lens] line 1 of `bad.dat` has `x`, no number",
+        "1:38 error[unreadable-lens] line 1 of `bad.dat` has `x`, which is not a number",
     ),
     (
         r#"Attribute "shap" "float radius" 2"#,
@@ -152,9 +149,9 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     ),
 ];
 
-/// Mistakes after `WorldBegin`.
+/// Errors after `WorldBegin`.
 const IN_WORLD: &[(&str, &str)] = &[
-    (r#"Sampler "sobol""#, "1:1 error[misplaced-directive] `Sampler` may only stand before `WorldBegin`"),
+    (r#"Sampler "sobol""#, "1:1 error[misplaced-directive] `Sampler` is only allowed before `WorldBegin`"),
     ("AttributeEnd", "1:1 error[unbalanced-block] `AttributeEnd` has no `AttributeBegin` before it"),
     ("AttributeBegin", "1:1 error[unbalanced-block] this `AttributeBegin` has no `AttributeEnd`"),
     (r#"NamedMaterial "rde" Shape "sphere""#, "1:15 error[unknown-reference] there is no material `rde`"),
@@ -180,7 +177,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Material "diffuse" "rgb reflectance" [1 1]"#,
-        "1:20 error[parameter-count] `reflectance` has 2 numbers, which is no multiple of 3",
+        "1:20 error[parameter-count] `reflectance` has 2 numbers, which is not a multiple of 3",
     ),
     (
         r#"Material "diffuse" "color reflectance" [1 1 1]"#,
@@ -224,7 +221,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Shape "plymesh" "string filename" "bad.ply""#,
-        "1:35 error[unreadable-mesh] cannot read the mesh `bad.ply`: mesh too large: 99999999 of `vertex` cannot lie in 2 bytes",
+        "1:35 error[unreadable-mesh] cannot read the mesh `bad.ply`: mesh too large: 99999999 elements of `vertex` do not fit in 2 bytes",
     ),
     (
         r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 3]"#,
@@ -236,15 +233,15 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 4 4 0 0 4 1]"#,
-        "1:17 error[parameter-value] `P` is no polygon: point 1 is outside of the plane of the others",
+        "1:17 error[parameter-value] `P` is not a valid polygon: point 1 is not in the plane of the others",
     ),
     (
         r#"Shape "polygon" "point3 P" [0 0 0 4 4 0 1 4 0 4 0 0]"#,
-        "1:17 error[parameter-value] `P` is no polygon: the edges that begin with the points 0 and 2 touch or cross",
+        "1:17 error[parameter-value] `P` is not a valid polygon: the edges that begin with the points 0 and 2 touch or cross",
     ),
     (
         r#"Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0 0 0 1] "integer keyframes" 3"#,
-        "1:59 error[parameter-value] the 4 points in `P` are no multiple of 3",
+        "1:59 error[parameter-value] the 4 points in `P` are not a multiple of 3",
     ),
     (
         r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 2 3]"#,
@@ -253,6 +250,55 @@ const IN_WORLD: &[(&str, &str)] = &[
     (
         r#"Shape "spheres" "point3 P" [0 0 0 1 0 0] "float radius" [1 -2]"#,
         "1:42 error[parameter-value] `radius` 1 is -2; it must be above zero",
+    ),
+    (r#"Shape "sphere" "float radius" 0"#, "1:16 error[parameter-value] `radius` must be above zero"),
+    (
+        r#"Shape "sphere" "float radius" 2 "float zmin" 3 "float zmax" 4"#,
+        "1:48 error[parameter-value] between `zmin` and `zmax` there is nothing of the surface",
+    ),
+    (
+        r#"Shape "cylinder" "float zmin" 1"#,
+        "1:18 error[parameter-value] between `zmin` and `zmax` there is nothing of the surface",
+    ),
+    (
+        r#"Shape "paraboloid" "float zmax" -1"#,
+        "1:20 error[parameter-value] between `zmin` and `zmax` there is nothing of the surface",
+    ),
+    (
+        r#"Shape "disk" "float innerradius" 1"#,
+        "1:14 error[parameter-value] `innerradius` must be at least 0, and below `radius`",
+    ),
+    (
+        r#"Shape "hyperboloid" "point3 p1" [0 0 1] "point3 p2" [0 0 2]"#,
+        "1:41 error[parameter-value] `p1` and `p2` both lie on the z axis: such a line sweeps no surface",
+    ),
+    (
+        r#"Shape "curve" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 1] "float width" -1"#,
+        "1:52 error[parameter-value] the width of a curve cannot be negative",
+    ),
+    (
+        r#"LightSource "point" "float scale" -2"#,
+        "1:21 error[parameter-value] `scale` cannot be negative: there is no negative light",
+    ),
+    (
+        r#"AreaLightSource "diffuse" "float scale" -2"#,
+        "1:27 error[parameter-value] `scale` cannot be negative: there is no negative light",
+    ),
+    (
+        r#"LightSource "point" "float power" 0"#,
+        "1:21 warning[ignored] `power` has no effect unless it is above zero",
+    ),
+    (
+        r#"LightSource "infinite" "float illuminance" -3"#,
+        "1:24 warning[ignored] `illuminance` has no effect unless it is above zero",
+    ),
+    (
+        r#"LightSource "spot" "float coneangle" 0"#,
+        "1:20 error[parameter-value] `coneangle` must be above 0 and at most 180 degrees",
+    ),
+    (
+        r#"LightSource "spot" "float conedeltaangle" -1"#,
+        "1:20 error[parameter-value] `conedeltaangle` must lie between 0 and 180 degrees",
     ),
     (r#"Shape "spheres" "float radius" 2"#, "1:7 error[missing-parameter] `spheres` needs the parameter `P`"),
     (
@@ -293,7 +339,7 @@ const IN_WORLD: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn every_mistake_has_its_message() {
+fn every_error_has_its_message() {
     for (text, expected) in BEFORE_WORLD {
         let mut found = messages(&format!("{text}\nWorldBegin"));
         found.retain(|message| !message.contains("`WorldBegin`") || expected.contains("`WorldBegin`"));
@@ -310,14 +356,11 @@ fn every_mistake_has_its_message() {
         assert_eq!(found.len(), 1, "{text}\n{found:#?}");
         assert!(found[0].starts_with(&expected), "{text}\n{expected}\n{}", found[0]);
     }
-    assert_eq!(
-        messages(""),
-        ["1:1 error[missing-world] the scene has no `WorldBegin`, so that nothing is in its world"]
-    );
+    assert_eq!(messages(""), ["1:1 error[missing-world] the scene has no `WorldBegin`: its world is empty"]);
 }
 
 #[test]
-fn all_mistakes_of_a_scene_come_in_one_run() {
+fn all_errors_of_a_scene_come_in_one_run() {
     let all: String =
         IN_WORLD[3..16].iter().map(|(text, _)| format!("AttributeBegin {text} AttributeEnd\n")).collect();
     let found = messages(&format!("Smapler \"sobol\"\nWorldBegin\n{all}\nShape \"spere\"\n"));

@@ -10,9 +10,9 @@ use crate::{Cancelled, Control};
 
 /// An algorithm of light transport, run by a [`Session`](crate::Session).
 ///
-/// What a pass adds to the film depends on the scene, the view, the settings, the seed and the number
-/// of the pass alone: not on threads, nor on which passes were done before. The numbers begin with
-/// those of the [drafts](Self::drafts).
+/// What a pass adds to the film depends on the scene, the view, the settings, the seed and the
+/// number of the pass alone: not on threads, nor on which passes were done before. The numbers
+/// begin with those of the [drafts](Self::drafts).
 pub trait Integrator: Send {
     /// How many passes the picture is planned for: the samples of a pixel that it is the mean of.
     /// There may be fewer, and more.
@@ -28,9 +28,9 @@ pub trait Integrator: Send {
     /// it was cancelled: then it has to be called again before a pass.
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled>;
 
-    /// Does one pass, one sample per pixel, on the threads of rayon's current pool. A cancelled pass
-    /// ends within a few rays, and leaves some pixels with one sample less, for which their weights
-    /// account.
+    /// Does one pass, one sample per pixel, on the threads of rayon's current pool. A cancelled
+    /// pass ends within a few rays, and leaves some pixels with one sample less, for which their
+    /// weights account.
     fn pass(
         &mut self,
         pass: u32,

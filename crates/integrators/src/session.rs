@@ -22,10 +22,10 @@
 //! noise = √⟨Var[r] / (r² + (m/10)²)⟩
 //! ```
 //!
-//! where ⟨·⟩ is the mean over pixels and channels, and m the mean of r, which keeps dark pixels from
-//! deciding alone. It is the root of the relMSE [Rousselle 2011] against the picture without noise,
-//! but does not depend on exposure. Bias is not noise. Samplers whose passes complement each other
-//! have less noise than this says, as the halves' errors are negatively correlated.
+//! where ⟨·⟩ is the mean over pixels and channels, and m the mean of r, which keeps dark pixels
+//! from deciding alone. It is the root of the relMSE [Rousselle 2011] against the picture without
+//! noise, but does not depend on exposure. Bias is not noise. Samplers whose passes complement each
+//! other have less noise than this says, as the halves' errors are negatively correlated.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -46,7 +46,8 @@ const FIRST_ESTIMATE: u32 = 16;
 pub struct Progress {
     /// Passes done, drafts included.
     pub pass: u32,
-    /// Passes to do in all: an estimate where the limit is time or noise.
+    /// Passes to do in all: an estimate where the limit is time or noise, `u32::MAX` where it is
+    /// not known yet.
     pub passes: u32,
     /// Pixel samples taken by this session.
     pub samples: u64,
@@ -79,7 +80,8 @@ pub enum Stop {
     Noise,
 }
 
-/// A render: the scene, the view of it, the algorithm, the film, and the passes that the film holds.
+/// A render: the scene, the view of it, the algorithm, the film, and the passes that the film
+/// holds.
 pub struct Session {
     scene: Arc<Scene>,
     view: View,
@@ -270,7 +272,7 @@ impl Session {
         let passes = [by_time, by_noise].into_iter().flatten().fold(planned, f64::min).max(done).ceil();
         Progress {
             pass: self.drafts + self.state.done.count(),
-            passes: self.integrator.drafts() + passes as u32,
+            passes: self.integrator.drafts().saturating_add(passes as u32),
             samples: u64::from(self.passes) * self.state.film.pixel_bounds().area() as u64,
             stats: self.stats,
             elapsed: self.elapsed,
@@ -323,8 +325,8 @@ struct Stopwatch<'a> {
 /// sixteenth more are done. It depends on nothing else, so that a render that was resumed ends as
 /// one that was not.
 fn is_estimated_after(passes: u32) -> bool {
-    let step = (1 << passes.max(1).ilog2().saturating_sub(4)).max(2);
-    passes >= FIRST_ESTIMATE && passes % step == 0
+    let step = (1_u32 << passes.max(1).ilog2().saturating_sub(4)).max(2);
+    passes >= FIRST_ESTIMATE && passes.is_multiple_of(step)
 }
 
 /// The noise of the mean of two independent pictures of so many passes each.

@@ -31,8 +31,8 @@ impl From<Transform> for AnimatedTransform {
 }
 
 impl AnimatedTransform {
-    /// Moves from `start` at `times[0]` to `end` at `times[1]`, and rests before and after. `None`
-    /// when a matrix has no inverse. Equal keys make a transform at rest.
+    /// Interpolates from `start` at `times[0]` to `end` at `times[1]`, and is constant before and
+    /// after. `None` when a matrix has no inverse. Equal keys make a transform at rest.
     pub fn new(start: DMat4, end: DMat4, times: [f32; 2]) -> Option<Self> {
         let first = Transform::from_f64(start)?;
         if start == end || times[0] >= times[1] {
@@ -55,7 +55,7 @@ impl AnimatedTransform {
         self.motion.is_some()
     }
 
-    /// The transform at a moment.
+    /// The transform at a time.
     #[inline]
     pub fn at(&self, time: f32) -> Transform {
         match &self.motion {
@@ -74,7 +74,7 @@ impl AnimatedTransform {
         &self.start
     }
 
-    /// A box around everything that the box `b` touches while it moves.
+    /// A box around the moving box `b` at all times.
     pub fn motion_bounds(&self, b: &Bounds3) -> Bounds3 {
         let Some(motion) = &self.motion else { return self.start.bounds(b) };
         if b.is_empty() {
@@ -98,7 +98,7 @@ impl Motion {
     }
 
     /// A box around the path of one point. The path p(t) = T(t) + R(t)·S(t)·p has |p″| ≤ θ²·|Sp| +
-    /// 2θ·|ΔS·p|, so that a chord over a step h strays from it by at most |p″|·h²/8.
+    /// 2θ·|ΔS·p|, so that a chord over a step h deviates from it by at most |p″|·h²/8.
     fn point_bounds(&self, p: Point3) -> Bounds3 {
         const STEPS: usize = 32;
         let p = p.as_dvec3();
@@ -124,7 +124,7 @@ fn decompose(m: DMat4) -> (DVec3, DQuat, DMat3) {
             break;
         }
     }
-    // A mirror is no rotation: it goes into the stretch.
+    // A reflection is no rotation: it goes into the stretch.
     if rotation.determinant() < 0.0 {
         rotation *= -1.0;
     }

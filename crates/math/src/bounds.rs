@@ -12,7 +12,7 @@ pub struct Bounds3 {
 }
 
 impl Bounds3 {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The box of two opposite corners, in any order.
@@ -26,7 +26,7 @@ impl Bounds3 {
         points.into_iter().fold(Self::EMPTY, |b, p| b.union_point(p))
     }
 
-    /// Whether the box holds no point.
+    /// Whether the box contains no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
@@ -44,7 +44,7 @@ impl Bounds3 {
         Self { min: self.min.min(p), max: self.max.max(p) }
     }
 
-    /// What both share; empty when they are apart.
+    /// The intersection; empty when the boxes are disjoint.
     #[inline]
     pub fn intersection(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
@@ -119,8 +119,8 @@ impl Bounds3 {
         (c, c.distance(self.max))
     }
 
-    /// The part [t0, t1] of `[0, t_max]` that the ray spends inside, widened by the rounding error
-    /// of the slab test.
+    /// The range [t0, t1] within `[0, t_max]` in which the ray is inside, widened by the rounding
+    /// error of the slab test.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, f32)> {
         let inverse = ray.d.recip();
@@ -128,7 +128,7 @@ impl Bounds3 {
         let near = (Vec3::select(backwards, self.max, self.min) - ray.o) * inverse;
         let far = (Vec3::select(backwards, self.min, self.max) - ray.o) * inverse * (1.0 + 2.0 * gamma(3));
         // `f32::max` drops the NaN of 0 · ∞, which arises when the origin lies on a slab that the
-        // ray runs along.
+        // ray is parallel to.
         let t0 = near.x.max(near.y).max(near.z).max(0.0);
         let t1 = far.x.min(far.y).min(far.z).min(t_max);
         (t0 <= t1).then_some((t0, t1))
@@ -154,7 +154,7 @@ impl Bounds2 {
         Self { min: a.min(b), max: a.max(b) }
     }
 
-    /// Sides.
+    /// Width and height.
     #[inline]
     pub fn diagonal(&self) -> Vec2 {
         self.max - self.min
@@ -173,7 +173,7 @@ impl Bounds2 {
         self.min + self.diagonal() * t
     }
 
-    /// The fractions of the sides at which `p` lies.
+    /// The position of `p` as fractions of the sides.
     #[inline]
     pub fn offset(&self, p: Vec2) -> Vec2 {
         (p - self.min) / self.diagonal()
@@ -196,7 +196,7 @@ pub struct Bounds2i {
 }
 
 impl Bounds2i {
-    /// The rectangle from `min` up to but without `max`.
+    /// The rectangle from `min` (inclusive) to `max` (exclusive).
     #[inline]
     pub fn new(min: [i32; 2], max: [i32; 2]) -> Self {
         Self { min, max }
@@ -220,7 +220,7 @@ impl Bounds2i {
         self.width() as usize * self.height() as usize
     }
 
-    /// What both share.
+    /// The intersection.
     #[inline]
     pub fn intersection(&self, other: &Self) -> Self {
         Self {

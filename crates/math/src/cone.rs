@@ -1,4 +1,4 @@
-//! Cones of directions: what a light emits into, what a box subtends.
+//! Cones of directions, which bound the emission of lights and the directions to boxes.
 
 use crate::{Bounds3, Point3, Transform, Vec3, Vector3, angle_between, safe_acos, safe_sqrt};
 use std::f32::consts::PI;
@@ -13,7 +13,7 @@ pub struct DirectionCone {
 }
 
 impl DirectionCone {
-    /// The cone without a direction.
+    /// The empty cone.
     pub const EMPTY: Self = Self { w: Vec3::Z, cos_theta: f32::INFINITY };
     /// The cone of all directions.
     pub const ENTIRE_SPHERE: Self = Self { w: Vec3::Z, cos_theta: -1.0 };

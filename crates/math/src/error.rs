@@ -1,8 +1,8 @@
-//! Points that know how wrong they may be, and rays that start clear of the surface they leave.
+//! Points with error bounds, and ray origins that are clear of the surface a ray leaves.
 //!
-//! A hit point is computed in floats, so it lies a little off its surface. Instead of a tuned
-//! epsilon, its per-axis error bound travels with it; a spawned ray starts outside of the box of
-//! that error, on the side it leaves to ([Pharr 2023 §6.8.6]).
+//! A hit point is computed in floats, so that it lies slightly off its surface. Instead of a tuned
+//! epsilon it carries an error bound per axis; a spawned ray starts outside of the box of that
+//! error, on the side that it leaves to ([Pharr 2023 §6.8.6]).
 
 use crate::{Normal3, Point3, Vec3, Vector3};
 
@@ -29,14 +29,14 @@ impl Point3Error {
     }
 }
 
-/// Where a ray in direction `w` may start so that it cannot meet the surface with geometric normal
-/// `n` at `p` again.
+/// The origin of a ray in direction `w` that cannot intersect the surface with geometric normal `n`
+/// at `p` again.
 #[inline]
 pub fn offset_ray_origin(p: Point3Error, n: Normal3, w: Vector3) -> Point3 {
     let distance = n.abs().dot(p.error);
     let offset = if w.dot(n) < 0.0 { -n * distance } else { n * distance };
     let q = p.p + offset;
-    // A step beyond the rounding of the sum, along the axes that move at all.
+    // One float further than the rounded sum, along the axes that are offset.
     let step = (q.abs() * f32::EPSILON).copysign(offset);
     Vec3::select(offset.cmpeq(Vec3::ZERO), q, q + step)
 }

@@ -1,4 +1,4 @@
-//! Single-precision arithmetic that keeps its digits, and the bounds on what it loses.
+//! Accurate single-precision arithmetic, and bounds of rounding errors.
 //!
 //! Sources: [Higham 2002 §3.1] for γ(n); [Kahan 2004] for the difference of products.
 
@@ -21,7 +21,7 @@ pub fn sqr(x: f32) -> f32 {
     x * x
 }
 
-/// Square root; values below zero, which only rounding makes, count as zero.
+/// Square root; values below zero, which are due to rounding, count as zero.
 #[inline]
 pub fn safe_sqrt(x: f32) -> f32 {
     x.max(0.0).sqrt()

@@ -2,8 +2,7 @@
 
 use crate::{Vec3, Vector3};
 
-/// Three orthonormal axes; local +z is the axis that matters (the normal of a surface, the heading
-/// of a beam).
+/// Three orthonormal axes; local +z is the main axis (the normal of a surface, the axis of a beam).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Local +x in outer coordinates.
@@ -15,22 +14,22 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Some frame around the unit vector `z`.
+    /// A frame with the unit vector `z`, and any x and y.
     #[inline]
     pub fn from_z(z: Vector3) -> Self {
         let (x, y) = coordinate_system(z);
         Self { x, y, z }
     }
 
-    /// The frame with the unit vector `z`, and x as near to `x` as a right angle to z lets it be.
-    /// An `x` along `z`, or of no length, gives way to [`Frame::from_z`].
+    /// The frame with the unit vector `z`, and the direction nearest to `x` that is perpendicular
+    /// to it; [`Frame::from_z`] where `x` is zero or parallel to `z`.
     #[inline]
     pub fn from_z_and_x(z: Vector3, x: Vector3) -> Self {
         let across = |x: Vector3| x - z * z.dot(x);
         match across(x).try_normalize() {
             Some(x) => {
-                // Where x was almost along z, little more than rounding errors was left of it: once
-                // more takes those along z out.
+                // Where x is almost parallel to z, rounding errors along z remain: orthogonalise
+                // again.
                 let x = across(x).normalize();
                 Self { x, y: z.cross(x), z }
             }

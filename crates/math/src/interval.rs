@@ -1,7 +1,7 @@
-//! A range of floats that surely holds the exact result of what was computed.
+//! Interval arithmetic: ranges of floats that contain the exact result of a computation.
 //!
 //! Every operation rounds its lower end down and its upper end up, so that `exact ∈ [low, high]`
-//! survives any chain of operations ([Moore 1966]; [Pharr 2023 §6.8.1]).
+//! holds after any chain of operations ([Moore 1966]; [Pharr 2023 §6.8.1]).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -48,7 +48,7 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
-    /// The square; tighter than `self * self` where the range holds zero.
+    /// The square; tighter than `self * self` where the range contains zero.
     #[inline]
     pub fn sqr(self) -> Self {
         let (a, b) = (self.low.abs(), self.high.abs());
@@ -57,7 +57,7 @@ impl Interval {
         Self::new(low, (large * large).next_up())
     }
 
-    /// The square root; parts below zero, which only rounding makes, count as zero.
+    /// The square root; parts below zero, which are due to rounding, count as zero.
     #[inline]
     pub fn sqrt(self) -> Self {
         Self::new(self.low.max(0.0).sqrt().next_down().max(0.0), self.high.max(0.0).sqrt().next_up())
@@ -109,7 +109,7 @@ impl Mul for Interval {
 
 impl Div for Interval {
     type Output = Self;
-    /// A divisor that holds zero gives the whole line.
+    /// A divisor that contains zero gives the whole line.
     #[inline]
     fn div(self, other: Self) -> Self {
         if other.contains(0.0) {

@@ -1,7 +1,7 @@
 //! The equal-area map between the unit square and the sphere.
 //!
-//! The square is cut along its diagonals into the diamond |u| + |v| ≤ 1, which holds the upper
-//! hemisphere, and four corners, which fold down to the lower one; within each quadrant areas are
+//! The square consists of the diamond |u| + |v| ≤ 1, which is mapped to the upper hemisphere, and
+//! four corners, which are folded down to the lower one; within each quadrant areas are
 //! preserved. Environment images are stored this way ([Clarberg 2008]; [Pharr 2023 §3.8.3]).
 
 use crate::{Vec2, Vec3, Vector3, safe_sqrt};
@@ -35,7 +35,7 @@ pub fn equal_area_sphere_to_square(d: Vector3) -> Vec2 {
     Vec2::new((u.copysign(d.x) + 1.0) * 0.5, (v.copysign(d.y) + 1.0) * 0.5)
 }
 
-/// A point just outside of [0, 1]², moved to the point inside that shows the same direction.
+/// Wraps a point slightly outside of [0, 1]² to the point inside with the same direction.
 pub fn wrap_equal_area_square(p: Vec2) -> Vec2 {
     let Vec2 { mut x, mut y } = p;
     if x < 0.0 {

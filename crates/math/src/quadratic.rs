@@ -1,13 +1,12 @@
-//! Roots of a·t² + b·t + c, without cancellation.
+//! Roots of a·t² + b·t + c without cancellation.
 //!
 //! Of the two textbook roots one subtracts nearly equal numbers when 4ac ≪ b². With q = −½(b +
 //! sign(b)·√Δ) the roots are q/a and c/q, both stable ([Pharr 2023 §B.2.10]).
 
 use crate::difference_of_products;
 
-/// The real roots in ascending order; `None` when there are none. A double root comes twice; a
-/// linear equation (a = 0) gives its one root twice; an equation without unknown (a = b = 0) gives
-/// `None`.
+/// The real roots in ascending order; `None` when there are none. A double root, or the root of a
+/// linear equation (a = 0), is returned twice; a constant (a = b = 0) gives `None`.
 pub fn solve_quadratic(a: f32, b: f32, c: f32) -> Option<(f32, f32)> {
     if a == 0.0 {
         return (b != 0.0).then(|| (-c / b, -c / b));

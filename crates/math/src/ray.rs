@@ -1,20 +1,20 @@
-//! Rays r(t) = o + t·d at a moment in time, and their neighbours one pixel away.
+//! Rays r(t) = o + t·d at a shutter time, and ray differentials.
 
 use crate::{Normal3, Point3, Point3Error, Vector3, offset_ray_origin};
 
-/// A half line. The direction need not have unit length; t counts in its length.
+/// A ray. The direction need not have unit length; t is in lengths of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Origin.
     pub o: Point3,
     /// Direction, of any length but zero.
     pub d: Vector3,
-    /// Moment in the shutter's time.
+    /// Shutter time.
     pub time: f32,
 }
 
 impl Ray {
-    /// How far towards a target a shadow ray goes, in units of the distance: just short of the
+    /// The end of a shadow ray as a fraction of the distance to its target: just short of the
     /// target's own surface.
     pub const SHADOW_END: f32 = 1.0 - 1e-4;
 
@@ -60,18 +60,18 @@ pub struct Differentials {
     pub ry_direction: Vector3,
 }
 
-/// A ray that may know its neighbours, so that a texture can be filtered over the footprint of a
-/// pixel ([Igehy 1999]).
+/// A ray with optional differentials, by which textures are filtered over the footprint of a pixel
+/// ([Igehy 1999]).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayDifferential {
     /// The ray itself.
     pub ray: Ray,
-    /// Its neighbours, where known.
+    /// The rays of the neighbouring pixels, where known.
     pub differentials: Option<Differentials>,
 }
 
 impl RayDifferential {
-    /// Brings the neighbours nearer by `s`: with n samples a pixel, 1/√n is their mean spacing.
+    /// Scales the differentials by `s`: with n samples per pixel their mean spacing is 1/√n.
     pub fn scale(&mut self, s: f32) {
         if let Some(d) = &mut self.differentials {
             let (o, dir) = (self.ray.o, self.ray.d);

@@ -1,5 +1,5 @@
-//! Directions as angles: θ from +z, φ from +x towards +y; and the trigonometry of a local shading
-//! frame.
+//! Spherical coordinates, θ from +z and φ from +x towards +y, and the trigonometry of local shading
+//! frames.
 
 use crate::{Vec3, Vector3, safe_acos, safe_sqrt};
 use std::f32::consts::TAU;
@@ -74,7 +74,7 @@ pub fn face_forward(v: Vector3, reference: Vector3) -> Vector3 {
     if v.dot(reference) < 0.0 { -v } else { v }
 }
 
-/// The angle between two unit vectors in radians, exact near 0 and π too.
+/// The angle between two unit vectors in radians, accurate near 0 and π too.
 #[inline]
 pub fn angle_between(a: Vector3, b: Vector3) -> f32 {
     if a.dot(b) < 0.0 {

@@ -19,11 +19,11 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// The map that changes nothing.
+    /// The identity.
     pub const IDENTITY: Self = Self { m: Mat4::IDENTITY, inverse: Mat4::IDENTITY };
 
-    /// From a double-precision matrix, whose inverse is taken in double precision. `None` when
-    /// there is no inverse.
+    /// From a double-precision matrix, which is inverted in double precision; `None` when there is
+    /// no inverse.
     pub fn from_f64(m: DMat4) -> Option<Self> {
         let inverse = m.inverse();
         (inverse.is_finite() && m.is_finite()).then(|| Self { m: m.as_mat4(), inverse: inverse.as_mat4() })
@@ -34,17 +34,17 @@ impl Transform {
         Self { m, inverse }
     }
 
-    /// Moves by `v`.
+    /// A translation by `v`.
     pub fn translate(v: Vector3) -> Self {
         Self { m: Mat4::from_translation(v), inverse: Mat4::from_translation(-v) }
     }
 
-    /// Scales each axis; no factor may be zero.
+    /// A scale of each axis; no factor may be zero.
     pub fn scale(s: Vec3) -> Self {
         Self { m: Mat4::from_scale(s), inverse: Mat4::from_scale(s.recip()) }
     }
 
-    /// Turns by `angle` radians around `axis`, counter-clockwise as seen from the axis's tip.
+    /// A rotation by `angle` radians around `axis`, counter-clockwise as seen from its tip.
     pub fn rotate(angle: f32, axis: Vector3) -> Self {
         let m = Mat4::from_axis_angle(axis.normalize(), angle);
         Self { m, inverse: m.transpose() }
@@ -68,12 +68,12 @@ impl Transform {
         Self { m: self.m * first.m, inverse: first.inverse * self.inverse }
     }
 
-    /// Whether nothing changes.
+    /// Whether it is the identity.
     pub fn is_identity(&self) -> bool {
         self.m == Mat4::IDENTITY
     }
 
-    /// Whether a right hand becomes a left hand.
+    /// Whether it reverses handedness.
     pub fn swaps_handedness(&self) -> bool {
         glam::Mat3::from_mat4(self.m).determinant() < 0.0
     }
@@ -91,15 +91,15 @@ impl Transform {
         self.m.transform_vector3(v)
     }
 
-    /// Maps a normal (by the inverse transpose); the length changes.
+    /// Maps a normal (by the inverse transpose), not normalised.
     #[inline]
     pub fn normal(&self, n: Normal3) -> Normal3 {
         let i = &self.inverse;
         Vec3::new(i.x_axis.truncate().dot(n), i.y_axis.truncate().dot(n), i.z_axis.truncate().dot(n))
     }
 
-    /// Maps a point by an affine map and bounds the error: that of the product, and that the point
-    /// brought along.
+    /// Maps a point by an affine map, and bounds the error: that of the product and that of the
+    /// point.
     #[inline]
     pub fn point_with_error(&self, p: Point3Error) -> Point3Error {
         let (x, y, z, t) = (
@@ -117,13 +117,13 @@ impl Transform {
         )
     }
 
-    /// Maps a ray; t keeps its meaning.
+    /// Maps a ray; t is unchanged.
     #[inline]
     pub fn ray(&self, ray: &Ray) -> Ray {
         Ray::new(self.m.transform_point3(ray.o), self.vector(ray.d), ray.time)
     }
 
-    /// Maps a ray with its neighbours.
+    /// Maps a ray and its differentials.
     pub fn ray_differential(&self, r: &RayDifferential) -> RayDifferential {
         RayDifferential {
             ray: self.ray(&r.ray),
@@ -155,7 +155,7 @@ mod tests {
                 .after(&Transform::scale(Vec3::new(s, 1.0, -2.0)));
             let p = Vec3::new(x, y, 3.0);
             prop_assert!((t.inverse().point(t.point(p)) - p).length() < 1e-4);
-            // A normal stays at right angles to what it was at right angles to.
+            // A normal stays perpendicular to tangents.
             let (n, v) = (Vec3::new(y, -x, 0.0), Vec3::new(x, y, 0.7));
             prop_assert!(t.normal(n).dot(t.vector(v)).abs() < 1e-2);
             prop_assert!(t.swaps_handedness());

@@ -1,5 +1,5 @@
-//! Choosing one of many things in constant time, by Walker's alias method, its table built by Vose
-//! [Vose 1991].
+//! Sampling a discrete distribution in constant time: Walker's alias method, with the table built
+//! as by [Vose 1991].
 //!
 //! Each of n equally likely bins is shared by at most two outcomes: its own, up to a threshold, and
 //! an alias beyond it.
@@ -9,7 +9,7 @@ use math::ONE_MINUS_EPSILON;
 
 #[derive(Clone, Copy, Debug)]
 struct Bin {
-    /// The part of the bin that is its own outcome's.
+    /// The fraction of the bin that is its own outcome's.
     threshold: f32,
     /// The probability of the bin's own outcome, over all bins.
     pmf: f32,
@@ -35,7 +35,7 @@ impl AliasTable {
             .iter()
             .map(|&w| Bin { threshold: 1.0, pmf: (w as f64 / total) as f32, alias: 0 })
             .collect();
-        // Each outcome's share of a bin: those below 1 are filled up by those above.
+        // Each outcome's share of a bin: shares below 1 are filled up from those above.
         let shares = weights.iter().map(|&w| w as f64 * scale).enumerate();
         let (mut small, mut large): (Vec<_>, Vec<_>) = shares.partition(|&(_, share)| share < 1.0);
         while let (Some(&(low, share)), Some((high, rest))) = (small.last(), large.pop()) {
@@ -45,7 +45,7 @@ impl AliasTable {
             let rest = rest + share - 1.0;
             if rest < 1.0 { &mut small } else { &mut large }.push((high, rest));
         }
-        // Whoever is left differs from 1 by rounding only.
+        // The rest differs from 1 by rounding alone.
         Some(AliasTable { bins })
     }
 
@@ -64,7 +64,8 @@ impl AliasTable {
     /// Draws an index.
     #[inline]
     pub fn sample(&self, u: f32) -> DiscreteSample {
-        // In double precision, as a large table leaves few bits of `u` for the place within a bin.
+        // In double precision, as a large table leaves few bits of `u` for the position within a
+        // bin.
         let scaled = u as f64 * self.bins.len() as f64;
         let bin = (scaled as usize).min(self.bins.len() - 1);
         let within = (scaled - bin as f64) as f32;

@@ -1,16 +1,15 @@
-//! Choosing one of a few things with chances proportional to given weights, by running through
-//! them.
+//! Sampling a small discrete distribution by a linear search.
 
 use math::ONE_MINUS_EPSILON;
 
-/// One of many things, drawn with a known probability.
+/// A sample of a discrete distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteSample {
-    /// Which one.
+    /// The index.
     pub index: usize,
     /// The probability with which it is drawn.
     pub pmf: f32,
-    /// A number in [0, 1) that is again uniform, whatever was drawn.
+    /// `u` remapped: uniform in [0, 1) and independent of the index.
     pub u_remapped: f32,
 }
 
@@ -22,7 +21,7 @@ pub fn sample_discrete(weights: &[f32], u: f32) -> Option<DiscreteSample> {
     let mut below = 0.0;
     let mut chosen = None;
     for (index, &weight) in weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
-        // Rounding may leave the target above all sums: then the last weight above 0 stays chosen.
+        // Rounding may leave the target above all sums: then the last weight above 0 is chosen.
         let u_remapped = ((target - below) / weight).clamp(0.0, ONE_MINUS_EPSILON);
         chosen = Some(DiscreteSample { index, pmf: weight / total, u_remapped });
         below += weight;

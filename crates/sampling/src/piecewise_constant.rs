@@ -13,8 +13,8 @@ pub struct PiecewiseConstant1d {
     values: Box<[f32]>,
     /// The cumulative distribution at the cells' edges, from 0 to 1.
     cdf: Box<[f32]>,
-    /// For each of as many equal parts of [0, 1) as there are cells, the first cell that may be
-    /// found from there on.
+    /// The guide table: for each of as many equal parts of [0, 1) as there are cells, the first
+    /// cell to search from.
     guide: Box<[u32]>,
     min: f32,
     max: f32,
@@ -62,7 +62,7 @@ impl PiecewiseConstant1d {
         self.integral
     }
 
-    /// A place, its density per length, and its cell.
+    /// A position, its density per length, and its cell.
     #[inline]
     pub fn sample(&self, u: f32) -> (f32, f32, usize) {
         let u = u.clamp(0.0, ONE_MINUS_EPSILON);
@@ -101,14 +101,14 @@ impl PiecewiseConstant1d {
     }
 }
 
-/// Which of `parts` equal parts of [0, 1) holds `u`.
+/// Which of `parts` equal parts of [0, 1) contains `u`.
 #[inline]
 fn part(u: f32, parts: usize) -> usize {
     ((u * parts as f32) as usize).min(parts - 1)
 }
 
-/// The guide table of a cumulative distribution: from its entry on, the right cell is two steps
-/// away in the mean, whatever the distribution [Chen 1974].
+/// The guide table of a cumulative distribution: from its entry, a linear search takes two steps on
+/// average, whatever the distribution [Chen 1974].
 fn guide(cdf: &[f32]) -> Box<[u32]> {
     let parts = cdf.len() - 1;
     let mut cell = 0;
@@ -122,7 +122,7 @@ fn guide(cdf: &[f32]) -> Box<[u32]> {
         .collect()
 }
 
-/// A density over a rectangle: a row chosen by its sum, then a place in it.
+/// A density over a rectangle: the marginal of the rows, then a row's conditional density.
 #[derive(Clone, Debug)]
 pub struct PiecewiseConstant2d {
     domain: Bounds2,
@@ -161,7 +161,7 @@ impl PiecewiseConstant2d {
         self.marginal.integral()
     }
 
-    /// A place, its density per area, and its cell as column and row.
+    /// A position, its density per area, and its cell as column and row.
     #[inline]
     pub fn sample(&self, u: Vec2) -> (Vec2, f32, [usize; 2]) {
         let (y, pdf_y, row) = self.marginal.sample(u.y);

@@ -1,9 +1,9 @@
-//! Keeping one of a stream of weighted samples, with probability proportional to its weight,
-//! without storing the stream [Chao 1982], [Pharr 2023 §A.2].
+//! Weighted reservoir sampling: one sample of a stream, with probability proportional to its
+//! weight, without storing the stream [Chao 1982], [Pharr 2023 §A.2].
 
 use crate::Rng;
 
-/// One kept sample and the sum of all weights that came by.
+/// The kept sample, and the sum of all weights.
 #[derive(Clone, Debug)]
 pub struct WeightedReservoir<T> {
     rng: Rng,
@@ -17,13 +17,13 @@ impl<T> WeightedReservoir<T> {
         WeightedReservoir { rng: Rng::from_sequence(seed), weight_sum: 0.0, kept: None }
     }
 
-    /// Offers a sample; one without positive weight is never kept. Returns whether it was kept for
+    /// Adds a sample, which is never kept without a positive weight; returns whether it is kept for
     /// now.
     pub fn add(&mut self, sample: T, weight: f32) -> bool {
         self.add_with(weight, || sample)
     }
 
-    /// As [`add`](Self::add), with a sample that is made only if it is kept.
+    /// [`add`](Self::add) with a sample that is computed only if it is kept.
     pub fn add_with(&mut self, weight: f32, sample: impl FnOnce() -> T) -> bool {
         if weight.is_nan() || weight <= 0.0 {
             return false;
@@ -36,7 +36,7 @@ impl<T> WeightedReservoir<T> {
         keep
     }
 
-    /// Offers all that another reservoir has seen.
+    /// Merges another reservoir.
     pub fn merge(&mut self, other: WeightedReservoir<T>) {
         let total = other.weight_sum;
         if let Some((sample, weight)) = other.kept
@@ -52,12 +52,12 @@ impl<T> WeightedReservoir<T> {
         self.kept.as_ref().map(|(sample, _)| sample)
     }
 
-    /// The probability with which the kept sample was to be kept; 0 if there is none.
+    /// The probability of the kept sample; 0 if there is none.
     pub fn sample_probability(&self) -> f32 {
         self.kept.as_ref().map_or(0.0, |(_, weight)| weight / self.weight_sum)
     }
 
-    /// The sum of the weights that came by.
+    /// The sum of all weights.
     pub fn weight_sum(&self) -> f32 {
         self.weight_sum
     }

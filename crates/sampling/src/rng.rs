@@ -13,7 +13,7 @@ pub struct Rng {
 }
 
 impl Rng {
-    /// The generator of a sequence, begun at an offset into its period.
+    /// The generator of a sequence, at an offset into its period.
     #[inline]
     pub fn new(sequence: u64, offset: u64) -> Rng {
         let mut rng = Rng { state: 0, increment: (sequence << 1) | 1 };
@@ -23,7 +23,7 @@ impl Rng {
         rng
     }
 
-    /// The generator of a sequence, begun at a place that depends on the sequence alone.
+    /// The generator of a sequence, at an offset that depends on the sequence alone.
     #[inline]
     pub fn from_sequence(sequence: u64) -> Rng {
         Rng::new(sequence, mix_bits(sequence))
@@ -44,8 +44,7 @@ impl Rng {
         unit_interval(self.uniform_u32())
     }
 
-    /// Skips `count` words, in time proportional to the logarithm of `count`; a wrapped negative
-    /// number steps back.
+    /// Skips `count` words in time O(log `count`); a wrapped negative number steps back.
     pub fn advance(&mut self, count: u64) {
         let (mut multiplier, mut increment) = (MULTIPLIER, self.increment);
         let (mut total_multiplier, mut total_increment) = (1u64, 0u64);

@@ -42,8 +42,8 @@ pub struct CompiledView {
 }
 
 impl View {
-    /// Compiles camera, resolution, number of samples and options of a description; the rest of it is
-    /// not looked at. `world_from_render` is the render space of the scene to be viewed:
+    /// Compiles camera, resolution, number of samples and options of a description; the rest of it
+    /// is not looked at. `world_from_render` is the render space of the scene to be viewed:
     /// [`Scene::world_from_render`](crate::Scene::world_from_render), or, before it is compiled,
     /// [`world_from_render`]. Returns all errors and warnings if there is an error.
     pub fn compile(desc: &SceneDesc, world_from_render: DMat4) -> Result<CompiledView, Vec<Diagnostic>> {
@@ -72,8 +72,8 @@ pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
     camera::world_from_render(&desc.camera.camera_from_world, desc.options.render_space)
 }
 
-/// How many samples a description gives a pixel: of Metropolis, mutations; else those of the sampler,
-/// of which Sobol' sequences over the whole image round up to a power of two.
+/// How many samples a description gives a pixel: of Metropolis, mutations; else those of the
+/// sampler, of which Sobol' sequences over the whole image round up to a power of two.
 pub fn samples_per_pixel(desc: &SceneDesc) -> u32 {
     if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
         return mlt.mutations_per_pixel.max(1) as u32;

@@ -195,6 +195,41 @@ fn irradiance_is_the_same_by_light_and_by_direction() {
 }
 
 #[test]
+fn a_panorama_and_the_square_made_of_it_give_the_same_light() {
+    // A brightness that tells directions apart, also mirrored and with axes exchanged.
+    let brightness = |w: Vec3| 2.0 + w.x + 0.5 * w.y + 0.2 * w.z;
+    let size = [128, 64];
+    let panorama = rgb_image(size[0], size[1], |x, y| {
+        let st = Vec2::new((x as f32 + 0.5) / size[0] as f32, (y as f32 + 0.5) / size[1] as f32);
+        [brightness(Projection::LatitudeLongitude.direction(st)); 3]
+    });
+    let square = panorama.image.reproject(Projection::EqualArea).unwrap();
+    let back = square.reproject(Projection::LatitudeLongitude).unwrap();
+    let cases = [&panorama.image, &square, &back].map(|image| {
+        let pixel = |x, y| image.rgb(x, y);
+        let scene = scene(&image_sky_of([image.width(), image.height()], None, pixel));
+        Case { name: "panorama", scene }
+    });
+    let from = references()[0];
+    let mut random = Random::new(7);
+    let light_from_render = Transform::from_f64(placement()).unwrap().inverse();
+    let white = arriving(&scene(&image_sky(1, None, |_, _| [1.0; 3])), &from, Vec3::Z);
+    for _ in 0..200 {
+        let w = uniform_direction(&mut random);
+        let expected = f64::from(brightness(light_from_render.vector(w).normalize()));
+        let radiance = cases.each_ref().map(|case| arriving(&case.scene, &from, w) / white);
+        // Neighbouring pixels differ by 0.06 at most.
+        assert!(radiance.iter().all(|found| (found - expected).abs() < 0.1), "{w}: {expected} {radiance:?}");
+    }
+    for n in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::new(-1.0, -1.0, -1.0).normalize()] {
+        let [original, square, back] =
+            cases.each_ref().map(|case| by_light(case, &from, n, 20_000, &mut random));
+        welch_test(&original, &square, 8).unwrap_or_else(|e| panic!("{n}: {e}"));
+        welch_test(&original, &back, 8).unwrap_or_else(|e| panic!("{n}: {e}"));
+    }
+}
+
+#[test]
 fn incomplete_samples_and_directions_make_a_whole() {
     let cases = infinite_lights();
     let (n, from) = (Vec3::new(0.1, 0.3, 1.0).normalize(), references()[0]);

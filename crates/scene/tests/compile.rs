@@ -29,7 +29,7 @@ fn with_parameter<T>(value: T, name: &'static str, start: u32) -> Stated<T> {
     Stated::new(value, Origin { span: span(1000), parameters: vec![(name, span(start))] })
 }
 
-fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
+fn all_diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     let errors = |diagnostics: Vec<Diagnostic>| {
         assert!(diagnostics.iter().any(Diagnostic::is_error));
         diagnostics
@@ -40,6 +40,13 @@ fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
         compile(desc).map_or_else(errors, |scene| scene.warnings),
     ]
     .concat()
+}
+
+/// Without those of scenes without light, which have a test of their own.
+fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
+    let mut all = all_diagnostics(desc);
+    all.retain(|diagnostic| !matches!(diagnostic.code, "empty-scene" | "no-light"));
+    all
 }
 
 /// The one message about a scene.
@@ -215,6 +222,48 @@ fn lights_without_sense_are_errors() {
         desc.lights.push_stated(with_parameter(kind.into(), "I", 10));
     });
     check(&unnamed, Severity::Error, "invalid-value", "there is no spectrum named `no-such`", 10);
+}
+
+#[test]
+fn materials_without_sense_are_errors() {
+    let material = |kind: MaterialKind, name| {
+        with(|desc| {
+            desc.materials.push_stated(with_parameter(kind.into(), name, 4));
+        })
+    };
+    let message = "an index of refraction must be above 0";
+    for eta in [
+        0.0.into(),
+        SpectrumDesc::from(-1.5),
+        SpectrumDesc::rgb(0.0, 0.0, 0.0),
+        SpectrumDesc::Samples([(400.0, 1.5), (700.0, 0.0)].into()),
+    ] {
+        let roughness = RoughnessDesc::default();
+        let glass = MaterialKind::Dielectric { eta: eta.clone(), roughness };
+        check(&material(glass, "eta"), Severity::Error, "invalid-value", message, 4);
+        let thin = MaterialKind::ThinDielectric { eta };
+        check(&material(thin, "eta"), Severity::Error, "invalid-value", message, 4);
+    }
+    let rough = |value: f32| {
+        let roughness = RoughnessDesc { u: value.into(), v: 0.5.into(), remap: true };
+        MaterialKind::Conductor(ConductorDesc { roughness, ..ConductorDesc::default() })
+    };
+    let message = "roughness cannot be negative, as -0.1 is";
+    for name in ["roughness", "uroughness"] {
+        check(&material(rough(-0.1), name), Severity::Error, "invalid-value", message, 4);
+    }
+    let message = "roughness goes from 0 to 1; 2 is rougher than that";
+    check(&material(rough(2.0), "uroughness"), Severity::Warning, "roughness-range", message, 4);
+    let leaf = |scale| MaterialKind::DiffuseTransmission {
+        reflectance: 0.25.into(),
+        transmittance: 0.25.into(),
+        scale,
+    };
+    let message = "NaN is no factor on a reflectance";
+    check(&material(leaf(f32::NAN), "scale"), Severity::Error, "invalid-value", message, 4);
+    let message = "the values of a spectrum must be at most 1e30";
+    let bright = MaterialKind::Diffuse { reflectance: SpectrumDesc::Constant(1e35).into() };
+    check(&material(bright, "reflectance"), Severity::Error, "invalid-value", message, 4);
 }
 
 #[test]
@@ -627,4 +676,32 @@ fn hits_of_instances_find_the_light_that_was_sampled() {
         }
     }
     assert_eq!(ids.len(), 15);
+}
+
+#[test]
+fn scenes_without_light_say_so() {
+    let codes = |desc: &SceneDesc| all_diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
+    assert_eq!(codes(&SceneDesc::default()), ["empty-scene"]);
+    assert_eq!(codes(&with(|desc| desc.shapes.push(sphere(1.0).into()))), ["no-light"]);
+    let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
+    assert_eq!(codes(&with(|desc| desc.lights.push(point.into()))), [""; 0]);
+}
+
+#[test]
+fn brightness_that_makes_no_sense_is_refused() {
+    let light = |scale, power| {
+        with(|desc| {
+            let kind = LightKind::Point { intensity: 1.0.into(), power, from: Vec3::ZERO };
+            desc.lights.push_stated(with_parameter(LightDesc { scale, ..kind.into() }, "scale", 7));
+        })
+    };
+    let refused = |desc: &SceneDesc, message| check(desc, Severity::Error, "invalid-value", message, 7);
+    refused(&light(-2.0, None), "`scale` of a light is -2; it must be finite and not negative");
+    let codes = |desc: &SceneDesc| diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
+    assert_eq!(codes(&light(1.0, Some(-1.0))), ["invalid-value"]);
+    let glaring = with(|desc| {
+        let light = AreaLightDesc { scale: f32::MAX, ..AreaLightDesc::new(1e-20.into()) };
+        desc.area_lights.push(light);
+    });
+    assert_eq!(codes(&glaring)[0], "invalid-value");
 }

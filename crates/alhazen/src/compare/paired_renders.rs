@@ -55,8 +55,9 @@ impl PairedRenders {
         Ok((Self { pair }, warnings))
     }
 
-    /// Renders until the budget is used up, and calls `at_checkpoint` at pass counts that grow geometrically, and at the end: also where it is
-    /// cancelled, unless no pass was done by both until then. `progress` hears of each pass of both.
+    /// Renders until the budget is used up, and calls `at_checkpoint` at pass counts that grow
+    /// geometrically, and at the end: also where it is cancelled, unless no pass was done by both
+    /// until then. `progress` hears of each pass of both.
     pub fn render(
         &mut self,
         budget: Budget,

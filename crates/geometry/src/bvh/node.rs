@@ -238,8 +238,8 @@ impl WideNode {
         Bounds3 { min: corner(0), max: corner(3) }
     }
 
-    /// Where each ray of a packet enters the box of a child, and a bit for each that does before its
-    /// `t_max`.
+    /// Where each ray of a packet enters the box of a child, and a bit for each that does before
+    /// its `t_max`.
     #[inline(always)]
     pub fn intersect_rays<V: Vector<WIDTH>>(
         &self,

@@ -3,8 +3,9 @@
 //! For the nearest hit, children are visited front to back: the nearest at once, the others from a
 //! stack, where each has the distance of its box, so that it is skipped when a nearer hit has been
 //! found. For any hit, the order is a heuristic: by distance where the ray has an end, since such
-//! rays test visibility of a point; where it has none, the order of the builder, which puts children
-//! with large primitives last, where they are visited first. Children on the stack are prefetched.
+//! rays test visibility of a point; where it has none, the order of the builder, which puts
+//! children with large primitives last, where they are visited first. Children on the stack are
+//! prefetched.
 
 #![allow(unsafe_code)]
 
@@ -229,8 +230,8 @@ unsafe fn descend<S: Simd, const ANY: bool>(
     top: &mut *mut StackEntry,
     prefetch_child: impl Fn(Child),
 ) -> Child {
-    // SAFETY: `slabs` is the proof of the instruction set; the caller promises a stack with capacity
-    // for the tree.
+    // SAFETY: `slabs` is the proof of the instruction set; the caller promises a stack with
+    // capacity for the tree.
     unsafe {
         let (near, hits) = node.intersect(slabs, S::F32x16::splat(t_max), S::F32x16::splat(0.0));
         if hits == 0 {

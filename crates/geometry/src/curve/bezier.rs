@@ -1,4 +1,4 @@
-//! Cubic Bézier segments: what curves of other bases are turned into, and how they are cut.
+//! Cubic Bézier segments: conversion from other bases, and subdivision.
 //!
 //! Everything follows from the blossom b(r, s, t), which is symmetric, affine in each argument, and
 //! has p(u) = b(u, u, u): the part of a segment between u₀ and u₁ has the control points
@@ -9,7 +9,7 @@ use math::{DVec3, Point3};
 /// The control points of a cubic Bézier segment.
 pub(super) type Cubic = [DVec3; 4];
 
-/// How control points make a curve.
+/// The basis of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplineBasis {
     /// Bézier segments that share their ends: degree + 1 points, then degree more for every further
@@ -19,8 +19,8 @@ pub enum SplineBasis {
     BSpline,
 }
 
-/// The cubic Bézier segments of a curve of degree 2 or 3; points that do not fill a segment are
-/// left out.
+/// The cubic Bézier segments of a curve of degree 2 or 3; points of an incomplete segment are
+/// ignored.
 pub fn bezier_segments(points: &[Point3], degree: usize, basis: SplineBasis) -> Vec<[Point3; 4]> {
     let step = match basis {
         SplineBasis::Bezier => degree,
@@ -39,7 +39,7 @@ pub fn bezier_segments(points: &[Point3], degree: usize, basis: SplineBasis) -> 
     points.windows(degree + 1).step_by(step).map(cubic).collect()
 }
 
-/// The same parabola as a cubic.
+/// A quadratic segment as a cubic one.
 fn elevated([a, b, c]: [DVec3; 3]) -> Cubic {
     [a, a.lerp(b, 2.0 / 3.0), b.lerp(c, 1.0 / 3.0), c]
 }
@@ -51,7 +51,7 @@ fn from_b_spline([a, b, c, d]: Cubic) -> Cubic {
     [before.midpoint(first), first, second, second.midpoint(after)]
 }
 
-/// The part between two parameters. Parts that meet have the same end, bit for bit.
+/// The part between two parameters. Adjacent parts have the same end point, bit for bit.
 pub(super) fn part(p: &Cubic, [u0, u1]: [f64; 2]) -> Cubic {
     [blossom(p, [u0; 3]), blossom(p, [u0, u0, u1]), blossom(p, [u0, u1, u1]), blossom(p, [u1; 3])]
 }

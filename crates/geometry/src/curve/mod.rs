@@ -1,19 +1,19 @@
 //! Curves: hair, fur, grass, ribbons.
 //!
-//! A curve is swept by a line across it whose length, the width, changes linearly from end to end.
-//! The line faces the ray ([`CurveProfile::Flat`]), does so but is shaded as the tube that it
-//! stands for ([`CurveProfile::Cylinder`]), or lies across normals that turn from end to end
-//! ([`CurveProfile::Ribbon`]). u goes along a segment, v across it; both start at 0 and end at 1.
+//! A curve is swept by a line segment across it, whose length, the width, changes linearly from end
+//! to end. It faces the ray ([`CurveProfile::Flat`]), faces the ray with the shading normals of a
+//! tube ([`CurveProfile::Cylinder`]), or is perpendicular to interpolated normals
+//! ([`CurveProfile::Ribbon`]). u ∈ [0, 1] runs along a segment, v ∈ [0, 1] across it.
 //!
-//! A ray is met in a frame whose origin is the ray's and whose z axis is its direction. There the
-//! curve is halved, leaving out what the ray's box does not meet, until its parts bend by less than
-//! a twentieth of the width; such a part is met where its point nearest to the origin of (x, y), by
-//! the chord, is within half the width. The depth for that bound follows from the second
-//! differences of the control points ([Wang 1984]). All of this is as in [Pharr 2023 §6.7], so that
-//! the surface is known to within the width only: that is the error of a hit, and rays spawned
-//! there start clear of the curve.
+//! Intersection works in a frame with the ray's origin and its direction as z axis. The curve is
+//! bisected, without the parts whose boxes the ray misses, until the parts deviate from straight
+//! lines by less than a twentieth of the width; such a part is hit where the point of its chord
+//! nearest to the z axis is within half the width. The depth for that bound follows from the second
+//! differences of the control points ([Wang 1984]). All of this is as in [Pharr 2023 §6.7]: the
+//! surface is known to within the width only, which is the error of a hit, so that spawned rays
+//! start clear of the curve.
 //!
-//! Points and widths are in object space, the arithmetic is in doubles.
+//! Points and widths are in object space; arithmetic is in doubles.
 
 mod bezier;
 
@@ -25,11 +25,11 @@ use math::{Bounds3, DVec3, Normal3, Point3, Ray, Transform, Vec2, Vec3, coordina
 
 pub use bezier::{SplineBasis, bezier_segments};
 
-/// A part may bend by this fraction of the width and count as straight.
+/// A part that deviates from its chord by this fraction of the width counts as straight.
 const FLATNESS: f64 = 0.05;
-/// A part is never halved more often than this.
+/// The most bisections of a part.
 const DEEPEST: i32 = 10;
-/// Segments are not cut into more primitives than this in all.
+/// The most primitives of curves with split segments.
 const MOST_PARTS: usize = 1 << 25;
 
 /// A cubic Bézier segment of a curve.
@@ -41,14 +41,14 @@ pub struct CurveSegment {
     pub width: [f32; 2],
 }
 
-/// What is swept along a curve.
+/// The profile swept along a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveProfile {
-    /// A line that always faces the ray.
+    /// A line that faces the ray.
     Flat,
-    /// A line that always faces the ray, with the normals of a tube.
+    /// A line that faces the ray, with the normals of a tube.
     Cylinder,
-    /// A line at right angles to normals, given at the ends of every segment.
+    /// A line perpendicular to normals, given at the ends of every segment.
     Ribbon(Vec<[Normal3; 2]>),
 }
 
@@ -91,17 +91,17 @@ impl Curves {
         }
     }
 
-    /// How many primitives there are.
+    /// The number of primitives.
     pub fn len(&self) -> usize {
         self.segments.len() << self.split_depth
     }
 
-    /// Whether there is nothing to hit.
+    /// Whether there is no primitive.
     pub fn is_empty(&self) -> bool {
         self.segments.is_empty()
     }
 
-    /// Bytes of memory taken.
+    /// Bytes of memory.
     pub(crate) fn bytes(&self) -> usize {
         let normals = match &self.profile {
             CurveProfile::Ribbon(normals) => size_of_val(&**normals),
@@ -122,7 +122,7 @@ impl Curves {
         })
     }
 
-    /// The nearest point where the ray meets a primitive at 0 < t < `t_max`.
+    /// The nearest hit on a primitive at 0 < t < `t_max`.
     pub fn intersect(&self, primitive: u32, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
         let (segment, u) = self.part(primitive);
         let (o, d) = self.placement.ray_inward(ray);
@@ -145,7 +145,7 @@ impl Curves {
         search.hit
     }
 
-    /// What is known of the surface where `ray` met a primitive.
+    /// The surface at a hit of `ray` on a primitive.
     pub fn surface(&self, primitive: u32, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         let (segment, _) = self.part(primitive);
         let (o, d) = self.placement.ray_inward(ray);
@@ -181,7 +181,7 @@ impl Curves {
         )
     }
 
-    /// The segment of a primitive, and which part of it that is.
+    /// The segment of a primitive, and the range of its parameters.
     fn part(&self, primitive: u32) -> (&CurveSegment, [f64; 2]) {
         let parts = 1u32 << self.split_depth;
         let i = f64::from(primitive % parts);
@@ -189,13 +189,13 @@ impl Curves {
         (&self.segments[(primitive / parts) as usize], [i * size, (i + 1.0) * size])
     }
 
-    /// The normal of a ribbon: turned at constant speed from one end of its segment to the other.
+    /// The normal of a ribbon: spherical linear interpolation between the ends of its segment.
     fn ribbon_normal(&self, primitive: u32, u: f64) -> Option<DVec3> {
         let CurveProfile::Ribbon(normals) = &self.profile else { return None };
         let [start, end] = normals[(primitive >> self.split_depth) as usize].map(|n| n.as_dvec3());
         let angle = start.angle_between(end);
         let sin = angle.sin();
-        // Towards none or half a turn, where the plane to turn in is lost.
+        // An angle of 0 or π, where the plane of rotation is undefined.
         if sin.is_nan() || sin < 1e-6 {
             return Some(if u < 0.5 { start } else { end });
         }
@@ -214,10 +214,10 @@ impl CurveSegment {
     }
 }
 
-/// Looks for the nearest hit.
+/// The search for the nearest hit.
 struct Search<'a> {
     segment: &'a CurveSegment,
-    /// By how much the width at u seems narrower than it is.
+    /// The factor by which the width at u appears narrower.
     facing: &'a dyn Fn(f64) -> f64,
     /// Of the ray's direction.
     length: f64,
@@ -277,14 +277,14 @@ impl Search<'_> {
     }
 }
 
-/// How often a curve is halved.
+/// The number of bisections of a curve.
 fn depth(p: &Cubic, width: f64) -> i32 {
     let bend = |i: usize| (p[i] - p[i + 1] * 2.0 + p[i + 2]).abs().max_element();
     let ratio = std::f64::consts::SQRT_2 * 6.0 * bend(0).max(bend(1)) / (8.0 * FLATNESS * width);
     (ratio.log2().floor() as i32 / 2).clamp(0, DEEPEST)
 }
 
-/// A unit vector at right angles to a unit vector.
+/// A unit vector perpendicular to a unit vector.
 fn across(z: DVec3) -> DVec3 {
     coordinate_system(z.as_vec3()).0.as_dvec3()
 }

@@ -1,6 +1,6 @@
 //! The bilinear patch p(u, v) = (1−u)(1−v)·p₀₀ + u(1−v)·p₁₀ + (1−u)v·p₀₁ + uv·p₁₁.
 //!
-//! A ray meets the line of constant u when the three vectors between them are coplanar, which is a
+//! A ray meets a line of constant u where the three vectors between them are coplanar, which is a
 //! quadratic equation in u; v and t follow from the nearest points of ray and line
 //! ([Reshetov 2019]; [Pharr 2023 §6.6]). Of a parallelogram, which most patches are, all is linear.
 //! It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the
@@ -30,7 +30,7 @@ pub struct BilinearPatch {
     n: Option<[Normal3; 4]>,
     uv: Option<[Vec2; 4]>,
     flips: bool,
-    /// How far a point computed from (u, v) may be from the patch before it is rounded to floats.
+    /// The error of a point computed from (u, v) before it is rounded to floats.
     error: DVec3,
     is_rectangle: bool,
     flat: Option<Flat>,

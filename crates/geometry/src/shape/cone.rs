@@ -1,8 +1,8 @@
-//! The cone x² + y² = (r/h)²·(h − z)² with 0 ≤ z ≤ h and φ ≤ φ_max: a circle at z = 0 drawn
-//! together to a point at z = h, without a base.
+//! The cone x² + y² = (r/h)²·(h − z)² with 0 ≤ z ≤ h and φ ≤ φ_max: with a circle at
+//! z = 0 and its apex at z = h, without a base.
 //!
-//! p(u, v) = ((1 − v)·r cos φ, (1 − v)·r sin φ, v·h), φ = u·φ_max. Sampled by area: what lies above
-//! v has (1 − v)² of it ([Pharr 2016 §3.5]).
+//! p(u, v) = ((1 − v)·r cos φ, (1 − v)·r sin φ, v·h), φ = u·φ_max. Sampled by area: the part above
+//! v has the fraction (1 − v)² ([Pharr 2016 §3.5]).
 
 use super::quadric::{Local, Quadric, first_hit, phi, revolved_roots, swept, unrounded};
 use super::sample::{ShapeHit, ShapeSample};
@@ -20,7 +20,7 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// A cone on the object's xy plane with its point at `height` above it, up to an angle in
+    /// A cone on the object's xy plane with its apex at `height` above it, up to an angle in
     /// degrees.
     pub fn new(
         render_from_object: &Transform,
@@ -61,7 +61,7 @@ impl Cone {
         let below_tip = 1.0 - q.z / self.height;
         let rim = DVec3::new(cos, sin, 0.0) * self.radius;
         let p = rim * below_tip + DVec3::Z * q.z;
-        // A direction for the tangents at the tip.
+        // A direction for the tangents at the apex.
         let around = DVec3::new(-rim.y, rim.x, 0.0) * self.phi_max;
         let local = Local {
             p,
@@ -91,14 +91,14 @@ impl Cone {
         self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
-    /// With the origin at the tip, x² + y² = (r/h)²·z².
+    /// With the origin at the apex, x² + y² = (r/h)²·z².
     fn roots(&self, o: DVec3, d: DVec3) -> Option<[f64; 2]> {
         let slope = self.radius / self.height;
         let tip = DVec3::Z * self.height;
         revolved_roots([0.0, 0.0, slope * slope], o - tip, d, -0.5 * tip)
     }
 
-    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    /// A ray along the normal that hits the point with parameters (u, v) at t = 1.
     pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
         let (p, n) = self.at(uv);
         self.quadric.ray_to(p, n, time)

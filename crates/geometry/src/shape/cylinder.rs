@@ -1,4 +1,4 @@
-//! The cylinder x² + y² = r² with z_min ≤ z ≤ z_max and φ ≤ φ_max, without ends.
+//! The cylinder x² + y² = r² with z_min ≤ z ≤ z_max and φ ≤ φ_max, without caps.
 //!
 //! p(u, v) = (r cos φ, r sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled by area
 //! ([Pharr 2023 §6.3]).
@@ -8,7 +8,7 @@ use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 
-/// A tube without ends.
+/// A cylinder without caps.
 #[derive(Clone, Debug)]
 pub struct Cylinder {
     quadric: Quadric,
@@ -21,7 +21,7 @@ pub struct Cylinder {
 const ACROSS: DVec3 = DVec3::new(1.0, 1.0, 0.0);
 
 impl Cylinder {
-    /// A tube around the object's z axis between two heights, up to an angle in degrees.
+    /// A cylinder around the object's z axis between two heights, up to an angle in degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,
@@ -83,7 +83,7 @@ impl Cylinder {
         self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
-    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    /// A ray along the normal that hits the point with parameters (u, v) at t = 1.
     pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
         let (p, n) = self.at(uv);
         self.quadric.ray_to(p, n, time)

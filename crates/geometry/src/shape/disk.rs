@@ -1,4 +1,4 @@
-//! The disk z = h with r_i ≤ √(x² + y²) ≤ r and φ ≤ φ_max; met at t = (h − o_z)/d_z, and not at all
+//! The disk z = h with r_i ≤ √(x² + y²) ≤ r and φ ≤ φ_max; hit at t = (h − o_z)/d_z, and not at all
 //! when d_z = 0.
 //!
 //! p(u, v) = (ρ cos φ, ρ sin φ, h), φ = u·φ_max, ρ = r − v·(r − r_i). Sampled by area: a whole disk
@@ -11,7 +11,7 @@ use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 use sampling::warp::sample_uniform_disk_concentric;
 use std::f64::consts::TAU;
 
-/// A flat disk or ring, or a sector of it.
+/// A disk or annulus, or a sector of it.
 #[derive(Clone, Debug)]
 pub struct Disk {
     quadric: Quadric,
@@ -54,7 +54,7 @@ impl Disk {
     pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         let t = (self.height - o.z) / d.z;
-        // Written so that NaN fails.
+        // NaN fails.
         if !(t > 0.0 && (t as f32) < t_max) {
             return None;
         }
@@ -110,7 +110,7 @@ impl Disk {
         self.quadric.normal(DVec3::Z)
     }
 
-    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    /// A ray along the normal that hits the point with parameters (u, v) at t = 1.
     pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
         let (p, n) = self.at(uv);
         self.quadric.ray_to(p, n, time)

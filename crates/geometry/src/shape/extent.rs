@@ -1,13 +1,12 @@
-//! Boxes along the axes, whose sides may be infinitely far away, and where rays enter and leave
-//! them.
+//! Axis-aligned boxes with sides that may be at infinity, and clipping of rays to them.
 
 use math::DVec3;
 
-/// Where a ray passes through the boundary of a solid.
+/// A crossing of a ray and the boundary of a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crossing {
     pub t: f64,
-    /// Through which face, counted over a whole solid.
+    /// The face, numbered over a whole solid.
     pub face: u32,
 }
 
@@ -46,7 +45,7 @@ impl Extent {
         (enter.t < leave.t).then_some([enter, leave])
     }
 
-    /// A point inside; the middle where there is one.
+    /// The centre; some point inside where there is none.
     pub fn center(&self) -> DVec3 {
         let middle = |min: f64, max: f64| match (min.is_finite(), max.is_finite()) {
             (true, true) => 0.5 * (min + max),

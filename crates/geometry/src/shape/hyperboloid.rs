@@ -1,10 +1,10 @@
 //! The hyperboloid of one sheet that the line from p₁ to p₂ sweeps around the z axis, up to an
 //! angle φ_max.
 //!
-//! p(u, v) = R(φ)·((1 − v)·p₁ + v·p₂), φ = u·φ_max, with R(φ) the turn around z. With e = p₂ − p₁
-//! and ē its part in the xy plane, x² + y² = w² + (|ē|/e_z)²·(z − z_w)²: the waist has the radius w
-//! and the height z_w. Lines in a plane with the axis sweep cones and cylinders; e_z must not be
-//! zero.
+//! p(u, v) = R(φ)·((1 − v)·p₁ + v·p₂), φ = u·φ_max, with R(φ) the rotation around z. With e = p₂ −
+//! p₁ and ē its part in the xy plane, x² + y² = w² + (|ē|/e_z)²·(z − z_w)²: the waist has the
+//! radius w and the height z_w. Lines in a plane with the axis sweep cones and cylinders; e_z must
+//! not be zero.
 //!
 //! Sampled by area: its element is √((e_z·w)² + (|e||ē|(v − v_w))²) dv dφ, whose integral has a
 //! closed form but its inverse none; that is found by Newton's method within a shrinking bracket
@@ -15,7 +15,7 @@ use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Point3, Ray, Transform, Vec2};
 
-/// What a straight line sweeps.
+/// A hyperboloid of one sheet.
 #[derive(Clone, Debug)]
 pub struct Hyperboloid {
     quadric: Quadric,
@@ -94,7 +94,7 @@ impl Hyperboloid {
         self.quadric.pdf_area(n, 1.0 / self.object_area())
     }
 
-    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    /// A ray along the normal that hits the point with parameters (u, v) at t = 1.
     pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
         let (p, n) = self.at(uv);
         self.quadric.ray_to(p, n, time)

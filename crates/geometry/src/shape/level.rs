@@ -1,4 +1,4 @@
-//! A point of a surface that is given as F(x, y, z) = 0 in object space.
+//! A point of a level set F(x, y, z) = 0 in object space.
 //!
 //! The normal is n = ∇F/|∇F|; along a tangent v it changes by (H·v − n·(n·H·v))/|∇F|, with H the
 //! second derivatives of F. The parameters are the spherical angles around a centre, u = φ/2π and v
@@ -10,14 +10,14 @@ use crate::surface::{SurfacePoint, any_tangents};
 use math::{DMat3, DVec3, Ray, Vec2};
 use std::f64::consts::{PI, TAU};
 
-/// A point of a surface, and how the surface goes on from there.
+/// A point of a level set, with derivatives of F.
 pub(super) struct Level {
     pub p: DVec3,
     pub gradient: DVec3,
     pub hessian: DMat3,
-    /// Around what the parameters turn.
+    /// The centre of the spherical angles.
     pub center: DVec3,
-    /// Along what the ray came.
+    /// The direction of the ray.
     pub d: DVec3,
 }
 
@@ -45,7 +45,7 @@ impl Level {
         let grad_u = DVec3::new(-sin, cos, 0.0) / (across * TAU);
         let grad_v = DVec3::new(-q.z * cos, -q.z * sin, across) / (radius * radius * PI);
         let determinant = n.dot(grad_u.cross(grad_v));
-        // Seen from the centre edge-on, a surface has no such tangents.
+        // A surface seen edge-on from the centre has no such tangents.
         if determinant.abs() > 1e-3 * grad_u.length() * grad_v.length() {
             [grad_v.cross(n) / determinant, n.cross(grad_u) / determinant]
         } else {
@@ -53,7 +53,7 @@ impl Level {
         }
     }
 
-    /// As seen from outside. The point is within `error` of the surface.
+    /// The surface point in render space. The point is within `error` of the surface.
     pub fn surface(&self, quadric: &Quadric, error: DVec3, ray: &Ray) -> SurfacePoint {
         let n = self.normal();
         let tangents = self.tangents(n);

@@ -1,4 +1,4 @@
-//! Triangles that share vertices.
+//! Triangle meshes with shared vertices.
 
 use super::triangle::Triangle;
 use lanes::prefetch;
@@ -6,8 +6,7 @@ use math::{Bounds3, Normal3, Point3, Transform, Vec2, Vector3};
 use std::fmt;
 use std::sync::Arc;
 
-/// What vertices may carry beside a position, one value per vertex. Normals and tangents are in
-/// object space.
+/// Optional vertex attributes, one value per vertex. Normals and tangents are in object space.
 #[derive(Clone, Debug, Default)]
 pub struct MeshAttributes {
     /// Shading normals, of any length.
@@ -18,29 +17,29 @@ pub struct MeshAttributes {
     pub uvs: Option<Arc<[Vec2]>>,
 }
 
-/// Why arrays are no mesh.
+/// Errors of the arrays of a mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MeshError {
-    /// A triangle names a vertex that there is not.
+    /// A triangle has a vertex index that does not exist.
     Index {
         /// The triangle.
         triangle: usize,
-        /// The vertex it names.
+        /// The vertex index.
         vertex: u32,
     },
-    /// An attribute has not one value per vertex.
+    /// An attribute does not have one value per vertex.
     AttributeLength {
-        /// Which attribute.
+        /// The attribute.
         attribute: &'static str,
-        /// How many values it has.
+        /// The number of values.
         values: usize,
-        /// How many vertices there are.
+        /// The number of vertices.
         vertices: usize,
     },
-    /// An edge that leads twice from one vertex to the same other, or to itself: three triangles
-    /// meet there, or two that are turned differently.
+    /// The mesh is not manifold at an edge: three triangles meet there, two with inconsistent
+    /// orientation, or its ends are the same vertex.
     Edge([u32; 2]),
-    /// A vertex at which parts meet that share no edge.
+    /// The mesh is not manifold at a vertex, where parts meet that share no edge.
     Vertex(u32),
     /// There are too many triangles.
     TooLarge,
@@ -81,8 +80,8 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Brings an object's triangles into render space. Arrays that the transform leaves alone are
-    /// shared, not copied.
+    /// Transforms an object's triangles to render space. Arrays that do not change are shared, not
+    /// copied.
     ///
     /// Given normals point to the outside; with `reverse_orientation`, to the inside.
     pub fn new(
@@ -136,9 +135,9 @@ impl TriangleMesh {
         })
     }
 
-    /// The same triangles with their vertices elsewhere, and with other shading normals (of any
-    /// length, towards the outside), all in render space. Texture coordinates stay; tangents, which
-    /// would have to turn, do not.
+    /// The same triangles with other positions and shading normals (of any length, towards the
+    /// outside), all in render space. Texture coordinates are kept; tangents, which would change
+    /// too, are not.
     pub fn moved(
         &self,
         positions: Arc<[Point3]>,
@@ -151,7 +150,7 @@ impl TriangleMesh {
         Ok(Self { positions, indices, normals, tangents: None, uvs, flips: self.flips })
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub fn len(&self) -> usize {
         self.indices.len()
     }
@@ -167,41 +166,41 @@ impl TriangleMesh {
         self.indices[triangle].map(|i| self.positions[i as usize])
     }
 
-    /// Whether the triangles of both have the same vertices, wherever these are.
+    /// Whether both have the same vertex indices.
     pub(crate) fn has_triangles_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.indices, &other.indices) || self.indices == other.indices
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     pub(crate) fn vertices(&self) -> usize {
         self.positions.len()
     }
 
-    /// Which vertices the corners of a triangle are.
+    /// The vertex indices of a triangle.
     #[inline]
     pub(crate) fn indices(&self, triangle: usize) -> [u32; 3] {
         self.indices[triangle]
     }
 
-    /// Where a vertex is.
+    /// The position of a vertex.
     #[inline]
     pub(crate) fn position(&self, vertex: u32) -> Point3 {
         self.positions[vertex as usize]
     }
 
-    /// Asks for the indices of a triangle, soon to be read.
+    /// Prefetches the indices of a triangle.
     #[inline(always)]
     pub(crate) fn prefetch_indices(&self, triangle: usize) {
         prefetch(&raw const self.indices[triangle]);
     }
 
-    /// Asks for the corners of a triangle, soon to be read.
+    /// Prefetches the corners of a triangle.
     #[inline(always)]
     pub(crate) fn prefetch_corners(&self, triangle: usize) {
         self.indices[triangle].iter().for_each(|&i| prefetch(&raw const self.positions[i as usize]));
     }
 
-    /// One triangle with all that its vertices carry.
+    /// One triangle with its vertex attributes.
     pub fn triangle(&self, triangle: usize) -> Triangle {
         let corners = self.indices[triangle];
         let pick = |values: &Arc<[Vector3]>| corners.map(|i| values[i as usize]);
@@ -217,7 +216,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Bytes of memory that the arrays take.
+    /// Bytes of memory of the arrays.
     pub fn bytes(&self) -> usize {
         let vectors =
             [&self.normals, &self.tangents].into_iter().flatten().map(|values| size_of_val(&**values));
@@ -231,7 +230,7 @@ impl TriangleMesh {
     }
 }
 
-/// Whether all that is given has one value per vertex.
+/// Checks that all attributes have one value per vertex.
 fn check_lengths(
     vertices: usize,
     lengths: impl IntoIterator<Item = (&'static str, Option<usize>)>,

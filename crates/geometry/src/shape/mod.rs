@@ -1,17 +1,15 @@
-//! Shapes: what a single primitive can do.
+//! Shapes: single primitives.
 //!
-//! Each shape is met by rays, describes its surface at a hit, and samples itself: by area
-//! ([`Shape::sample`]), or as seen from a point ([`Shape::sample_from`], by solid angle). Every
-//! sample has its density.
+//! Each shape can be intersected with rays, evaluates its surface at a hit, and can be sampled by
+//! area ([`Shape::sample`]) or by solid angle from a point ([`Shape::sample_from`]).
 //!
-//! - Quadrics and the plane live in canonical form in object space, where F(M⁻¹·r(t)) = 0 is
+//! - Quadrics and the plane are in canonical form in object space, where F(M⁻¹·r(t)) = 0 is
 //!   solved; z is their axis.
 //! - Triangles and patches have their vertices in render space.
 //! - A [`ShapeHit`]'s parameters are barycentric on a triangle (corners 1 and 2) and (u, v) on
 //!   other shapes; a [`SurfacePoint`]'s and a [`ShapeSample`]'s `uv` are texture coordinates, which
-//!   vertices may assign at will.
-//! - Where a surface covers a direction twice, the density of the direction is that of its nearest
-//!   point; the other is out of sight.
+//!   vertices may assign freely.
+//! - Where a direction from a point meets a shape twice, its density is that of the nearest hit.
 
 mod bilinear_patch;
 mod cone;
@@ -53,23 +51,23 @@ use math::{Bounds3, DirectionCone, Normal3, Point3, Ray, Vec2, Vec3, Vector3};
 /// Any shape.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// Ball, or a part of it.
+    /// Sphere, or a part of it.
     Sphere(Box<Sphere>),
-    /// Tube without ends.
+    /// Cylinder without caps.
     Cylinder(Box<Cylinder>),
     /// Cone without a base.
     Cone(Box<Cone>),
-    /// Bowl.
+    /// Paraboloid.
     Paraboloid(Box<Paraboloid>),
-    /// What a straight line sweeps.
+    /// Hyperboloid of one sheet.
     Hyperboloid(Box<Hyperboloid>),
-    /// Flat disk or ring.
+    /// Disk or annulus.
     Disk(Box<Disk>),
     /// Infinite plane.
     Plane(Box<Plane>),
-    /// Surface given by a formula.
+    /// Implicit surface of a formula.
     Implicit(Box<Implicit>),
-    /// Bodies combined.
+    /// Constructive solid geometry.
     Solid(Box<Solid>),
     /// Bilinear patch.
     BilinearPatch(Box<BilinearPatch>),
@@ -110,18 +108,18 @@ macro_rules! from_shape {
 from_shape!(Sphere Cylinder Cone Paraboloid Hyperboloid Disk Plane Implicit Solid BilinearPatch Triangle MovingTriangle);
 
 impl Shape {
-    /// A box around it; `None` when it has no end.
+    /// A box around it; `None` when it is unbounded.
     pub fn bounds(&self) -> Option<Bounds3> {
         each_shape!(self, shape => shape.bounds())
     }
 
-    /// The nearest point where the ray meets it at 0 < t < `t_max`.
+    /// The nearest hit at 0 < t < `t_max`.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
         each_shape!(self, shape => shape.intersect(ray, t_max))
     }
 
-    /// What is known of the surface where `ray` met it.
+    /// The surface at a hit of `ray`.
     pub fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
         match self {
             Self::Sphere(shape) => shape.surface(ray, hit),
@@ -139,9 +137,8 @@ impl Shape {
         }
     }
 
-    /// What is known of the surface where a [`ShapeHit`] has these parameters, seen from along its
-    /// normal; `None` of shapes that are not made of points with parameters in a square or
-    /// triangle: planes, formulas and solids.
+    /// The surface at the parameters of a [`ShapeHit`], seen along its normal; `None` for shapes
+    /// that are not parametrised over a square or triangle: planes, implicit surfaces and solids.
     pub fn surface_at(&self, uv: Vec2, time: f32) -> Option<SurfacePoint> {
         let ray = match self {
             Self::Sphere(shape) => shape.ray_to(uv, time),
@@ -150,7 +147,7 @@ impl Shape {
             Self::Paraboloid(shape) => shape.ray_to(uv, time),
             Self::Hyperboloid(shape) => shape.ray_to(uv, time),
             Self::Disk(shape) => shape.ray_to(uv, time),
-            // These look at the parameters alone.
+            // The ray matters for the time alone.
             Self::BilinearPatch(_) | Self::Triangle(_) | Self::MovingTriangle(_) => {
                 Ray::new(Vec3::ZERO, Vec3::Z, time)
             }
@@ -160,19 +157,18 @@ impl Shape {
         Some(SurfacePoint { wo: surface.n, ..surface })
     }
 
-    /// The area; infinite for the plane, 0 where points cannot be chosen evenly. Approximate where
-    /// a quadric's transform is no similarity, and for bent patches.
+    /// The area; infinite for the plane, 0 where points cannot be sampled uniformly. Approximate
+    /// where a quadric's transform is no similarity, and for curved patches.
     pub fn area(&self) -> f32 {
         each_shape!(self, shape => shape.area())
     }
 
-    /// A point with its density per area; `None` where the shape has no area, or no finite one.
+    /// A point with its density per area; `None` where the area is zero or infinite.
     pub fn sample(&self, u: Vec2) -> Option<ShapeSample> {
         each_shape!(self, shape => shape.sample(u)).filter(|s| s.pdf.is_finite() && s.pdf > 0.0)
     }
 
-    /// The density per area with which [`Shape::sample`] chooses its point `p`, where its unit
-    /// normal is `n`.
+    /// The density per area of [`Shape::sample`] at its point `p` with unit normal `n`.
     #[doc(alias = "pdf")]
     pub fn pdf_area(&self, p: Point3, n: Normal3) -> f32 {
         match self {
@@ -188,8 +184,8 @@ impl Shape {
         }
     }
 
-    /// A point with its density per solid angle around `reference`; `None` where no point can be
-    /// chosen.
+    /// A point with its density per solid angle from `reference`; `None` where no point can be
+    /// sampled.
     pub fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
         let special = match self {
             Self::Sphere(shape) => shape.sample_from(reference, u),
@@ -203,8 +199,8 @@ impl Shape {
         }
     }
 
-    /// The density per solid angle with which [`Shape::sample_from`] chooses what is first met
-    /// along `wi`; 0 where nothing is.
+    /// The density per solid angle of [`Shape::sample_from`] at the first hit along `wi`; 0 where
+    /// there is none.
     pub fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> f32 {
         let ray = reference.spawn_ray(wi);
         let Some(hit) = self.intersect(&ray, f32::INFINITY) else { return 0.0 };

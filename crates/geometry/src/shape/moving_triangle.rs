@@ -1,10 +1,10 @@
-//! A mesh whose vertices move: its shape is given at moments that are evenly spread over a time,
-//! and linear in between.
+//! Deforming meshes: vertex positions are given at uniformly spaced times and interpolated
+//! linearly.
 //!
 //! With keys k = 0 … n − 1 over the times t₀ … t₁, let x = (n − 1)·(t − t₀)/(t₁ − t₀), clamped to
 //! the keys; a vertex is then at (1 − f)·p_k + f·p_{k+1}, k = ⌊x⌋, f = x − k. Normals and tangents
-//! follow the same way. All triangles at a vertex compute the same point, so that no ray slips
-//! between them. What moves has no one area and is not sampled.
+//! follow the same way. All triangles at a vertex compute the same point, so that no ray passes
+//! between them. Moving triangles have no fixed area and are not sampled.
 
 use super::mesh::TriangleMesh;
 use super::sample::{ShapeHit, ShapeSample};
@@ -14,7 +14,7 @@ use crate::watertight::Sheared;
 use math::{Bounds3, Point3, Ray, Vec2, Vec3, gamma};
 use std::sync::Arc;
 
-/// A mesh in motion.
+/// A deforming mesh.
 #[derive(Clone, Debug)]
 pub struct MovingMesh {
     keys: Vec<TriangleMesh>,
@@ -22,7 +22,7 @@ pub struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// A mesh that is at one key after another; before and after the times it rests.
+    /// A mesh that interpolates its keys; before and after the times it is at rest.
     ///
     /// # Panics
     /// When there is no key, or keys differ in the number of their triangles.
@@ -32,13 +32,13 @@ impl MovingMesh {
         Self { keys, times }
     }
 
-    /// All triangles, as shapes of their own.
+    /// All triangles as shapes.
     pub fn triangles(self) -> impl Iterator<Item = MovingTriangle> {
         let mesh = Arc::new(self);
         (0..mesh.keys[0].len() as u32).map(move |triangle| MovingTriangle { mesh: mesh.clone(), triangle })
     }
 
-    /// The key before a moment, and the fraction of the way to the next.
+    /// The key before a time, and the fraction of the way to the next.
     fn key(&self, time: f32) -> (usize, f32) {
         let last = self.keys.len() - 1;
         let [start, end] = self.times;
@@ -50,7 +50,7 @@ impl MovingMesh {
     }
 }
 
-/// A triangle of a mesh in motion.
+/// A triangle of a deforming mesh.
 #[derive(Clone, Debug)]
 pub struct MovingTriangle {
     mesh: Arc<MovingMesh>,
@@ -58,7 +58,7 @@ pub struct MovingTriangle {
 }
 
 impl MovingTriangle {
-    /// As it is at a moment.
+    /// The triangle at a time.
     pub fn at(&self, time: f32) -> Triangle {
         let (key, fraction) = self.mesh.key(time);
         let triangle = |key: usize| self.mesh.keys[key].triangle(self.triangle as usize);
@@ -81,7 +81,7 @@ impl MovingTriangle {
         if fraction == 0.0 { corners(key) } else { mixed(corners(key), corners(key + 1), fraction) }
     }
 
-    /// Around all its places, with room for the rounding of those between keys.
+    /// A box around it at all times, with a margin for rounding between keys.
     pub(super) fn bounds(&self) -> Option<Bounds3> {
         let corners = self.mesh.keys.iter().flat_map(|key| key.corners(self.triangle as usize));
         let bounds = Bounds3::around(corners);

@@ -1,5 +1,5 @@
-//! The paraboloid x² + y² = s·z, s = r²/z_max, with z_min ≤ z ≤ z_max and φ ≤ φ_max: a bowl that is
-//! r wide at its rim.
+//! The paraboloid x² + y² = s·z, s = r²/z_max, with z_min ≤ z ≤ z_max and φ ≤ φ_max: its radius
+//! at z_max is r.
 //!
 //! p(u, v) = (√(s·z) cos φ, √(s·z) sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled
 //! by area: its element is √(s·z + s²/4) dz dφ, so that the power 3/2 of z + s/4 is uniform
@@ -10,21 +10,21 @@ use super::sample::{ShapeHit, ShapeSample};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 
-/// A bowl.
+/// A paraboloid.
 #[derive(Clone, Debug)]
 pub struct Paraboloid {
     quadric: Quadric,
     radius: f64,
     z: [f64; 2],
-    /// By how much x² + y² grows with z.
+    /// The derivative of x² + y² by z.
     spread: f64,
     phi_max: f64,
     area: f32,
 }
 
 impl Paraboloid {
-    /// The part between two heights of the bowl that opens along the object's z axis and is
-    /// `radius` wide at the larger of them (which must be above 0), up to an angle in degrees.
+    /// The paraboloid that opens along the object's z axis, between two heights, with `radius` at
+    /// the larger one (which must be above 0), up to an angle in degrees.
     pub fn new(
         render_from_object: &Transform,
         reverse_orientation: bool,
@@ -116,7 +116,7 @@ impl Paraboloid {
         self.at_height(z.clamp(self.z[0], self.z[1]), v)
     }
 
-    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    /// A ray along the normal that hits the point with parameters (u, v) at t = 1.
     pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
         let (p, n) = self.at(uv);
         self.quadric.ray_to(p, n, time)

@@ -1,4 +1,4 @@
-//! The plane z = 0, without end; met at t = −o_z/d_z, and not at all when d_z = 0.
+//! The infinite plane z = 0; hit at t = −o_z/d_z, and not at all when d_z = 0.
 //!
 //! p(u, v) = (u, v, 0). It has neither bounds nor a finite area, so that it cannot be sampled.
 
@@ -27,7 +27,7 @@ impl Plane {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         let t = -o.z / d.z;
         let p = o + d * t;
-        // Written so that NaN fails.
+        // NaN fails.
         (t > 0.0 && (t as f32) < t_max).then(|| ShapeHit { t: t as f32, uv: parameters(p) })
     }
 

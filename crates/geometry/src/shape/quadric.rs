@@ -1,16 +1,15 @@
-//! What quadrics share.
+//! Code shared by quadrics.
 //!
-//! A ray is brought to object space and the equation solved in doubles; the point is then put back
-//! on the surface and rounded to floats in render space. All that is left of errors is that last
-//! rounding, which the point's bounds cover: neither the distance of the ray's origin nor the
-//! shape's transform makes them grow.
+//! Rays are transformed to object space, where the equation is solved in doubles; the point is then
+//! refined onto the surface and rounded to floats in render space. The only error left is that last
+//! rounding: it depends neither on the distance of the ray's origin nor on the transform.
 
 use super::sample::ShapeSample;
 use crate::placement::{Placement, ROUNDING};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, MACHINE_EPSILON, Normal3, Point3Error, Ray, Transform, Vec2};
 
-/// Where a quadric stands, and on which side its outside is.
+/// The placement and orientation of a quadric.
 #[derive(Clone, Debug)]
 pub(super) struct Quadric {
     pub placement: Placement,
@@ -42,7 +41,7 @@ impl Quadric {
         Self { placement, flips }
     }
 
-    /// Makes its outside its inside.
+    /// Reverses its orientation.
     pub fn turn_round(&mut self) {
         self.flips = !self.flips;
     }
@@ -71,23 +70,22 @@ impl Quadric {
         if self.flips { -n } else { n }
     }
 
-    /// The ray that comes down along the normal on a point, which it meets at t = 1. It begins so
-    /// near by that no other part of the surface lies between.
+    /// A ray along the normal that hits a point at t = 1, from so near that no other part of the
+    /// surface is hit before.
     pub fn ray_to(&self, p: DVec3, n: DVec3, time: f32) -> Ray {
         let (p, n) = (self.point(p).p, self.normal(n));
         let height = (p.abs().max_element() * 1e-4).max(f32::MIN_POSITIVE / MACHINE_EPSILON);
         Ray::new(p + n * height, n * -height, time)
     }
 
-    /// The change of the unit normal in render space, on the shape's outside, from that of the unit
-    /// normal in object space.
+    /// The derivative of the unit normal in render space, towards the outside, from that in object
+    /// space.
     pub fn normal_change(&self, n: DVec3, dn: DVec3) -> Normal3 {
         let change = self.placement.normal_change(n, dn);
         if self.flips { -change } else { change }
     }
 
-    /// A sample at a point with unit normal `n` that has the density `pdf` per area of object
-    /// space.
+    /// A sample at a point with unit normal `n` and density `pdf` per area in object space.
     pub fn sample(&self, p: DVec3, n: DVec3, uv: Vec2, pdf: f64) -> ShapeSample {
         ShapeSample {
             p: self.point(p),
@@ -97,7 +95,7 @@ impl Quadric {
         }
     }
 
-    /// A density per area of object space, brought to render space where the unit normal is `n`.
+    /// Converts a density per area from object to render space, where the unit normal is `n`.
     pub fn pdf_area(&self, n: Normal3, pdf: f64) -> f32 {
         (pdf / self.placement.area_factor_outside(n.as_dvec3())) as f32
     }
@@ -204,7 +202,7 @@ pub(super) fn between([from, to]: [f64; 2], fraction: f64) -> f64 {
     from + (to - from) * fraction
 }
 
-/// Degrees, kept between none and a full turn, in radians.
+/// Degrees, clamped to [0, 360], in radians.
 pub(super) fn swept(degrees: f32) -> f64 {
     (degrees.clamp(0.0, 360.0) as f64).to_radians()
 }

@@ -14,7 +14,7 @@ use crate::surface::SurfacePoint;
 use math::{Bounds3, DVec3, Normal3, Ray, Transform, Vec2};
 use std::f64::consts::{PI, TAU};
 
-/// A ball, or a part of it.
+/// A sphere, or a part of it.
 #[derive(Clone, Debug)]
 pub struct Sphere {
     quadric: Quadric,
@@ -151,7 +151,7 @@ impl Sphere {
     fn cone(&self, reference: &ShapeSampleContext) -> Option<Cone> {
         let (center, radius) = self.ball?;
         let toward = center - reference.p.p.as_dvec3();
-        // A point that may lie on the sphere sees no cone.
+        // From a point that may be on the sphere there is no cone.
         let distance = toward.length();
         let outside = distance - reference.p.error.length() as f64 > radius;
         outside.then(|| {
@@ -160,7 +160,7 @@ impl Sphere {
         })
     }
 
-    /// A ray that comes straight down on the point with parameters (u, v), which it meets at t = 1.
+    /// A ray along the normal that hits the point with parameters (u, v) at t = 1.
     pub(super) fn ray_to(&self, uv: Vec2, time: f32) -> Ray {
         let (p, n) = self.at(uv);
         self.quadric.ray_to(p, n, time)

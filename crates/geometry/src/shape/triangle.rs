@@ -1,7 +1,7 @@
 //! The triangle p(b₁, b₂) = p₀ + b₁(p₁ − p₀) + b₂(p₂ − p₀).
 //!
 //! Seen from a point, it is sampled by the solid angle of its projection on the unit sphere
-//! ([Arvo 1995]), warped so that the samples follow the cosine at that point; where that solid
+//! ([Arvo 1995]), warped to the cosine at that point; where that solid
 //! angle is too small or too near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
@@ -16,7 +16,7 @@ use sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_un
 /// Solid angles in steradians between which a triangle is sampled by solid angle.
 const SPHERICAL: std::ops::RangeInclusive<f32> = 3e-4..=6.22;
 
-/// A triangle with all that its vertices carry, in render space.
+/// A triangle with vertex attributes, in render space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
     /// Corners.
@@ -32,7 +32,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// Texture coordinates of corners that are given none.
+    /// Default texture coordinates.
     pub const DEFAULT_UV: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::ONE];
 
     /// A triangle without shading normals.

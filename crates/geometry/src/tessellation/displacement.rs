@@ -1,19 +1,19 @@
-//! Displaced surfaces: a mesh is cut until its edges are short, then its vertices move along their
-//! normals.
+//! Displacement: a mesh is refined until its edges are short, then its vertices are moved along
+//! their normals.
 //!
-//! A triangle with an edge that is too long is cut in two at the middle of its longest edge.
-//! Whether an edge is cut depends on the edge alone, so that the triangles on its two sides agree
-//! and no crack opens ([Rivara 1984]). Normals are then those of the moved surface: at each vertex
-//! the mean of its triangles' normals.
+//! A triangle with an edge that is too long is bisected at the midpoint of its longest edge.
+//! Whether an edge is split depends on the edge alone, so that there are no cracks ([Rivara 1984]).
+//! New normals are those of the displaced surface: at each vertex the mean of its triangles'
+//! normals.
 
 use super::arrays::{MAX_TRIANGLES, MeshArrays};
 use crate::shape::MeshError;
 use math::{Normal3, Point3, Transform, Vec2};
 use std::collections::HashMap;
 
-/// A mesh with texture coordinates, cut until all edges are shorter than `edge_length` in render
-/// space, and moved by `height` along its normals (those of its triangles, where it has none). The
-/// height is asked for at a vertex: its position, unit normal and texture coordinates.
+/// Refines a mesh with texture coordinates until all edges are shorter than `edge_length` in render
+/// space, and displaces it by `height` along its normals (those of its triangles, where it has
+/// none). `height` is a function of a vertex's position, unit normal and texture coordinates.
 pub fn displaced(
     mut mesh: MeshArrays,
     render_from_object: &Transform,
@@ -63,14 +63,14 @@ struct Dicer<'a> {
     mesh: MeshArrays,
     render_from_object: &'a Transform,
     edge_length: f32,
-    /// The vertex in the middle of each edge that was cut.
+    /// The midpoint of each edge that was split.
     middles: HashMap<[u32; 2], u32>,
 }
 
 impl Dicer<'_> {
     fn dice(mut self) -> Result<MeshArrays, MeshError> {
         let mut pending = std::mem::take(&mut self.mesh.indices);
-        // Edges are never shorter than nothing, or than NaN.
+        // No edge is shorter than 0 or NaN.
         if !(self.edge_length > 0.0 && self.least(&pending) <= MAX_TRIANGLES as f64) {
             return Err(MeshError::TooLarge);
         }
@@ -89,7 +89,7 @@ impl Dicer<'_> {
         Ok(self.mesh)
     }
 
-    /// How many triangles there must be at least: the largest with such edges is equilateral.
+    /// A lower bound of the number of triangles: the largest with such edges is equilateral.
     fn least(&self, triangles: &[[u32; 3]]) -> f64 {
         let area = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|i| self.in_render_space(i).as_dvec3());
@@ -100,7 +100,7 @@ impl Dicer<'_> {
             / (0.75f64.sqrt() * 0.5 * edge * edge)
     }
 
-    /// The longest edge, unless it is short enough, or no number.
+    /// The longest edge, unless it is short enough or NaN.
     fn edge_to_cut(&self, corners: [u32; 3]) -> Option<usize> {
         let p = corners.map(|i| self.in_render_space(i));
         let lengths = [0, 1, 2].map(|i| p[i].distance(p[(i + 1) % 3]));

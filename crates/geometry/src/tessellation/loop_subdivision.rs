@@ -1,16 +1,15 @@
 //! The limit surface of a triangle mesh under Loop subdivision.
 //!
-//! Each level cuts every triangle into four. A vertex with n neighbours moves to (1 − nβ)·v + β·Σ
-//! neighbours, β = 3/16 for n = 3 and 3/(8n) otherwise; a new vertex on an edge stands at 3/8 of
-//! its ends and 1/8 of the two corners that face the edge. On the border the weights are those of a
-//! cubic B-spline: 1/8, 3/4, 1/8 and 1/2, 1/2. In the end vertices move on to where they would come
-//! after endless levels, by the weight 1/(n + 3/(8β)), and normals are the cross products of the
+//! Each level splits every triangle into four. A vertex with n neighbours moves to (1 − nβ)·v + β·Σ
+//! neighbours, β = 3/16 for n = 3 and 3/(8n) otherwise; a new vertex on an edge is 3/8 of its
+//! ends plus 1/8 of the two opposite corners. On the boundary the weights are those of a
+//! cubic B-spline: 1/8, 3/4, 1/8 and 1/2, 1/2. Finally vertices move to their limits, by the
+//! weight 1/(n + 3/(8β)), and normals are the cross products of the
 //! limit's tangents ([Loop 1987]; [Hoppe 1994]; [Pharr 2016 §3.8]).
 //!
-//! Three things are as the pbrt format has them. Normals stand on the side from which triangles run
-//! clockwise, and keep the length of the cross product. Tangents are taken between neighbours that
-//! are at their limit already. On the border that last move is by 1/5, where the limit of a
-//! B-spline would want 1/6.
+//! Three things are as in pbrt. Normals are on the side from which triangles run clockwise, and
+//! keep the length of the cross product. Tangents are computed from neighbours that are at their
+//! limit already. On the boundary the limit weight is 1/5, where that of a B-spline is 1/6.
 //!
 //! Connectivity is kept by half-edges: number 3f + k leads from corner k of triangle f to the next;
 //! its twin leads back. Twins of a level follow from those of the level before.
@@ -21,10 +20,10 @@ use math::{DVec3, Point3};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-/// The twin of a half-edge on the border.
+/// The twin of a half-edge on the boundary.
 const NONE: u32 = u32::MAX;
 
-/// Divides a mesh `levels` times, and brings its vertices to the limit.
+/// Subdivides a mesh `levels` times, and moves its vertices to the limit.
 pub fn loop_subdivision(
     positions: &[Point3],
     indices: &[[u32; 3]],
@@ -63,7 +62,7 @@ fn next(edge: u32) -> u32 {
 }
 
 impl Mesh {
-    /// Finds what is beside what. Vertices that no triangle uses are left out.
+    /// Builds the connectivity, without vertices that no triangle uses.
     fn new(positions: &[Point3], indices: &[[u32; 3]]) -> Result<Self, MeshError> {
         let mut number = vec![NONE; positions.len()];
         let mut mesh = Self { points: Vec::new(), faces: Vec::new(), twins: Vec::new(), leaving: Vec::new() };

@@ -1,14 +1,13 @@
-//! Plane polygons with holes, cut into triangles.
+//! Triangulation of plane polygons with holes.
 //!
-//! Each hole is joined to the outer contour by a *bridge*, an edge that is walked there and back,
-//! so that one contour is left for the ear clipping of [`super::polygon`]. Holes are taken from the
-//! right to the left. Of each, the rightmost corner M is bridged: the ray from M to the right meets
-//! the contour first on some edge, whose right end V would be seen from M if no corner stood in the
-//! triangle between them; of the corners that do, the one nearest in angle to the ray is seen
-//! ([Eberly 2002]).
+//! Each hole is joined to the outer contour by a *bridge*, an edge that is traversed in both
+//! directions, so that one contour is left for the ear clipping of [`super::polygon`]. Holes are
+//! taken from the right to the left. Of each, the rightmost corner M is bridged: the ray from M to
+//! the right meets the contour first on some edge, whose right end V is visible from M if no corner
+//! is in the triangle between them; of the corners in it, the one nearest in angle to the ray is
+//! visible ([Eberly 2002]).
 //!
-//! Contours that touch or cross, or that do not lie in each other as they should, are refused
-//! before.
+//! Contours that touch or cross, or that are not nested as they should be, are refused first.
 
 use std::fmt;
 
@@ -16,10 +15,10 @@ use math::{DVec3, Point3};
 
 use super::polygon::{MOST_CORNERS, axes, cross, normal, triangulate};
 
-/// How far a corner may be from the plane, beside the size of the polygon.
+/// Greatest distance of a corner from the plane, relative to the size of the polygon.
 const FLATNESS: f64 = 1e-4;
 
-/// Why contours bound no polygon. Points are counted from 0.
+/// Why contours are not a valid polygon. Points are counted from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ContourError {
     /// A contour has fewer than three points.
@@ -42,7 +41,7 @@ impl fmt::Display for ContourError {
             Self::TooShort { contour } => write!(f, "contour {contour} has fewer than three points"),
             Self::TooMany => write!(f, "more than {MOST_CORNERS} points make a mesh, not a polygon"),
             Self::Flat => write!(f, "the outer contour has no area"),
-            Self::OffPlane { point } => write!(f, "point {point} is outside of the plane of the others"),
+            Self::OffPlane { point } => write!(f, "point {point} is not in the plane of the others"),
             Self::Touch { edges: [a, b] } => {
                 write!(f, "the edges that begin with the points {a} and {b} touch or cross")
             }
@@ -53,8 +52,8 @@ impl fmt::Display for ContourError {
     }
 }
 
-/// Triangles that cover what the first contour encloses and the others do not, all turning as the
-/// first does. Each of the contours takes the next `lengths[i]` of the points.
+/// Triangles that cover the inside of the first contour without that of the others, all with the
+/// winding of the first. Each of the contours takes the next `lengths[i]` of the points.
 pub(crate) fn triangulate_contours(
     points: &[Point3],
     lengths: &[usize],
@@ -131,7 +130,7 @@ impl Plane {
     }
 }
 
-/// Whether edges have no more in common than the ends of neighbours.
+/// Checks that edges share no points but the ends of neighbours.
 fn check_edges(flat: &[[f64; 2]], contours: &[Vec<u32>]) -> Result<(), ContourError> {
     let mut edges: Vec<[u32; 2]> =
         contours.iter().flat_map(|c| (0..c.len()).map(|i| [c[i], c[(i + 1) % c.len()]])).collect();
@@ -145,7 +144,7 @@ fn check_edges(flat: &[[f64; 2]], contours: &[Vec<u32>]) -> Result<(), ContourEr
         for second in edges[i + 1..].iter().take_while(|edge| range(edge)[0] <= end) {
             let [[a, b], [c, d]] = [first, second].map(|edge| edge.map(|i| flat[i as usize]));
             let touch = match (first[1] == second[0], second[1] == first[0]) {
-                // Neighbours turn back on each other where they have a direction in common.
+                // Neighbours overlap where one turns back on the other.
                 (true, false) => folds(a, b, d),
                 (false, true) => folds(c, d, b),
                 _ => segments_meet([a, b], [c, d]),
@@ -160,7 +159,7 @@ fn check_edges(flat: &[[f64; 2]], contours: &[Vec<u32>]) -> Result<(), ContourEr
     Ok(())
 }
 
-/// Whether the way from `a` over `b` to `c` goes back where it came from, or stands still.
+/// Whether the path from `a` over `b` to `c` turns back on itself, or has no length.
 fn folds(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
     let back = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]);
     a == b || b == c || (cross(a, b, c) == 0.0 && back < 0.0)
@@ -202,7 +201,7 @@ fn area(flat: &[[f64; 2]], contour: &[u32]) -> f64 {
     (1..contour.len() - 1).map(|i| cross(at(0), at(i), at(i + 1))).sum()
 }
 
-/// The place of the corner of a counter-clockwise contour to which a bridge leads from a point `m`
+/// The index of the corner of a counter-clockwise contour to which a bridge leads from a point `m`
 /// within it.
 fn bridge(flat: &[[f64; 2]], contour: &[u32], m: [f64; 2]) -> usize {
     let n = contour.len();

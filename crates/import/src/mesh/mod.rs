@@ -5,6 +5,7 @@ mod obj;
 mod ply;
 mod polygon;
 pub(crate) mod scene;
+mod studio;
 
 use std::fmt;
 use std::path::Path;
@@ -53,7 +54,7 @@ pub struct Mesh {
     pub normals: Vec<Normal3>,
     /// Vertex texture coordinates.
     pub uvs: Vec<Point2>,
-    /// Triangles: those of the file, and what polygons and concave quadrilaterals were cut into.
+    /// Triangles: those of the file, and those of triangulated polygons.
     pub triangles: Vec<[u32; 3]>,
     /// Convex quadrilaterals, corners in order around the face.
     pub quads: Vec<[u32; 4]>,
@@ -64,7 +65,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Adds a face of any number of corners; fewer than three mean nothing.
+    /// Adds a face of any number of corners; one of fewer than three is ignored.
     pub(crate) fn push_face(&mut self, corners: &[u32], number: Option<i32>) {
         match *corners {
             [] | [_] | [_, _] => (),
@@ -92,7 +93,7 @@ impl Mesh {
 pub enum MeshError {
     /// The bytes contradict their format.
     Invalid(String),
-    /// The bytes may be right, but nothing here can be drawn.
+    /// The file has no faces that can be rendered.
     Unsupported(String),
     /// The file claims more than its bytes can hold.
     Limits(String),

@@ -2,7 +2,7 @@
 //!
 //! Read: `v`, `vt`, `vn`, `f` (corners `v`, `v/t`, `v//n`, `v/t/n`; negative indices count
 //! backwards), `usemtl`, `mtllib`, and lines continued by a backslash. `p` and `l` are checked and
-//! not drawn; everything else is skipped.
+//! ignored; everything else is skipped.
 
 use std::collections::HashMap;
 
@@ -16,11 +16,11 @@ use crate::number;
 pub(crate) struct Obj {
     /// Names of material files.
     pub(crate) libraries: Vec<String>,
-    /// Material names (empty for none) and what is made of them.
+    /// Material names (empty for none) and the faces with each.
     pub(crate) parts: Vec<(String, Mesh)>,
 }
 
-/// A material of an MTL file; what it does not say is absent.
+/// A material of an MTL file; parameters that are not given are absent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ObjMaterial {
     pub(crate) name: String,
@@ -50,12 +50,12 @@ pub(crate) fn read_obj_parts(bytes: &[u8]) -> Result<Obj, MeshError> {
 /// A corner of a face: indices of position, texture coordinates and normal.
 type Corner = (u32, Option<u32>, Option<u32>);
 
-/// A mesh under way, with the vertex that each distinct corner became.
+/// A mesh being built, with the vertex of each distinct corner.
 #[derive(Default)]
 struct Part {
     mesh: Mesh,
     vertices: HashMap<Corner, u32>,
-    /// Some corner has no normal, or no texture coordinates: then the part has none.
+    /// Whether some corner has no normal, or no texture coordinates: then the part has none.
     lacks_normals: bool,
     lacks_uvs: bool,
 }
@@ -111,7 +111,7 @@ impl Part {
         let mut face: Vec<u32> = Vec::with_capacity(corners.len());
         for &corner in corners {
             let (position, uv, normal) = corner;
-            // A corner repeated at once adds nothing to the face.
+            // A repeated corner adds nothing to the face.
             let repeats =
                 |&earlier: &u32| self.mesh.positions[earlier as usize] == positions[position as usize];
             if face.last().is_some_and(repeats) {
@@ -168,12 +168,12 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// The words of a line; what joins lines is no part of them.
+/// The words of a line, without the backslashes that join lines.
 fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     line.split(|&byte| byte.is_ascii_whitespace() || byte == b'\\').filter(|word| !word.is_empty())
 }
 
-/// What stands after the keyword of a line.
+/// The rest of a line after its keyword.
 fn rest_of_line(line: &[u8], keyword: usize) -> String {
     String::from_utf8_lossy(&line.trim_ascii_start()[keyword..]).trim().to_owned()
 }
@@ -184,7 +184,7 @@ fn floats<'a, const N: usize>(mut words: impl Iterator<Item = &'a [u8]>) -> Resu
         let word = words.next().unwrap_or(b"");
         match number::float(word).filter(|value| value.is_finite()) {
             Some(number) => *value = number,
-            None => return invalid(format!("`{:.40}` is no number", String::from_utf8_lossy(word))),
+            None => return invalid(format!("`{:.40}` is not a number", String::from_utf8_lossy(word))),
         }
     }
     Ok(values)
@@ -194,7 +194,7 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
     let mut indices = [None; 3];
     for (place, text) in word.split(|&byte| byte == b'/').enumerate() {
         if place == 3 {
-            return invalid(format!("`{:.40}` is no corner", String::from_utf8_lossy(word)));
+            return invalid(format!("`{:.40}` is not a face corner", String::from_utf8_lossy(word)));
         }
         if text.is_empty() && place > 0 {
             continue;
@@ -212,12 +212,12 @@ fn corner(word: &[u8], counts: [usize; 3]) -> Result<Corner, MeshError> {
     }
     match indices {
         [Some(position), uv, normal] => Ok((position, uv, normal)),
-        _ => invalid(format!("`{:.40}` is no corner", String::from_utf8_lossy(word))),
+        _ => invalid(format!("`{:.40}` is not a face corner", String::from_utf8_lossy(word))),
     }
 }
 
-/// Reads an MTL file. What it says wrongly is left out: materials are a matter of taste, and no
-/// file is refused for them.
+/// Reads an MTL file. Parameters that cannot be read are ignored: a mesh is not refused for its
+/// materials.
 pub(crate) fn read_materials(bytes: &[u8]) -> Vec<ObjMaterial> {
     let mut materials: Vec<ObjMaterial> = Vec::new();
     for line in lines(bytes) {

@@ -1,10 +1,10 @@
 //! The Stanford polygon format PLY: a text header that names elements and their properties, then
 //! their values as text or as binary numbers of either byte order [Turk 1994].
 //!
-//! Vertices have `x y z`, perhaps `nx ny nz`, and texture coordinates as `u v`, `s t`,
+//! Vertices have `x y z`, optionally `nx ny nz`, and texture coordinates as `u v`, `s t`,
 //! `texture_u texture_v` or `texture_s texture_t`; faces a list `vertex_indices` or `vertex_index`,
-//! and perhaps a number `face_indices`. Instead of faces there may be `tristrips`: strips of
-//! triangles, with −1 between them. All other properties and elements are skipped.
+//! and optionally a number `face_indices`. Instead of faces there may be `tristrips`: triangle
+//! strips separated by −1. All other properties and elements are skipped.
 
 use math::{Vec2, Vec3};
 
@@ -116,7 +116,9 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), MeshError> {
                 });
             }
             (["element", name, count], _) => {
-                let Ok(count) = count.parse() else { return invalid(format!("`{count:.40}` is no count")) };
+                let Ok(count) = count.parse() else {
+                    return invalid(format!("`{count:.40}` is not a count"));
+                };
                 elements.push(Element { name: (*name).into(), count, properties: Vec::new() });
             }
             (["property", "list", count, item, name], Some(element)) => {
@@ -137,12 +139,12 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), MeshError> {
     }
 }
 
-/// Where values come from.
+/// The values after the header.
 trait Body {
-    /// The least number of bytes that a value of a type takes.
+    /// The minimal number of bytes of a value of a type.
     fn least_size(scalar: Scalar) -> usize;
 
-    /// The bytes that are left.
+    /// The number of bytes that are left.
     fn left(&self) -> usize;
 
     /// The next value.
@@ -207,7 +209,7 @@ impl Body for Ascii<'_> {
         self.text = &text[end..];
         match number::double(&text[..end]) {
             Some(value) => Ok(value),
-            None => invalid(format!("`{:.40}` is no number", String::from_utf8_lossy(&text[..end]))),
+            None => invalid(format!("`{:.40}` is not a number", String::from_utf8_lossy(&text[..end]))),
         }
     }
 }
@@ -233,7 +235,9 @@ fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
         return invalid(format!("a face has vertex {bad} of {vertices}"));
     }
     let mut start = 0;
-    for (face, &end) in faces.ends.iter().enumerate() {
+    mesh.triangles.reserve_exact(faces.lengths.iter().filter(|&&corners| corners == 3).count());
+    for (face, &corners) in faces.lengths.iter().enumerate() {
+        let end = start + corners as usize;
         mesh.push_face(&faces.corners[start..end], faces.numbers.get(face).copied());
         start = end;
     }
@@ -243,7 +247,7 @@ fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// Refuses an element that cannot lie in the bytes that are left.
+/// Refuses an element that does not fit in the bytes that are left.
 fn check_size<B: Body>(element: &Element, left: usize) -> Result<(), MeshError> {
     let row: usize = element
         .properties
@@ -253,7 +257,7 @@ fn check_size<B: Body>(element: &Element, left: usize) -> Result<(), MeshError> 
         })
         .sum();
     if element.count as u128 * row as u128 > left as u128 {
-        let text = format!("{} of `{:.40}` cannot lie in {left} bytes", element.count, element.name);
+        let text = format!("{} elements of `{:.40}` do not fit in {left} bytes", element.count, element.name);
         return Err(MeshError::Limits(text));
     }
     Ok(())
@@ -320,7 +324,7 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
         }
     }
     if !(has(0) && has(1) && has(2)) {
-        return invalid("its vertices have no `x`, `y` and `z`");
+        return invalid("the vertices have no properties `x`, `y` and `z`");
     }
     let (has_normals, has_uvs) = (has(3) && has(4) && has(5), has(6) && has(7));
     mesh.positions.reserve_exact(element.count);
@@ -337,7 +341,7 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
         let [x, y, z, nx, ny, nz, u, v] = values;
         let position = Vec3::new(x, y, z);
         if !position.is_finite() {
-            return invalid("a vertex lies at no finite place");
+            return invalid("a vertex position is not finite");
         }
         mesh.positions.push(position);
         if has_normals {
@@ -350,32 +354,37 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
     Ok(())
 }
 
-/// Faces as they lie in the file.
+/// Faces as in the file.
 #[derive(Default)]
 struct Faces {
     /// The corners of all faces.
     corners: Vec<u32>,
-    /// Where in `corners` each face ends.
-    ends: Vec<usize>,
+    /// How many corners each face has.
+    lengths: Vec<u32>,
     /// Their numbers, if the file has any.
     numbers: Vec<i32>,
 }
 
 fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
     let mut faces = Faces::default();
-    faces.ends.reserve_exact(if element.properties.is_empty() { 0 } else { element.count });
+    if !element.properties.is_empty() {
+        // Nearly all meshes are of triangles: what they need at once, as growing would copy it.
+        faces.lengths.reserve_exact(element.count);
+        faces.corners.reserve_exact(3 * element.count);
+    }
     let is_corners =
         |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
     if !element.properties.iter().any(is_corners) {
-        return invalid("its faces have no list `vertex_indices`");
+        return invalid("the faces have no list property `vertex_indices`");
     }
     for _ in 0..element.count {
+        let before = faces.corners.len();
         for property in &element.properties {
             match property.kind {
                 PropertyKind::List { count, item } if is_corners(property) => {
                     if matches!(count, Scalar::F32 | Scalar::F64) || matches!(item, Scalar::F32 | Scalar::F64)
                     {
-                        return invalid("the corners of its faces are not whole numbers");
+                        return invalid("`vertex_indices` of the faces are not integers");
                     }
                     for _ in 0..list_length(body, count, item)? {
                         let corner = body.read(item)?;
@@ -386,7 +395,7 @@ fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshErr
                     }
                 }
                 PropertyKind::Scalar(_) if is_corners(property) => {
-                    return invalid("the corners of its faces are no list");
+                    return invalid("`vertex_indices` of the faces is not a list");
                 }
                 PropertyKind::Scalar(scalar) if property.name == "face_indices" => {
                     faces.numbers.push(body.read(scalar)? as i32);
@@ -394,7 +403,7 @@ fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshErr
                 _ => skip_property(property, body)?,
             }
         }
-        faces.ends.push(faces.corners.len());
+        faces.lengths.push((faces.corners.len() - before) as u32);
     }
     Ok(faces)
 }
@@ -419,10 +428,10 @@ fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshEr
             }
             let corner = corner as u32;
             if length >= 2 {
-                // Every other triangle of a strip turns the other way.
+                // Every second triangle of a strip has the opposite winding.
                 let [a, b] = if length % 2 == 0 { last } else { [last[1], last[0]] };
                 faces.corners.extend([a, b, corner]);
-                faces.ends.push(faces.corners.len());
+                faces.lengths.push(3);
             }
             last = [last[1], corner];
             length += 1;

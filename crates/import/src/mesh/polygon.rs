@@ -1,4 +1,4 @@
-//! Cutting polygons into triangles by ear clipping [Meisters 1975].
+//! Triangulation of polygons by ear clipping [Meisters 1975].
 //!
 //! A polygon is projected along the largest component of its normal (after Newell: the sum of cross
 //! products over its edges), so that it has positive area in the plane. An ear is a corner whose
@@ -19,7 +19,7 @@ pub(super) fn is_convex(positions: &[Point3], corners: &[u32]) -> bool {
     (0..n).all(|i| cross(points[i], points[(i + 1) % n], points[(i + 2) % n]) >= 0.0)
 }
 
-/// Triangles that cover a polygon, all turning as it does.
+/// Triangles that cover a polygon, all with its winding.
 pub(super) fn triangulate(positions: &[Point3], corners: &[u32]) -> Vec<[u32; 3]> {
     if corners.len() > MOST_CORNERS {
         return (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]).collect();
@@ -38,7 +38,7 @@ pub(super) fn triangulate(positions: &[Point3], corners: &[u32]) -> Vec<[u32; 3]
     triangles
 }
 
-/// The place of an ear among the corners that are left; without one, of the corner that turns most.
+/// The index of an ear among the corners that are left; without one, of the most convex corner.
 fn find_ear(points: &[[f64; 2]], left: &[usize]) -> usize {
     let n = left.len();
     let triangle =

@@ -1,19 +1,17 @@
-//! A mesh file as a scene of its own: with its materials, a camera that sees all of it, and light
-//! from everywhere.
+//! A mesh file as a scene of its own, with its materials, in a [`studio`].
 
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use description::{
-    AreaLightDesc, CameraDesc, CameraKind, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance,
-    Diagnostic, Handle, ImageTextureDesc, InfiniteRadiance, IntegratorDesc, LensDesc, LightDesc, LightKind,
-    LightSamplerDesc, MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ScreenDesc, ShapeDesc, ShapeKind,
-    SourceMap, Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind, TransformDesc,
+    AreaLightDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic, Handle,
+    ImageTextureDesc, MaterialDesc, MaterialKind, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind, SourceMap,
+    Span, SpectrumDesc, SpectrumParameter, TextureDesc, TextureKind,
 };
-use math::{DMat4, DVec3};
+use math::DVec3;
 
-use super::{Format, Mesh, Obj, ObjMaterial, read_materials, read_obj_parts};
+use super::{Format, Mesh, Obj, ObjMaterial, read_materials, read_obj_parts, studio};
 use crate::Imported;
 use crate::assets::{AssetSource, read_unpacked, resolve};
 use crate::images;
@@ -74,7 +72,7 @@ fn fill(desc: &mut SceneDesc, obj: Obj, path: &Path, assets: &dyn AssetSource, r
         }
         desc.shapes.push(shape);
     }
-    look_at_all(desc, low, high);
+    studio::furnish(desc, low, high);
 }
 
 /// The shape of a mesh. Quadrilaterals become bilinear patches, whose corners go in rows.
@@ -152,43 +150,4 @@ fn add_material(
         MaterialKind::Diffuse { reflectance }
     };
     desc.materials.push(MaterialDesc { name: material.name.clone(), ..kind.into() })
-}
-
-/// A camera from the front, a little to the side and from above (y is up), and light: even, and
-/// from over the shoulder.
-fn look_at_all(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
-    const FOV: f64 = 40.0;
-    let (center, radius) = ((low + high) / 2.0, ((high - low).length() / 2.0).max(1e-6));
-    let distance = 1.1 * radius / (FOV / 2.0).to_radians().sin();
-    let direction = -DVec3::new(0.4, 0.35, 1.0).normalize();
-    let right = DVec3::Y.cross(direction).normalize();
-    let up = direction.cross(right);
-    let eye = center - distance * direction;
-    // Camera spaces are left-handed; without the mirror, the picture of a right-handed mesh would
-    // be its mirror image.
-    let world_from_camera =
-        DMat4::from_cols((-right).extend(0.0), up.extend(0.0), direction.extend(0.0), eye.extend(1.0));
-    desc.camera = CameraDesc {
-        kind: CameraKind::Perspective {
-            fov: FOV as f32,
-            screen: ScreenDesc::default(),
-            lens: LensDesc::default(),
-        },
-        camera_from_world: TransformDesc::fixed(world_from_camera.inverse()),
-        ..CameraDesc::default()
-    }
-    .into();
-    desc.film.resolution = [640, 480];
-    desc.integrator =
-        IntegratorDesc::Path { max_depth: 5, regularize: false, light_sampler: LightSamplerDesc::Bvh }.into();
-    desc.sampler.pixel_samples = 64;
-    let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(0.5));
-    desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
-    let sun = LightKind::Distant {
-        radiance: SpectrumDesc::Constant(1.5),
-        illuminance: None,
-        from: (-direction + 0.7 * up + 0.5 * right).as_vec3(),
-        to: math::Vec3::ZERO,
-    };
-    desc.lights.push(LightDesc::from(sun));
 }

@@ -1,6 +1,7 @@
 //! Directives that declare something: settings, materials, textures, media, lights, shapes,
 //! objects.
 
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 use description::{ColorSpaceDesc, Diagnostic, Span, Spanned};
@@ -245,14 +246,18 @@ impl Interpreter<'_> {
                 &mut self.statements.spectrum_textures
             }
         };
-        if let Some(first) = textures.iter().find(|earlier| earlier.name.value == name.value) {
-            let message = format!("there is already a {} texture `{}`", value.value, name.value);
-            let diagnostic = Diagnostic::error("redefinition", message, name.span);
-            self.report.push(diagnostic.with_label(first.name.span, "first defined here"));
-            return Ok(());
-        }
+        let is_spectrum = value.value != "float";
+        match self.statements.texture_names.entry((is_spectrum, name.value.clone())) {
+            Entry::Occupied(first) => {
+                let message = format!("there is already a {} texture `{}`", value.value, name.value);
+                let diagnostic = Diagnostic::error("redefinition", message, name.span);
+                self.report.push(diagnostic.with_label(*first.get(), "first defined here"));
+                return Ok(());
+            }
+            Entry::Vacant(entry) => entry.insert(name.span),
+        };
         textures.push(TextureStatement { statement, name, world_from_texture });
-        self.statements.texture_order.push(value.value != "float");
+        self.statements.texture_order.push(is_spectrum);
         Ok(())
     }
 

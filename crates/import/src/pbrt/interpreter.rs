@@ -1,8 +1,8 @@
 //! Runs the directives of a scene and its included files: keeps the graphics state and collects
 //! statements.
 //!
-//! After a mistake inside a statement, reading goes on at the next directive, so that all mistakes
-//! of a scene are found in one run.
+//! After an error in a statement, reading continues at the next directive, so that all errors of a
+//! scene are found in one run.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -20,15 +20,15 @@ use crate::number;
 use crate::report::Report;
 use crate::suggest::did_you_mean;
 
-/// A statement that could not be read; what is wrong has been reported.
+/// A statement could not be read; the error has been reported.
 #[derive(Debug)]
 pub(super) struct Abandoned;
 
 pub(super) type Step<T = ()> = Result<T, Abandoned>;
 
-/// Where a directive may stand.
+/// The section of a scene in which a directive is allowed.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum Section {
     /// Before `WorldBegin`.
     Options,
     /// After it.
@@ -36,48 +36,48 @@ enum Place {
     Anywhere,
 }
 
-/// All directives and where they may stand.
-const DIRECTIVES: [(&str, Place); 40] = [
-    ("Accelerator", Place::Options),
-    ("ActiveTransform", Place::Anywhere),
-    ("AreaLightSource", Place::World),
-    ("Attribute", Place::Anywhere),
-    ("AttributeBegin", Place::World),
-    ("AttributeEnd", Place::World),
-    ("Camera", Place::Options),
-    ("ColorSpace", Place::Anywhere),
-    ("ConcatTransform", Place::Anywhere),
-    ("CoordSysTransform", Place::Anywhere),
-    ("CoordinateSystem", Place::Anywhere),
-    ("Film", Place::Options),
-    ("Identity", Place::Anywhere),
-    ("Import", Place::World),
-    ("Include", Place::Anywhere),
-    ("Integrator", Place::Options),
-    ("LightSource", Place::World),
-    ("LookAt", Place::Anywhere),
-    ("MakeNamedMaterial", Place::World),
-    ("MakeNamedMedium", Place::Anywhere),
-    ("Material", Place::World),
-    ("MediumInterface", Place::Anywhere),
-    ("NamedMaterial", Place::World),
-    ("ObjectBegin", Place::World),
-    ("ObjectEnd", Place::World),
-    ("ObjectInstance", Place::World),
-    ("Option", Place::Anywhere),
-    ("PixelFilter", Place::Options),
-    ("ReverseOrientation", Place::World),
-    ("Rotate", Place::Anywhere),
-    ("Sampler", Place::Options),
-    ("Scale", Place::Anywhere),
-    ("Shape", Place::World),
-    ("Texture", Place::World),
-    ("Transform", Place::Anywhere),
-    ("TransformBegin", Place::World),
-    ("TransformEnd", Place::World),
-    ("TransformTimes", Place::Options),
-    ("Translate", Place::Anywhere),
-    ("WorldBegin", Place::Options),
+/// All directives and where they are allowed.
+const DIRECTIVES: [(&str, Section); 40] = [
+    ("Accelerator", Section::Options),
+    ("ActiveTransform", Section::Anywhere),
+    ("AreaLightSource", Section::World),
+    ("Attribute", Section::Anywhere),
+    ("AttributeBegin", Section::World),
+    ("AttributeEnd", Section::World),
+    ("Camera", Section::Options),
+    ("ColorSpace", Section::Anywhere),
+    ("ConcatTransform", Section::Anywhere),
+    ("CoordSysTransform", Section::Anywhere),
+    ("CoordinateSystem", Section::Anywhere),
+    ("Film", Section::Options),
+    ("Identity", Section::Anywhere),
+    ("Import", Section::World),
+    ("Include", Section::Anywhere),
+    ("Integrator", Section::Options),
+    ("LightSource", Section::World),
+    ("LookAt", Section::Anywhere),
+    ("MakeNamedMaterial", Section::World),
+    ("MakeNamedMedium", Section::Anywhere),
+    ("Material", Section::World),
+    ("MediumInterface", Section::Anywhere),
+    ("NamedMaterial", Section::World),
+    ("ObjectBegin", Section::World),
+    ("ObjectEnd", Section::World),
+    ("ObjectInstance", Section::World),
+    ("Option", Section::Anywhere),
+    ("PixelFilter", Section::Options),
+    ("ReverseOrientation", Section::World),
+    ("Rotate", Section::Anywhere),
+    ("Sampler", Section::Options),
+    ("Scale", Section::Anywhere),
+    ("Shape", Section::World),
+    ("Texture", Section::World),
+    ("Transform", Section::Anywhere),
+    ("TransformBegin", Section::World),
+    ("TransformEnd", Section::World),
+    ("TransformTimes", Section::Options),
+    ("Translate", Section::Anywhere),
+    ("WorldBegin", Section::Options),
 ];
 
 pub(crate) struct Interpreter<'a> {
@@ -129,7 +129,7 @@ impl<'a> Interpreter<'a> {
         let end = Span::new(file, end, end);
         self.close_blocks(0);
         if !self.in_world {
-            let message = "the scene has no `WorldBegin`, so that nothing is in its world";
+            let message = "the scene has no `WorldBegin`: its world is empty";
             self.report.error("missing-world", message, end);
         }
     }
@@ -156,7 +156,7 @@ impl<'a> Interpreter<'a> {
                 }
                 _ => {
                     let found = String::from_utf8_lossy(tokens.bytes(token)).into_owned();
-                    let message = format!("a directive should stand here, not {}", shortened(&found));
+                    let message = format!("expected a directive, found {}", shortened(&found));
                     self.report.error("unexpected-token", message, tokens.span(token));
                     skip_to_directive(&mut tokens);
                 }
@@ -167,12 +167,12 @@ impl<'a> Interpreter<'a> {
 
     fn directive(&mut self, name: &str, token: Token, tokens: &mut Tokens) -> Step {
         let span = tokens.span(token);
-        let Some(&(_, place)) = DIRECTIVES.iter().find(|(known, _)| *known == name) else {
+        let Some(&(_, section)) = DIRECTIVES.iter().find(|(known, _)| *known == name) else {
             return self.unknown_directive(name, span);
         };
-        if place == Place::Options && self.in_world || place == Place::World && !self.in_world {
+        if section == Section::Options && self.in_world || section == Section::World && !self.in_world {
             let side = if self.in_world { "before" } else { "after" };
-            let message = format!("`{name}` may only stand {side} `WorldBegin`");
+            let message = format!("`{name}` is only allowed {side} `WorldBegin`");
             self.report.error("misplaced-directive", message, span);
             return Err(Abandoned);
         }
@@ -258,7 +258,8 @@ impl<'a> Interpreter<'a> {
 
     pub(super) fn begin_block(&mut self, kind: BlockKind, span: Span) -> Step {
         if self.blocks.len() >= Self::DEEPEST_BLOCK {
-            self.report.error("unbalanced-block", "blocks are nested too deeply", span);
+            let message = format!("blocks are nested more than {} deep", Self::DEEPEST_BLOCK);
+            self.report.error("unbalanced-block", message, span);
             return Err(Abandoned);
         }
         self.blocks.push(Block { kind, span, state: self.state.clone() });
@@ -274,7 +275,7 @@ impl<'a> Interpreter<'a> {
                 Ok(())
             }
             Some(block) => {
-                let message = format!("`{}` stands where `{}` is due", kind.end(), block.kind.end());
+                let message = format!("`{}` found where `{}` is expected", kind.end(), block.kind.end());
                 let opened = Diagnostic::error("unbalanced-block", message, span)
                     .with_label(block.span, "opened here");
                 self.report.push(opened);
@@ -302,7 +303,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Reads another file as if it stood here.
+    /// Reads another file as if its text were here.
     fn include(&mut self, tokens: &mut Tokens) -> Step {
         let name = self.string(tokens, "the file's name")?;
         if let Some(file) = self.open_named(&name) {
@@ -311,7 +312,7 @@ impl<'a> Interpreter<'a> {
         Ok(())
     }
 
-    /// Reads another file whose changes to the graphics state end with it.
+    /// Reads another file and restores the graphics state afterwards.
     fn import(&mut self, tokens: &mut Tokens) -> Step {
         let name = self.string(tokens, "the file's name")?;
         if let Some(file) = self.open_named(&name) {
@@ -412,19 +413,19 @@ impl<'a> Interpreter<'a> {
         Ok(numbers)
     }
 
-    /// Reports that something else was expected.
+    /// Reports a token where another was expected.
     pub(super) fn unexpected<T>(&mut self, tokens: &Tokens, token: Token, expected: &str) -> Step<T> {
         let found = match token.kind {
             TokenKind::End => "the end of the file".to_owned(),
             _ => shortened(&String::from_utf8_lossy(tokens.bytes(token))),
         };
-        let message = format!("{expected} should stand here, not {found}");
+        let message = format!("expected {expected}, found {found}");
         self.report.error("unexpected-token", message, tokens.span(token));
         Err(Abandoned)
     }
 }
 
-/// A word of a file, fit for a message.
+/// A token, shortened for a message.
 fn shortened(word: &str) -> String {
     const LONGEST: usize = 40;
     match word.char_indices().nth(LONGEST) {

@@ -1,4 +1,4 @@
-//! Names of the format, and what became of names of its older versions.
+//! Names of the format, and the replacements of names of its older versions.
 
 /// Substances whose scattering was measured.
 pub(crate) const SUBSTANCES: &str = include_str!("../../data/substances.txt");

@@ -92,15 +92,14 @@ pub(crate) struct RawParameter {
     pub(crate) span: Span,
     /// The declaration alone.
     pub(crate) declaration: Span,
-    /// The colour space in force.
+    /// The current colour space.
     pub(crate) color_space: ColorSpaceDesc,
 }
 
 /// Most parameters of one statement; none that the format knows takes a tenth of them.
 const MOST_PARAMETERS: usize = 1000;
 
-/// Reads parameters as long as there are any. Whatever is wrong with one is reported, and the next
-/// one is read.
+/// Reads all parameters of a statement. One that is wrong is reported and skipped.
 pub(crate) fn parameters(
     tokens: &mut Tokens,
     color_space: ColorSpaceDesc,
@@ -132,7 +131,7 @@ pub(crate) fn parameters(
     parameters
 }
 
-/// Reads one parameter; `None` if it means nothing, which is then reported.
+/// Reads one parameter; `None` if it is wrong, which is reported.
 pub(crate) fn parameter(
     tokens: &mut Tokens,
     color_space: ColorSpaceDesc,
@@ -150,7 +149,7 @@ pub(crate) fn parameter(
         report.push(
             Diagnostic::error(
                 "parameter-declaration",
-                format!("`{text}` does not declare a parameter"),
+                format!("`{text}` is not a parameter declaration"),
                 span,
             )
             .with_help("a parameter is declared by its type and its name, as in `\"float radius\"`"),
@@ -199,8 +198,8 @@ fn parameter_type(name: &str, span: Span, report: &mut Report) -> Option<Paramet
     None
 }
 
-/// Reads the values after a declaration, and where they end; `None` if there are none of the right
-/// kind, which is then reported.
+/// Reads the values after a declaration, and the span of the last; `None` if there are none of the
+/// right type, which is reported.
 pub(crate) fn values(
     tokens: &mut Tokens,
     kind: ParameterType,
@@ -259,12 +258,12 @@ pub(crate) fn values(
                 let found = String::from_utf8_lossy(tokens.bytes(token)).into_owned();
                 let expected = match values {
                     Values::Floats(_) => "a number",
-                    Values::Integers(_) => "a whole number",
+                    Values::Integers(_) => "an integer",
                     Values::Bools(_) => "`true` or `false`",
                     Values::Strings(_) => "a quoted string",
                 };
                 let message =
-                    format!("`{name}` is of type `{}` and takes {expected}, not {found}", kind.name());
+                    format!("`{name}` is of type `{}` and takes {expected}, not `{found}`", kind.name());
                 report.error("parameter-value", message, tokens.span(token));
                 if bracketed {
                     skip_to_close(tokens);
@@ -277,7 +276,7 @@ pub(crate) fn values(
     }
 }
 
-/// Adds the value of a token; false if it has none of the right kind.
+/// Adds the value of a token; false if it is of another type.
 #[inline]
 fn push_value(tokens: &Tokens, token: Token, values: &mut Values, report: &mut Report) -> bool {
     let bytes = tokens.bytes(token);

@@ -1,6 +1,6 @@
-//! Reads the parameters of one statement, by name and type, and remembers what was asked for: what
-//! nobody asked for is a mistake, and the names that were asked for are what its author may have
-//! meant.
+//! Reads the parameters of one statement by name and type, and records the names that were asked
+//! for: a parameter that was not is an error, and the recorded names are candidates for its
+//! correction.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use super::parameter::{ParameterType, RawParameter, Values};
 use super::statement::Statement;
 use crate::suggest::{closest, did_you_mean};
 
-/// The parameters of a statement under way of being read.
+/// Reads the parameters of a statement.
 pub(crate) struct Reader<'b, 'a> {
     pub(crate) builder: &'b mut Builder<'a>,
     pub(crate) span: Span,
@@ -31,7 +31,7 @@ pub(crate) struct Reader<'b, 'a> {
 struct Given {
     parameter: RawParameter,
     used: bool,
-    /// It comes from `Attribute` and may be left unused.
+    /// It comes from `Attribute`; being unused is no error.
     default: bool,
 }
 
@@ -59,8 +59,7 @@ impl<'b, 'a> Reader<'b, 'a> {
         }
     }
 
-    /// Where the statement and its parameters stand, after a report of every parameter that was not
-    /// asked for.
+    /// Reports every parameter that was not asked for; gives the spans of statement and parameters.
     pub(crate) fn finish(self) -> Origin {
         for Given { parameter, used, default } in &self.given {
             if *used || *default {
@@ -82,12 +81,12 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.origin
     }
 
-    /// As [`Reader::finish`] where it is not known what the parameters should be.
+    /// [`Reader::finish`] without the report, where the type of the statement is not known.
     pub(crate) fn abandon(self) -> Origin {
         self.origin
     }
 
-    /// Reports a type that does not exist in a set.
+    /// Reports an unknown type.
     pub(crate) fn unknown_type(&mut self, set: &str, what: &str, known: &[&str]) {
         let Spanned { value, span } = self.kind.clone();
         let message = format!("there is no {what} `{value}`");
@@ -100,12 +99,12 @@ impl<'b, 'a> Reader<'b, 'a> {
         });
     }
 
-    /// The parameter of a name, if it is given and has one of the types; any other type is
-    /// reported.
+    /// The index of the parameter of a name, if it is given with one of the types; any other type
+    /// is reported.
     fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
         self.asked.push(name);
-        let place = self.given.iter().position(|given| given.parameter.name == name)?;
-        let given = &mut self.given[place];
+        let index = self.given.iter().position(|given| given.parameter.name == name)?;
+        let given = &mut self.given[index];
         let already = std::mem::replace(&mut given.used, true);
         let parameter = &given.parameter;
         if !types.contains(&parameter.kind) {
@@ -126,7 +125,7 @@ impl<'b, 'a> Reader<'b, 'a> {
             self.builder.used_attributes.insert(parameter.declaration);
         }
         self.origin.parameters.push((name, parameter.span));
-        Some(place)
+        Some(index)
     }
 
     /// The values of a parameter, taken out of it, if there is any value.
@@ -135,12 +134,12 @@ impl<'b, 'a> Reader<'b, 'a> {
         name: &'static str,
         types: &'static [ParameterType],
     ) -> Option<(ParameterType, Values, Span)> {
-        let place = self.find(name, types)?;
-        self.take_at(place, name)
+        let index = self.find(name, types)?;
+        self.take_at(index, name)
     }
 
-    fn take_at(&mut self, place: usize, name: &str) -> Option<(ParameterType, Values, Span)> {
-        let parameter = &mut self.given[place].parameter;
+    fn take_at(&mut self, index: usize, name: &str) -> Option<(ParameterType, Values, Span)> {
+        let parameter = &mut self.given[index].parameter;
         let values = std::mem::replace(&mut parameter.values, Values::Bools(Vec::new()));
         let (kind, span, length) = (parameter.kind, parameter.span, values.len());
         if let Values::Floats(floats) = &values
@@ -148,13 +147,14 @@ impl<'b, 'a> Reader<'b, 'a> {
         {
             self.builder.report.error(
                 "parameter-value",
-                format!("`{name}` has a value beyond all bounds"),
+                format!("`{name}` has a value that is not finite"),
                 span,
             );
             return None;
         }
         if kind != ParameterType::Spectrum && length % kind.arity() != 0 {
-            let message = format!("`{name}` has {length} numbers, which is no multiple of {}", kind.arity());
+            let message =
+                format!("`{name}` has {length} numbers, which is not a multiple of {}", kind.arity());
             self.builder.report.error("parameter-count", message, span);
             return None;
         }
@@ -168,19 +168,19 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.builder.report.error("parameter-count", message, span);
     }
 
-    /// Reports a value that cannot be.
+    /// Reports an invalid value.
     pub(crate) fn refuse(&mut self, name: &str, message: impl Into<String>) {
         let span = self.origin.parameter(name);
         self.builder.report.error("parameter-value", message, span);
     }
 
-    /// Reports something that has no effect.
+    /// Reports a parameter that has no effect.
     pub(crate) fn ignored(&mut self, name: &str, message: impl Into<String>) {
         let span = self.origin.parameter(name);
         self.builder.report.warning("ignored", message, span);
     }
 
-    /// Reports that a parameter must be given.
+    /// Reports that a required parameter is missing.
     pub(crate) fn missing(&mut self, name: &str) {
         let message = format!("`{}` needs the parameter `{name}`", self.kind.value);
         self.builder.report.error("missing-parameter", message, self.kind.span);
@@ -227,7 +227,7 @@ impl<'b, 'a> Reader<'b, 'a> {
         default
     }
 
-    /// Whole numbers.
+    /// Integers.
     pub(crate) fn integers(&mut self, name: &'static str) -> Option<Vec<i32>> {
         match self.take(name, &[ParameterType::Integer])? {
             (_, Values::Integers(values), _) => Some(values),
@@ -235,7 +235,7 @@ impl<'b, 'a> Reader<'b, 'a> {
         }
     }
 
-    /// A fixed count of whole numbers.
+    /// A fixed count of integers.
     pub(crate) fn integer_array<const N: usize>(&mut self, name: &'static str) -> Option<[i32; N]> {
         let values = self.integers(name)?;
         <[i32; N]>::try_from(values.as_slice())
@@ -243,12 +243,12 @@ impl<'b, 'a> Reader<'b, 'a> {
             .ok()
     }
 
-    /// A whole number that may be absent.
+    /// An integer that may be absent.
     pub(crate) fn optional_integer(&mut self, name: &'static str) -> Option<i32> {
         self.integer_array::<1>(name).map(|[value]| value)
     }
 
-    /// A whole number in a range.
+    /// An integer in a range.
     pub(crate) fn integer(&mut self, name: &'static str, default: i32, range: RangeInclusive<i32>) -> i32 {
         let value = self.optional_integer(name).unwrap_or(default);
         if range.contains(&value) {
@@ -262,7 +262,7 @@ impl<'b, 'a> Reader<'b, 'a> {
         default
     }
 
-    /// A truth value.
+    /// A Boolean.
     pub(crate) fn boolean(&mut self, name: &'static str, default: bool) -> bool {
         match self.take(name, &[ParameterType::Bool]) {
             Some((_, Values::Bools(values), span)) => match values[..] {
@@ -276,7 +276,7 @@ impl<'b, 'a> Reader<'b, 'a> {
         }
     }
 
-    /// Strings with their places.
+    /// Strings with their spans.
     pub(crate) fn strings(&mut self, name: &'static str) -> Option<Vec<Spanned<String>>> {
         match self.take(name, &[ParameterType::String])? {
             (_, Values::Strings(values), _) => Some(values),
@@ -386,13 +386,13 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     fn spectrum_of(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<SpectrumDesc> {
-        let place = self.find(name, types)?;
-        self.spectrum_at(place, name)
+        let index = self.find(name, types)?;
+        self.spectrum_at(index, name)
     }
 
-    fn spectrum_at(&mut self, place: usize, name: &'static str) -> Option<SpectrumDesc> {
-        let color_space = self.given[place].parameter.color_space;
-        let (kind, values, span) = self.take_at(place, name)?;
+    fn spectrum_at(&mut self, index: usize, name: &'static str) -> Option<SpectrumDesc> {
+        let color_space = self.given[index].parameter.color_space;
+        let (kind, values, span) = self.take_at(index, name)?;
         match (kind, values) {
             (ParameterType::Rgb, Values::Floats(values)) => match values[..] {
                 [r, g, b] => Some(SpectrumDesc::Rgb { rgb: [r, g, b], space: color_space }),
@@ -464,11 +464,11 @@ impl<'b, 'a> Reader<'b, 'a> {
     pub(crate) fn optional_spectrum_parameter(&mut self, name: &'static str) -> Option<SpectrumParameter> {
         const TYPES: &[ParameterType] =
             &[ParameterType::Rgb, ParameterType::Spectrum, ParameterType::Blackbody, ParameterType::Texture];
-        let place = self.find(name, TYPES)?;
-        if self.given[place].parameter.kind != ParameterType::Texture {
-            return self.spectrum_at(place, name).map(Parameter::Value);
+        let index = self.find(name, TYPES)?;
+        if self.given[index].parameter.kind != ParameterType::Texture {
+            return self.spectrum_at(index, name).map(Parameter::Value);
         }
-        let (_, values, span) = self.take_at(place, name)?;
+        let (_, values, span) = self.take_at(index, name)?;
         match values {
             Values::Strings(names) if names.len() == 1 => {
                 self.builder.spectrum_texture(&names[0]).map(Parameter::Texture)

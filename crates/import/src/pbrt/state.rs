@@ -1,4 +1,4 @@
-//! The graphics state: what holds for everything said from here on, until its block ends.
+//! The graphics state: what applies to the following statements of a block.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ impl TransformSet {
     }
 }
 
-/// A material, referred to by its name or by its place among all materials of the scene.
+/// A material, referred to by its name or by its index among all materials of the scene.
 #[derive(Clone, Debug)]
 pub(crate) enum MaterialReference {
     Default,
@@ -31,7 +31,7 @@ pub(crate) enum MaterialReference {
     Nth(u32),
 }
 
-/// Default parameters that `Attribute` gave.
+/// Default parameters from `Attribute`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attributes {
     pub(crate) shape: Arc<Vec<RawParameter>>,
@@ -57,18 +57,18 @@ impl Attributes {
     }
 }
 
-/// What `AttributeBegin` saves and `AttributeEnd` brings back.
+/// What `AttributeBegin` saves and `AttributeEnd` restores.
 #[derive(Clone, Debug)]
 pub(crate) struct GraphicsState {
     pub(crate) ctm: TransformSet,
-    /// Which of the two transforms statements change.
+    /// Which of the two transforms are changed by transform directives.
     pub(crate) active: [bool; 2],
     pub(crate) reverse_orientation: bool,
     pub(crate) color_space: ColorSpaceDesc,
     pub(crate) material: MaterialReference,
-    /// The area light of coming shapes, by its place among all.
+    /// The area light of the following shapes, by its index among all.
     pub(crate) area_light: Option<u32>,
-    /// Names of the media inside and outside; empty for none, absent if never said.
+    /// Names of the media inside and outside; empty for none, absent if not set.
     pub(crate) medium_interface: Option<[Spanned<String>; 2]>,
     pub(crate) attributes: Attributes,
 }
@@ -127,7 +127,7 @@ impl BlockKind {
     }
 }
 
-/// An open block and the state to bring back at its end.
+/// An open block and the state to restore at its end.
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) kind: BlockKind,

@@ -1,6 +1,7 @@
-//! What a scene file says, statement by statement, with the graphics state that held at each. Names
-//! are not looked up yet: a file may use a material before it makes it.
+//! The statements of a scene, each with its graphics state. Names are not resolved yet: a file may
+//! use a material before its definition.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use description::{ColorSpaceDesc, Span, Spanned, TransformDesc};
@@ -9,18 +10,18 @@ use math::DMat4;
 use super::parameter::RawParameter;
 use super::state::{MaterialReference, TransformSet};
 
-/// A statement that names a member of a set and gives it parameters.
+/// A statement of a type and its parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Statement {
-    /// The directive and everything that belongs to it.
+    /// The directive with its type and parameters.
     pub(crate) span: Span,
-    /// The member.
+    /// The type.
     pub(crate) kind: Spanned<String>,
-    /// What the statement gives.
+    /// The given parameters.
     pub(crate) parameters: Vec<RawParameter>,
-    /// What holds if the statement does not give it.
+    /// Defaults of parameters that are not given, from `Attribute`.
     pub(crate) defaults: Arc<Vec<RawParameter>>,
-    /// The colour space in force.
+    /// The current colour space.
     pub(crate) color_space: ColorSpaceDesc,
 }
 
@@ -83,7 +84,7 @@ pub(crate) struct InstanceStatement {
     pub(crate) world_from_object: TransformDesc,
 }
 
-/// Everything that the files of a scene say.
+/// All statements of a scene.
 #[derive(Debug, Default)]
 pub(crate) struct Statements {
     pub(crate) options: Vec<RawParameter>,
@@ -93,14 +94,15 @@ pub(crate) struct Statements {
     pub(crate) filter: Option<Statement>,
     pub(crate) integrator: Option<Statement>,
     pub(crate) accelerator: Option<Statement>,
-    /// Parameters that `Attribute` gave, by name and declaration.
+    /// Parameters of `Attribute`, by name and declaration.
     pub(crate) attributes: Vec<Spanned<String>>,
     pub(crate) transform_times: Option<[f32; 2]>,
     pub(crate) float_textures: Vec<TextureStatement>,
     pub(crate) spectrum_textures: Vec<TextureStatement>,
-    /// Float and spectrum textures in the order in which they were said: `true` for a spectrum
-    /// texture.
+    /// The order of float and spectrum textures among each other: `true` for a spectrum texture.
     pub(crate) texture_order: Vec<bool>,
+    /// Where each texture is named; `true` for a spectrum texture.
+    pub(crate) texture_names: HashMap<(bool, String), Span>,
     pub(crate) materials: Vec<MaterialStatement>,
     pub(crate) media: Vec<MediumStatement>,
     pub(crate) lights: Vec<LightStatement>,

@@ -1,8 +1,8 @@
-//! The words of a pbrt file.
+//! The tokens of a pbrt file.
 //!
-//! A file is words separated by white space: `[`, `]`, quoted strings, and bare words (directives,
+//! A file is tokens separated by white space: `[`, `]`, quoted strings, and bare words (directives,
 //! numbers, `true`, `false`). A `#` outside a string begins a comment that ends with its line. The
-//! tokenizer works on bytes and takes no memory: comments may be in any encoding.
+//! tokenizer works on bytes and allocates nothing: comments may be in any encoding.
 
 use description::{FileId, Span};
 
@@ -45,7 +45,7 @@ impl<'a> Tokens<'a> {
         Self { text, at, file }
     }
 
-    /// The next token, taken.
+    /// Consumes the next token.
     #[inline]
     pub(crate) fn next(&mut self) -> Token {
         let token = self.peek();
@@ -53,7 +53,7 @@ impl<'a> Tokens<'a> {
         token
     }
 
-    /// The next token, left where it is.
+    /// The next token, without consuming it.
     #[inline]
     pub(crate) fn peek(&mut self) -> Token {
         let text = self.text;
@@ -104,12 +104,12 @@ impl<'a> Tokens<'a> {
         &self.text[token.start..token.end]
     }
 
-    /// The place of a token.
+    /// The span of a token.
     pub(crate) fn span(&self, token: Token) -> Span {
         Span::new(self.file, token.start as u32, token.end as u32)
     }
 
-    /// What a quoted string says.
+    /// The content of a quoted string, with its escapes resolved.
     pub(crate) fn string(&self, token: Token) -> String {
         let inside = &self.text[token.start + 1..token.end - 1];
         if !inside.contains(&b'\\') {

@@ -46,7 +46,8 @@ impl Interpreter<'_> {
                 let (eye, target, up) =
                     (DVec3::new(ex, ey, ez), DVec3::new(lx, ly, lz), DVec3::new(ux, uy, uz));
                 let Some(matrix) = look_at(eye, target, up) else {
-                    return self.singular("eye, target and up of this `LookAt` span no frame", span);
+                    return self
+                        .singular("eye, target and up vector of this `LookAt` do not define a frame", span);
                 };
                 self.state.change_ctm(|ctm| ctm * matrix);
             }
@@ -99,7 +100,7 @@ impl Interpreter<'_> {
         if matrix.inverse().is_finite() && matrix.determinant() != 0.0 {
             return Ok(matrix);
         }
-        self.singular("this transform has no inverse: it makes space flat", span)
+        self.singular("this transform is singular: it has no inverse", span)
     }
 
     fn singular<T>(&mut self, message: &str, span: Span) -> Step<T> {

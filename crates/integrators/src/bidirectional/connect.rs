@@ -1,8 +1,8 @@
-//! Ends of subpaths become whole paths: one function for each kind of strategy.
+//! Connects the ends of subpaths to whole paths: one function for each kind of strategy.
 
 use film::Splatter;
 use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
-use scene::camera::{CameraWiSample, FilmPlaces};
+use scene::camera::{CameraWiSample, FilmPositions};
 use scene::light::LightId;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -10,12 +10,12 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::{Bidirectional, LightVertex, Merges, Vertex, Walk, hero_only};
 use crate::transport::Tracer;
 
-/// What a strategy has found.
+/// What a strategy contributes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// Light that arrives, as if there were no other strategy.
+    /// The unweighted estimate.
     pub l: SampledSpectrum,
-    /// The strategy's weight among all that find the path.
+    /// The weight of the strategy among all that find the path.
     pub weight: f32,
     /// Vertices of the light subpath.
     pub s: u32,
@@ -24,30 +24,30 @@ pub(crate) struct Found {
 }
 
 impl Found {
-    /// The weighted light.
+    /// The weighted estimate.
     pub fn weighted(&self) -> SampledSpectrum {
         self.l * self.weight
     }
 }
 
-/// What a light subpath has found, and where on the film.
+/// What a light subpath contributes, and where on the film.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnFilm {
     /// Positions in pixels.
-    pub places: FilmPlaces,
-    /// What was found.
+    pub places: FilmPositions,
+    /// The contribution.
     pub found: Found,
 }
 
 impl OnFilm {
-    /// Adds light wherever this arrives.
+    /// Splats light at all of these positions.
     pub fn splat(&self, splatter: &Splatter, l: &SampledSpectrum, lambda: &SampledWavelengths) {
         self.places.within(splatter.reach()).for_each(|film| splatter.add(film, l, lambda));
     }
 }
 
 impl Bidirectional<'_> {
-    /// s = 0: the camera subpath, whose last vertex is `before`, has met a surface that may emit.
+    /// s = 0: the camera subpath, whose last vertex is `before`, has hit a surface that may emit.
     pub fn emitted(
         &self,
         walk: &Walk,
@@ -78,13 +78,13 @@ impl Bidirectional<'_> {
         l: SampledSpectrum,
         light: LightId,
         before: Option<&Vertex>,
-        place: super::light_end::Place,
+        point: super::light_end::LightPoint,
     ) -> Found {
         let weight = before.map_or(1.0, |before| {
             let (context, wi) = (before.light_context(), walk.ray.ray.d);
             let partial = &walk.partial;
-            let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, place) };
-            let end = self.light_end(light, &context, wi, place, direct);
+            let direct = if partial.vcm == 0.0 { 0.0 } else { self.direct_pdf(light, &context, wi, point) };
+            let end = self.light_end(light, &context, wi, point, direct);
             let by_light = self.balance.connecting_from_light(partial, before.cos_theta(wi), before.merges());
             weight(end.direct * partial.vcm, end.emission / end.cos_theta * by_light)
         });
@@ -92,7 +92,7 @@ impl Bidirectional<'_> {
         Found { l, weight, s: 0, t: walk.depth + 2 }
     }
 
-    /// s = 1: a point on a light is chosen for the vertex.
+    /// s = 1: next-event estimation at the vertex.
     pub fn direct(&self, vertex: &Vertex, lambda: &SampledWavelengths, tracer: &mut Tracer) -> Option<Found> {
         let (u, u_light) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let context = vertex.light_context();
@@ -110,12 +110,12 @@ impl Bidirectional<'_> {
         if tracer.occluded(&ray, end, Interfaces::before(self.scene.light(light))) {
             return None;
         }
-        let place = sample.p.map(|p| (p.p, sample.n));
-        let direct = match place {
+        let point = sample.p.map(|p| (p.p, sample.n));
+        let direct = match point {
             Some((p, Normal3::ZERO)) => pmf * vertex.p.p.distance_squared(p),
             _ => pmf * sample.pdf,
         };
-        let end = self.light_end(light, &context, wi, place, direct);
+        let end = self.light_end(light, &context, wi, point, direct);
         let by_chance = if end.is_delta { 0.0 } else { vertex.pdf(wi) / direct };
         let from_light = end.emission * vertex.cos_theta(wi) / (direct * end.cos_theta);
         let back = self.balance.connecting_back(
@@ -126,7 +126,7 @@ impl Bidirectional<'_> {
         Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
     }
 
-    /// s, t ≥ 2: two surfaces are connected.
+    /// s, t ≥ 2: two surface vertices are connected.
     pub fn connect(&self, camera: &Vertex, light: &Vertex, tracer: &mut Tracer) -> Option<Found> {
         let way = light.p.p - camera.p.p;
         let distance_squared = way.length_squared();
@@ -148,11 +148,17 @@ impl Bidirectional<'_> {
 
     /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses,
     /// if what arrives there comes within the `reach` of the film's pixels.
-    pub fn see(&self, vertex: &Vertex, u: Point2, reach: Bounds2, tracer: &mut Tracer) -> Option<OnFilm> {
+    pub fn connect_to_camera(
+        &self,
+        vertex: &Vertex,
+        u: Point2,
+        reach: Bounds2,
+        tracer: &mut Tracer,
+    ) -> Option<OnFilm> {
         let camera = &self.view.camera;
         let sample = camera.sample_wi(vertex.p.p, vertex.time, u)?;
         let CameraWiSample { we, wi, pdf, film, p, n } = sample;
-        let places = camera.film_places(film);
+        let places = camera.film_positions(film);
         places.within(reach).next()?;
         let l = vertex.scattered(wi) * (we / pdf);
         if l.is_black() || !self.visible(vertex, Point3Error::exact(p), n, tracer) {

@@ -13,7 +13,7 @@ use super::partial::LightEnd;
 
 /// A point on a light and its normal there, zero where it has none; `None` if the light is
 /// infinitely far away.
-pub(crate) type Place = Option<(Point3, Normal3)>;
+pub(crate) type LightPoint = Option<(Point3, Normal3)>;
 
 impl Bidirectional<'_> {
     /// The end at a light that is seen from a surface along the unit direction `wi`, chosen from
@@ -23,11 +23,11 @@ impl Bidirectional<'_> {
         light: LightId,
         context: &LightSampleContext,
         wi: Vector3,
-        place: Place,
+        point: LightPoint,
         direct: f32,
     ) -> LightEnd {
         let source = self.scene.light(light);
-        let (pdf_position, pdf_direction) = match place {
+        let (pdf_position, pdf_direction) = match point {
             Some((p, n)) => {
                 let (position, direction) = source.pdf_le(p, n, -wi, context.time);
                 (if n == Normal3::ZERO { 1.0 } else { position }, direction)
@@ -39,14 +39,20 @@ impl Bidirectional<'_> {
             }
         };
         let emission = self.lights.emitting.pmf(light) * pdf_position * pdf_direction;
-        let cos_theta = place.map_or(1.0, |(_, n)| if n == Normal3::ZERO { 1.0 } else { n.dot(wi).abs() });
+        let cos_theta = point.map_or(1.0, |(_, n)| if n == Normal3::ZERO { 1.0 } else { n.dot(wi).abs() });
         LightEnd { direct, emission, cos_theta, is_delta: source.is_delta() }
     }
 
     /// The density with which a surface chooses the light and the point or direction on it.
-    pub fn direct_pdf(&self, light: LightId, context: &LightSampleContext, wi: Vector3, place: Place) -> f32 {
+    pub fn direct_pdf(
+        &self,
+        light: LightId,
+        context: &LightSampleContext,
+        wi: Vector3,
+        point: LightPoint,
+    ) -> f32 {
         let source = self.scene.light(light);
-        let pdf = match place {
+        let pdf = match point {
             Some((p, Normal3::ZERO)) => context.p.p.distance_squared(p),
             None if source.is_delta() => 1.0,
             _ => source.pdf_li(context, wi, false),

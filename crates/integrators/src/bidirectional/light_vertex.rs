@@ -11,16 +11,16 @@ use super::{Partial, Vertex};
 pub(crate) struct LightVertex {
     /// Position.
     pub p: Point3,
-    /// Unit direction to the vertex before.
+    /// Unit direction to the previous vertex.
     pub wo: Vector3,
-    /// Power that arrives along `wo`, over the subpath's density, if the surface is there for every
-    /// ray.
+    /// Power that arrives along `wo`, over the density of the subpath, if every ray hit the
+    /// surface.
     pub beta: SampledSpectrum,
     /// For the weights.
     pub partial: Partial,
     /// Scattering events on the subpath, that at the photon included.
     pub depth: u16,
-    /// Whether only the first wavelength is left.
+    /// Whether all wavelengths but the first are terminated.
     pub hero_only: bool,
 }
 

@@ -1,33 +1,34 @@
-//! Paths from both ends: what light tracing, bidirectional path tracing, Metropolis and photon
-//! methods share.
+//! Bidirectional path tracing, and the subpaths that it shares with light tracing, Metropolis and
+//! photon methods.
 //!
-//! A path x₀ x₁ … x_k leads from a light to the camera. It can be made by a *light subpath* of s
+//! A path x₀ x₁ … x_k leads from a light to the camera. It can be made of a *light subpath* of s
 //! vertices and a *camera subpath* of t vertices whose ends are connected, for any s + t = k + 1;
 //! each (s, t) is a strategy of its own, good at other paths [Veach 1997 ch. 10]:
 //!
-//! | s, t | made by |
+//! | s, t | strategy |
 //! |---|---|
-//! | 0, t | the camera subpath meets a light by chance |
-//! | 1, t | a point on a light is chosen for the end of the camera subpath |
+//! | 0, t | the camera subpath hits a light by chance |
+//! | 1, t | next-event estimation: a point on a light is sampled for the end of the camera subpath |
 //! | s, 1 | the end of the light subpath is connected to a point on the lens |
-//! | s, t | two surfaces are connected |
+//! | s, t | two surface vertices are connected |
 //!
-//! Vertices of the light subpath may also be *merged* with those of camera subpaths that come near:
-//! photon mapping. Each path is found by all strategies, so each is weighted: [`Partial`] says how.
+//! Vertices of the light subpath can also be *merged* with nearby vertices of camera subpaths:
+//! photon mapping. Every path is found by all strategies, so each is weighted by multiple
+//! importance sampling; [`Partial`] is what a subpath carries for that.
 //!
-//! A [`Walk`] goes from vertex to vertex, from either end; [`Bidirectional`] makes paths of its
+//! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] makes paths of the
 //! vertices. The depth of a vertex is the number of scattering events on its subpath, its own
-//! included: 1 at the first surface. A path whose ends have the depths j and k has j + k of them
-//! when connected, j + k − 1 when merged, and the vertices s = j + 1, t = k + 1.
+//! included: 1 at the first surface. A path whose ends have the depths j and k has j + k scattering
+//! events when connected and j + k − 1 when merged, and the vertices s = j + 1, t = k + 1.
 //!
-//! Light subpaths carry *importance-weighted power*: β of a vertex is the flux that arrives there
-//! along `wo`, over the density of the subpath. Their BSDFs are the adjoint ones,
-//! [`TransportMode::Importance`]: refraction does not scale by η², and shading normals scale by
-//! |wo·ns||wi·ng| / |wo·ng||wi·ns| ([Veach 1997 §5.3]).
+//! Light subpaths carry *power*: β of a vertex is the flux that arrives there along `wo`, over the
+//! density of the subpath. Their BSDFs are the adjoint ones, [`TransportMode::Importance`]:
+//! refraction does not scale by η², and shading normals scale by |wo·ns||wi·ng| / |wo·ng||wi·ns|
+//! ([Veach 1997 §5.3]).
 //!
-//! Dispersion ends all wavelengths but the first of a subpath. What two subpaths make together is
-//! then known at the first wavelength only; [`hero_only`] turns it into light at the wavelengths
-//! that both began with.
+//! Dispersion terminates all wavelengths but the first of a subpath. What two subpaths make
+//! together is then known at the first wavelength only; [`hero_only`] turns it into radiance at the
+//! wavelengths that both began with.
 
 mod bdpt;
 mod connect;
@@ -47,6 +48,6 @@ pub(crate) use connect::Found;
 pub(crate) use light_vertex::LightVertex;
 pub(crate) use partial::{Balance, Merges, Partial};
 pub(crate) use paths::{Bidirectional, Lights, hero_only};
-pub(crate) use subpaths::OnTheWay;
+pub(crate) use subpaths::Encounter;
 pub(crate) use vertex::Vertex;
 pub(crate) use walk::Walk;

@@ -25,10 +25,10 @@
 //! the merged one, which both subpaths have met. What comes straight from a light is not merged,
 //! because choosing a point on the light finds the same with less noise (m = 0 next to a light).
 //! Nor is anything merged that lies beyond a diffuse surface, seen from the camera
-//! ([`vcm`](crate::photons::vcm) says why): behind one a camera subpath has m = 0, and at one a light
-//! subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its d_vcm
-//! is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks the
-//! factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
+//! ([`vcm`](crate::photons::vcm) says why): behind one a camera subpath has m = 0, and at one a
+//! light subpath has k = 0 ([`Merges`]). What is specular can neither be connected nor merged: its
+//! d_vcm is 0 and the sums lose those terms. A [`Partial`] on its way between two vertices lacks
+//! the factors of the vertex that it will arrive at, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
 

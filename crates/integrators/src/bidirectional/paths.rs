@@ -1,4 +1,4 @@
-//! What it takes to make paths from both ends.
+//! The context of paths that are made from both ends.
 
 use scene::light_sampler::{LightSampler, LightSamplerKind, PowerLightSampler};
 use scene::{Scene, View};
@@ -6,21 +6,22 @@ use spectrum::SampledSpectrum;
 
 use super::partial::Balance;
 
-/// What chooses lights.
+/// Light samplers.
 #[derive(Clone, Debug)]
 pub(crate) struct Lights {
-    /// For a point.
+    /// For next-event estimation at a vertex.
     pub seen_from: LightSampler,
-    /// Where light subpaths start.
+    /// For the first vertices of light subpaths.
     pub emitting: PowerLightSampler,
 }
 
 impl Lights {
-    /// Those of no scene.
+    /// For no lights.
     pub fn none() -> Self {
         Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default() }
     }
 
+    /// For the lights of a scene.
     pub fn of(scene: &Scene) -> Self {
         Self {
             seen_from: scene.light_sampler(LightSamplerKind::Bvh),
@@ -29,13 +30,13 @@ impl Lights {
     }
 }
 
-/// Makes paths.
+/// Samples subpaths and makes paths of them.
 #[derive(Clone, Copy)]
 pub(crate) struct Bidirectional<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     pub lights: &'a Lights,
-    /// How strategies share paths.
+    /// How strategies are weighted.
     pub balance: Balance,
     /// Most scattering events of a path.
     pub max_depth: u32,
@@ -43,7 +44,8 @@ pub(crate) struct Bidirectional<'a> {
     pub regularize: bool,
 }
 
-/// Light that is known at the first wavelength alone, as light at all that have the same mean.
+/// Radiance that is known at the first wavelength alone, as radiance at all wavelengths with the
+/// same mean.
 pub(crate) fn hero_only(l: SampledSpectrum) -> SampledSpectrum {
     let mut hero = SampledSpectrum::ZERO;
     hero[0] = l[0] * spectrum::N as f32;

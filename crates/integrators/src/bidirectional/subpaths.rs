@@ -1,4 +1,4 @@
-//! Whole subpaths, told vertex by vertex, and ends of subpaths of one length alone.
+//! Whole subpaths, visited vertex by vertex, and the ends of subpaths of a given length.
 
 use scene::camera::CameraRayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -6,16 +6,17 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::{Bidirectional, Found, Vertex, Walk};
 use crate::transport::Tracer;
 
-/// What a camera subpath comes by.
-pub(crate) enum OnTheWay<'a> {
-    /// A light that it met by chance.
+/// What a camera subpath encounters.
+pub(crate) enum Encounter<'a> {
+    /// A light that it hit by chance.
     Light(Found),
-    /// A surface from which it will go on.
+    /// A vertex.
     Vertex(&'a Vertex),
 }
 
 impl Bidirectional<'_> {
-    /// Follows a light subpath, and visits the vertices that others can be connected to.
+    /// Samples a light subpath, and visits the vertices that can be connected. After a cancellation
+    /// the rest of the subpath is missing.
     pub fn light_subpath(
         &self,
         time: f32,
@@ -25,7 +26,7 @@ impl Bidirectional<'_> {
     ) {
         let Some(mut walk) = Walk::from_light(self, time, *lambda, tracer) else { return };
         while walk.depth < self.max_depth {
-            let Some(mut surface) = walk.meet(tracer) else { return };
+            let Some(mut surface) = walk.intersect(tracer) else { return };
             let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
             if vertex.is_connectible() {
                 visit(&vertex, tracer);
@@ -36,43 +37,43 @@ impl Bidirectional<'_> {
         }
     }
 
-    /// Follows a camera subpath, and visits what it comes by: every vertex, and every light.
+    /// Samples a camera subpath, and visits every vertex and every light that is hit.
     pub fn camera_subpath(
         &self,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-        visit: impl FnMut(OnTheWay, &mut Tracer),
+        visit: impl FnMut(Encounter, &mut Tracer),
     ) {
         self.camera_subpath_to(|_| false, camera_ray, lambda, tracer, visit);
     }
 
-    /// The same, as far as the first vertex that is an end.
+    /// The same, up to the first vertex that is an end.
     pub fn camera_subpath_to(
         &self,
         is_end: impl Fn(&Vertex) -> bool,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-        mut visit: impl FnMut(OnTheWay, &mut Tracer),
+        mut visit: impl FnMut(Encounter, &mut Tracer),
     ) {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut before: Option<Vertex> = None;
         loop {
-            let Some(mut surface) = walk.meet(tracer) else {
+            let Some(mut surface) = walk.intersect(tracer) else {
                 for found in self.escaped(&walk, before.as_ref()) {
-                    visit(OnTheWay::Light(found), tracer);
+                    visit(Encounter::Light(found), tracer);
                 }
                 return;
             };
             if let Some(found) = self.emitted(&walk, &surface, before.as_ref()) {
-                visit(OnTheWay::Light(found), tracer);
+                visit(Encounter::Light(found), tracer);
             }
             let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
             if vertex.depth > self.max_depth {
                 return;
             }
-            visit(OnTheWay::Vertex(&vertex), tracer);
+            visit(Encounter::Vertex(&vertex), tracer);
             if is_end(&vertex) || !walk.leave(&vertex, &surface, tracer.sampler) {
                 return;
             }
@@ -104,8 +105,8 @@ impl Bidirectional<'_> {
         Some(walk.follow_to(depth, tracer)?.0)
     }
 
-    /// The weighted light of all lights that a camera subpath meets by chance after it has
-    /// scattered `depth` times, from 1.
+    /// The weighted radiance of all lights that a camera subpath hits by chance after `depth`
+    /// scattering events, from 1.
     pub fn lights_met(
         &self,
         depth: u32,
@@ -120,7 +121,7 @@ impl Bidirectional<'_> {
             return l;
         }
         loop {
-            let Some(mut surface) = walk.meet(tracer) else {
+            let Some(mut surface) = walk.intersect(tracer) else {
                 let escaped = self.escaped(&walk, Some(&vertex)).map(|found| found.weighted());
                 return l + escaped.sum::<SampledSpectrum>();
             };

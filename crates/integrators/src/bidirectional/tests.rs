@@ -243,7 +243,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
-            if let Some(found) = paths.see(vertex, Vec2::ZERO, everywhere, tracer) {
+            if let Some(found) = paths.connect_to_camera(vertex, Vec2::ZERO, everywhere, tracer) {
                 check(
                     &Path { light: start, surfaces, camera },
                     connect(found.found.s),
@@ -255,7 +255,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         let mut walk = Walk::from_camera(&paths, &ray, lambda);
         let mut camera_subpath: Vec<Vertex> = Vec::new();
-        while let Some(mut surface) = walk.meet(tracer) {
+        while let Some(mut surface) = walk.intersect(tracer) {
             let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
             if let Some(found) = paths.emitted(&walk, &surface, camera_subpath.last())
                 && !camera_subpath.is_empty()

@@ -1,4 +1,4 @@
-//! Where a subpath scatters.
+//! Vertices of subpaths.
 
 use math::{Normal3, Point3Error, Ray, Vector3};
 use scattering::{Bsdf, TransportMode};
@@ -8,25 +8,25 @@ use spectrum::SampledSpectrum;
 use super::{Merges, Partial};
 use crate::transport::direct::on_its_side;
 
-/// A vertex of a subpath.
+/// A vertex of a subpath on a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex {
     /// Position.
     pub p: Point3Error,
     /// Geometric normal.
     pub n: Normal3,
-    /// Unit direction to the vertex before.
+    /// Unit direction to the previous vertex.
     pub wo: Vector3,
-    /// Moment in the scene's time.
+    /// Time, in the scene's units.
     pub time: f32,
     /// How it scatters.
     pub bsdf: Bsdf,
-    /// The probability with which a ray meets the surface there.
+    /// The probability with which a ray hits the surface there.
     pub alpha: f32,
-    /// What arrives along `wo`, of importance (from the camera) or power (from a light), over the
-    /// subpath's density.
+    /// Throughput: importance (from the camera) or power (from a light) that arrives along `wo`,
+    /// over the density of the subpath.
     pub beta: SampledSpectrum,
-    /// Whether only the first wavelength is left.
+    /// Whether all wavelengths but the first are terminated.
     pub hero_only: bool,
     /// For the weights.
     pub partial: Partial,
@@ -39,7 +39,7 @@ pub(crate) struct Vertex {
 }
 
 impl Vertex {
-    /// What lights need to know of it.
+    /// The context for sampling lights from it.
     #[inline]
     pub fn light_context(&self) -> LightSampleContext {
         let context = LightSampleContext { p: self.p, n: self.n, ns: self.bsdf.frame.z, time: self.time };
@@ -52,8 +52,8 @@ impl Vertex {
         self.bsdf.flags().is_non_specular()
     }
 
-    /// Whether a vertex of the other kind could be merged with it: not what comes straight from a
-    /// light, nor what a diffuse surface has sent the camera's subpath to.
+    /// Whether a vertex of the other kind could be merged with it: not the first vertex of a light
+    /// subpath, nor those of a camera subpath beyond a diffuse surface.
     #[inline]
     pub fn can_merge(&self) -> bool {
         match self.mode {
@@ -62,24 +62,23 @@ impl Vertex {
         }
     }
 
-    /// Whether it scatters to all sides and is no mirror besides: whoever comes from the camera
-    /// merges no further.
+    /// Whether it has a diffuse lobe and no specular one: camera subpaths merge no further.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
         let flags = self.bsdf.flags();
         flags.is_diffuse() && !flags.is_specular()
     }
 
-    /// Where merging is possible at the vertex and before, if it is possible beyond it.
+    /// Where merging is possible at the vertex and before it, if it is possible beyond.
     #[inline]
     pub fn merges(&self) -> Merges {
         let before = self.mode == TransportMode::Radiance || !self.is_diffuse();
         Merges { here: if self.can_merge() { self.alpha } else { 0.0 }, before }
     }
 
-    /// What a light subpath leaves as a photon. Of all photons that come to a place only the share
-    /// `alpha` stays, so each stands for those that have passed as well: whoever looks for photons
-    /// at a vertex of a camera subpath has met the surface already.
+    /// The power of the photon that a light subpath leaves. Of all photons that arrive only the
+    /// part `alpha` stays, so each stands for those that have passed as well: the camera subpath
+    /// that looks for photons has hit the surface already.
     #[inline]
     pub fn photon_beta(&self) -> SampledSpectrum {
         self.beta / self.alpha

@@ -1,11 +1,11 @@
-//! From vertex to vertex, from the camera or from a light.
+//! Samples subpaths, vertex by vertex, from the camera or from a light.
 //!
-//! A walk follows its ray to a surface ([`Walk::meet`]), which may be a vertex ([`Walk::arrive`])
-//! or let the ray pass, and leaves the vertex along a direction that its BSDF chooses
+//! A walk follows its ray to a surface ([`Walk::intersect`]), which is a vertex ([`Walk::arrive`])
+//! unless it lets the ray pass, and leaves the vertex along a direction of its BSDF
 //! ([`Walk::leave`]). From the second vertex on it ends with probability 1 − q by Russian roulette,
-//! where q is how much of what began is still carried, at most 1; the weights of strategies do not
-//! know of it, which costs nothing but a little efficiency. Who wants a vertex of a certain depth
-//! and no other plays no roulette ([`Walk::follow_to`]).
+//! where q is the part of the initial throughput that is left, at most 1; the weights of strategies
+//! ignore it, which costs a little efficiency. For a vertex of one given depth there is no roulette
+//! ([`Walk::follow_to`]).
 
 use math::RayDifferential;
 use sampling::Sampler;
@@ -15,30 +15,30 @@ use scene::light::LightId;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::light_end::Place;
+use super::light_end::LightPoint;
 use super::{Bidirectional, Partial, Vertex};
 use crate::transport::path_state::pass_through;
 use crate::transport::{Tracer, roulette};
 
-/// A subpath on its way to its next surface.
+/// A subpath between two surfaces.
 #[derive(Clone)]
 pub(crate) struct Walk<'a> {
     paths: &'a Bidirectional<'a>,
-    /// Where it goes.
+    /// The ray to the next surface.
     pub ray: RayDifferential,
-    /// What it carries along the ray, over its density.
+    /// Throughput: what is carried along the ray, over the density of the subpath.
     pub beta: SampledSpectrum,
-    /// For the weights, without what the next surface adds.
+    /// For the weights, without the factors of the next surface.
     pub partial: Partial,
-    /// Wavelengths that are left of it.
+    /// The wavelengths, of which dispersion may have terminated all but the first.
     pub lambda: SampledWavelengths,
     /// Scattering events so far.
     pub depth: u32,
-    /// The share of what began that it carries, but for what refraction does to radiance.
+    /// Throughput relative to the start of the subpath, without the η² of refractions.
     share: SampledSpectrum,
-    /// Way since the vertex before.
+    /// Distance from the previous vertex.
     distance: f32,
-    /// The probability with which rays meet the surface that was met.
+    /// The probability with which rays hit the surface that was hit.
     alpha: f32,
     rough_before: bool,
     after_diffuse: bool,
@@ -48,15 +48,15 @@ pub(crate) struct Walk<'a> {
     mode: TransportMode,
 }
 
-/// Where the ray comes from.
+/// The origin of the ray.
 #[derive(Clone, Copy, Debug)]
 enum Origin {
-    /// From a place.
-    Place,
-    /// From a direction without a place: a camera of parallel rays.
+    /// From a point.
+    Point,
+    /// From a direction without a point: a camera of parallel rays.
     Direction,
     /// From a light.
-    Light(LightId, Place),
+    Light(LightId, LightPoint),
 }
 
 impl<'a> Walk<'a> {
@@ -71,7 +71,7 @@ impl<'a> Walk<'a> {
         let parallel = camera.is_parallel();
         let pdf = if parallel { pdf_position } else { pdf_direction };
         let beta = SampledSpectrum::splat(camera_ray.weight);
-        let origin = if parallel { Origin::Direction } else { Origin::Place };
+        let origin = if parallel { Origin::Direction } else { Origin::Point };
         let partial = paths.balance.at_camera(pdf);
         Self::new(paths, camera_ray.ray, (beta, partial), lambda, (origin, TransportMode::Radiance))
     }
@@ -118,8 +118,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The surface that the ray meets; `None` if it leaves the scene, or was stopped.
-    pub fn meet(&mut self, tracer: &mut Tracer) -> Option<SurfaceInteraction> {
+    /// The surface that the ray hits; `None` if it leaves the scene, or was stopped.
+    pub fn intersect(&mut self, tracer: &mut Tracer) -> Option<SurfaceInteraction> {
         if self.is_stopped {
             return None;
         }
@@ -131,7 +131,7 @@ impl<'a> Walk<'a> {
         Some(scene.interaction(&hit, surface))
     }
 
-    /// The vertex at a surface that was met; `None` if the ray passes it, to be followed on.
+    /// The vertex at a surface that was hit; `None` if the ray passes it and has to be followed on.
     pub fn arrive(&mut self, surface: &mut SurfaceInteraction, tracer: &mut Tracer) -> Option<Vertex> {
         let Some(mut bsdf) = tracer.bsdf(surface, &self.ray, &mut self.lambda) else {
             let t = self.ray.ray.o.distance(surface.p());
@@ -164,28 +164,29 @@ impl<'a> Walk<'a> {
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
         vertex.partial = match &self.origin {
-            Origin::Place => self.partial.arrive(self.distance * self.distance, cos_theta),
+            Origin::Point => self.partial.arrive(self.distance * self.distance, cos_theta),
             Origin::Direction => self.partial.arrive(1.0, cos_theta),
-            &Origin::Light(light, place) => {
+            &Origin::Light(light, point) => {
                 let context = vertex.light_context();
-                let direct = self.paths.direct_pdf(light, &context, vertex.wo, place);
-                let end = self.paths.light_end(light, &context, vertex.wo, place, direct);
+                let direct = self.paths.direct_pdf(light, &context, vertex.wo, point);
+                let end = self.paths.light_end(light, &context, vertex.wo, point, direct);
                 self.paths.balance.at_light(&end, cos_theta)
             }
         };
         Some(vertex)
     }
 
-    /// Leaves a vertex along a direction of its BSDF; `false` if it ends there, which Russian
-    /// roulette may decide.
+    /// Leaves a vertex along a direction of its BSDF; `false` if the subpath ends there, perhaps by
+    /// Russian roulette.
     pub fn leave(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
         self.scatter(vertex, surface, sampler) && self.survive(sampler)
     }
 
-    /// Goes on to the vertex of a depth, without Russian roulette; `None` if it does not get there.
+    /// Samples up to the vertex of a depth, without Russian roulette; `None` if the subpath ends
+    /// before.
     pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex, SurfaceInteraction)> {
         loop {
-            let mut surface = self.meet(tracer)?;
+            let mut surface = self.intersect(tracer)?;
             let Some(vertex) = self.arrive(&mut surface, tracer) else { continue };
             if vertex.depth == depth {
                 return Some((vertex, surface));
@@ -218,7 +219,7 @@ impl<'a> Walk<'a> {
         if vertex.mode == TransportMode::Radiance && sample.flags.is_transmissive() {
             self.share *= sample.eta * sample.eta;
         }
-        self.origin = Origin::Place;
+        self.origin = Origin::Point;
         self.distance = 0.0;
         self.ray = surface.spawn_scattered(&self.ray, &sample);
         !self.beta.is_black()

@@ -1,7 +1,7 @@
 //! Ambient occlusion: how much of the sky each point sees.
 //!
 //! A = 1/π ∫ V(p, ω) (n·ω) dω over the hemisphere around the geometric normal n on the camera's
-//! side, where the visibility V is 0 for directions that meet a surface nearer than `max_distance`.
+//! side, where the visibility V is 0 for directions that hit a surface nearer than `max_distance`.
 //! A point with a free view is white (A = 1): the result is A times the illuminant of the film's
 //! colour space at unit luminance. Lights and materials do not matter; a camera ray that meets
 //! nothing is black.

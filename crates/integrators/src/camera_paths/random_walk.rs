@@ -2,7 +2,7 @@
 //!
 //! L(p, ω_o) = L_e + ∫ f(ω_o, ω_i) L(p', −ω_i) |cos θ_i| dω_i over the whole sphere, estimated by
 //! one direction of density 1/4π at each surface. Unbiased up to its depth but very noisy; light in
-//! single directions (point and distant lights, smooth metal and glass) is never met, and is
+//! single directions (point and distant lights, smooth metal and glass) is never hit, and is
 //! missing.
 //!
 //! Settings: `max_depth`, most scattering events, default 5. Source: [Pharr 2023 §1.3.6].

@@ -1,4 +1,4 @@
-//! Ray casting: what the camera's own rays show, and nothing more.
+//! Ray casting: camera rays alone, without shadow rays.
 //!
 //! L = L_e + Σ f(ω_o, ω_i) L_i |cos θ_i| / p(ω_i), one direction ω_i for each light, as if nothing
 //! stood between the surface and the light. Shadows, reflections, refractions and indirect light

@@ -1,13 +1,13 @@
-//! Path tracing taken apart: light sampling and BSDF sampling, each of which can be switched off.
+//! Simple path tracing: light sampling and BSDF sampling, each of which can be switched off.
 //!
 //! At each surface, direct light comes either from one point on one light (chosen uniformly),
-//! divided by its density, or from the path happening to meet the light: never from both, so that
+//! divided by its density, or from the path hitting the light by chance: never from both, so that
 //! no weights are needed. Only what no light sample can find, seen directly or after a specular
-//! bounce, is always counted when met. The path goes on in a direction of the BSDF's density, or a
+//! bounce, is always counted when hit. The path goes on in a direction of the BSDF's density, or a
 //! uniform one.
 //!
 //! Unbiased up to its depth, with two exceptions: without light sampling, point and distant lights
-//! are never met; without BSDF sampling, smooth metal and glass are black.
+//! are never hit; without BSDF sampling, smooth metal and glass are black.
 //!
 //! Settings: `max_depth`, most scattering events, default 5; `sample_lights` and `sample_bsdf`,
 //! default true. Source: [Pharr 2023 §13.2].
@@ -23,7 +23,7 @@ use crate::transport::direct::{light_context, scattered};
 use crate::transport::path_state::pass_through;
 use crate::{RayIntegrator, Tracer};
 
-/// Path tracing taken apart.
+/// Simple path tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct SimplePath {
     /// Most scattering events.
@@ -40,7 +40,7 @@ impl Default for SimplePath {
     }
 }
 
-/// Where a path goes on.
+/// The next segment of a path.
 struct Onward {
     wi: Vector3,
     /// f·|cos|/pdf.
@@ -71,7 +71,7 @@ impl RayIntegrator for SimplePath {
             }
             let Some(bsdf) = tracer.bsdf(&mut surface, &ray, lambda) else {
                 ray = pass_through(&ray, &surface, t);
-                // No light sample gets through here: what the ray meets beyond it alone finds.
+                // Shadow rays stop here, so only the ray itself finds lights beyond.
                 specular_bounce = true;
                 continue;
             };
@@ -99,7 +99,7 @@ impl RayIntegrator for SimplePath {
     }
 }
 
-/// Light that comes straight from one light, for all of them.
+/// Next-event estimation by one light, chosen uniformly.
 fn one_light<B: Scatter>(
     tracer: &mut Tracer,
     surface: &SurfaceInteraction,
@@ -122,7 +122,7 @@ fn one_light<B: Scatter>(
     l / (pmf * sample.pdf)
 }
 
-/// A direction of the BSDF's density.
+/// A direction sampled by the BSDF.
 fn by_bsdf<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Option<Onward> {
     let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
     let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, Directions::All)?;

@@ -30,7 +30,7 @@ impl Default for Whitted {
     }
 }
 
-/// A ray that is still to be followed.
+/// A ray that is still to be traced.
 struct Pending {
     ray: RayDifferential,
     beta: SampledSpectrum,

@@ -1,16 +1,16 @@
-//! What has no end, and how far light from infinity reaches.
+//! Shapes without bounds, and how far light from infinity reaches.
 //!
-//! Rays of light from infinity start at the sphere around all that has an end. A plane is lit by
-//! them where they leave the sphere, and nowhere else. Who looks for lights from a surface does not
-//! mind; who has light come by itself misses what lies beyond.
+//! Light subpaths from infinity start on a disk outside the bounding sphere of all bounded shapes. A
+//! plane is lit by them where they leave the sphere, and nowhere else. Algorithms that sample lights
+//! from surfaces are not affected; those that trace light subpaths miss what lies beyond.
 
 use description::{
     Diagnostic, Handle, InstanceDesc, LightKind, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation,
     Stated,
 };
 
-/// Tells of each shape without end that is lit from infinity, for the algorithm `name` which has
-/// light come by itself.
+/// Warns of each unbounded shape that is lit from infinity, for the algorithm `name`, which traces
+/// light subpaths.
 pub(crate) fn warnings(desc: &SceneDesc, name: &str) -> Vec<Diagnostic> {
     let from_infinity =
         |kind: &LightKind| matches!(kind, LightKind::Infinite { .. } | LightKind::Distant { .. });

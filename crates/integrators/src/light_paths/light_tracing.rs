@@ -1,26 +1,27 @@
-//! Light tracing: particles from the lights, as nature has it.
+//! Light tracing: particles from the lights.
 //!
-//! A light subpath leaves a light, chosen in proportion to power, and goes from surface to surface
-//! as the BSDFs say. No ray of it would ever hit a pinhole, so each of its vertices x is connected
-//! to the camera: if nothing stands between them, the pixel of the film that x is seen in receives
+//! A light subpath leaves a light, chosen in proportion to power, and is scattered from surface to
+//! surface as the BSDFs say. No ray of it would ever hit a pinhole, so each of its vertices x is
+//! connected to the camera: if it is visible, the pixel of the film position of x receives
 //!
 //! ```text
 //! β·f(x)·|cos θ|·W_e / p_lens
 //! ```
 //!
-//! where β is the flux that arrived over the density of the subpath, W_e the camera's importance
-//! and p_lens the density of the point on the lens. With n subpaths, 1/n of the sum over all is the
-//! picture.
+//! where β is the flux that arrived over the density of the subpath, W_e the importance of the
+//! camera and p_lens the density of the point on the lens. With n subpaths, 1/n of the sum over all
+//! is the picture.
 //!
-//! It is at its best where light is focused: the caustic of a glass ball is what a lamp throws, and
-//! costs nothing extra. It fails where the camera looks into a mirror or through glass: no vertex
-//! can be connected through a specular surface, so mirrors and glass stay black, whatever they
-//! would show. And it wastes: most rays reach nothing that the camera sees, which is what made
-//! tracing from the eye win; the summary says how many. The lights themselves, at depth 0, are seen
-//! along one camera ray for each pixel, since those far away are nowhere on a subpath.
+//! It is at its best where light is focused: the caustic of a glass ball is where light subpaths go
+//! anyway. It fails where the camera looks into a mirror or through glass: no vertex can be
+//! connected through a specular surface, so mirrors and glass stay black. And most rays reach
+//! nothing that the camera sees, which is why tracing from the camera won; the summary says how
+//! many. Lights themselves, at depth 0, are found by one camera ray for each pixel, since those at
+//! infinity are no vertices of subpaths.
 //!
-//! Unbiased for what it can see. A plane without end lies in the dark where light from infinity
-//! does not come (`endless.rs`). Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
+//! Unbiased for what it can see. Surfaces without bounds are black where they lie beyond the scene's
+//! bounds and light comes from infinity (`endless.rs`). A light subpath that a cancellation cuts off
+//! has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -30,7 +31,7 @@ use sampling::Sampler;
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -41,9 +42,9 @@ pub struct LightTracing {
     sampler: Sampler,
     light_sampler: Sampler,
     lights: Lights,
-    /// Rays of light subpaths, those to the camera among them.
+    /// Rays of light subpaths, including those to the camera.
     rays: AtomicU64,
-    /// Of these, how many ended on the film.
+    /// How many of these reached the film.
     reached: AtomicU64,
 }
 
@@ -93,7 +94,7 @@ impl Integrator for LightTracing {
             tracer.with_sampler(&mut light_sampler, |tracer| {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
                     let u = tracer.sampler.get_2d();
-                    if let Some(seen) = paths.see(vertex, u, splatter.reach(), tracer) {
+                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), tracer) {
                         seen.splat(&splatter, &seen.found.l, lambda);
                         reached += 1;
                     }
@@ -104,8 +105,8 @@ impl Integrator for LightTracing {
             self.reached.fetch_add(reached, Ordering::Relaxed);
             let mut l = SampledSpectrum::ZERO;
             if let Some(camera_ray) = &sample.camera_ray {
-                seen.camera_subpath(camera_ray, lambda, tracer, |on_the_way, _| {
-                    if let OnTheWay::Light(found) = on_the_way {
+                seen.camera_subpath(camera_ray, lambda, tracer, |encounter, _| {
+                    if let Encounter::Light(found) = encounter {
                         l += found.l;
                     }
                 });

@@ -1,5 +1,5 @@
-//! One chain of Metropolis: a walk that stays at each point in proportion to a function c, and what
-//! its steps are worth.
+//! One Markov chain of Metropolis, which visits each point in proportion to a function c, and the
+//! weights of its states.
 //!
 //! From x the walk proposes x', as likely as x from x', and accepts it with the probability a =
 //! min(1, c(x')/c(x)). Whatever the walk had to do with c before, it keeps; so a walk that starts

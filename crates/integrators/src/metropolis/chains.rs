@@ -13,7 +13,7 @@ use super::target::{Contribution, Target};
 use crate::transport::Tracer;
 use crate::{Cancelled, Control};
 
-/// Runs chains, and remembers how they fared.
+/// Runs the chains of passes, and keeps their statistics.
 #[derive(Debug)]
 pub(super) struct Chains {
     settings: MltSettings,
@@ -22,19 +22,19 @@ pub(super) struct Chains {
     passes: u32,
     /// Sum of the b of these passes.
     b_sum: f64,
-    /// Steps of the last of them.
+    /// Mutations of the last of them.
     mutations: usize,
     acceptance: Acceptance,
 }
 
-/// The number of the pass whose starting points tell b₀: no other has it.
+/// The number of a pass whose candidates estimate b₀: no other pass has it.
 const BEFORE_ALL: u32 = u32::MAX;
 
-/// A share of the time that goes into the choice of starts: with fewer candidates, chains start too
-/// often at the same one.
+/// Mutations for each candidate start, at least. With fewer candidates, chains start too often at the
+/// same one.
 const MUTATIONS_PER_CANDIDATE: usize = 4;
 
-/// Shorter chains than this leave too little of the place where they start.
+/// Shorter chains than this move too little away from their start.
 const FEWEST_MUTATIONS: usize = 256;
 
 /// Points that a thread evaluates in a row.
@@ -48,7 +48,7 @@ pub(super) struct Targeted<'a> {
 }
 
 impl Targeted<'_> {
-    /// What is found at the point that the streams are.
+    /// What is found at the point of primary sample space that the streams hold.
     fn contribution(
         &self,
         [first, others @ ..]: &mut Streams,

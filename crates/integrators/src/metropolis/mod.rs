@@ -1,48 +1,46 @@
-//! Metropolis light transport in primary sample space: a walk through paths that lingers where they
-//! are bright.
+//! Metropolis light transport in primary sample space: Markov chains of paths that visit paths in
+//! proportion to the light that they carry.
 //!
-//! Where few of all paths carry light, each found by luck is forgotten at once by other algorithms.
-//! A chain of Metropolis keeps it: it goes from path to path, each a small change of the one
-//! before, and dwells at each in proportion to the light that it brings. So it explores the
-//! surroundings of what has been found: all that comes through the gap of a door, once one path has
-//! found the gap.
+//! Where few paths carry light, independent samples find each of them by chance and forget it at
+//! once. A Markov chain goes from path to path, each a small mutation of the one before, and visits
+//! each in proportion to its contribution. So it explores the neighbourhood of what has been found:
+//! all the light that comes through the gap of a door, once one path has found the gap.
 //!
-//! The walk does not go through paths but through the numbers that they are made of, the *primary
-//! sample space* [Kelemen 2002]: the cube of all that a sampler may answer. Each point u of it is a
-//! path that some other algorithm makes, of contribution f(u) (light over density) to the film
-//! position p(u). A pixel whose filter is h is then
+//! The states of the chain are not paths but the random numbers that they are made of, the *primary
+//! sample space* [Kelemen 2002]: the unit cube of all that a sampler may return. Each point u of it
+//! is a path that some other algorithm makes, of contribution f(u) (radiance over density) to the
+//! film position p(u). A pixel whose filter is h is then
 //!
 //! ```text
 //! I = ∫ f(u) h(p(u)) du = b · E[ f(u)/c(u) · h(p(u)) ],   u of the density c/b,   b = ∫ c(u) du
 //! ```
 //!
-//! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z. How a
-//! chain comes to that density is said in `chain.rs`, what its steps look like in
-//! [`PrimarySample`](sampling::sampler::PrimarySample). The algorithm that makes the paths, the
-//! `technique`, is
+//! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z. `chain.rs`
+//! says how a chain comes to that density, [`PrimarySample`](sampling::sampler::PrimarySample) how
+//! it mutates. The algorithm that makes the paths, the `technique`, is
 //!
-//! - `path`: a camera path with all that it finds [Kelemen 2002];
+//! - `path`: a camera path with all the light that it finds [Kelemen 2002];
 //! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as
 //!   well: multiplexed Metropolis [Hachisuka 2014]. What the strategy finds is weighted by the
 //!   balance heuristic and by the number of strategies, so a chain stays with those that are good
 //!   for the paths around it, and pays for one connection instead of all. The number of scattering
-//!   events, which is fixed for a chain in the paper, is one more coordinate, and the greater the
+//!   events, which is fixed for a chain in the paper, is one more dimension, and the greater the
 //!   less likely.
 //!
 //! Chains are many and short. Those of a pass start at points chosen in proportion to c among
-//! uniform ones, candidates that no other pass knows; their mean is the pass's b. Then b·(the
-//! chains' mean) is right on average, at every step and for any number of candidates, with nothing
-//! to be thrown away at the beginning: what is favoured by the choice of starts is what b makes up
-//! for [Veach 1997 §11.3.1]. So each pass is a picture of its own that owes nothing to others, as
-//! chains owe nothing to threads, and errors shrink with the number of passes for ever.
+//! uniform candidates of that pass alone; the mean of c over the candidates is the b of the pass.
+//! Then b·(the mean of the chains) is unbiased, at every step and for any number of candidates,
+//! without a burn-in to be discarded: b makes up for what the choice of starts favours
+//! [Veach 1997 §11.3.1]. So passes are independent pictures, chains are independent of threads, and
+//! the error falls with the number of passes without limit.
 //!
-//! Light that the camera sees directly is left to one camera ray for each pixel and pass: it is
-//! found without luck, and so bright that chains would spend most of their time on it.
+//! Lights that the camera sees directly are left to one camera ray for each pixel and pass: they are
+//! found without chance, and so bright that chains would spend most of their time on them.
 //!
 //! Unbiased up to `max_depth`, except with `regularize`. What it is bad at: noise is not that of
-//! independent samples but comes in blotches, where a chain dwelt; the brightness of the whole is
-//! only as sure as b; open scenes, which every path sees, gain nothing; and what no large step ever
-//! finds stays black for ever. Sources: [Veach 1997 ch. 11]; [Kelemen 2002]; [Hachisuka 2014];
+//! independent samples but comes in blotches, where a chain stayed; the overall brightness is only
+//! as certain as b; open scenes, which every path sees, gain nothing; and what no large step ever
+//! finds stays black. Sources: [Veach 1997 ch. 11]; [Kelemen 2002]; [Hachisuka 2014];
 //! [Pharr 2016 §16.4].
 
 mod chain;

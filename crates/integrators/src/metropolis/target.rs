@@ -3,7 +3,7 @@
 use film::Splatter;
 use math::{Bounds2, Point2};
 use sampling::Sampler;
-use scene::camera::{CameraRayDifferential, CameraSample, FilmPlaces};
+use scene::camera::{CameraRayDifferential, CameraSample, FilmPositions};
 use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
 
 use crate::Path;
@@ -15,7 +15,7 @@ use crate::transport::pixel_samples::camera_ray;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contribution {
     /// Positions in pixels.
-    places: FilmPlaces,
+    places: FilmPositions,
     /// The light.
     l: SampledSpectrum,
     /// At these wavelengths.
@@ -139,7 +139,7 @@ impl ConnectedPaths<'_> {
         end: &CameraEnd,
         tracer: &mut Tracer,
         [light, connection]: &mut [Sampler; 2],
-    ) -> Option<(FilmPlaces, SampledSpectrum)> {
+    ) -> Option<(FilmPositions, SampledSpectrum)> {
         let (paths, lambda) = (&self.paths, &end.lambda);
         let mut light_vertex = |tracer: &mut Tracer| {
             let vertex =
@@ -148,7 +148,7 @@ impl ConnectedPaths<'_> {
         };
         if t == 1 {
             let vertex = light_vertex(tracer)?;
-            let on_film = paths.see(&vertex, connection.get_2d(), self.film.0, tracer)?;
+            let on_film = paths.connect_to_camera(&vertex, connection.get_2d(), self.film.0, tracer)?;
             return Some((on_film.places, on_film.found.weighted()));
         }
         let camera_ray = end.camera_ray.as_ref()?;

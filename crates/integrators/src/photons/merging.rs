@@ -1,33 +1,31 @@
-//! What methods that merge have in common: photons shot anew in each pass, and a radius that
-//! shrinks from pass to pass.
+//! What methods that merge share: photons emitted anew in each pass, and a radius that shrinks from
+//! pass to pass.
 //!
-//! The light that a surface at x scatters towards the camera is estimated from the n light subpaths
-//! of a pass by all their vertices within the radius r, as if they had arrived at x itself:
+//! The radiance that a surface at x scatters towards the camera is estimated from the n light
+//! subpaths of a pass by all their vertices within the radius r, as if they had arrived at x itself:
 //!
 //! ```text
 //! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p/α_p
 //! ```
 //!
-//! where α_p, mostly 1, is the probability with which a ray meets the surface at the photon's
-//! place. Of a leaf that a texture cuts out in part it is the part that remains: as few photons
-//! stay there, while x is given and has all the light that comes by.
+//! where α_p, mostly 1, is the probability with which a ray hits the surface at the photon's
+//! position. Of a surface with the alpha α only the part α of the photons stays, while x has been
+//! hit and receives all the light that arrives.
 //!
-//! That blurs light over the radius. The blur is a bias which goes with r² (with r beside edges and
-//! walls without thickness, through which light leaks), while noise goes with 1/r²; both vanish if
-//! pass i has the radius of [Knaus 2011]
+//! The estimate blurs light over the radius. The bias of the blur is proportional to r² (to r beside
+//! edges and thin walls, through which light leaks), the variance to 1/r²; both vanish if pass i has
+//! the radius of [Knaus 2011]
 //!
 //! ```text
 //! r_{i+1}² = r_i² · (i + α)/(i + 1)        so that r_i² ~ i^(α − 1)
 //! ```
 //!
-//! and the picture is the mean of all passes: after N of them its bias is about N^(α − 1), its
-//! variance N^(−α) of that of the first. The radius depends on nothing but the pass's number, so
-//! passes can be made in any order, anywhere, and again.
+//! and the picture is the mean of all passes: after N passes the bias is about N^(α − 1) and the
+//! variance N^(−α) of that of the first. The radius depends on the number of the pass alone, so
+//! passes can be rendered in any order, anywhere, and again.
 //!
-//! Photons can be merged with a path from the camera only if both know of the same wavelengths, at
-//! the same time. So all paths of a pass have one choice of both, spread evenly over the passes:
-//! each step goes on by an irrational part of the range. For wavelengths that is a quarter of the
-//! golden ratio, because four of them, a quarter apart, are taken at once.
+//! Photons can be merged with a camera path only if both have the same wavelengths and the same
+//! time. So all paths of a pass share one [`ShutterSample`].
 //!
 //! Sources: [Knaus 2011]; [Hachisuka 2009].
 
@@ -42,13 +40,13 @@ use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
-/// Light subpaths that are followed between two looks at whether to go on.
+/// Light subpaths that one task samples.
 const BATCH: usize = 1024;
 
-/// Photons of passes, and the radius that they count within.
+/// The photons of passes, and their radius.
 #[derive(Clone, Debug)]
 pub(crate) struct Merging {
-    /// The radius of the first pass.
+    /// The radius of the first pass, in scene units.
     radius: f32,
     /// How slowly the radius shrinks, in (0, 1].
     alpha: f32,
@@ -56,7 +54,7 @@ pub(crate) struct Merging {
     last: LastPass,
 }
 
-/// What the summary tells.
+/// Facts for the summary.
 #[derive(Clone, Debug, Default)]
 struct LastPass {
     passes: u32,
@@ -66,12 +64,12 @@ struct LastPass {
     bytes: usize,
 }
 
-/// What is kept of the vertices of light subpaths, in the order of the paths.
+/// What is kept of the vertices of light subpaths, in path order.
 #[derive(Clone, Debug)]
 pub(crate) struct LightSubpaths<V> {
-    /// That of all.
+    /// Of all paths.
     pub vertices: Vec<V>,
-    /// Where that of each path ends.
+    /// The end of each path in that list.
     ends: Vec<usize>,
 }
 
@@ -82,7 +80,7 @@ impl<V> Default for LightSubpaths<V> {
 }
 
 impl<V> LightSubpaths<V> {
-    /// What is kept of one path, if there are as many.
+    /// What is kept of one path; `None` beyond the last.
     pub fn get(&self, path: usize) -> Option<&[V]> {
         let &end = self.ends.get(path)?;
         let start = if path == 0 { 0 } else { self.ends[path - 1] };
@@ -96,17 +94,17 @@ impl<V> LightSubpaths<V> {
 }
 
 impl Merging {
-    /// With the radius of the first pass.
+    /// With the radius of the first pass, in scene units.
     pub fn new(radius: f32, alpha: f32, seed: u32) -> Self {
         Self { radius, alpha, seed, last: LastPass::default() }
     }
 
-    /// Changes the radius of the first pass.
+    /// Sets the radius of the first pass.
     pub fn begin_with(&mut self, radius: f32) {
         self.radius = radius;
     }
 
-    /// What chooses the wavelengths and times of passes.
+    /// The seed of wavelengths and times of passes.
     pub fn seed(&self) -> u32 {
         self.seed
     }
@@ -123,8 +121,8 @@ impl Merging {
         ShutterSample::of_pass(view, self.seed, pass)
     }
 
-    /// Follows a pass's light subpaths and keeps of their vertices what is wanted. `sampler` begins
-    /// a path's sample.
+    /// Samples the light subpaths of a pass and keeps of their vertices what `keep` makes of them.
+    /// `sampler` starts the sampler of a path.
     pub fn shoot<V: Send>(
         &self,
         paths: &Bidirectional,
@@ -167,8 +165,8 @@ impl Merging {
         Ok((all, stats))
     }
 
-    /// The photons of a pass, of so many light subpaths that take `bytes` beside, in the order in
-    /// which they will be looked for.
+    /// Sorts the photons of a pass into a grid; they are of so many light subpaths, whose vertices
+    /// take `bytes` besides.
     pub fn sort(&mut self, photons: Vec<LightVertex>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
         let radius = self.radius(pass);
         let grid = PhotonGrid::new(photons, radius);
@@ -177,7 +175,7 @@ impl Merging {
         grid
     }
 
-    /// What the integrators tell of it.
+    /// Facts for the summary of an integrator.
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         let &LastPass { passes, radius, paths, photons, bytes } = &self.last;
         if passes == 0 {

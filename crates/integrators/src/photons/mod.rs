@@ -1,12 +1,12 @@
 //! Photon methods: the vertices of light subpaths are kept, and looked up around the vertices of
 //! camera subpaths.
 
-mod glints;
 mod merging;
 mod photon;
 mod photon_grid;
 mod photon_map;
 mod photon_mapping;
+mod specular_paths;
 mod sppm;
 mod vcm;
 

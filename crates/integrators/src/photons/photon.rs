@@ -1,6 +1,6 @@
-//! A photon: light of a light subpath that has arrived at a surface.
+//! A photon: power of a light subpath that has arrived at a surface.
 //!
-//! The photons of a pass and all camera rays that look for them have one moment and the same
+//! The photons of a pass and all camera rays that look for them have one time and the same
 //! wavelengths, so that light which one carries is light at the wavelengths of the other.
 
 use math::{Normal3, Point3, Vector3};

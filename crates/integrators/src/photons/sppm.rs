@@ -1,26 +1,24 @@
-//! Stochastic progressive photon mapping: photons in pass after pass, within ever smaller
-//! distances.
+//! Stochastic progressive photon mapping: new photons in every pass, within ever smaller radii.
 //!
-//! A pass shoots photons and keeps those that have been scattered at least once before they come to
-//! a diffuse surface ([`merging`](crate::photons::merging)). Then each pixel follows a path from the camera,
-//! past mirrors, glass and what is glossy, to the first diffuse surface. There the path ends: light
-//! straight from the lights is found by choosing a point on one, all other light by merging with
-//! the photons within the radius. On the way it looks for lights as path tracing does, by choice
-//! and by chance, weighted by the balance heuristic; at the end by choice alone, so that nothing
-//! counts twice. Surfaces with a specular lobe besides a diffuse one are on the way, too.
+//! A pass emits photons and keeps those that arrive at a diffuse surface after at least one
+//! scattering event ([`merging`](crate::photons::merging)). Then each pixel samples a camera path
+//! through specular and glossy surfaces to the first diffuse one. There the path ends: direct light
+//! is found by next-event estimation, all other light by merging with the photons within the radius.
+//! On the way it looks for lights as path tracing does, by next-event estimation and by chance,
+//! weighted by the balance heuristic; at the end by next-event estimation alone, so that nothing
+//! counts twice. A surface with a specular lobe besides a diffuse one does not end the path.
 //!
-//! It shines where light is focused and then seen through glass or in a mirror, which no path from
-//! the eye finds; any number of pixels share a photon. It is slow where photons are rare: in large
-//! scenes of which the camera sees a corner. Caustics on glossy surfaces are left to chance.
+//! It is at its best on caustics seen through glass or in a mirror, which no path from the camera
+//! finds; all pixels share all photons. It is slow where photons are rare: in large scenes of which
+//! the camera sees a corner. Caustics on glossy surfaces are left to chance.
 //!
 //! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every
 //! pixel has a radius of its own, which shrinks by what the pixel has found so far, as (N +
-//! γM)/(N + M) with γ = 2/3. Here all have the radius that [Knaus 2011] give a pass by its number,
-//! with α = γ, which comes to the same where photons fall evenly. What is lost is that radii adapt
-//! to where photons are dense. What is won is that a pass depends on no pass before it: a picture
-//! can be interrupted, continued and merged from shards to the same bits, and neither threads nor
-//! order matter. Edges of paths are counted as everywhere: `max_depth` holds for the sum of both
-//! ends.
+//! γM)/(N + M) with γ = 2/3. Here all share the radius that [Knaus 2011] give a pass by its number,
+//! with α = γ, which is the same where photons are evenly distributed. What is lost is that radii
+//! adapt to the density of photons. What is won is that a pass depends on no pass before it: a
+//! render can be interrupted, resumed and merged from shards to the same bits, and neither threads
+//! nor order matter. `max_depth` holds for the sum of both ends, as everywhere.
 //!
 //! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
 //! [Pharr 2016 §16.2].
@@ -33,7 +31,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
@@ -137,10 +135,10 @@ impl Integrator for Sppm {
             let mut l = SampledSpectrum::ZERO;
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;
-            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |on_the_way, tracer| {
-                match on_the_way {
-                    OnTheWay::Light(found) => l += found.weighted(),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+            paths.camera_subpath_to(Vertex::is_diffuse, camera_ray, lambda, tracer, |encounter, tracer| {
+                match encounter {
+                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let direct = paths.direct(vertex, lambda, tracer);
                         if !vertex.is_diffuse() {
                             l += direct.map_or(SampledSpectrum::ZERO, |found| found.weighted());
@@ -154,7 +152,7 @@ impl Integrator for Sppm {
                             }
                         });
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 }
             });
             l

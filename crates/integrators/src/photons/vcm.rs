@@ -1,51 +1,51 @@
-//! Vertex connection and merging: bidirectional path tracing and progressive photon mapping as one.
+//! Vertex connection and merging: bidirectional path tracing and progressive photon mapping in one.
 //!
-//! A pass has two steps. First, light subpaths are made, one for each pixel, and leave their
-//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel makes a camera subpath and
-//! connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and vertices of the
-//! camera subpath are merged with the photons within the radius. Merging is one more family of
-//! strategies: a path whose vertex x is made from both ends is found if the two ends come within r
-//! of each other, so the density of such a path is that of its two subpaths, times π r² (the chance
-//! to meet, if all is smooth), times the number n of photon paths. (Where a texture cuts x out in
-//! part, both ends must meet it, and the part that remains is one more factor of η.) With that, the
-//! balance heuristic weighs merging against connecting as it weighs connections against each other:
+//! A pass has two steps. First, light subpaths are sampled, one for each pixel, and leave their
+//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel samples a camera
+//! subpath and connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and
+//! vertices of the camera subpath are merged with the photons within the radius. Merging is one more
+//! family of strategies: a path whose vertex x is made from both ends is found if the two ends lie
+//! within r of each other, so its density is that of the two subpaths, times π r² (the probability
+//! of being that near, if all is smooth), times the number n of photon paths. (Where alpha cuts x
+//! out in part, both ends must hit it, and alpha is one more factor of η.) The balance heuristic
+//! then weighs merging against connecting as it weighs connections against each other:
 //!
 //! ```text
 //! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
 //! η   = n π r²
 //! ```
 //!
-//! Merging can do what no connection can: a photon behind glass, seen through glass. Every pixel
-//! uses all photons, so it does not mind how small the lamp is. Where connecting is good it is
-//! better, and gets the weight: η shrinks with the radius, and photons with it. Without merging (r
-//! → 0) it is `bdpt`; with nothing but merging it would be photon mapping. Photons that come
-//! straight from a light are not merged: a choice of a point on the light finds the same paths with
-//! less noise.
+//! Merging finds what no connection can: a caustic seen through glass. Every pixel uses all photons,
+//! so the size of the light does not matter. Where connecting is good it is better, and gets the
+//! weight: η shrinks with the radius, and the weight of photons with it. Without merging (r → 0)
+//! this is `bdpt`; with nothing but merging it would be photon mapping. Photons that come straight
+//! from a light are not merged: next-event estimation finds the same paths with less noise.
 //!
-//! Nor is anything merged beyond the first diffuse surface that a camera subpath comes to. From
-//! there it goes anywhere, and where it comes by chance on a bright spot, as the caustic on the far
-//! wall, it would bring all the spot's photons at once. They have one camera subpath in common, but
-//! the balance heuristic takes them for thousands of independent samples, gives merging nearly all
-//! the weight, and single pixels are too bright until very many passes are made. [Grittmann 2021]
-//! tell it how much subpaths have in common, by a factor for each merge that depends on the
-//! densities of both; here the factor is 1 or 0, which a subpath's recursion can know. What is left
-//! out is found all the same, by photons that the bright spot has sent to the first diffuse
-//! surface, and by connections. In the mirror room, at 300 × 200 pixels, variance is half of what
-//! it is with merges everywhere.
+//! Nor is anything merged beyond the first diffuse surface of a camera subpath. From there it goes
+//! anywhere, and where it hits a bright spot by chance, such as the caustic on the far wall, merging
+//! would add all photons of the spot at once. They share one camera subpath, but the balance
+//! heuristic takes them for thousands of independent samples, gives merging nearly all the weight,
+//! and single pixels are too bright until very many passes are made. [Grittmann 2021] account for
+//! this correlation by a factor for each merge that depends on the densities of both subpaths; here
+//! the factor is 1 or 0, which the recursion of a subpath can know. What is left out is found all
+//! the same, by photons that the bright spot has sent to the first diffuse surface, and by
+//! connections. In the mirror room, at 300 × 200 pixels, the variance is half of what it is with
+//! merges everywhere.
 //!
-//! What camera rays alone find, light that comes by specular surfaces all the way, has more of them
-//! ([`glints`](crate::photons::glints)). In the mirror room at 96 × 64 pixels nine tenths of the error were
-//! such glints, and five rays instead of one take a third of it or more for a seventh more time.
+//! Light that reaches the camera by specular surfaces alone is found by camera rays alone, which
+//! get more samples ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at
+//! 96 × 64 pixels it made nine tenths of the error, and five rays instead of one take a third of it
+//! or more for a seventh more time.
 //!
-//! What remains hard: choosing the radius. In the mirror room one three times the usual leaves a
-//! third of the variance; behind a door, light seeps under it then.
+//! What remains hard: choosing the radius. In the mirror room one three times the default leaves a
+//! third of the variance; behind a door, light then leaks under it.
 //!
 //! At most `photon_paths` paths of a pass leave photons, which bounds memory: 180 bytes for each of
 //! at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they are
-//! sorted. In larger pictures the other pixels make their light subpaths when they need them.
+//! sorted. In larger pictures the other pixels sample their light subpaths when they need them.
 //!
 //! Biased: light that merging finds is blurred over the radius, which shrinks as `merging` says;
-//! consistent. Depth of field and motion are right, because all paths of a pass have one time.
+//! consistent. Depth of field and motion are right, because all paths of a pass share one time.
 //! Sources: [Georgiev 2012]; [Georgiev 2012b]; [Hachisuka 2012]; [Grittmann 2021].
 
 use film::Film;
@@ -55,9 +55,9 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
-use crate::bidirectional::{Balance, Bidirectional, Lights, OnTheWay, Vertex};
-use crate::photons::glints::{Glints, Look};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
+use crate::photons::specular_paths::{SpecularChain, SpecularPaths};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -93,7 +93,7 @@ pub struct Vcm {
     settings: VcmSettings,
     sampler: Sampler,
     light_sampler: Sampler,
-    glints: Glints,
+    specular_paths: SpecularPaths,
     photon_seed: u32,
     lights: Lights,
     merging: Merging,
@@ -103,8 +103,16 @@ impl Vcm {
     /// With a sampler for each end of what is connected, and a seed for photons and glints.
     pub fn new(settings: VcmSettings, sampler: Sampler, light_sampler: Sampler, photon_seed: u32) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), settings.alpha, photon_seed);
-        let glints = Glints::new(sampler.samples_per_pixel(), !photon_seed);
-        Self { settings, sampler, light_sampler, glints, photon_seed, lights: Lights::none(), merging }
+        let specular_paths = SpecularPaths::new(sampler.samples_per_pixel(), !photon_seed);
+        Self {
+            settings,
+            sampler,
+            light_sampler,
+            specular_paths,
+            photon_seed,
+            lights: Lights::none(),
+            merging,
+        }
     }
 }
 
@@ -115,7 +123,7 @@ impl Integrator for Vcm {
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
-        self.glints.prepare(scene);
+        self.specular_paths.prepare(scene);
         let radius = self.settings.radius.unwrap_or(SHARE_OF_SCENE * scene.sphere().radius);
         self.merging = Merging::new(radius, self.settings.alpha, self.photon_seed);
         control.check()
@@ -174,22 +182,22 @@ impl Integrator for Vcm {
                 &made
             });
             for (vertex, u) in light_subpath {
-                if let Some(seen) = paths.see(vertex, *u, splatter.reach(), tracer) {
+                if let Some(seen) = paths.connect_to_camera(vertex, *u, splatter.reach(), tracer) {
                     seen.splat(&splatter, &seen.found.weighted(), lambda);
                 }
             }
             splatter.add_paths(1);
 
-            let (mut l, mut look) = (SampledSpectrum::ZERO, Look::default());
+            let (mut l, mut chain) = (SampledSpectrum::ZERO, SpecularChain::default());
             let Some(camera_ray) = &sample.camera_ray else { return l };
-            paths.camera_subpath(camera_ray, lambda, tracer, |on_the_way, tracer| {
-                if let OnTheWay::Vertex(vertex) = on_the_way {
-                    look.meet(vertex);
+            paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| {
+                if let Encounter::Vertex(vertex) = encounter {
+                    chain.visit(vertex);
                 }
-                match on_the_way {
-                    OnTheWay::Light(found) if look.take(&found) => (),
-                    OnTheWay::Light(found) => l += found.weighted(),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                match encounter {
+                    Encounter::Light(found) if chain.add(&found) => (),
+                    Encounter::Light(found) => l += found.weighted(),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         let depths = paths.max_depth - vertex.depth;
                         if let Some(found) = paths.direct(vertex, lambda, tracer) {
                             l += found.weighted();
@@ -208,10 +216,10 @@ impl Integrator for Vcm {
                             });
                         }
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 }
             });
-            l + self.glints.seen(&look, sample, &pixels, &shutter, &paths, tracer)
+            l + self.specular_paths.radiance(&chain, sample, &pixels, &shutter, &paths, tracer)
         })?;
         Ok(stats)
     }

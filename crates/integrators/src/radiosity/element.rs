@@ -1,4 +1,4 @@
-//! What carries light: elements that receive it, patches that send it on.
+//! Elements, which receive light, and patches, which shoot it.
 //!
 //! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb
 //! it sends on from its whole area evenly. An *element* is a leaf of the mesh within a patch; it
@@ -17,7 +17,7 @@ use super::bands::{Bands, Wavelengths};
 use super::domain::Domain;
 use super::mesh::{Cell, Mesh};
 
-/// The shares of light that a surface sends back, and through, evenly.
+/// Diffuse reflectance and transmittance of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Albedo {
     pub reflectance: Bands,
@@ -25,7 +25,7 @@ pub(crate) struct Albedo {
 }
 
 impl Albedo {
-    /// What leaves either side of a surface on whose sides this falls.
+    /// The exitance of both sides for the irradiance of both sides.
     pub fn scatter(&self, sides: &[Bands; 2]) -> [Bands; 2] {
         [0, 1].map(|i| self.reflectance * sides[i] + self.transmittance * sides[1 - i])
     }
@@ -34,9 +34,9 @@ impl Albedo {
         Self { reflectance: self.reflectance * factor, transmittance: self.transmittance * factor }
     }
 
-    /// The albedo at a surface that `ray` has met; for what is not diffuse, its mean over all
-    /// directions. Bends the shading normal on the way. `None`: nothing is there but a change of
-    /// medium.
+    /// The albedo at a surface that `ray` has hit; of a BSDF that is not diffuse, its mean over all
+    /// directions. Perturbs the shading normal on the way. `None` for a mere interface between
+    /// media.
     pub fn at(
         scene: &Scene,
         view: &View,
@@ -86,9 +86,9 @@ pub(crate) struct SamplePoint {
     pub weight: f32,
 }
 
-/// Where an element stands.
+/// Which part of a patch an element is.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct PatchPart {
     /// The patch that it is a part of.
     pub patch: u32,
     /// The quarter of that patch in which its middle lies.
@@ -97,7 +97,7 @@ pub(crate) struct Place {
     pub level: u32,
 }
 
-/// What receives light.
+/// A receiver of light.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
     /// Its leaf.
@@ -111,9 +111,9 @@ pub(crate) struct Element {
     pub area: f32,
     pub points: [SamplePoint; 4],
     pub albedo: Albedo,
-    /// What fell on its outer and inner side, in each quarter.
+    /// Irradiance of its outer and inner side, in each quarter.
     pub quarters: [[Bands; 2]; 4],
-    /// How much of that may be scattered here for the last time.
+    /// The part of that which may be scattered here for the last time.
     pub last: [Bands; 2],
 }
 
@@ -125,9 +125,9 @@ impl Element {
         mesh: &Mesh,
         wavelengths: &Wavelengths,
         cell: u32,
-        place: Place,
+        place: PatchPart,
     ) -> Self {
-        let Place { patch, quarter, level } = place;
+        let PatchPart { patch, quarter, level } = place;
         let world = scene.world();
         let leaf = mesh.cell(cell);
         let quarters = leaf.domain().quarters();
@@ -151,13 +151,13 @@ impl Element {
         Self { cell, patch, quarter, level, area, points, albedo, quarters: [dark; 4], last: dark }
     }
 
-    /// What fell on its outer and inner side.
+    /// Irradiance of its outer and inner side.
     pub fn irradiance(&self) -> [Bands; 2] {
         weighted(&self.quarters, self.points.each_ref().map(|point| point.weight))
     }
 
-    /// What falls on its sides at a point, if light changes evenly over it. Beyond the middles of
-    /// the quarters the change goes on as far as it does in any direction, no further.
+    /// Irradiance of its sides at a point, linear over the element. Beyond the centres of the
+    /// quarters it is extrapolated, but no further than it changes between them.
     pub fn irradiance_at(&self, domain: &Domain, uv: Vec2) -> [Bands; 2] {
         let at = weighted(&self.quarters, domain.weights(uv));
         [0, 1].map(|i| {
@@ -168,7 +168,7 @@ impl Element {
         })
     }
 
-    /// Takes what a larger one, which it is a part of, received as a whole.
+    /// Adds what a larger element, which it is a part of, received as a whole.
     pub fn inherit(&mut self, mesh: &Mesh, whole: &Self) {
         let domain = mesh.cell(whole.cell).domain();
         let quarters = mesh.cell(self.cell).domain().quarters();
@@ -181,7 +181,7 @@ impl Element {
         }
     }
 
-    /// Forgets what it received.
+    /// Resets what it received.
     pub fn darken(&mut self) {
         (self.quarters, self.last) = ([[Bands::ZERO; 2]; 4], [Bands::ZERO; 2]);
     }
@@ -215,8 +215,7 @@ fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
     [0, 1].map(|i| quarters.iter().zip(weights).map(|(sides, weight)| sides[i] * weight).sum())
 }
 
-/// The albedo of a primitive at a point, less what is not there. `None`: nothing is there but a
-/// change of medium.
+/// The albedo of a primitive at a point, times alpha. `None` for a mere interface between media.
 pub(crate) fn albedo_at(
     scene: &Scene,
     view: &View,
@@ -230,12 +229,12 @@ pub(crate) fn albedo_at(
     Some(Albedo::at(scene, view, &mut interaction, &ray, wavelengths)?.scaled(coverage))
 }
 
-/// What sends light on.
+/// A sender of light.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch {
     pub cell: u32,
     pub area: f32,
-    /// What leaves its two sides of its own accord, per area.
+    /// Emitted exitance of its two sides.
     pub emitted: [Bands; 2],
     /// Light that has arrived and been scattered but not been sent on, as power from either side,
     /// by how often it was scattered, as far as there is any.
@@ -277,7 +276,7 @@ impl Patch {
         self.spread.map(|sides| if sum > 0.0 { 4.0 * sides[side] / sum } else { 1.0 })
     }
 
-    /// How bright all is that one side has to send.
+    /// Brightness of all that one side has to shoot.
     pub fn brightness(&self, side: usize) -> f32 {
         self.spread.iter().map(|sides| sides[side]).sum()
     }

@@ -32,7 +32,7 @@ use crate::{Cancelled, Control};
 /// An element seen through this many pixels at least is cut by what they show.
 const ENOUGH: u32 = 16;
 
-/// A way of looking around.
+/// A hemicube of pixels.
 pub(crate) struct Hemicube {
     /// Pixels along an edge, an even number.
     resolution: u32,
@@ -40,7 +40,7 @@ pub(crate) struct Hemicube {
     angle: f32,
 }
 
-/// What is seen through a pixel.
+/// What is visible through a pixel.
 struct Pixel {
     /// The first cell of the primitive there, and where on it.
     root: u32,
@@ -50,8 +50,8 @@ struct Pixel {
     factor: f32,
 }
 
-/// What a patch sees.
-pub(crate) struct Seen(Vec<Pixel>);
+/// What is visible from a patch.
+pub(crate) struct VisiblePixels(Vec<Pixel>);
 
 impl Hemicube {
     /// For the `shot`th shot.
@@ -90,8 +90,8 @@ impl Hemicube {
         self.resolution + 4 * (self.resolution / 2)
     }
 
-    /// Looks around from the middle of a cell, on one side of it.
-    pub fn look(
+    /// Casts a ray through each pixel from the centre of a cell, on one side of it.
+    pub fn cast(
         &self,
         scene: &Scene,
         mesh: &Mesh,
@@ -99,10 +99,10 @@ impl Hemicube {
         side: usize,
         control: &Control,
         stats: &mut RayStats,
-    ) -> Result<Seen, Cancelled> {
+    ) -> Result<VisiblePixels, Cancelled> {
         let cell = mesh.cell(cell);
         let Some(eye) = mesh.surface(scene.world(), cell.primitive, cell.domain().center()) else {
-            return Ok(Seen(Vec::new()));
+            return Ok(VisiblePixels(Vec::new()));
         };
         let frame = Frame::from_z(if side == 0 { eye.n } else { -eye.n });
         let look = |row: u32| {
@@ -119,11 +119,11 @@ impl Hemicube {
         };
         let rows: Vec<_> = (0..self.rows()).into_par_iter().map(look).collect::<Result<_, Cancelled>>()?;
         rows.iter().for_each(|(_, some)| *stats += *some);
-        Ok(Seen(rows.into_iter().flat_map(|(pixels, _)| pixels).collect()))
+        Ok(VisiblePixels(rows.into_iter().flat_map(|(pixels, _)| pixels).collect()))
     }
 }
 
-impl Seen {
+impl VisiblePixels {
     /// What the elements with these indices receive of unit radiosity from a patch of this area.
     pub fn received(&self, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
         let mut all = vec![(Received::default(), 0); cut.elements.len()];

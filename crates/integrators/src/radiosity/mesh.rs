@@ -125,7 +125,7 @@ pub(crate) struct Mesh {
     vertices: Vertices,
     /// Sides that were cut: both ends, the lower first, and the vertex between.
     cut: HashSet<[u32; 3]>,
-    /// The moment at which everything stands still.
+    /// The time at which moving shapes are cut.
     time: f32,
 }
 
@@ -200,7 +200,7 @@ impl Mesh {
         &self.vertices.all
     }
 
-    /// The moment at which everything stands still.
+    /// The time at which moving shapes are cut.
     pub fn time(&self) -> f32 {
         self.time
     }

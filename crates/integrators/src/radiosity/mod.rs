@@ -13,10 +13,9 @@
 //! interpolation between vertices, or by a final gather. Light is carried at fixed
 //! [wavelengths](bands).
 //!
-//! Everything is diffuse here. What is not is drawn by its mean albedo ρ_hh, as if it were white,
-//! grey or coloured plaster; glass becomes a sheet that passes light diffusely. Surfaces reflect on
-//! both sides. Shading normals count in the final gather alone. Things that move are where they are
-//! in the middle of the shutter's time.
+//! Everything is diffuse here. A BSDF that is not is replaced by its mean albedo ρ_hh; glass becomes
+//! a sheet that transmits light diffusely. Surfaces reflect on both sides. Shading normals count in
+//! the final gather alone. Moving shapes stand where they are in the middle of the shutter time.
 //!
 //! It has no noise but that of a final gather, and is biased: light is even over each quarter of a
 //! patch that sends it and of an element that receives it, and visibility is known from a few rays.
@@ -79,7 +78,7 @@ use bands::Bands;
 pub(crate) use described::{settings, warnings};
 pub use settings::{FormFactors, RadiositySettings};
 use shooting::Solution;
-use show::{Interpolation, Shown};
+use show::{Interpolation, SolutionRadiance};
 
 /// Radiosity by progressive shooting.
 pub struct Radiosity {
@@ -186,7 +185,7 @@ impl Integrator for Radiosity {
         let index = if pass < steps { pass % samples } else { pass - steps };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index, scene, view, filter: &filter, sampler: &self.sampler };
-        let shown = Shown { interpolation: &state.interpolation, solution: &state.solution };
+        let shown = SolutionRadiance { interpolation: &state.interpolation, solution: &state.solution };
         let draw = |mut tile: FilmTile| {
             control.check()?;
             let (mut sampler, mut stats) = (self.sampler.clone(), RayStats::default());

@@ -184,7 +184,7 @@ impl Solution {
             }
             FormFactors::Hemicube { resolution } => {
                 let hemicube = Hemicube::new(resolution, self.shots);
-                let seen = hemicube.look(scene, &self.cut.mesh, cell, side, control, stats)?;
+                let seen = hemicube.cast(scene, &self.cut.mesh, cell, side, control, stats)?;
                 self.receive(scene, view, brightness, &wholes, |cut, ids| Ok(seen.received(cut, area, ids)))?
             }
         };

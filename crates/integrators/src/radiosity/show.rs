@@ -108,13 +108,13 @@ impl Interpolation {
     }
 }
 
-/// The radiance of a solution along rays.
-pub(crate) struct Shown<'a> {
+/// Estimates the radiance of a solution along rays.
+pub(crate) struct SolutionRadiance<'a> {
     pub interpolation: &'a Interpolation,
     pub solution: &'a Solution,
 }
 
-impl Shown<'_> {
+impl SolutionRadiance<'_> {
     /// The radiance that arrives along a ray.
     pub fn radiance(&self, tracer: &mut Tracer, mut ray: RayDifferential) -> Bands {
         let (scene, &Self { interpolation, solution }) = (tracer.scene, self);

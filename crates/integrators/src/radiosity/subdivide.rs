@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use scene::{Scene, View};
 
 use super::bands::Wavelengths;
-use super::element::{Element, Patch, Place};
+use super::element::{Element, Patch, PatchPart};
 use super::mesh::Mesh;
 use super::settings::RadiositySettings;
 use crate::{Cancelled, Control};
@@ -50,7 +50,7 @@ impl Cut {
         let make = |&(id, cell): &(u32, u32)| {
             control.check()?;
             let patch = Patch::new(scene, &mesh, wavelengths, cell, settings.max_depth);
-            let place = Place { patch: id, quarter: 0, level: 0 };
+            let place = PatchPart { patch: id, quarter: 0, level: 0 };
             Ok((patch, Element::new(scene, view, &mesh, wavelengths, cell, place)))
         };
         let made: Vec<(Patch, Element)> = ids.par_iter().map(make).collect::<Result<_, Cancelled>>()?;
@@ -151,7 +151,7 @@ impl Cut {
             let center = mesh.cell(cell).domain().center();
             let quarter_of = |cell: u32| mesh.cell(cell).domain().quarter_of(center);
             let quarter = quarter_of(self.patches[whole.patch as usize].cell);
-            let place = Place { patch: whole.patch, quarter, level: whole.level + 1 };
+            let place = PatchPart { patch: whole.patch, quarter, level: whole.level + 1 };
             let mut part = Element::new(scene, view, mesh, wavelengths, cell, place);
             part.inherit(mesh, whole);
             part

@@ -121,7 +121,7 @@ fn a_hemicube_agrees_within_its_resolution() {
         let mut stats = RayStats::default();
         let cube = Hemicube::new(resolution, 0);
         let seen =
-            cube.look(&scene, &solution.cut.mesh, patch.cell, 0, &Control::default(), &mut stats).unwrap();
+            cube.cast(&scene, &solution.cut.mesh, patch.cell, 0, &Control::default(), &mut stats).unwrap();
         let received = seen.received(&solution.cut, patch.area, &ids);
         let mut sum = 0.0;
         for ((received, element), exact) in received.iter().zip(&solution.cut.elements).zip(&exact) {

@@ -1,11 +1,11 @@
 //! Direct lighting: next-event estimation, and light that rays hit by chance.
 //!
-//! At a vertex one ray goes to a sampled point on a light and one onwards. Light that both can find,
-//! of densities p_l (of the choice of the light times that of its point) and p_b (of the BSDF) per
-//! solid angle, is counted by both with the weights of the power heuristic, w_l = p_l²/(p_l² + p_b²)
-//! and w_b = 1 − w_l [Veach 1997 §9.2]. What one alone can find (delta lights, specular
-//! scattering) counts fully. Lights may leave directions to the BSDF (`allow_incomplete`): their
-//! density is then zero there.
+//! At a vertex one ray goes to a sampled point on a light and one onwards. Light that both can
+//! find, of densities p_l (of the choice of the light times that of its point) and p_b (of the
+//! BSDF) per solid angle, is counted by both with the weights of the power heuristic, w_l =
+//! p_l²/(p_l² + p_b²) and w_b = 1 − w_l [Veach 1997 §9.2]. What one alone can find (delta lights,
+//! specular scattering) counts fully. Lights may leave directions to the BSDF (`allow_incomplete`):
+//! their density is then zero there.
 
 use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
@@ -159,8 +159,8 @@ pub(crate) fn light_context(surface: &SurfaceInteraction, flags: BxdfFlags) -> L
     on_its_side(surface.light_context(), surface.surface.wo, flags)
 }
 
-/// A point seen from `wo` that scatters to one side only is offset to that side by its error, lest a
-/// light that intersects its surface be sampled from behind.
+/// A point seen from `wo` that scatters to one side only is offset to that side by its error, lest
+/// a light that intersects its surface be sampled from behind.
 pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
     let side = match (flags.is_reflective(), flags.is_transmissive()) {
         (true, false) => wo,

@@ -1,8 +1,8 @@
 //! One sample of every pixel: camera rays, and what comes along them, added to the film.
 //!
 //! Pass i takes sample i of every pixel. The dimensions of the sampler are used in a fixed order:
-//! wavelengths (1), position in the pixel's filter (2), time (1), position on the lens (2), and then
-//! whatever the algorithm asks for. [Pharr 2023 §1.3.4, §5.4.1]
+//! wavelengths (1), position in the pixel's filter (2), time (1), position on the lens (2), and
+//! then whatever the algorithm asks for. [Pharr 2023 §1.3.4, §5.4.1]
 
 use film::{FilmTile, Filter, FirstHit};
 use geometry::RayStats;

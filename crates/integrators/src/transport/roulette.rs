@@ -1,7 +1,7 @@
 //! Russian roulette: paths that carry little end early, and those that survive count for more.
 //!
-//! From the second scattering event on a path survives with the probability q = min(1, c_max), where
-//! c_max is the largest component of what it carries, and is then divided by q. Radiance that
+//! From the second scattering event on a path survives with the probability q = min(1, c_max),
+//! where c_max is the largest component of what it carries, and is then divided by q. Radiance that
 //! refraction has compressed by η² is given without that factor, so that what is seen through glass
 //! is not cut off early. [Pharr 2023 §13.4.4]
 

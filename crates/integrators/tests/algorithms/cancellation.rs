@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use alhazen_integrators::{
     Bdpt, BdptSettings, Cancelled, Control, Integrator, LightTracing, Mlt, MltSettings, Path, PathSettings,
-    PhotonMapping, PhotonMappingSettings, PixelLoop, RandomWalk, RayIntegrator, SimplePath, Sppm,
-    SppmSettings, Tracer, Vcm, VcmSettings,
+    PhotonMapping, PhotonMappingSettings, PixelLoop, RayIntegrator, SimplePath, Sppm, SppmSettings, Tracer,
+    Vcm, VcmSettings,
 };
 use description::{MltTechnique, SceneDesc, ShapeDesc};
 use film::Film;
@@ -36,7 +36,7 @@ fn sampler() -> Sampler {
     Sampler::Independent(Independent::new(1, 5))
 }
 
-fn algorithms() -> [(&'static str, Box<dyn Integrator>); 10] {
+fn algorithms() -> [(&'static str, Box<dyn Integrator>); 9] {
     let path = PathSettings { max_depth: MAX_DEPTH, ..PathSettings::default() };
     let simple = |sample_lights| SimplePath { max_depth: MAX_DEPTH, sample_lights, sample_bsdf: true };
     let bdpt = BdptSettings { max_depth: MAX_DEPTH, ..BdptSettings::default() };
@@ -57,7 +57,6 @@ fn algorithms() -> [(&'static str, Box<dyn Integrator>); 10] {
         ("path", Box::new(PixelLoop::new(Path::new(path), sampler()))),
         ("simple-path", Box::new(PixelLoop::new(simple(true), sampler()))),
         ("simple-path by chance", Box::new(PixelLoop::new(simple(false), sampler()))),
-        ("random-walk", Box::new(PixelLoop::new(RandomWalk { max_depth: MAX_DEPTH }, sampler()))),
         ("light-tracing", Box::new(LightTracing::new(MAX_DEPTH, sampler(), sampler()))),
         ("bdpt", Box::new(Bdpt::new(bdpt, sampler(), sampler()))),
         ("vcm", Box::new(Vcm::new(vcm, sampler(), sampler(), 3))),
@@ -67,7 +66,7 @@ fn algorithms() -> [(&'static str, Box<dyn Integrator>); 10] {
     ]
 }
 
-/// Without a look at the wish to stop inside paths this test would not end.
+/// If paths did not ask whether to go on, this test would not end.
 #[test]
 fn a_path_that_hardly_ends_is_cancelled() {
     let (scene, view, _) = white_furnace();

@@ -170,8 +170,8 @@ fn passes_can_be_done_in_any_order_and_in_parts() {
     }
 }
 
-/// The estimate is the difference to the picture without noise, for samples of pixels, for splats and
-/// for chains.
+/// The estimate is the difference to the picture without noise, for samples of pixels, for splats
+/// and for chains.
 #[test]
 fn noise_is_the_relative_standard_error() {
     let mut desc = balls();
@@ -203,8 +203,8 @@ fn noise_is_the_relative_standard_error() {
         IntegratorDesc::Mlt(MltDesc::default()),
     ] {
         let (noise, error) = error(integrator.clone(), &reference);
-        // Both are roots of means of squares over a thousand values, of which neighbours and colours
-        // have much in common; the reference has an eighth of the noise.
+        // Both are roots of means of squares over a thousand values, of which neighbours and
+        // colours have much in common; the reference has an eighth of the noise.
         assert!((noise / error).ln().abs() < 0.3, "{integrator:?}: {noise}, not {error}");
     }
 }

@@ -1,8 +1,8 @@
 //! The radical inverse: the digits of an index mirrored at the radix point, Φ_b(Σ dᵢ bⁱ) = Σ dᵢ
 //! b^(−i−1), plain or with its digits permuted at random.
 //!
-//! Digits are permuted alike wherever they stand in the sequence ([`DigitPermutations`],
-//! [Faure 1982]), or by the digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]).
+//! Digits are permuted by their position alone ([`DigitPermutations`], [Faure 1982]), or depending
+//! on the digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]).
 //! See [Pharr 2023 §8.6].
 
 use crate::{hash, mix_bits, permutation_element};
@@ -54,12 +54,12 @@ pub fn inverse_radical_inverse(mut inverse: u64, base: u64, digits: u32) -> u64 
     index
 }
 
-/// A random permutation of the digits of one base for each place of a number, as far down as a
-/// digit still shows.
+/// Random permutations of the digits of one base, one for each digit position that matters in
+/// single precision.
 #[derive(Clone, Debug)]
 pub struct DigitPermutations {
     base: u32,
-    /// A row of `base` digits for each place.
+    /// A row of `base` digits for each position.
     rows: Box<[u16]>,
 }
 
@@ -76,7 +76,8 @@ impl DigitPermutations {
         DigitPermutations { base, rows: (0..places).flat_map(row).collect() }
     }
 
-    /// As [`radical_inverse`], each digit permuted by its place; leading zeros are permuted too.
+    /// [`radical_inverse`] with each digit permuted by its position; leading zeros are permuted
+    /// too.
     #[inline]
     pub fn radical_inverse(&self, mut a: u64) -> f32 {
         let base = self.base as u64;
@@ -92,7 +93,7 @@ impl DigitPermutations {
     }
 }
 
-/// As [`radical_inverse`], with Owen's scrambling: each digit permuted by those before it and
+/// [`radical_inverse`] with Owen scrambling: each digit permuted by those before it and
 /// `hash`.
 #[inline]
 pub fn owen_scrambled_radical_inverse(prime_index: usize, a: u64, hash: u32) -> f32 {

@@ -1,5 +1,5 @@
 //! Sobol' points: in each dimension, the exclusive or of the columns of a binary matrix that the
-//! bits of the index pick.
+//! bits of the index select.
 //!
 //! The columns are direction numbers v_k, begun with those of [Joe 2008] (`data/sobol-joe-kuo.txt`)
 //! and continued by the recurrence of a primitive polynomial of degree s with coefficients a: v_k =
@@ -9,7 +9,7 @@
 use crate::mix_bits;
 use std::sync::LazyLock;
 
-/// How many dimensions have direction numbers.
+/// The number of dimensions with direction numbers.
 pub const SOBOL_DIMENSIONS: usize = 1024;
 /// Columns of a matrix: one for each bit of an index.
 const COLUMNS: usize = 64;
@@ -58,7 +58,7 @@ pub fn sobol_bits(mut index: u64, dimension: usize) -> u32 {
     bits
 }
 
-/// Owen's scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above
+/// Owen scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above
 /// it and `seed`.
 #[inline]
 pub fn owen_scramble(mut v: u32, seed: u32) -> u32 {

@@ -1,11 +1,11 @@
-//! Halton's sequence: dimension d is the radical inverse in the base of prime number d, one
-//! sequence over a tile of the picture whose first two dimensions are the place on the film
+//! The Halton sequence: dimension d is the radical inverse in the base of prime number d, one
+//! sequence over a tile of the picture whose first two dimensions are the position on the film
 //! [Pharr 2023 §8.6].
 //!
 //! On a tile of 2^j × 3^k pixels every 2^j·3^k successive points have one in each pixel; which one
-//! follows from the Chinese remainder theorem. Tiles of 128 pixels repeat over larger pictures. Any
-//! number of samples is as good as any other, and beyond it the sequence goes on.
-//! [`Randomize::FastOwen`] is taken for [`Randomize::Owen`], as the short cut is for base 2.
+//! follows from the Chinese remainder theorem. Tiles of 128 pixels repeat over larger pictures. No
+//! number of samples is preferred, and beyond it the sequence continues. [`Randomize::FastOwen`] is
+//! treated as [`Randomize::Owen`], as the fast hash is for base 2.
 
 use super::randomize::Randomize;
 use crate::low_discrepancy::{
@@ -18,8 +18,7 @@ use std::sync::{Arc, OnceLock};
 /// The largest side of the tile that the first two dimensions cover.
 const MAX_TILE: i32 = 128;
 
-/// Radical inverses in prime bases, one sequence over the picture. Any number of samples is as good
-/// as any other, and beyond it the sequence goes on.
+/// Radical inverses in prime bases, one sequence over the picture, of any number of samples.
 #[derive(Clone, Debug)]
 pub struct Halton {
     samples_per_pixel: u32,
@@ -38,7 +37,7 @@ pub struct Halton {
 }
 
 impl Halton {
-    /// A sampler for a picture of the given resolution. [`Randomize::FastOwen`] is taken for
+    /// A sampler for a picture of the given resolution. [`Randomize::FastOwen`] is treated as
     /// [`Randomize::Owen`].
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Halton {
         let mut scales = [1u64; 2];
@@ -99,7 +98,7 @@ impl Halton {
         Vec2::new(position(0), position(1))
     }
 
-    /// Takes dimensions, from the third again when all are used.
+    /// Allocates dimensions, starting again from the third when all are used.
     fn next_dimension(&mut self, count: usize) -> usize {
         if self.dimension + count > PRIME_COUNT {
             self.dimension = 2;
@@ -135,7 +134,7 @@ mod tests {
                 let pixel = [(i * 37) % resolution[0].min(128), (i * 11) % resolution[1].min(128)];
                 for index in [0, 1, 12] {
                     sampler.start_pixel_sample(pixel, index, 0);
-                    // The place on the film has the low digits of the index as its high digits.
+                    // The position on the film has the low digits of the index as its high digits.
                     let place = |axis: usize, base| {
                         let low = sampler.index % sampler.scales[axis];
                         inverse_radical_inverse(low, base, sampler.exponents[axis]) as i32

@@ -1,4 +1,4 @@
-//! Uniform random numbers without any arrangement: the yardstick for the others.
+//! Independent uniform random numbers: the reference for other samplers.
 
 use crate::Rng;
 use crate::hash::hash;
@@ -40,8 +40,8 @@ impl Independent {
     }
 }
 
-/// A generator for one sample of a pixel: a sequence for the pixel, and in it a stretch of 2¹⁶
-/// numbers for the sample.
+/// A generator for one sample of a pixel: a sequence for the pixel, and 2¹⁶ numbers of it for
+/// the sample.
 pub(super) fn pixel_rng(pixel: [i32; 2], index: u32, dimension: u32, seed: u32) -> Rng {
     let mut rng = Rng::from_sequence(hash(&[pixel[0] as u32, pixel[1] as u32, seed]));
     rng.advance(index as u64 * 65536 + dimension as u64);

@@ -1,15 +1,15 @@
 //! The first one or two Sobol' dimensions for each call, their order shuffled and their values
-//! scrambled by pixel and dimension, so that each pair of dimensions is well spread and all are
+//! scrambled by pixel and dimension, so that each pair of dimensions is stratified and all are
 //! independent [Pharr 2023 §8.7.2].
 //!
-//! A number of samples that is no power of two is taken as it is; strata are then not filled
-//! evenly. Beyond it the sequence goes on.
+//! A number of samples that is no power of two is not rounded; strata are then filled unevenly.
+//! Beyond it the sequence continues.
 
 use super::randomize::{Randomize, pixel_hash, shuffled};
 use math::Vec2;
 
-/// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel. A number of
-/// samples that is no power of two is taken as it is; beyond it the sequence goes on.
+/// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel. The number
+/// of samples is best a power of two; beyond it the sequence continues.
 #[derive(Clone, Debug)]
 pub struct PaddedSobol {
     samples_per_pixel: u32,

@@ -1,20 +1,18 @@
-//! A point of primary sample space that moves: the coordinates of one path, changed a little or
-//! altogether.
+//! Mutations of a point in primary sample space, for Metropolis light transport.
 //!
-//! A path is decided by the numbers that its algorithm asks the sampler for: a point x of the unit
-//! cube of as many dimensions. Metropolis methods walk through this *primary sample space*
-//! [Kelemen 2002]. They propose a point x' near x or anywhere, let the algorithm make the path that
-//! belongs to it, and accept x' or stay at x:
+//! A path is a function of the random numbers that its algorithm draws: a point x of a unit cube,
+//! the *primary sample space* [Kelemen 2002]. Metropolis methods propose a point x' near x or
+//! anywhere, evaluate its path, and accept x' or stay at x:
 //!
-//! - a *small step* adds to each coordinate a normal deviate of the standard deviation σ and wraps
+//! - a *small step* adds a normal deviate of standard deviation σ to each coordinate and wraps
 //!   around the ends of [0, 1);
 //! - a *large step* draws every coordinate anew.
 //!
-//! Both are as likely from x' to x as from x to x'. Nobody knows beforehand how many coordinates a
-//! path will ask for, so they are made as they are asked for. Those beyond all that the current
-//! path has used are drawn anew: nothing has depended on them. Those of the current path that the
-//! proposed path has no use for must make the step all the same, if it is accepted; after a large
-//! step they may be forgotten, for to draw them anew is what a large step does.
+//! Both are symmetric: as likely from x' to x as from x to x'. The number of coordinates of a path
+//! is not known beforehand, so that they are mutated lazily. Coordinates beyond those of the
+//! current path are drawn anew, as nothing depends on them. Coordinates of the current path that
+//! the proposed path does not use must make the step too, if it is accepted; after a large step
+//! they are dropped, which is the same as drawing them anew.
 
 use super::independent::pixel_rng;
 use crate::Rng;
@@ -23,9 +21,9 @@ use math::{ONE_MINUS_EPSILON, Vec2};
 
 /// A point of primary sample space.
 ///
-/// After [`Sampler::start_pixel_sample`](super::Sampler::start_pixel_sample) it is a uniform random
-/// one, as that of [`Independent`](super::Independent), and counts as proposed: to be accepted
-/// before the first step from it.
+/// [`Sampler::start_pixel_sample`](super::Sampler::start_pixel_sample) sets it to a uniform random
+/// point, like that of [`Independent`](super::Independent), which counts as a proposal: it must be
+/// accepted before the first step.
 #[derive(Clone, Debug)]
 pub struct PrimarySample {
     samples_per_pixel: u32,
@@ -33,7 +31,7 @@ pub struct PrimarySample {
     sigma: f32,
     rng: Rng,
     is_large: bool,
-    /// Normal deviates come in pairs: the second of the last.
+    /// The second of the last pair of normal deviates.
     spare: Option<f32>,
     current: Vec<f32>,
     proposed: Vec<f32>,
@@ -54,14 +52,14 @@ impl PrimarySample {
         }
     }
 
-    /// Draws all that follows from a random sequence of its own.
+    /// Draws everything from now on from a random sequence of its own.
     pub fn reseed(&mut self, sequence: u64) {
         self.rng = Rng::from_sequence(sequence);
         self.spare = None;
     }
 
-    /// Proposes a step from the current point, and forgets the step proposed before. The
-    /// coordinates asked for from now on are those of the proposed point.
+    /// Proposes a step from the current point, and drops the last proposal. Coordinates are those
+    /// of the proposed point from now on.
     pub fn propose(&mut self, large: bool) {
         self.is_large = large;
         self.proposed.clear();
@@ -116,13 +114,13 @@ impl PrimarySample {
         })
     }
 
-    /// What the next coordinate steps from; `None` if it is drawn anew.
+    /// The value that the next coordinate steps from; `None` if it is drawn anew.
     fn origin(&self) -> Option<f32> {
         self.current.get(self.proposed.len()).copied().filter(|_| !self.is_large)
     }
 }
 
-/// The place in [0, 1) of a point of the line that is wound around it.
+/// A number wrapped to [0, 1).
 fn wrap(x: f32) -> f32 {
     (x - x.floor()).min(ONE_MINUS_EPSILON)
 }

@@ -1,10 +1,10 @@
 //! Sobol' points of all dimensions: one sequence over a square of pixels, whose first two
-//! dimensions are the place on the film [Pharr 2023 §8.7.1].
+//! dimensions are the position on the film [Pharr 2023 §8.7.1].
 //!
 //! On a square with side 2^m, every 2^(2m) successive points have one in each pixel. Which index
 //! that is follows from the first 2m rows of the two matrices: a linear system over the binary
 //! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
-//! sequence goes on.
+//! sequence continues.
 
 use super::randomize::Randomize;
 use crate::hash::hash;
@@ -13,7 +13,7 @@ use math::Vec2;
 use std::sync::Arc;
 
 /// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded
-/// up to a power of two; beyond it the sequence goes on.
+/// up to a power of two; beyond it the sequence continues.
 #[derive(Clone, Debug)]
 pub struct Sobol {
     samples_per_pixel: u32,
@@ -29,7 +29,7 @@ pub struct Sobol {
 
 impl Sobol {
     /// A sampler for a picture of the given resolution, at most 2¹⁵ pixels on a side (beyond,
-    /// places repeat).
+    /// positions repeat).
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Sobol {
         let side = resolution[0].max(resolution[1]).clamp(1, 1 << 15) as u32;
         let log2_side = side.next_power_of_two().ilog2();
@@ -81,7 +81,7 @@ impl Sobol {
         Vec2::new(position(0), position(1))
     }
 
-    /// Takes dimensions, from the third again when all are used.
+    /// Allocates dimensions, starting again from the third when all are used.
     fn next_dimension(&mut self, count: usize) -> usize {
         if self.dimension + count > SOBOL_DIMENSIONS {
             self.dimension = 2;

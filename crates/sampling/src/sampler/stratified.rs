@@ -1,14 +1,14 @@
 //! A grid of cells over each pixel, with one sample in each; for other dimensions the cells are
-//! shuffled [Pharr 2023 §8.5]. Beyond the number of cells each further round fills a grid of its
-//! own.
+//! shuffled [Pharr 2023 §8.5]. Beyond the number of cells, another grid
+//! begins.
 
 use super::independent::pixel_rng;
 use super::randomize::{pixel_hash, shuffled};
 use crate::Rng;
 use math::{ONE_MINUS_EPSILON, Vec2};
 
-/// One sample in each cell of a grid over each pixel; beyond the number of cells each round fills
-/// another grid.
+/// One sample in each cell of a grid over each pixel; beyond the number of cells another grid
+/// begins.
 #[derive(Clone, Debug)]
 pub struct Stratified {
     grid: [u32; 2],
@@ -21,8 +21,8 @@ pub struct Stratified {
 }
 
 impl Stratified {
-    /// A sampler with `grid[0] · grid[1]` samples per pixel, at random places of their cells, or in
-    /// their middle.
+    /// A sampler with `grid[0] · grid[1]` samples per pixel, at random positions in their cells, or
+    /// at the centres.
     pub fn new(grid: [u32; 2], jitter: bool, seed: u32) -> Stratified {
         let grid = grid.map(|n| n.max(1));
         Stratified { grid, jitter, seed, pixel: [0; 2], index: 0, dimension: 0, rng: Rng::new(0, 0) }

@@ -1,6 +1,6 @@
-//! Two-dimensional Sobol' points spread over the picture along Morton's curve, with the base-4
-//! digits of the place on the curve permuted at random: neighbouring pixels take complementary
-//! points, and error looks like blue noise [Ahmed 2020], [Pharr 2023 §8.7.3].
+//! Two-dimensional Sobol' points distributed over the picture along a Morton curve, with the base-4
+//! digits of the Morton index randomly permuted: neighbouring pixels take complementary points, and
+//! the error is blue noise [Ahmed 2020], [Pharr 2023 §8.7.3].
 //!
 //! Another seed permutes digits and scrambles points otherwise: with scrambles alone, which all
 //! pixels share, the errors of two seeds would have much in common. A number of samples that is no
@@ -11,19 +11,19 @@ use super::randomize::Randomize;
 use crate::{hash, mix_bits};
 use math::Vec2;
 
-/// Two-dimensional Sobol' points spread over the picture along a curve. The number of samples is
-/// rounded up to a power of two; beyond it each round has scrambles of its own.
+/// Two-dimensional Sobol' points distributed over the picture along a Morton curve. The number of
+/// samples is rounded up to a power of two; beyond it each round has scrambles of its own.
 #[derive(Clone, Debug)]
 pub struct ZSobol {
     log2_samples: u32,
     base4_digits: u32,
     randomize: Randomize,
     seed: u32,
-    /// What makes the permutations of a seed differ from those of seed 0, for which it is 0.
+    /// Changes the permutations by the seed; 0 for seed 0.
     seed_key: u32,
     morton_index: u64,
     dimension: u32,
-    /// What makes a further round differ from the first, for which it is 0.
+    /// Changes scrambles and permutations by the round; 0 for the first.
     round: u32,
 }
 
@@ -100,19 +100,19 @@ impl ZSobol {
     }
 }
 
-/// A number that has nothing to do with those of neighbouring seeds or rounds; 0 for 0.
+/// A hash of a seed or round; 0 for 0.
 fn key(number: u32) -> u32 {
     if number == 0 { 0 } else { hash(&[number]) as u32 }
 }
 
-/// Where permutation number `permutation` of 24 sends a base-4 digit.
+/// The image of a base-4 digit under permutation number `permutation` of 24.
 #[inline]
 fn permute_digit(digit: u64, permutation: u64) -> u64 {
     const PERMUTATIONS: [[u8; 4]; 24] = permutations();
     PERMUTATIONS[permutation as usize][digit as usize] as u64
 }
 
-/// All orders of four digits.
+/// All permutations of four digits.
 const fn permutations() -> [[u8; 4]; 24] {
     let mut all = [[0; 4]; 24];
     let (mut count, mut code) = (0, 0u8);

@@ -1,5 +1,5 @@
-//! The unit disk, sampled uniformly in polar form and by the concentric map, which keeps neighbours
-//! together [Shirley 1997].
+//! Uniform sampling of the unit disk, by polar coordinates and by the concentric map, which
+//! preserves stratification [Shirley 1997].
 
 use math::Vec2;
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
@@ -17,7 +17,7 @@ pub fn invert_uniform_disk_polar(p: Vec2) -> Vec2 {
     Vec2::new(p.length_squared(), turn(p.x, p.y))
 }
 
-/// A point of the unit disk: squares around the middle of the unit square go to circles.
+/// A point of the unit disk: squares around the centre of the unit square are mapped to circles.
 #[inline]
 pub fn sample_uniform_disk_concentric(u: Vec2) -> Vec2 {
     let p = 2.0 * u - Vec2::ONE;

@@ -37,7 +37,7 @@ pub fn invert_linear(x: f32, a: f32, b: f32) -> f32 {
     if a + b <= 0.0 { x } else { x * (a * (2.0 - x) + b * x) / (a + b) }
 }
 
-/// A number in [−r, r] with density falling linearly from the middle to 0 at both ends.
+/// A number in [−r, r] with a density that falls linearly from 0 to both ends.
 #[inline]
 pub fn sample_tent(u: f32, r: f32) -> f32 {
     if u < 0.5 {

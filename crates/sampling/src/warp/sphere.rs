@@ -1,4 +1,4 @@
-//! Directions: the whole sphere, the upper hemisphere and a cone around +z.
+//! Sampling directions: the sphere, the upper hemisphere, and a cone around +z.
 //!
 //! Uniform warps follow Archimedes: z is uniform, the angle around it too. A cosine-weighted
 //! direction is a uniform point of the disk lifted to the hemisphere [Malley 1988]. Densities are
@@ -69,7 +69,7 @@ pub fn invert_cosine_hemisphere(w: Vector3) -> Vec2 {
 /// A direction whose angle with +z has at least the cosine `cos_theta_max`.
 #[inline]
 pub fn sample_uniform_cone(u: Vec2, cos_theta_max: f32) -> Vector3 {
-    // The height lost, 1 − cos θ, keeps the digits of narrow cones.
+    // 1 − cos θ, which is accurate for narrow cones.
     let lost = u.x * (1.0 - cos_theta_max);
     spherical_direction(safe_sqrt(lost * (2.0 - lost)), 1.0 - lost, TAU * u.y)
 }

@@ -74,7 +74,7 @@ impl SphericalTriangle {
         (1.0 / self.solid_angle) as f32
     }
 
-    /// A direction from the point to the triangle and the barycentric coordinates of where it meets
+    /// A direction from the point to the triangle, and the barycentric coordinates of the point of
     /// the triangle.
     pub fn sample(&self, u: Vec2) -> (Vector3, [f32; 3]) {
         let Self { a, b, c, cos_alpha, sin_alpha, .. } = *self;
@@ -112,7 +112,7 @@ impl SphericalTriangle {
         Vec2::new(u0.clamp(0.0, 1.0) as f32, u1.clamp(0.0, 1.0) as f32)
     }
 
-    /// Where a direction meets the triangle: Cramer's rule, the result forced inside.
+    /// The barycentric coordinates of a direction, by Cramer's rule, clamped to the triangle.
     fn barycentric(&self, w: DVec3) -> [f32; 3] {
         let [v0, v1, v2] = self.vertices;
         let parts = [v1.cross(v2).dot(w), v2.cross(v0).dot(w), v0.cross(v1).dot(w)];
@@ -137,7 +137,7 @@ fn one_minus_dot(a: DVec3, b: DVec3) -> f64 {
 /// The solid angle of a spherical triangle of unit vectors: tan(Ω/2) = |a·(b×c)| / (1 + a·b + b·c +
 /// c·a).
 fn solid_angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
-    // The triple product of edges keeps the digits of small triangles.
+    // The triple product of edges is accurate for small triangles.
     let volume = a.dot((b - a).cross(c - a)).abs();
     2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
 }

@@ -4,8 +4,8 @@ use super::{Camera, CameraTransform, Orthographic, Perspective, Projection, Scre
 use description::{CameraDesc, CameraKind, Diagnostic, FilmDesc, LensDesc, Origin, ScreenDesc, Stated};
 use math::{Bounds2, DMat4};
 
-/// Places the described camera in the render space given by `world_from_render`. Errors and warnings
-/// are added to `diagnostics`; `None` if there was an error.
+/// Places the described camera in the render space given by `world_from_render`. Errors and
+/// warnings are added to `diagnostics`; `None` if there was an error.
 pub fn compile(
     camera: &Stated<CameraDesc>,
     film: &Stated<FilmDesc>,

@@ -29,22 +29,11 @@
 //! shears. Film positions are found wherever a point is in front of the camera, on the film and
 //! beside it, as filters reach over its border. What a spherical camera sees beyond its border is
 //! the same again: of all the places of the film that see a ray the one on it is found, and
-//! [`Camera::film_places`] tells the others. Sources: [Pharr 2016 §16.1.1]; [Veach 1997 ch. 8].
+//! [`Camera::film_positions`] tells the others. Sources: [Pharr 2016 §16.1.1]; [Veach 1997 ch. 8].
 
-use super::{Camera, Projection};
+use super::Camera;
+use super::projection::{Aperture, Projection};
 use math::{Mat3, Normal3, Point2, Point3, Ray, Transform, Vec2, Vec3, Vector3};
-
-/// What rays pass when they enter the camera.
-pub(super) enum Aperture {
-    /// A point, from any direction.
-    Point,
-    /// A point of the plane z = 0.
-    Pinhole,
-    /// An area of the plane z = 0, at any angle.
-    Lens(f32),
-    /// The film itself, in the plane z = 0, along the axis only.
-    Film,
-}
 
 /// A way from a point of the scene into the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -67,7 +67,7 @@ fn a_ray_leads_back_to_all_its_places_around_the_film() {
             let from = sample(film.x, film.y, random.get_2d().into(), random.get_1d());
             let ray = camera.generate_ray(&from).unwrap().ray;
             let (_, found) = camera.we(&ray).unwrap();
-            let places: Vec<_> = camera.film_places(found).within(around).collect();
+            let places: Vec<_> = camera.film_positions(found).within(around).collect();
             assert!(places.iter().any(|place| (place - film).length() < 2e-3), "{name}: {film} {places:?}");
             for (i, &place) in places.iter().enumerate() {
                 let again = camera.generate_ray(&CameraSample { film: place, ..from }).unwrap().ray;

@@ -11,7 +11,7 @@
 //! ∂p/∂x = Δo + t·((0, 0, 1) + Δd) − p        t = n·(p − Δo) / n·((0, 0, 1) + Δd)
 //! ```
 
-use super::Projection;
+use super::projection::Projection;
 use math::{Frame, Normal3, Vec2, Vec3, Vector3};
 
 /// How far apart rays of neighbouring pixels are kept to be, one pixel wide: 1/√n for n samples a

@@ -51,6 +51,7 @@ impl Compiler<'_> {
     }
 
     fn area_emission(&mut self, desc: &AreaLightDesc, origin: &Origin) -> Option<AreaEmission> {
+        self.check_brightness(origin, &[("scale", Some(desc.scale)), ("power", desc.power)]);
         let mut radiance = self.emission(&desc.radiance, desc.scale, origin.parameter("L"));
         let mut image = None;
         if let Some(handle) = desc.image {

@@ -7,19 +7,33 @@
 use super::Compiler;
 use crate::light::{Emission, EmissionImage};
 use crate::texture::{SpectrumType, compile_spectrum};
-use description::{Handle, ImageDesc, Span, SpectrumDesc};
+use description::{Handle, ImageDesc, Origin, Span, SpectrumDesc};
 use image::{Image, Projection};
 use math::Vec2;
 use spectrum::RgbColorSpace;
 use std::f32::consts::PI;
 
 impl Compiler<'_> {
+    /// Reports factors of brightness, by name, that make no sense.
+    pub(super) fn check_brightness(&mut self, origin: &Origin, factors: &[(&str, Option<f32>)]) {
+        for &(name, factor) in factors {
+            if let Some(factor) = factor.filter(|factor| !(factor.is_finite() && *factor >= 0.0)) {
+                let message = format!("`{name}` of a light is {factor}; it must be finite and not negative");
+                self.error("invalid-value", message, origin.parameter(name));
+            }
+        }
+    }
+
     /// A light's spectrum, scaled to one unit of luminance times `scale`.
     pub(super) fn emission(&mut self, spectrum: &SpectrumDesc, scale: f32, span: Span) -> Emission {
         let spectrum = compile_spectrum(spectrum, SpectrumType::Illuminant, span, &mut self.diagnostics);
         let photometric = spectrum.to_photometric();
         let scale = if photometric > 0.0 { scale / photometric } else { 0.0 };
-        Emission { spectrum: spectrum.to_dense(), scale }
+        let emission = Emission { spectrum: spectrum.to_dense(), scale };
+        if !photometric.is_finite() || !emission.max_value().is_finite() {
+            self.error("invalid-value", "the light's spectrum is too bright for single precision", span);
+        }
+        emission
     }
 
     /// A light's image, and the factor that makes its 1 one unit of luminance times `scale`.

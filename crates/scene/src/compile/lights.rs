@@ -20,6 +20,17 @@ impl Compiler<'_> {
     }
 
     fn light(&mut self, desc: &LightDesc, origin: &Origin, scene: SceneSphere) -> Option<Light> {
+        let (power, illuminance) = match desc.kind {
+            LightKind::Point { power, .. }
+            | LightKind::Spot { power, .. }
+            | LightKind::Goniometric { power, .. }
+            | LightKind::Projection { power, .. } => (power, None),
+            LightKind::Distant { illuminance, .. } | LightKind::Infinite { illuminance, .. } => {
+                (None, illuminance)
+            }
+        };
+        let factors = [("scale", Some(desc.scale)), ("power", power), ("illuminance", illuminance)];
+        self.check_brightness(origin, &factors);
         let Some(motion) = self.motion(&desc.world_from_light) else {
             self.singular("light", origin);
             return None;

@@ -7,8 +7,8 @@ use crate::material::{
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use description::{
-    ConductorDesc, ConductorReflectance, HairColor, Handle, MaterialDesc, MaterialKind, Origin,
-    RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, MaterialDesc, MaterialKind,
+    Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
 };
 use spectrum::Spectrum;
 
@@ -76,19 +76,23 @@ impl Compiler<'_> {
         match kind {
             MaterialKind::Diffuse { reflectance } => self.diffuse(reflectance, origin),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
+                if !(0.0..f32::INFINITY).contains(scale) {
+                    let message = format!("{scale} is no factor on a reflectance");
+                    self.error("invalid-value", message, origin.parameter("scale"));
+                }
                 Material::DiffuseTransmission(DiffuseTransmissionMaterial {
                     reflectance: self.albedo(reflectance, "reflectance", origin),
                     transmittance: self.albedo(transmittance, "transmittance", origin),
                     scale: *scale,
                 })
             }
-            MaterialKind::Conductor(conductor) => self.conductor(conductor, origin),
+            MaterialKind::Conductor(conductor) => self.conductor(conductor, "", origin),
             MaterialKind::Dielectric { eta, roughness } => Material::Dielectric(DielectricMaterial {
-                eta: self.index_of_refraction(eta, origin),
-                roughness: self.roughness(roughness, origin),
+                eta: self.index_of_refraction(eta, "eta", origin),
+                roughness: self.roughness(roughness, "", origin),
             }),
             MaterialKind::ThinDielectric { eta } => Material::ThinDielectric(ThinDielectricMaterial {
-                eta: self.index_of_refraction(eta, origin),
+                eta: self.index_of_refraction(eta, "eta", origin),
             }),
             MaterialKind::Mix { materials, amount } => Material::Mix(MixMaterial {
                 materials: materials.map(|handle| MaterialId(handle.index() as u32)),
@@ -97,11 +101,15 @@ impl Compiler<'_> {
             MaterialKind::Interface => Material::Interface,
             MaterialKind::CoatedDiffuse(coated) => {
                 self.not_drawn("coateddiffuse", "`diffuse`, without its coat", origin);
+                self.index_of_refraction(&coated.eta, "eta", origin);
+                self.roughness(&coated.roughness, "", origin);
                 self.diffuse(&coated.reflectance, origin)
             }
             MaterialKind::CoatedConductor(coated) => {
                 self.not_drawn("coatedconductor", "`conductor`, without its coat", origin);
-                self.conductor(&coated.conductor, origin)
+                self.index_of_refraction(&coated.eta, "interface.eta", origin);
+                self.roughness(&coated.roughness, "interface.", origin);
+                self.conductor(&coated.conductor, "conductor.", origin)
             }
             MaterialKind::Hair { color, .. } => {
                 self.not_drawn("hair", "diffuse", origin);
@@ -143,37 +151,67 @@ impl Compiler<'_> {
         self.spectrum_texture(parameter, SpectrumType::Albedo, origin.parameter(name))
     }
 
-    fn index_of_refraction(&mut self, eta: &SpectrumDesc, origin: &Origin) -> Spectrum {
-        compile_spectrum(eta, SpectrumType::Unbounded, origin.parameter("eta"), &mut self.diagnostics)
+    /// The index of refraction given by the parameter `name`.
+    fn index_of_refraction(&mut self, eta: &SpectrumDesc, name: &str, origin: &Origin) -> Spectrum {
+        let span = origin.parameter(name);
+        let is_positive = match eta {
+            SpectrumDesc::Constant(value) => *value > 0.0,
+            SpectrumDesc::Rgb { rgb, .. } => rgb.iter().any(|&value| value > 0.0),
+            SpectrumDesc::Samples(pairs) => pairs.iter().all(|&(_, value)| value > 0.0),
+            SpectrumDesc::Named(_) | SpectrumDesc::Blackbody(_) | SpectrumDesc::Illuminant(_) => true,
+        };
+        if !is_positive {
+            self.error("invalid-value", "an index of refraction must be above 0", span);
+        }
+        compile_spectrum(eta, SpectrumType::Unbounded, span, &mut self.diagnostics)
     }
 
     fn diffuse(&mut self, reflectance: &SpectrumParameter, origin: &Origin) -> Material {
         Material::Diffuse(DiffuseMaterial { reflectance: self.albedo(reflectance, "reflectance", origin) })
     }
 
-    fn conductor(&mut self, desc: &ConductorDesc, origin: &Origin) -> Material {
+    /// A metal whose parameters have `prefix` before their names.
+    fn conductor(&mut self, desc: &ConductorDesc, prefix: &str, origin: &Origin) -> Material {
+        let span = |name: &str| origin.parameter(&format!("{prefix}{name}"));
         let index = match &desc.reflectance {
             ConductorReflectance::Index { eta, k } => ConductorIndex::Complex {
-                eta: self.spectrum_texture(eta, SpectrumType::Unbounded, origin.parameter("eta")),
-                k: self.spectrum_texture(k, SpectrumType::Unbounded, origin.parameter("k")),
+                eta: self.spectrum_texture(eta, SpectrumType::Unbounded, span("eta")),
+                k: self.spectrum_texture(k, SpectrumType::Unbounded, span("k")),
             },
             ConductorReflectance::Reflectance(reflectance) => {
                 ConductorIndex::Reflectance(self.albedo(reflectance, "reflectance", origin))
             }
         };
-        Material::Conductor(ConductorMaterial { index, roughness: self.roughness(&desc.roughness, origin) })
+        Material::Conductor(ConductorMaterial {
+            index,
+            roughness: self.roughness(&desc.roughness, prefix, origin),
+        })
     }
 
-    fn roughness(&mut self, desc: &RoughnessDesc, origin: &Origin) -> Roughness {
-        let [u, v] = [(&desc.u, "uroughness"), (&desc.v, "vroughness")].map(|(roughness, name)| {
-            let given = |name| origin.parameters.iter().find(|(given, _)| *given == name);
+    /// The roughness given by the parameters `roughness`, `uroughness` and `vroughness` with
+    /// `prefix` before their names.
+    fn roughness(&mut self, desc: &RoughnessDesc, prefix: &str, origin: &Origin) -> Roughness {
+        let mut texture = |roughness: &FloatParameter, name: &str| {
+            let given = |name: &str| {
+                let named = |given: &str| given.strip_prefix(prefix) == Some(name);
+                origin.parameters.iter().find(|(given, _)| named(given))
+            };
             let span = given(name).or(given("roughness")).map_or(origin.span, |&(_, span)| span);
             let texture = self.float_texture(roughness, span);
-            if let Some(value) = self.textures.textures().constant(texture).filter(|&value| value < 0.0) {
-                self.error("invalid-value", format!("roughness cannot be negative, but is {value}"), span);
+            match self.textures.textures().constant(texture) {
+                Some(value) if value < 0.0 => {
+                    self.error("invalid-value", format!("roughness cannot be negative, as {value} is"), span);
+                }
+                Some(value) if value > 1.0 => {
+                    let message = format!("roughness goes from 0 to 1; {value} is rougher than that");
+                    self.warn("roughness-range", message, span);
+                }
+                _ => (),
             }
             texture
-        });
+        };
+        let u = texture(&desc.u, "uroughness");
+        let v = if desc.v == desc.u { u } else { texture(&desc.v, "vroughness") };
         Roughness { u, v, remap: desc.remap }
     }
 }

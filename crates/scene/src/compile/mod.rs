@@ -14,14 +14,15 @@ mod solids;
 mod spheres;
 mod tessellation;
 
-use crate::light::{AreaEmission, SceneSphere};
+use crate::light::{AreaEmission, LightTable, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
 use crate::scene::{GeometryEntry, InstanceEntry, Scene};
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
 use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
-    AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, SceneDesc, Span, SpectrumParameter,
+    AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, IntegratorDesc, SceneDesc, Span,
+    SpectrumParameter,
 };
 use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
@@ -66,6 +67,9 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let world = std::mem::take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
     let lights = compiler.light_table(&world, sphere);
+    if !compiler.diagnostics.iter().any(Diagnostic::is_error) {
+        compiler.warn_of_darkness(&lights);
+    }
     let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
@@ -108,6 +112,20 @@ impl Compiler<'_> {
 
     fn warn(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
+    }
+
+    /// Warns where there is nothing to see.
+    fn warn_of_darkness(&mut self, lights: &LightTable) {
+        let needs_light = !matches!(*self.desc.integrator, IntegratorDesc::AmbientOcclusion { .. });
+        if self.entries.is_empty() && lights.is_empty() {
+            self.warn(
+                "empty-scene",
+                "the scene has neither shapes nor lights; the picture is black",
+                Span::NONE,
+            );
+        } else if lights.is_empty() && needs_light {
+            self.warn("no-light", "the scene has no light; the picture is black", Span::NONE);
+        }
     }
 
     fn float_texture(&mut self, parameter: &FloatParameter, span: Span) -> FloatTextureId {

@@ -1,9 +1,9 @@
 //! Radiance from infinity given by an image of the sphere, sampled in proportion to its brightness.
 //!
-//! The image is in the equal-area or the latitude–longitude [`Projection`]. With p(s, t) the density
-//! over the unit square and j(s, t) the solid angle per area as a part of 4π, the density per solid
-//! angle is p/(4π·j): j = 1 for equal areas and (π/2)·sin θ for latitude and longitude, whose pixels
-//! are sampled in proportion to brightness · sin θ.
+//! The image is in the equal-area or the latitude–longitude [`Projection`]. With p(s, t) the
+//! density over the unit square and j(s, t) the solid angle per area as a part of 4π, the density
+//! per solid angle is p/(4π·j): j = 1 for equal areas and (π/2)·sin θ for latitude and longitude,
+//! whose pixels are sampled in proportion to brightness · sin θ.
 //!
 //! With incomplete sampling allowed, the *compensated* distribution max(0, f − mean) is used:
 //! multiple importance sampling leaves the dim parts to the BSDF, and light samples go where they

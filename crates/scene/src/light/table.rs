@@ -39,6 +39,11 @@ impl LightTable {
         self.len += count;
     }
 
+    /// Whether there is no light.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
     /// What area lights emit.
     pub fn emissions(&self) -> &[AreaEmission] {
         &self.emissions
@@ -66,7 +71,7 @@ impl<'a> Lights<'a> {
 
     /// Whether there is no light.
     pub fn is_empty(self) -> bool {
-        self.table.len == 0
+        self.table.is_empty()
     }
 
     /// The rows of the table, each with the id of its first light.

@@ -1,4 +1,4 @@
-//! What a spectrum stands for, and spectra as the author named them.
+//! What a spectrum stands for, and spectra made from their descriptions.
 
 use description::{ColorSpaceDesc, Diagnostic, Span, SpectrumDesc};
 use spectrum::{Rgb, RgbColorSpace, Spectrum};
@@ -28,7 +28,7 @@ impl SpectrumType {
     }
 }
 
-/// The colour space that the author named.
+/// The colour space of a description.
 pub fn color_space(desc: ColorSpaceDesc) -> &'static RgbColorSpace {
     match desc {
         ColorSpaceDesc::Srgb => RgbColorSpace::srgb(),
@@ -38,7 +38,10 @@ pub fn color_space(desc: ColorSpaceDesc) -> &'static RgbColorSpace {
     }
 }
 
-/// The spectrum that the author named at `span`. What makes no sense is added to `diagnostics`.
+/// The largest value of a spectrum in a scene, so that products of several stay finite.
+const LARGEST_VALUE: f32 = 1e30;
+
+/// The spectrum described at `span`. Errors and colours out of range are added to `diagnostics`.
 pub fn compile_spectrum(
     desc: &SpectrumDesc,
     spectrum_type: SpectrumType,
@@ -49,7 +52,7 @@ pub fn compile_spectrum(
         diagnostics.push(Diagnostic::error("invalid-value", message, span));
         Spectrum::ZERO
     };
-    match desc {
+    let spectrum = match desc {
         SpectrumDesc::Constant(value) if value.is_finite() => Spectrum::Constant(*value),
         SpectrumDesc::Constant(value) => wrong(format!("{value} is no value for a spectrum")),
         SpectrumDesc::Rgb { rgb, space } => {
@@ -77,5 +80,11 @@ pub fn compile_spectrum(
         }
         SpectrumDesc::Blackbody(kelvin) => wrong(format!("a temperature must be above 0 K, not {kelvin}")),
         SpectrumDesc::Illuminant(space) => color_space(*space).illuminant(),
+    };
+    let largest = spectrum.max_value();
+    if largest.is_nan() || largest > LARGEST_VALUE {
+        let message = format!("the values of a spectrum must be at most {LARGEST_VALUE:e}");
+        diagnostics.push(Diagnostic::error("invalid-value", message, span));
     }
+    spectrum
 }

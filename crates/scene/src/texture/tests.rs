@@ -533,5 +533,7 @@ fn spectra_are_made_for_their_use() {
     );
     assert!(make(&SpectrumDesc::rgb(f32::NAN, 0.0, 0.0), SpectrumType::Albedo).1[0].1);
     assert!(make(&SpectrumDesc::Constant(f32::INFINITY), SpectrumType::Unbounded).1[0].1);
+    assert!(make(&SpectrumDesc::Constant(1e31), SpectrumType::Illuminant).1[0].1);
+    assert!(make(&SpectrumDesc::rgb(3e38, 3e38, 3e38), SpectrumType::Illuminant).1[0].1);
     assert!(make(&SpectrumDesc::Named("glass-BK7".into()), SpectrumType::Unbounded).1.is_empty());
 }

@@ -180,7 +180,8 @@ fn placed_area_lights() -> Vec<(&'static str, SceneDesc)> {
     ]
 }
 
-/// Makes the shapes of a scene an object, placed by the last transform within that by the one before.
+/// Makes the shapes of a scene an object, placed by the last transform within that by the one
+/// before.
 fn instanced(mut desc: SceneDesc, transforms: &[TransformDesc]) -> SceneDesc {
     let shapes = std::mem::take(&mut desc.shapes);
     let mut object = ObjectDesc { shapes, ..ObjectDesc::default() };

@@ -1,11 +1,11 @@
 //! Top-down like [`super::balanced`], with spatial splits (SBVH): a primitive across the splitting
-//! plane gets a reference on both sides, each with a box around its part on that side. Long, slanted
-//! triangles, whose boxes are mostly empty, gain most ([Stich 2009]).
+//! plane gets a reference on both sides, each with a box around its part on that side. Long,
+//! slanted triangles, whose boxes are mostly empty, gain most ([Stich 2009]).
 //!
 //! A spatial split is tried where the boxes of the best object split overlap by more than
-//! [`OVERLAP`] of the whole, while there is capacity for more references, of which there are at most
-//! twice as many as primitives. Spare capacity of a set is shared between its halves in proportion
-//! to their sizes.
+//! [`OVERLAP`] of the whole, while there is capacity for more references, of which there are at
+//! most twice as many as primitives. Spare capacity of a set is shared between its halves in
+//! proportion to their sizes.
 
 use super::balanced::{DEEPEST, PARALLEL, halve};
 use super::bins::ObjectSplit;

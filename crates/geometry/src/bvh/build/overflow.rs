@@ -24,7 +24,8 @@ impl<B: Copy + Send> Overflow<B> {
         pages::with_capacity(planned + planned / 16)
     }
 
-    /// Makes a planned block, and additional ones where it is too small; returns the box around all.
+    /// Makes a planned block, and additional ones where it is too small; returns the box around
+    /// all.
     #[inline(always)]
     pub fn block<P: Primitives<Block = B>>(
         &self,

@@ -8,7 +8,7 @@ use crate::shape::extent::Extent;
 use crate::shape::level::Level;
 use math::{Bounds3, DVec3};
 
-/// How far the point at a root may be from the surface.
+/// A bound of the error of the point at a root.
 pub(in crate::shape) fn reach(o: DVec3, d: DVec3, root: Root) -> DVec3 {
     d.abs() * root.error + (o.abs() + d.abs() * root.t) * ROUNDING
 }
@@ -25,7 +25,7 @@ impl Body {
         Self { formula, extent: Extent { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() } }
     }
 
-    /// Whether a point counts as inside: F < 0.
+    /// Whether a point is inside: F < 0.
     pub fn contains(&self, p: DVec3) -> bool {
         self.formula.value(p.to_array()) < 0.0
     }
@@ -48,11 +48,11 @@ impl Body {
     pub fn refined(&self, o: DVec3, d: DVec3, t: f32) -> Root {
         let range = [t.next_down().into(), t.next_up().into()];
         let root = self.find(o, d, range, |_| true);
-        // A root that only touches may be seen to miss when looked at more closely.
+        // At higher resolution, a double root may turn out to be a near miss.
         root.unwrap_or(Root { t: t.into(), error: range[1] - range[0] })
     }
 
-    /// What the formula is around a point that a ray along `d` came to.
+    /// The level set at a point hit by a ray along `d`.
     pub fn level(&self, p: DVec3, d: DVec3) -> Level {
         let Jet { gradient, hessian, .. } = self.formula.jet(p);
         Level { p, gradient, hessian, center: self.extent.center(), d }

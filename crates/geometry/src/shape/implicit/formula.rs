@@ -16,7 +16,7 @@ pub struct Formula {
     order: Order,
 }
 
-/// How many coefficients describe the formula along a ray.
+/// The number of coefficients of the Taylor models of a formula.
 #[derive(Clone, Copy, Debug)]
 enum Order {
     Four,
@@ -29,7 +29,7 @@ impl Formula {
     /// precision, where squares of larger coordinates overflow.
     pub const MAX_COORDINATE: f32 = 1e18;
 
-    /// Reads a formula of x, y and z, such as `x^2 + y^2 + z^2 - 1`.
+    /// Parses a formula of x, y and z, such as `x^2 + y^2 + z^2 - 1`.
     ///
     /// ```
     /// use alhazen_geometry::Formula;
@@ -49,12 +49,12 @@ impl Formula {
         Ok(Self { program: Arc::new(program), order })
     }
 
-    /// F at a point; not a number where it is not defined.
+    /// F at a point; NaN where it is undefined.
     pub fn value(&self, p: [f64; 3]) -> f64 {
         self.program.evaluate(p, &mut Vec::new())
     }
 
-    /// Whether F is surely zero nowhere in a box.
+    /// Whether interval arithmetic proves that F has no zero in a box.
     pub fn has_no_zero(&self, bounds: &Bounds3) -> bool {
         let axis = |i: usize| Interval::new(bounds.min[i].into(), bounds.max[i].into());
         !self.program.evaluate([axis(0), axis(1), axis(2)], &mut Vec::new()).contains(0.0)
@@ -73,7 +73,7 @@ impl Formula {
         range: [f64; 2],
         wanted: impl FnMut(&Root) -> bool,
     ) -> Option<Root> {
-        // Counted from the start of the range, where the numbers are small.
+        // t is relative to the start of the range, so that coordinates are small.
         let start = range[0];
         let o = o + d * start;
         let range = [0.0, range[1] - start];

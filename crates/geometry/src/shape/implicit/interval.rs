@@ -1,14 +1,14 @@
-//! Ranges of doubles that surely hold the exact result of what was computed ([Moore 1966]).
+//! Interval arithmetic in doubles: ranges that contain the exact result ([Moore 1966]).
 //!
-//! Ends are rounded outwards. The elementary functions of the system's library are taken to be
-//! right to four units in the last place, which all common ones undercut. A function is taken over
+//! Ends are rounded outwards. The elementary functions of the system's library are assumed
+//! to be accurate to four units in the last place, as all common ones are. A function is taken over
 //! that part of a range where it is defined; where it is defined nowhere, the result is empty.
 
 use super::program::{Function, Number, power};
 use std::f64::consts::TAU;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// The closed range from `low` to `high`. Ends may be infinite: the range then has no end there.
+/// The closed range from `low` to `high`. Ends may be infinite: the range is then unbounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
     pub low: f64,
@@ -40,12 +40,12 @@ impl Interval {
         0.5 * self.low + 0.5 * self.high
     }
 
-    /// How far an end is from the midpoint.
+    /// Half of the width.
     pub fn radius(self) -> f64 {
         (0.5 * self.high - 0.5 * self.low).next_up()
     }
 
-    /// What lies in both; empty where nothing does.
+    /// The intersection; empty where the ranges are disjoint.
     pub fn intersect(self, other: Self) -> Self {
         if self.is_empty() || other.is_empty() {
             return Self::EMPTY;

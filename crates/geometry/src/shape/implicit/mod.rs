@@ -1,9 +1,9 @@
 //! The surface F(x, y, z) = 0 of a formula, within a box.
 //!
-//! The nearest root along a ray is proved to be the nearest ([`roots`]). The normal is the gradient,
-//! by automatic differentiation; the outside is where F > 0. The box clips the surface, which is
-//! open there. (u, v) are the spherical angles around the centre of the box. Points cannot be
-//! sampled uniformly on such a surface, so that its area counts as 0.
+//! The nearest root along a ray is proved to be the nearest ([`roots`]). The normal is the
+//! gradient, by automatic differentiation; the outside is where F > 0. The box clips the surface,
+//! which is open there. (u, v) are the spherical angles around the centre of the box. Points cannot
+//! be sampled uniformly on such a surface, so that its area counts as 0.
 
 mod body;
 mod formula;

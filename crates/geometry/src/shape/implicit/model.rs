@@ -1,10 +1,10 @@
-//! What a formula does along a piece of a ray: a Taylor model, which is a polynomial and a bound on
-//! how far the formula is from it ([Makino 2003]).
+//! Taylor models: a polynomial approximation of a formula along a piece of a ray, with a bound of
+//! its error ([Makino 2003]).
 //!
 //! With s ∈ [−1, 1] over the piece, |F(s) − Σ cₖ sᵏ| ≤ r. Sums and products of models are those of
-//! their polynomials; what exceeds the degree and what rounding loses goes to r. A function g is
+//! their polynomials; terms beyond the degree and rounding errors are added to r. A function g is
 //! expanded about the middle of its argument, Σ aₖ·uᵏ, with the last coefficient taken over the
-//! whole range of the argument, so that the remainder is in it. Each model carries a range by
+//! whole range of the argument, so that it includes the remainder. Each model has a range by
 //! interval arithmetic too, which is the better bound where a function is about to leave its
 //! domain.
 
@@ -17,7 +17,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub(super) struct Model<const N: usize> {
     /// By ascending powers of s.
     pub c: [f64; N],
-    /// How far the formula may be from the polynomial; infinite where nothing is known.
+    /// The error bound of the polynomial; infinite where nothing is known.
     pub r: f64,
     /// All values; empty where the formula is defined nowhere on the piece.
     pub range: Interval,
@@ -25,7 +25,7 @@ pub(super) struct Model<const N: usize> {
     pub partial: bool,
 }
 
-/// Twice what one operation may lose: room for the rounding of the bounds themselves.
+/// Twice the rounding error of an operation, with a margin for the rounding of the bounds.
 const EPSILON: f64 = f64::EPSILON;
 
 impl<const N: usize> Model<N> {
@@ -52,7 +52,7 @@ impl<const N: usize> Model<N> {
         Self { c, r: range.radius() + c[0].abs() * EPSILON, range, partial }.normalised()
     }
 
-    /// Whatever overflowed is unknown.
+    /// The model, or an unknown one where it overflowed.
     fn normalised(self) -> Self {
         if self.norm() + self.r < f64::INFINITY { self } else { Self::unknown(self.range, self.partial) }
     }
@@ -168,7 +168,7 @@ impl<const N: usize> Mul for Model<N> {
                 c[i + j] = a[i].mul_add(b[j], c[i + j]);
             }
         }
-        // What exceeds the degree: |aᵢ| times the last i of |b|.
+        // Terms beyond the degree: |aᵢ| times the last i of |b|.
         let (mut lost, mut tail) = (0.0, 0.0);
         for i in 1..N {
             tail += b[N - i].abs();

@@ -1,4 +1,4 @@
-//! The text of a formula F(x, y, z), read into a [`Program`].
+//! Parsing the text of a formula F(x, y, z) to a [`Program`].
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -9,9 +9,9 @@
 //! ```
 //!
 //! Names are x, y, z, pi, e and the functions sqrt, abs, sin, cos, tan, exp, log, min, max and pow;
-//! −x² is −(x²), and powers bind from the right. A power with a whole number for its exponent is a
-//! product, so that its base may be negative; any other is defined for bases that are not. Length,
-//! depth and steps are bounded.
+//! −x² is −(x²), and powers associate to the right. A power with an integer exponent is a product,
+//! so that its base may be negative; any other needs a base of at least 0. Length, depth and
+//! operations are bounded.
 
 use super::program::{Builder, Function, Program, TooLong, Value};
 use std::fmt;
@@ -19,16 +19,16 @@ use std::ops::Range;
 
 /// The longest text in bytes.
 const MAX_LENGTH: usize = 1 << 14;
-/// How deep parentheses, signs and exponents may lie in each other.
+/// How deep parentheses, signs and exponents may be nested.
 const MAX_DEPTH: usize = 100;
 
 /// Names that a formula may use; functions with the number of their arguments.
 const NAMES: &str = "x, y, z, pi, e, sqrt, abs, sin, cos, tan, exp, log, min, max, pow";
 
-/// Why a text is no formula.
+/// A syntax error of a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormulaError {
-    /// Which bytes of the text are to blame.
+    /// The range of bytes of the text that is wrong.
     pub place: Range<usize>,
     /// What is wrong.
     pub message: String,
@@ -44,7 +44,7 @@ impl fmt::Display for FormulaError {
 
 impl std::error::Error for FormulaError {}
 
-/// Reads a formula.
+/// Parses a formula.
 pub(super) fn parse(text: &str) -> Result<Program, FormulaError> {
     let mut parser = Parser { text, at: 0, depth: 0, builder: Builder::default() };
     if text.len() > MAX_LENGTH {
@@ -84,7 +84,7 @@ impl Parser<'_> {
         FormulaError { place, message: message.into(), help: None }
     }
 
-    /// About the word or character that comes next.
+    /// An error about the next word or character.
     fn error_here(&mut self, message: impl Into<String>) -> FormulaError {
         self.peek();
         let rest = &self.text[self.at..];

@@ -1,14 +1,12 @@
-//! A formula as a list of operations, each used by later ones, to be carried out on any kind of
-//! number.
+//! A formula as a list of operations, which is evaluated on any kind of number.
 //!
-//! Equal operations are kept once and constants are folded. What the operations are carried out on
-//! decides what comes out: plain numbers give the value of F, [`super::interval::Interval`] a range
-//! that holds it over a box, [`super::jet::Jet`] its derivatives, [`super::model::Model`] a
-//! polynomial along a ray with a bound on how far F is from it.
+//! Common subexpressions are shared and constants folded. Plain numbers give the value of F,
+//! [`super::interval::Interval`] a range that contains it over a box, [`super::jet::Jet`] its
+//! derivatives, [`super::model::Model`] a polynomial along a ray with a bound of its error.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A function of one number. Where it is not defined for reals it is not a number.
+/// A function of one number; NaN where it is undefined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Function {
     /// 1/x.
@@ -19,11 +17,11 @@ pub(super) enum Function {
     Cos,
     Exp,
     Log,
-    /// xᵖ for x ≥ 0, with a p that is no small whole number.
+    /// xᵖ for x ≥ 0, where p is no small integer.
     Real(f64),
 }
 
-/// Numbers that a formula can be computed with.
+/// Numbers that a formula can be evaluated on.
 pub(super) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
@@ -88,12 +86,12 @@ impl Number for f64 {
             Function::Log => self.ln(),
             Function::Real(p) => self.powf(p),
         };
-        // There is no value at a pole.
+        // A pole has no value.
         if self == 0.0 && value.is_infinite() { f64::NAN } else { value }
     }
 }
 
-/// One step; operands are the numbers of earlier steps.
+/// One operation; operands are the indices of earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Op {
     Constant(f64),
@@ -111,14 +109,14 @@ pub(super) enum Op {
     Apply(Function, u16),
 }
 
-/// The steps of a formula; the last one is its value.
+/// The operations of a formula; the last one is its value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Program {
     ops: Vec<Op>,
 }
 
 impl Program {
-    /// The value at a point; `values` is room for what comes before it.
+    /// The value at a point; `values` is scratch memory.
     pub fn evaluate<T: Number>(&self, point: [T; 3], values: &mut Vec<T>) -> T {
         values.clear();
         for op in &self.ops {
@@ -142,7 +140,7 @@ impl Program {
         values[self.ops.len() - 1]
     }
 
-    /// Its degree in x, y and z together; `None` where it is no polynomial.
+    /// The total degree; `None` where it is no polynomial.
     pub fn degree(&self) -> Option<u32> {
         let mut degrees: Vec<Option<u32>> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
@@ -162,25 +160,25 @@ impl Program {
     }
 }
 
-/// A number on the way to a [`Program`].
+/// An operand while a [`Program`] is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value {
     Known(f64),
     Step(u16),
 }
 
-/// Too many steps.
+/// There are too many operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TooLong;
 
-/// Collects steps.
+/// Collects operations.
 #[derive(Debug, Default)]
 pub(super) struct Builder {
     ops: Vec<Op>,
 }
 
 impl Builder {
-    /// The most steps of a program.
+    /// The most operations of a program.
     pub const MAX_STEPS: usize = 1024;
     /// The largest exponent for which a power is a product.
     pub const MAX_POWER: u32 = 256;

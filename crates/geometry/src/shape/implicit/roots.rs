@@ -1,9 +1,9 @@
 //! The roots of a formula along a ray, in order, with none missed.
 //!
-//! A piece of the ray is described by a [`Model`], whose polynomial P is converted to Bernstein form:
-//! it lies in the convex hull of its control points (k/n, bₖ). Where |P| > r there is no root. A
-//! line from an end's control point below all others (above, where P is negative) bounds the
-//! parameter from which on P may come within r of zero; the part before it is clipped, which
+//! A piece of the ray is described by a [`Model`], whose polynomial P is converted to Bernstein
+//! form: it lies in the convex hull of its control points (k/n, bₖ). Where |P| > r there is no
+//! root. A line from an end's control point below all others (above, where P is negative) bounds
+//! the parameter from which on P may come within r of zero; the part before it is clipped, which
 //! converges quadratically at a simple root ([Sederberg 1990]). A piece that hardly shrinks is
 //! bisected. Where r is no longer small relative to P, the formula is evaluated again on the piece.
 //!

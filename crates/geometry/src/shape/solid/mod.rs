@@ -1,15 +1,14 @@
-//! Constructive solid geometry: bodies joined, cut by each other, or taken away from each other.
+//! Constructive solid geometry: unions, intersections and differences of bodies.
 //!
-//! A ray is inside of each body on some spans of its length. Along the ends of all spans, in order,
-//! it is counted how many bodies it is inside of: in a union it has to be one at least, in an
-//! intersection all, in a difference the first one and no other ([Roth 1982]). Combinations are
-//! bodies again. The surface at an end is that of the body whose end it is, turned round where that
-//! body is taken away. Ends at the very same place count as one, so that faces which coincide
-//! exactly leave nothing between them.
+//! A ray is inside of each body on some spans. Along the sorted ends of all spans, the bodies that
+//! the ray is inside of are counted: at least one in a union, all in an intersection, the first and
+//! no other in a difference ([Roth 1982]). Combinations are bodies again. The surface at an end is
+//! that of the body whose span ends there, with its orientation reversed where that body is
+//! subtracted. Ends at equal t count as one, so that nothing is left between faces that coincide
+//! exactly.
 //!
 //! A hit's parameters are the number of the face and 0; a [`SurfacePoint`]'s are those of the body.
-//! There is no way to choose a point evenly on such a surface, so that it has no area to be sampled
-//! by.
+//! Points cannot be sampled uniformly on such a surface, so that its area counts as 0.
 
 mod part;
 
@@ -20,14 +19,14 @@ use crate::surface::SurfacePoint;
 use math::{Bounds3, Point3, Ray, Transform, Vec2};
 use part::{Part, Profile};
 
-/// How bodies become one.
+/// A Boolean operation on bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// What is in any of them.
+    /// Points in any of them.
     Union,
-    /// What is in all of them.
+    /// Points in all of them.
     Intersection,
-    /// What is in the first of them and in no other.
+    /// Points in the first of them and in no other.
     Difference,
 }
 
@@ -69,21 +68,21 @@ impl Solid {
         Self::revolved(render_from_object, [0.0, 0.0, slope * slope], height, [0.0, height])
     }
 
-    /// What is between two heights of the bowl that opens along the object's z axis and is `radius`
-    /// wide at the larger of them, which must be above 0.
+    /// The paraboloid that opens along the object's z axis, between two heights, with `radius` at
+    /// the larger one, which must be above 0.
     pub fn paraboloid(render_from_object: &Transform, radius: f32, z: [f32; 2]) -> Self {
         let z = ascending(z).map(|z| z.max(0.0));
         let radius = f64::from(radius);
         Self::revolved(render_from_object, [0.0, radius * radius / z[1], 0.0], 0.0, z)
     }
 
-    /// What the surface encloses that the line between two points of different z sweeps around the
-    /// object's z axis.
+    /// The body within the surface that the line between two points of different z sweeps around
+    /// the object's z axis.
     pub fn hyperboloid(render_from_object: &Transform, ends: [Point3; 2]) -> Self {
         let [from, to] = ends.map(|p| p.as_dvec3());
         let (q, e) = (from.truncate(), (to - from).truncate());
         let squared = e.length_squared();
-        // Where the line is nearest to the axis.
+        // The point of the line nearest to the axis.
         let v = if squared == 0.0 { 0.0 } else { -q.dot(e) / squared };
         let rise = to.z - from.z;
         let rho = [(q + e * v).length_squared(), 0.0, squared / (rise * rise)];
@@ -94,17 +93,17 @@ impl Solid {
         Self::single(Part::revolved(render_from_object, Some(Profile { rho, origin }), z))
     }
 
-    /// All that is below the object's xy plane. It has no end.
+    /// The half space below the object's xy plane, which is unbounded.
     pub fn below_plane(render_from_object: &Transform) -> Self {
         Self::single(Part::revolved(render_from_object, None, [f64::NEG_INFINITY, 0.0]))
     }
 
-    /// Where a formula is negative inside of `bounds`, which close it.
+    /// The body where a formula is negative within `bounds`, which close it.
     pub fn implicit(render_from_object: &Transform, formula: Formula, bounds: &Bounds3) -> Self {
         Self::single(Part::formula(render_from_object, formula, bounds))
     }
 
-    /// One solid of several; `None` of none.
+    /// Combines several solids; `None` of none.
     pub fn combine(operation: Operation, operands: impl IntoIterator<Item = Self>) -> Option<Self> {
         let mut operands = operands.into_iter();
         let Self { mut parts, tree } = operands.next()?;
@@ -121,7 +120,7 @@ impl Solid {
         Some(Self { parts, tree })
     }
 
-    /// Turns its normals to the inside, or out again.
+    /// Reverses its orientation.
     pub fn turn_round(&mut self) {
         for part in &mut self.parts {
             part.quadric.turn_round();
@@ -174,7 +173,7 @@ impl Tree {
                 .iter()
                 .try_fold(Bounds3::EMPTY, |all, operand| Some(all.union(operand.bounds(parts)?))),
             Self::Combination(Operation::Difference, operands) => operands.first()?.bounds(parts),
-            // Any of the boxes holds what they have in common.
+            // Each of the boxes contains the intersection.
             Self::Combination(Operation::Intersection, operands) => {
                 let boxes = operands.iter().filter_map(|operand| operand.bounds(parts));
                 boxes.min_by(|a, b| a.diagonal().length().total_cmp(&b.diagonal().length()))
@@ -211,7 +210,7 @@ impl Tree {
 }
 
 /// Spans of a combination from the ends of its operands' spans, each with the change of the count
-/// and whose it is.
+/// and the index of the operand.
 fn combine(operation: Operation, operands: i32, ends: &mut [(Crossing, i32, usize)], spans: &mut Vec<Span>) {
     ends.sort_by(|(a, ..), (b, ..)| a.t.total_cmp(&b.t));
     let (mut in_first, mut in_others) = (0, 0);

@@ -1,7 +1,7 @@
-//! What solids are made of: bodies with a closed boundary, each in a space of its own.
+//! The parts of solids: bodies with a closed boundary, each in an object space of its own.
 //!
-//! A solid of revolution is a profile x² + y² ≤ ρ(z) between two heights: ball, cylinder, cone,
-//! paraboloid, hyperboloid, closed by flat ends. Without a profile it is all that lies between the
+//! A solid of revolution is a profile x² + y² ≤ ρ(z) between two heights: sphere, cylinder,
+//! cone, paraboloid, hyperboloid, closed by flat caps. Without a profile it is the slab between the
 //! heights. The body of a formula is where F < 0 in its box, closed by the sides of the box.
 
 use crate::placement::ROUNDING;
@@ -12,7 +12,7 @@ use crate::shape::quadric::{Quadric, revolved_roots, unrounded};
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DMat3, DVec3, Ray, Transform};
 
-/// A body and where it stands.
+/// A body and its placement.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub quadric: Quadric,
@@ -25,16 +25,16 @@ enum Kind {
     Formula(Body),
 }
 
-/// The curved face; the sides of the box are those from [`FLAT`] on.
+/// The number of the curved face; the sides of the box are numbered from [`FLAT`] on.
 const CURVED: u32 = 0;
 const FLAT: u32 = 1;
 
 impl Part {
-    /// Numbers of faces that a part has.
+    /// The number of faces of a part.
     pub const FACES: u32 = 7;
 
     fn new(render_from_object: &Transform, kind: Kind) -> Self {
-        // The gradient is along the outside whether or not the transform is a mirror.
+        // The gradient is along the outside whether or not the transform is a reflection.
         Self { quadric: Quadric::new(render_from_object, render_from_object.swaps_handedness()), kind }
     }
 
@@ -50,7 +50,7 @@ impl Part {
         Self::new(render_from_object, Kind::Formula(Body::new(formula, bounds)))
     }
 
-    /// A box around it; `None` where it has no end.
+    /// A box around it; `None` where it is unbounded.
     pub fn bounds(&self) -> Option<Bounds3> {
         let Extent { min, max } = match &self.kind {
             Kind::Revolved(revolved) => revolved.hull(),
@@ -89,7 +89,7 @@ impl Part {
         }
     }
 
-    /// What is known of the surface where the ray met a face at about `t`.
+    /// The surface at a hit of a ray on a face at about `t`.
     pub fn surface(&self, ray: &Ray, t: f32, face: u32) -> SurfacePoint {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         match &self.kind {
@@ -108,7 +108,7 @@ impl Part {
         }
     }
 
-    /// What is known of a side of the box where the ray meets it.
+    /// The surface at a hit of a ray on a side of the box.
     fn side(&self, extent: &Extent, o: DVec3, d: DVec3, face: u32, ray: &Ray) -> SurfacePoint {
         let (axis, is_high) = (((face - FLAT) / 2) as usize, (face - FLAT) % 2 == 1);
         let at = if is_high { extent.max[axis] } else { extent.min[axis] };
@@ -138,7 +138,7 @@ fn between_roots(body: &Body, o: DVec3, d: DVec3, [enter, leave]: Span, face: u3
         last = next;
         inside
     };
-    // Looks at every root and wants none.
+    // Visits every root and accepts none.
     body.find(o, d, [enter.t, leave.t], |root| {
         piece(Crossing { t: root.t, face });
         false
@@ -148,12 +148,12 @@ fn between_roots(body: &Body, o: DVec3, d: DVec3, [enter, leave]: Span, face: u3
     }
 }
 
-/// x² + y² ≤ ρ₀ + ρ₁ζ + ρ₂ζ² with ζ = z − z₀: a profile turned around the z axis.
+/// x² + y² ≤ ρ₀ + ρ₁ζ + ρ₂ζ² with ζ = z − z₀: a profile revolved around the z axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Profile {
     /// ρ by ascending powers.
     pub rho: [f64; 3],
-    /// z₀; where the profile is thinnest, so that it is known best there.
+    /// z₀: where the profile is narrowest, so that it is most accurate there.
     pub origin: f64,
 }
 
@@ -176,9 +176,9 @@ impl Profile {
 /// A solid of revolution around the z axis.
 #[derive(Clone, Debug)]
 struct Revolved {
-    /// What bounds it across; nothing where there is none.
+    /// Bounds it across the axis, if at all.
     profile: Option<Profile>,
-    /// Between its heights.
+    /// The slab between its heights.
     extent: Extent,
 }
 
@@ -199,11 +199,11 @@ impl Revolved {
         revolved_roots(profile.rho, o - origin, d, self.extent.center() - origin)
     }
 
-    /// Where a ray is inside of the profile, regardless of heights: on up to two stretches.
+    /// Where a ray is inside of the profile, regardless of heights: on up to two spans.
     fn inside(&self, profile: &Profile, o: DVec3, d: DVec3) -> [Option<[f64; 2]>; 2] {
         const FAR: f64 = f64::INFINITY;
-        // How x² + y² − ρ goes far out; along an asymptote that is told by a point of the stretch
-        // in question.
+        // The sign of x² + y² − ρ at infinity; along an asymptote that of a point of the span in
+        // question.
         let curvature = d.x * d.x + d.y * d.y - profile.rho[2] * d.z * d.z;
         let is_positive =
             |t: f64| if curvature == 0.0 { profile.jet(o + d * t).0 > 0.0 } else { curvature > 0.0 };
@@ -216,12 +216,12 @@ impl Revolved {
                 };
                 if is_inside { [Some([first, last]), None] } else { [Some([-FAR, first]), Some([last, FAR])] }
             }
-            // A ray that only touches is inside nowhere, or everywhere.
+            // A ray that touches is inside nowhere, or everywhere.
             _ => [(!is_positive(0.0)).then_some([-FAR, FAR]), None],
         }
     }
 
-    /// The curved face where the ray meets it nearest to `t`, put back on the surface.
+    /// The curved face at the root nearest to `t`, with the point refined onto the surface.
     fn level(&self, profile: &Profile, o: DVec3, d: DVec3, t: f32) -> Level {
         let mut p = o + d * unrounded(self.roots(profile, o, d), t);
         for _ in 0..2 {

@@ -86,8 +86,11 @@ impl Builder<'_> {
             for word in words {
                 let Some(value) = number::float(word).filter(|value| value.is_finite()) else {
                     let word = String::from_utf8_lossy(word);
-                    let message =
-                        format!("line {} of `{}` has `{word:.40}`, no number", index + 1, path.display());
+                    let message = format!(
+                        "line {} of `{}` has `{word:.40}`, which is not a number",
+                        index + 1,
+                        path.display()
+                    );
                     self.report.error(code, message, span);
                     return None;
                 };

@@ -13,7 +13,7 @@ impl Builder<'_> {
     pub(super) fn light(&mut self, light: LightStatement) -> Option<Stated<LightDesc>> {
         let (read, origin) = self.read(light.statement, |reader| {
             let kind = kind(reader)?;
-            Some((kind, reader.float("scale", 1.0)))
+            Some((kind, scale(reader)))
         });
         let medium = light.medium.as_ref().and_then(|name| self.named_medium(name));
         let (kind, scale) = read?;
@@ -32,39 +32,67 @@ fn color(reader: &mut Reader, name: &'static str) -> SpectrumDesc {
     reader.spectrum(name).unwrap_or(SpectrumDesc::Illuminant(reader.color_space))
 }
 
-/// A power; the format writes a negative one for none.
-fn power(reader: &mut Reader) -> Option<f32> {
-    reader.optional_float("power").filter(|&power| power > 0.0)
+/// A factor of the light's brightness.
+fn scale(reader: &mut Reader) -> f32 {
+    let scale = reader.float("scale", 1.0);
+    if scale < 0.0 {
+        reader.refuse("scale", "`scale` cannot be negative: there is no negative light");
+    }
+    scale
+}
+
+/// A power or an illuminance; the format writes -1 for none.
+fn total(reader: &mut Reader, name: &'static str) -> Option<f32> {
+    let total = reader.optional_float(name)?;
+    if total <= 0.0 && total != -1.0 {
+        reader.ignored(name, format!("`{name}` has no effect unless it is above zero"));
+    }
+    (total > 0.0).then_some(total)
+}
+
+/// The angles of a spot light's cone and of its soft edge, in degrees.
+fn cone(reader: &mut Reader) -> [f32; 2] {
+    let [angle, delta] = [reader.float("coneangle", 30.0), reader.float("conedeltaangle", 5.0)];
+    if !(angle > 0.0 && angle <= 180.0) {
+        reader.refuse("coneangle", "`coneangle` must be above 0 and at most 180 degrees");
+    }
+    if !(0.0..=180.0).contains(&delta) {
+        reader.refuse("conedeltaangle", "`conedeltaangle` must lie between 0 and 180 degrees");
+    }
+    [angle, delta]
 }
 
 fn kind(reader: &mut Reader) -> Option<LightKind> {
     Some(match reader.kind.value.as_str() {
         "point" => LightKind::Point {
             intensity: color(reader, "I"),
-            power: power(reader),
+            power: total(reader, "power"),
             from: reader.point3("from", Vec3::ZERO),
         },
-        "spot" => LightKind::Spot {
-            intensity: color(reader, "I"),
-            power: power(reader),
-            from: reader.point3("from", Vec3::ZERO),
-            to: reader.point3("to", Vec3::Z),
-            cone_angle: reader.float("coneangle", 30.0),
-            cone_delta_angle: reader.float("conedeltaangle", 5.0),
-        },
+        "spot" => {
+            let [cone_angle, cone_delta_angle] = cone(reader);
+            LightKind::Spot {
+                intensity: color(reader, "I"),
+                power: total(reader, "power"),
+                from: reader.point3("from", Vec3::ZERO),
+                to: reader.point3("to", Vec3::Z),
+                cone_angle,
+                cone_delta_angle,
+            }
+        }
         "distant" => LightKind::Distant {
             radiance: color(reader, "L"),
-            illuminance: reader.optional_float("illuminance").filter(|&illuminance| illuminance > 0.0),
+            illuminance: total(reader, "illuminance"),
             from: reader.point3("from", Vec3::ZERO),
             to: reader.point3("to", Vec3::Z),
         },
         "goniometric" => LightKind::Goniometric {
             intensity: color(reader, "I"),
-            power: power(reader),
+            power: total(reader, "power"),
             image: reader.image("filename", None),
         },
         "projection" => {
-            let (power, fov) = (power(reader), reader.positive("fov", 90.0));
+            let (power, fov) = (total(reader, "power"), reader.positive("fov", 90.0));
             let Some(image) = reader.image("filename", None) else {
                 reader.missing("filename");
                 return None;
@@ -81,7 +109,7 @@ fn kind(reader: &mut Reader) -> Option<LightKind> {
 
 fn infinite(reader: &mut Reader) -> LightKind {
     let color = reader.spectrum("L");
-    let illuminance = reader.optional_float("illuminance").filter(|&illuminance| illuminance > 0.0);
+    let illuminance = total(reader, "illuminance");
     let portal = reader.points3("portal").and_then(|corners| {
         let four = <[Vec3; 4]>::try_from(&*corners).ok();
         if four.is_none() {
@@ -117,8 +145,8 @@ fn area_light(reader: &mut Reader) -> Option<AreaLightDesc> {
     Some(AreaLightDesc {
         radiance: color(reader, "L"),
         image,
-        scale: reader.float("scale", 1.0),
-        power: power(reader),
+        scale: scale(reader),
+        power: total(reader, "power"),
         two_sided: reader.boolean("twosided", false),
     })
 }

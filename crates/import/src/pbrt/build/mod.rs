@@ -1,5 +1,5 @@
-//! From statements to descriptions: one file per family, and here what they share: looking up names
-//! and files.
+//! From statements to descriptions: a file for each family, and here what they share: resolving
+//! names and files.
 
 mod camera;
 mod files;
@@ -78,7 +78,7 @@ pub(crate) fn build(
 /// Wavelengths and values.
 type Samples = Arc<[(f32, f32)]>;
 
-/// What the builders of all families share.
+/// Builds descriptions; its state is shared by all families.
 pub(crate) struct Builder<'a> {
     pub(crate) report: Report,
     assets: &'a dyn AssetSource,
@@ -93,7 +93,7 @@ pub(crate) struct Builder<'a> {
     images: ImageRequests,
     meshes: shape::Meshes,
     objects: HashMap<String, Handle<ObjectDesc>>,
-    /// How many objects may be used where the builder is.
+    /// How many objects are complete, and may be operands of a solid.
     complete_objects: usize,
 }
 
@@ -128,8 +128,7 @@ impl<'a> Builder<'a> {
         builder
     }
 
-    /// The handles of all named things of a kind, in the order of their statements. The first of
-    /// several wins.
+    /// The handles of all named statements of a kind. Of several with the same name the first wins.
     fn table<S, T>(
         &mut self,
         what: &str,
@@ -153,8 +152,8 @@ impl<'a> Builder<'a> {
         table
     }
 
-    /// Reads a statement by a function that asks for its parameters, and checks that it asked for
-    /// all.
+    /// Reads a statement by a function that asks for its parameters; reports those that it did not
+    /// ask for.
     fn read<T>(
         &mut self,
         statement: Statement,
@@ -167,8 +166,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// [`Builder::read`] of something that must be there: its default stands in for what cannot be
-    /// read.
+    /// [`Builder::read`] with the default for what cannot be read.
     fn read_or_default<T: Default>(
         &mut self,
         statement: Statement,

@@ -128,40 +128,45 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
     Some(match reader.kind.value.as_str() {
         "sphere" => {
             let radius = reader.positive("radius", 1.0);
-            let (z_min, z_max) = (reader.float("zmin", -radius), reader.float("zmax", radius));
+            let (z_min, z_max) = z_range(reader, [-radius, radius], [-radius, radius])?;
             ShapeKind::Sphere { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
         }
-        "cylinder" => ShapeKind::Cylinder {
-            radius: reader.positive("radius", 1.0),
-            z_min: reader.float("zmin", -1.0),
-            z_max: reader.float("zmax", 1.0),
-            phi_max: reader.positive("phimax", 360.0),
-        },
+        "cylinder" => {
+            let radius = reader.positive("radius", 1.0);
+            let (z_min, z_max) = z_range(reader, [-1.0, 1.0], [f32::NEG_INFINITY, f32::INFINITY])?;
+            ShapeKind::Cylinder { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
+        }
         "cone" => ShapeKind::Cone {
             radius: reader.positive("radius", 1.0),
             height: reader.positive("height", 1.0),
             phi_max: reader.positive("phimax", 360.0),
         },
-        "paraboloid" => ShapeKind::Paraboloid {
-            radius: reader.positive("radius", 1.0),
-            z_min: reader.float("zmin", 0.0),
-            z_max: reader.positive("zmax", 1.0),
-            phi_max: reader.positive("phimax", 360.0),
-        },
+        "paraboloid" => {
+            let radius = reader.positive("radius", 1.0);
+            let (z_min, z_max) = z_range(reader, [0.0, 1.0], [0.0, f32::INFINITY])?;
+            ShapeKind::Paraboloid { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
+        }
         "hyperboloid" => {
             let ends = [reader.point3("p1", Vec3::ZERO), reader.point3("p2", Vec3::ONE)];
             if ends[0].z == ends[1].z {
                 reader.refuse("p2", "`p1` and `p2` have the same z: a `disk` draws what such a line sweeps");
                 return None;
             }
+            if ends.iter().all(|end| end.x == 0.0 && end.y == 0.0) {
+                reader.refuse("p2", "`p1` and `p2` both lie on the z axis: such a line sweeps no surface");
+                return None;
+            }
             ShapeKind::Hyperboloid { ends, phi_max: reader.positive("phimax", 360.0) }
         }
-        "disk" => ShapeKind::Disk {
-            height: reader.float("height", 0.0),
-            radius: reader.positive("radius", 1.0),
-            inner_radius: reader.float("innerradius", 0.0),
-            phi_max: reader.positive("phimax", 360.0),
-        },
+        "disk" => {
+            let (height, radius) = (reader.float("height", 0.0), reader.positive("radius", 1.0));
+            let inner_radius = reader.float("innerradius", 0.0);
+            if !(0.0..radius).contains(&inner_radius) {
+                reader.refuse("innerradius", "`innerradius` must be at least 0, and below `radius`");
+                return None;
+            }
+            ShapeKind::Disk { height, radius, inner_radius, phi_max: reader.positive("phimax", 360.0) }
+        }
         "plane" => ShapeKind::Plane,
         "spheres" => ShapeKind::Spheres(spheres(reader)?),
         "implicit" => implicit(reader)?,
@@ -182,6 +187,18 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             return None;
         }
     })
+}
+
+/// The parameters `zmin` and `zmax`, in either order, of a surface whose z lies between `limits`.
+fn z_range(reader: &mut Reader, default: [f32; 2], limits: [f32; 2]) -> Option<(f32, f32)> {
+    let z = [reader.float("zmin", default[0]), reader.float("zmax", default[1])];
+    let [low, high] = [z[0].min(z[1]), z[0].max(z[1])];
+    if low.max(limits[0]) < high.min(limits[1]) {
+        return Some((z[0], z[1]));
+    }
+    let blamed = if reader.has("zmax") { "zmax" } else { "zmin" };
+    reader.refuse(blamed, "between `zmin` and `zmax` there is nothing of the surface");
+    None
 }
 
 /// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it
@@ -276,7 +293,7 @@ fn indices<const N: usize>(
     if !rest.is_empty() || faces.is_empty() {
         reader.refuse(
             "indices",
-            format!("`indices` has {} numbers, which is no multiple of {N}", indices.len()),
+            format!("`indices` has {} numbers, which is not a multiple of {N}", indices.len()),
         );
         return None;
     }
@@ -325,7 +342,7 @@ fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc>
     let keys = reader.integer("keyframes", 1, 1..=i32::MAX) as usize;
     let vertices = positions.len() / keys;
     if vertices * keys != positions.len() {
-        let message = format!("the {} points in `P` are no multiple of {keys}", positions.len());
+        let message = format!("the {} points in `P` are not a multiple of {keys}", positions.len());
         reader.refuse("keyframes", message);
         return None;
     }
@@ -369,7 +386,7 @@ fn polygon(reader: &mut Reader) -> Option<MeshDesc> {
     let indices = match triangulate_contours(&positions, &lengths) {
         Ok(triangles) => triangles.into(),
         Err(error) => {
-            reader.refuse("P", format!("`P` is no polygon: {error}"));
+            reader.refuse("P", format!("`P` is not a valid polygon: {error}"));
             return None;
         }
     };
@@ -407,7 +424,7 @@ fn spheres(reader: &mut Reader) -> Option<SpheresDesc> {
         Some(("radius", format!("`radius` {i} is {}; it must be above zero", radii[i])))
     } else {
         let i = centers.iter().position(|center| !center.is_finite());
-        i.map(|i| ("P", format!("point {i} in `P` is beyond numbers")))
+        i.map(|i| ("P", format!("point {i} in `P` is not finite")))
     };
     if let Some((name, message)) = refusal {
         reader.refuse(name, message);
@@ -464,7 +481,8 @@ fn curve(reader: &mut Reader) -> Option<CurveDesc> {
         CurveBasis::BSpline => count > degree,
     };
     if !fits {
-        let message = format!("{count} points in `P` make no whole number of segments of degree {degree}");
+        let message =
+            format!("{count} points in `P` do not make a whole number of segments of degree {degree}");
         reader.refuse("P", message);
         return None;
     }
@@ -492,13 +510,19 @@ fn curve(reader: &mut Reader) -> Option<CurveDesc> {
         profile = CurveProfile::Flat;
     }
     let width = reader.float("width", 1.0);
+    let width = [reader.float("width0", width), reader.float("width1", width)];
+    if width.iter().any(|&width| width < 0.0) {
+        let name = ["width0", "width1", "width"].into_iter().find(|name| reader.has(name));
+        reader.refuse(name.unwrap_or("width"), "the width of a curve cannot be negative");
+        return None;
+    }
     Some(CurveDesc {
         control_points,
         degree,
         basis,
         profile,
         normals,
-        width: [reader.float("width0", width), reader.float("width1", width)],
+        width,
         split_depth: reader.integer("splitdepth", 3, 0..=20),
     })
 }

@@ -1,4 +1,4 @@
-//! Textures of numbers and of spectra, by one reader over both.
+//! Textures of numbers and of spectra, read by one generic reader.
 
 use description::{
     Arena, EncodingDesc, Handle, ImageChannel, ImageTextureDesc, MappingDesc, Parameter, SceneDesc,
@@ -10,17 +10,17 @@ use super::Builder;
 use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{Statements, TextureStatement};
 
-/// What differs between textures of numbers and of spectra.
+/// The differences between textures of numbers and of spectra.
 trait TextureValue: Clone {
-    /// The types of texture that both kinds have, and this one's own.
+    /// The types of texture that give such values.
     const TYPES: &'static [&'static str];
 
     fn constant(value: f32) -> Self;
     fn value(reader: &mut Reader, name: &'static str, default: f32) -> Self;
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self>;
-    /// Which channel of an image counts; for numbers only.
+    /// The channel of an image that is read; numbers only.
     fn channel(reader: &mut Reader) -> Option<ImageChannel>;
-    /// Members of the set that only this kind has.
+    /// The types that only this kind of value has.
     fn own_kind(reader: &mut Reader) -> Option<TextureKind<Self>>;
 }
 
@@ -119,8 +119,7 @@ impl TextureValue for SpectrumDesc {
 }
 
 impl Builder<'_> {
-    /// Builds all textures in the order in which they were said, so that each finds those before
-    /// it.
+    /// Builds all textures in the order of the file, so that each can refer to those before it.
     pub(super) fn textures(&mut self, statements: &mut Statements, desc: &mut SceneDesc) {
         let mut floats = statements.float_textures.drain(..);
         let mut spectra = statements.spectrum_textures.drain(..);
@@ -137,7 +136,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Builds a texture; one that cannot be read stands as a constant.
+    /// Builds a texture. One that has errors becomes the constant 1.
     fn texture<V: TextureValue>(
         &mut self,
         texture: TextureStatement,
@@ -264,8 +263,8 @@ fn encoding(reader: &mut Reader) -> Option<EncodingDesc> {
     }
 }
 
-/// Where on the unit square a point lies. Parameters of mappings other than the chosen one are
-/// refused as unknown.
+/// The mapping to texture coordinates. Parameters of other mappings than the chosen one are errors,
+/// as unknown.
 fn mapping(reader: &mut Reader) -> MappingDesc {
     let kind = reader.choice("mapping", 0, &[("uv", 0), ("spherical", 1), ("cylindrical", 2), ("planar", 3)]);
     let delta = |reader: &mut Reader| [reader.float("udelta", 0.0), reader.float("vdelta", 0.0)];

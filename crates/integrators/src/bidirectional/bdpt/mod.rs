@@ -29,7 +29,7 @@ use spectrum::SampledSpectrum;
 
 use techniques::Techniques;
 
-use crate::bidirectional::{Balance, Bidirectional, Found, Lights, OnTheWay};
+use crate::bidirectional::{Balance, Bidirectional, Encounter, Found, Lights};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -116,7 +116,7 @@ impl Integrator for Bdpt {
             tracer.with_sampler(&mut light_sampler, |tracer| {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
                     let u = tracer.sampler.get_2d();
-                    if let Some(seen) = paths.see(vertex, u, splatter.reach(), tracer) {
+                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), tracer) {
                         seen.splat(&splatter, &seen.found.weighted(), lambda);
                         techniques.add(&seen.found, |splatter, l| seen.splat(splatter, l, lambda));
                     }
@@ -134,9 +134,9 @@ impl Integrator for Bdpt {
                     .add(found, |splatter, l| splatter.add_to_pixel(sample.pixel, &(*l * scale), lambda));
             };
             if let Some(camera_ray) = &sample.camera_ray {
-                paths.camera_subpath(camera_ray, lambda, tracer, |on_the_way, tracer| match on_the_way {
-                    OnTheWay::Light(found) => add(&found),
-                    OnTheWay::Vertex(vertex) if vertex.is_connectible() => {
+                paths.camera_subpath(camera_ray, lambda, tracer, |encounter, tracer| match encounter {
+                    Encounter::Light(found) => add(&found),
+                    Encounter::Vertex(vertex) if vertex.is_connectible() => {
                         if let Some(found) = paths.direct(vertex, lambda, tracer) {
                             add(&found);
                         }
@@ -148,7 +148,7 @@ impl Integrator for Bdpt {
                             }
                         }
                     }
-                    OnTheWay::Vertex(_) => (),
+                    Encounter::Vertex(_) => (),
                 });
             }
             l

@@ -1,9 +1,10 @@
-//! Photons leave the lights.
+//! Emission of photons.
 //!
-//! Light subpaths start at lights in proportion to their power and go on as the BSDFs say, so that
-//! all photons carry about the same power and lie where there is light. The first surface of a
-//! subpath that is not purely specular tells what its photons are: direct light if nothing lies
-//! between, a caustic if only specular surfaces do, and indirect light from there on.
+//! Light subpaths start at lights in proportion to their power and are scattered as the BSDFs say,
+//! so that all photons carry about the same power and lie where there is light. The first surface of
+//! a subpath that is not purely specular decides what its photons are: direct light if it is the
+//! first surface of all, a caustic if only specular surfaces come before it; and indirect light from
+//! there on.
 
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -15,13 +16,13 @@ use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
-/// Subpaths that one thread follows at a time.
+/// Subpaths that one task samples.
 const CHUNK: u32 = 2048;
 
 /// Which photons a map keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Those that have met specular surfaces alone, and at least one.
+    /// Those that came by specular surfaces alone, and at least one.
     Caustic,
     /// Those that have been scattered by a surface that is not specular.
     Indirect,
@@ -48,17 +49,17 @@ impl Kind {
     }
 }
 
-/// What emits photons.
+/// The emission of a pass.
 pub(super) struct Emission<'a> {
     pub paths: &'a Bidirectional<'a>,
     pub shutter: ShutterSample,
     pub seed: u32,
-    /// Which photons, of all that the seed has.
+    /// The index of these photons among all of the seed.
     pub generation: u32,
 }
 
 impl Emission<'_> {
-    /// What `keep` makes of the photons of so many subpaths, in their order.
+    /// What `keep` makes of the photons of so many subpaths, in path order.
     pub fn emit<T: Send>(
         &self,
         kind: Kind,
@@ -66,8 +67,7 @@ impl Emission<'_> {
         control: &Control,
         keep: impl Fn(&Vertex, &mut Tracer) -> T + Sync,
     ) -> Result<(Vec<T>, RayStats), Cancelled> {
-        // Arranged for all subpaths of the generation at once, which makes their order in one
-        // coordinate no hint at the next.
+        // Stratified over all subpaths of the generation, which decorrelates dimensions.
         let sampler = Sampler::PaddedSobol(PaddedSobol::new(paths, Randomize::FastOwen, self.seed));
         let chunks: Vec<_> = (0..paths.div_ceil(CHUNK))
             .into_par_iter()
@@ -96,7 +96,7 @@ impl Emission<'_> {
         Ok((all, sum))
     }
 
-    /// Follows a subpath as far as it may leave photons.
+    /// Samples a subpath as far as it may leave photons.
     fn follow(&self, kind: Kind, tracer: &mut Tracer, mut visit: impl FnMut(&Vertex, &mut Tracer)) {
         let time = self.shutter.time(self.paths.view);
         let Some(mut walk) = Walk::from_light(self.paths, time, self.shutter.lambda, tracer) else {
@@ -104,7 +104,7 @@ impl Emission<'_> {
         };
         let mut first = true;
         while walk.depth < self.paths.max_depth {
-            let Some(mut surface) = walk.meet(tracer) else { return };
+            let Some(mut surface) = walk.intersect(tracer) else { return };
             let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
             if vertex.is_connectible() {
                 if kind.keeps(&vertex, first) {

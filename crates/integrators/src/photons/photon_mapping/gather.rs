@@ -1,21 +1,21 @@
-//! What camera rays gather from the photon maps.
+//! What camera paths gather from the photon maps.
 //!
-//! At a surface that is not purely specular the light that arrives falls into three:
+//! At a surface that is not purely specular, incident light has three parts:
 //!
-//! | light that comes | is found |
+//! | incident light | is found |
 //! |---|---|
-//! | straight from a light | by a light sample, weighted against the ray that goes on ([`DirectLighting`]) |
+//! | direct | by next-event estimation, weighted against the scattered ray ([`DirectLighting`]) |
 //! | from a light through specular surfaces alone | in the caustic map |
-//! | from other surfaces that are not purely specular | in the global map if there is a diffuse lobe; else by the ray that goes on |
+//! | from other surfaces that are not purely specular | in the global map if there is a diffuse lobe; else by the scattered ray |
 //!
-//! A ray goes on in any case, along a direction of the BSDF. What it may bring follows from the
-//! table: after a diffuse surface only a light that it meets at once; after a glossy one all but
-//! lights behind specular surfaces; after a specular one whatever was still to be found before. So
-//! each path of light is counted once.
+//! A ray is scattered in any case, along a direction of the BSDF. What it may find follows from the
+//! table: after a diffuse surface only a light that it hits at once; after a glossy one everything
+//! but lights behind specular surfaces; after a specular one whatever was still sought before. So
+//! each light path is counted once.
 //!
-//! With a final gather, the global map holds photons of all kinds and is looked at one surface
-//! later: rays leave the diffuse surface along directions of its BSDF, and where each meets a
-//! surface that is not purely specular the map tells all that it reflects.
+//! With a final gather, the global map holds photons of all kinds and is looked up one surface
+//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a surface
+//! that is not purely specular the map gives all that it reflects.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -79,20 +79,20 @@ pub(super) struct Gather<'a> {
     pub mean_radius: &'a MeanRadius,
 }
 
-/// What is still to be found along a ray.
+/// What is still sought along a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Quest {
-    /// What every surface sends.
-    Light,
-    /// What the next surface with photons reflects, as the global map tells it.
+enum Sought {
+    /// All radiance.
+    Radiance,
+    /// What the next surface with photons reflects, from the global map.
     Reflected,
-    /// What lights that it meets at once send.
-    Lamps,
+    /// The emission of lights that it hits at once.
+    Emission,
 }
 
-/// Where photons are looked for.
+/// A point at which photons are looked up.
 #[derive(Clone, Copy)]
-struct Place<'a> {
+struct GatherPoint<'a> {
     surface: &'a SurfaceInteraction,
     bsdf: &'a Bsdf,
     /// Scattering events from the camera, the one here included.
@@ -108,33 +108,33 @@ impl Gather<'_> {
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        self.follow(ray, *lambda, (Quest::Light, 0), tracer)
+        self.follow(ray, *lambda, (Sought::Radiance, 0), tracer)
     }
 
-    /// What a ray brings that leaves the scattering event number `depth`.
+    /// The radiance along a ray that leaves scattering event number `depth`.
     fn follow(
         &self,
         ray: RayDifferential,
         mut lambda: SampledWavelengths,
-        (mut quest, depth): (Quest, u32),
+        (mut sought, depth): (Sought, u32),
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let (scene, direct) = (tracer.scene, self.direct);
         let mut l = SampledSpectrum::ZERO;
         let mut path = PathState::new(ray, depth);
-        // Whether a caustic map has already told of lights that the ray meets, unless it does so at
+        // Whether a caustic map has the light of emitters that the ray hits, unless it hits them at
         // once.
-        let mut lamps_are_known = quest == Quest::Reflected;
+        let mut emission_is_known = sought == Sought::Reflected;
         loop {
-            let shows_lamps = !lamps_are_known || path.origin.is_some();
+            let counts_emission = !emission_is_known || path.origin.is_some();
             let Some((mut surface, t)) = tracer.intersect(&path.ray.ray) else {
-                if shows_lamps {
+                if counts_emission {
                     let escaped = direct.escaped(scene, &path.ray, path.origin.as_ref(), &lambda);
                     l += known(path.beta * escaped, &lambda);
                 }
                 return l;
             };
-            if shows_lamps {
+            if counts_emission {
                 let emitted = direct.emitted(scene, &surface, path.origin.as_ref(), &lambda);
                 l += known(path.beta * emitted, &lambda);
             }
@@ -142,7 +142,7 @@ impl Gather<'_> {
                 path.pass_through(&surface, t);
                 continue;
             };
-            if quest == Quest::Lamps || path.depth == self.settings.max_depth {
+            if sought == Sought::Emission || path.depth == self.settings.max_depth {
                 return l;
             }
             path.depth += 1;
@@ -151,20 +151,21 @@ impl Gather<'_> {
             let context = light_context(&surface, flags);
             let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
                 let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-                if quest == Quest::Light && flags.is_non_specular() {
+                if sought == Sought::Radiance && flags.is_non_specular() {
                     let direct = direct.sample(tracer, (&surface, &context), &bsdf, &lambda);
                     l += known(path.beta * direct, &lambda);
                 }
                 Scattered::sample(&surface, &bsdf, tracer.sampler)
             });
             if flags.is_non_specular() {
-                let place = Place { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
-                if quest == Quest::Reflected {
-                    l += path.beta * self.reflected(&self.maps.global, &place);
+                let point =
+                    GatherPoint { surface: &surface, bsdf: &bsdf, depth: path.depth, lambda: &lambda };
+                if sought == Sought::Reflected {
+                    l += path.beta * self.reflected(&self.maps.global, &point);
                 } else {
-                    l += path.beta * self.reflected(&self.maps.caustic, &place);
+                    l += path.beta * self.reflected(&self.maps.caustic, &point);
                     if flags.is_diffuse() {
-                        l += path.beta * self.indirect(&path.ray, &place, tracer);
+                        l += path.beta * self.indirect(&path.ray, &point, tracer);
                     }
                 }
             }
@@ -172,15 +173,15 @@ impl Gather<'_> {
             let Some(scattered) = scattered else { return l };
             if scattered.sample.flags.is_specular() {
                 // What comes along a specular lobe is in no map of the surface.
-                lamps_are_known &= !flags.is_non_specular();
+                emission_is_known &= !flags.is_non_specular();
             } else {
-                if quest == Quest::Reflected {
+                if sought == Sought::Reflected {
                     return l;
                 }
                 if flags.is_diffuse() {
-                    quest = Quest::Lamps;
+                    sought = Sought::Emission;
                 }
-                lamps_are_known = true;
+                emission_is_known = true;
             }
             path.scatter(&surface, context, &scattered);
             if !path.survives(tracer.sampler) {
@@ -189,20 +190,20 @@ impl Gather<'_> {
         }
     }
 
-    /// Light that other surfaces have scattered: what is reflected of it.
-    fn indirect(&self, ray: &RayDifferential, place: &Place, tracer: &mut Tracer) -> SampledSpectrum {
+    /// What is reflected of indirect light.
+    fn indirect(&self, ray: &RayDifferential, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
         let count = self.settings.gather;
-        if place.depth == self.settings.max_depth {
+        if point.depth == self.settings.max_depth {
             return SampledSpectrum::ZERO;
         }
         if count == 0 {
-            return self.reflected(&self.maps.global, place);
+            return self.reflected(&self.maps.global, point);
         }
-        let Place { surface, bsdf, depth, lambda } = *place;
+        let GatherPoint { surface, bsdf, depth, lambda } = *point;
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
-            // A lattice that is moved about: evenly spread in both coordinates.
+            // A randomly shifted rank-1 lattice: evenly spread in both coordinates.
             let step = i as f32 * GOLDEN;
             let u = Vec2::new((i as f32 + u.x) / count as f32, (u.y + step).fract());
             let uc = (uc + step).fract();
@@ -214,15 +215,15 @@ impl Gather<'_> {
                 continue;
             }
             let ray = surface.spawn_scattered(ray, &sample);
-            let l = self.follow(ray, *lambda, (Quest::Reflected, depth), tracer);
+            let l = self.follow(ray, *lambda, (Sought::Reflected, depth), tracer);
             sum += throughput(surface, &sample) * l;
         }
         sum / count as f32
     }
 
-    /// What is reflected of the light that a map's photons have brought.
-    fn reflected(&self, map: &PhotonMap, place: &Place) -> SampledSpectrum {
-        let &Place { surface, bsdf, depth, lambda } = place;
+    /// What is reflected of the light of the photons of a map.
+    fn reflected(&self, map: &PhotonMap, point: &GatherPoint) -> SampledSpectrum {
+        let &GatherPoint { surface, bsdf, depth, lambda } = point;
         let s = &surface.surface;
         let deepest = self.settings.max_depth + 1 - depth;
         let transmissive = bsdf.flags().is_transmissive();

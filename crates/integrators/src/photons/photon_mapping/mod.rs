@@ -134,7 +134,7 @@ impl PhotonMapping {
         let (_, splatter) = film.tiles_and_splatter();
         let dot = |vertex: &Vertex, tracer: &mut Tracer| {
             let lens = tracer.sampler.get_2d();
-            if let Some(seen) = emission.paths.see(vertex, lens, splatter.reach(), tracer) {
+            if let Some(seen) = emission.paths.connect_to_camera(vertex, lens, splatter.reach(), tracer) {
                 let l = vertex.beta * white;
                 let l = if vertex.hero_only { hero_only(l) } else { l };
                 seen.splat(&splatter, &l, &emission.shutter.lambda);

@@ -17,7 +17,7 @@ use math::{Bounds2, Point2, Vec2};
 
 /// The film positions that see along one ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmPlaces {
+pub struct FilmPositions {
     first: Point2,
     around: Option<Around>,
 }
@@ -29,7 +29,7 @@ struct Around {
     resolution: Vec2,
 }
 
-impl From<Point2> for FilmPlaces {
+impl From<Point2> for FilmPositions {
     /// One position alone.
     fn from(film: Point2) -> Self {
         Self { first: film, around: None }
@@ -38,16 +38,16 @@ impl From<Point2> for FilmPlaces {
 
 impl Camera {
     /// All film positions that see what `film` does.
-    pub fn film_places(&self, film: Point2) -> FilmPlaces {
+    pub fn film_positions(&self, film: Point2) -> FilmPositions {
         let around = match &self.projection {
             Projection::Perspective(_) | Projection::Orthographic(_) => None,
             Projection::Spherical(s) => Some(Around { mapping: s.mapping(), resolution: s.resolution() }),
         };
-        FilmPlaces { first: film, around }
+        FilmPositions { first: film, around }
     }
 }
 
-impl FilmPlaces {
+impl FilmPositions {
     /// Those of them within a part of the plane.
     pub fn within(&self, bounds: Bounds2) -> impl Iterator<Item = Point2> {
         let (x, y) = (self.first.x, self.first.y);

@@ -1,0 +1,112 @@
+//! The projections of cameras: film positions against rays of camera space.
+
+use math::{Differentials, Point2, Point3, Vec2, Vec3, Vector3};
+
+use super::orthographic::Orthographic;
+use super::perspective::Perspective;
+use super::spherical::Spherical;
+
+/// How a point of the film sees camera space.
+#[derive(Clone, Debug)]
+pub enum Projection {
+    /// Through one point.
+    Perspective(Perspective),
+    /// In parallel.
+    Orthographic(Orthographic),
+    /// All around.
+    Spherical(Spherical),
+}
+
+impl Projection {
+    /// Origin and unit direction, in camera space, of the ray of a film position and a lens sample.
+    pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
+        match self {
+            Self::Perspective(p) => p.ray(film, lens),
+            Self::Orthographic(p) => p.ray(film, lens),
+            Self::Spherical(p) => p.ray(film),
+        }
+    }
+
+    /// The film position of the ray from `o` on the lens along the unit direction `d`, both in
+    /// camera space, and how much film, in square pixels, sees a solid angle there, or of parallel
+    /// rays an area of the film's plane. `None` for rays that do not lead to the front.
+    pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
+        match self {
+            Self::Perspective(p) => p.film(o, d),
+            Self::Orthographic(p) => p.film(o, d),
+            Self::Spherical(p) => p.film(d),
+        }
+    }
+
+    /// The same view in pixels `n` times as wide and high.
+    pub(super) fn coarser(&self, n: u32) -> Self {
+        match self {
+            Self::Perspective(p) => Self::Perspective(p.coarser(n)),
+            Self::Orthographic(p) => Self::Orthographic(p.coarser(n)),
+            Self::Spherical(p) => Self::Spherical(p.coarser(n)),
+        }
+    }
+
+    /// What rays pass when they enter.
+    pub(super) fn aperture(&self) -> Aperture {
+        match self {
+            Self::Perspective(p) => p.lens().area().map_or(Aperture::Pinhole, Aperture::Lens),
+            Self::Orthographic(p) => p.lens().area().map_or(Aperture::Film, Aperture::Lens),
+            Self::Spherical(_) => Aperture::Point,
+        }
+    }
+
+    /// Where a ray from `p` may enter, in camera space; on a lens chosen by `u` in [0, 1)².
+    pub(super) fn lens_point(&self, p: Point3, u: Vec2) -> Point3 {
+        match self {
+            Self::Orthographic(o) if o.is_parallel() => Vec3::new(p.x, p.y, 0.0),
+            Self::Perspective(o) => o.lens().at(u),
+            Self::Orthographic(o) => o.lens().at(u),
+            Self::Spherical(_) => Vec3::ZERO,
+        }
+    }
+
+    /// Unit direction and length of the way from the camera to `p`, in camera space, through the
+    /// centre of a lens.
+    pub(super) fn way_to(&self, p: Point3) -> (Vector3, f32) {
+        match self {
+            Self::Orthographic(o) if o.is_parallel() => (Vec3::Z, p.z),
+            _ => (p.try_normalize().unwrap_or(Vec3::Z), p.length()),
+        }
+    }
+
+    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat
+    /// film are compared with those a whole pixel away, which is exact; on the sphere, where a
+    /// pixel may span a large angle, with near ones.
+    fn differential_step(&self) -> f32 {
+        match self {
+            Self::Perspective(_) | Self::Orthographic(_) => 1.0,
+            Self::Spherical(_) => 0.05,
+        }
+    }
+
+    /// The ray of [`Self::ray`] and its differentials, in camera space.
+    pub(super) fn ray_differential(&self, film: Point2, lens: Vec2) -> (Point3, Vector3, Differentials) {
+        let step = self.differential_step();
+        let (o, d) = self.ray(film, lens);
+        let neighbour = |offset| {
+            let (near_o, near_d) = self.ray(film + offset * step, lens);
+            if step == 1.0 { (near_o, near_d) } else { (o + (near_o - o) / step, d + (near_d - d) / step) }
+        };
+        let (rx_origin, rx_direction) = neighbour(Vec2::X);
+        let (ry_origin, ry_direction) = neighbour(Vec2::Y);
+        (o, d, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
+    }
+}
+
+/// What rays pass when they enter the camera.
+pub(super) enum Aperture {
+    /// A point, from any direction.
+    Point,
+    /// A point of the plane z = 0.
+    Pinhole,
+    /// An area of the plane z = 0, at any angle.
+    Lens(f32),
+    /// The film itself, in the plane z = 0, along the axis only.
+    Film,
+}
