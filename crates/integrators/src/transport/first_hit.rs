@@ -67,8 +67,8 @@ pub(crate) fn first_hit(
     None
 }
 
-/// How far a point of a surface moves on the film while the shutter is open, in pixels; 0 where that
-/// cannot be told. Surfaces without parameters count as standing still.
+/// How far a point of a surface moves on the film while the shutter is open, in pixels; 0 where it
+/// is not in view all the time. Surfaces without parameters count as standing still.
 fn motion(tracer: &Tracer, hit: &Hit, p: Vec3) -> Vec2 {
     let camera = &tracer.view.camera;
     let seen = |time: f32| {
