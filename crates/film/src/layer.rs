@@ -5,8 +5,8 @@ use std::fmt;
 /// A layer beside the colour: what is known of the samples of a pixel, or of what they hit first.
 ///
 /// Alpha, albedo and variance are means as the colour is. The other quantities of a first hit are
-/// means over the samples that hit something, of which those with a negative filter weight do not
-/// count: such a mean never lies outside the range of its values.
+/// means over the samples that hit something, without those of negative filter weight: such a mean
+/// never lies outside the range of its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// Opacity: which part of a pixel is covered.

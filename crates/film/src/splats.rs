@@ -1,8 +1,8 @@
 //! Light that arrives anywhere on the film, from paths that begin at lights.
 //!
-//! Such a path does not choose its pixel: its contribution c is splatted to every pixel whose filter
-//! h covers its film position p. With n paths traced, wherever they ended, the pixel's value is 1/n
-//! Σ c·h(p)/∫h. Paths are counted separately from their splats, because most have none.
+//! Such a path does not choose its pixel: its contribution c is splatted to every pixel whose
+//! filter h covers its film position p. With n paths traced, wherever they ended, the pixel's value
+//! is 1/n Σ c·h(p)/∫h. Paths are counted separately from their splats, because most have none.
 //! [Pharr 2023 §5.4.4]
 //!
 //! Threads add to the same pixels, so each tile has a lock. The sums are exact, so the order of
