@@ -2,7 +2,7 @@
 
 use description::schema::Settings;
 use description::{CameraKind, SceneDesc};
-use film::Film;
+use film::{Development, Film};
 use image::{Attribute, Image, ImageMetadata};
 use integrators::SessionState;
 use math::Mat4;
@@ -38,14 +38,28 @@ impl Header {
         state.with_film(|film| self.picture_of(film, state.done.count()))
     }
 
+    /// What `look` makes of [`Self::picture`] with all layers, which is computed row by row while
+    /// it is looked at: a large picture needs no copy in memory.
+    pub fn with_development<T>(&self, state: &SessionState, look: impl FnOnce(&Development) -> T) -> T {
+        state.with_film(|film| {
+            let mut development = film.development();
+            self.set(&mut development.metadata, state.done.count());
+            look(&development)
+        })
+    }
+
     /// The picture on a film of so many samples per pixel.
     pub(crate) fn picture_of(&self, film: &Film, samples_per_pixel: u32) -> Image {
         let mut picture = film.develop();
-        for (name, value) in &self.0 {
-            picture.metadata.set(name, value.clone());
-        }
-        picture.metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
+        self.set(&mut picture.metadata, samples_per_pixel);
         picture
+    }
+
+    fn set(&self, metadata: &mut ImageMetadata, samples_per_pixel: u32) {
+        for (name, value) in &self.0 {
+            metadata.set(name, value.clone());
+        }
+        metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
     }
 
     /// As JSON: text, whole numbers and matrices stand for themselves.
