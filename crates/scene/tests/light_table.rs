@@ -1,5 +1,4 @@
-//! What emitting scenes promise as a whole: which light a hit is of, that darkness is told, and that
-//! brightness makes sense.
+//! Lights as a whole: which light a hit is of, warnings of darkness, errors of brightness.
 
 mod common;
 
