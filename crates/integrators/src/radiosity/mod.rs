@@ -181,7 +181,7 @@ impl Integrator for Radiosity {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
                     let (mut l, lambda) = (Bands::ZERO, shown.solution.wavelengths.groups());
                     let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
-                    if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray.clone() {
+                    if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
                         l = shown.radiance(&mut tracer, ray) * weight;
                     }
                     let first_hit = pixels.first_hit(&tile, &sample, &lambda[0], &mut tracer);

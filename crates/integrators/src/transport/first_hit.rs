@@ -21,7 +21,7 @@ pub(crate) fn first_hit(
     ray: &RayDifferential,
     lambda: &SampledWavelengths,
 ) -> Option<FirstHit> {
-    let mut ray = ray.clone();
+    let mut ray = *ray;
     let mut lambda = *lambda;
     for _ in 0..MAX_INTERFACES {
         let hit = tracer.hit(&ray.ray)?;
