@@ -4,7 +4,7 @@ use description::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, Spectru
 use math::Vec3;
 
 use super::Builder;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::{LightStatement, Statement};
 
 const TYPES: [&str; 6] = ["point", "spot", "distant", "goniometric", "projection", "infinite"];

@@ -7,8 +7,8 @@ use description::{
 };
 
 use super::Builder;
+use super::reader::Reader;
 use crate::pbrt::names;
-use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::MaterialStatement;
 use crate::suggest::did_you_mean;
 

@@ -12,11 +12,11 @@ use description::{
 use math::Vec3;
 use rayon::prelude::*;
 
+use super::reader::Reader;
 use super::{Builder, unknown_reference};
 use crate::assets::{AssetSource, read_unpacked};
 use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
-use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
 
 const TYPES: [&str; 16] = [
