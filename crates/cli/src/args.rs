@@ -174,6 +174,11 @@ pub struct Changes {
     /// Render one pixel only: its column and row, counted from 0 at the upper left.
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<[i32; 2]>,
+    /// Layers of the picture beside its colours, written to .exr files: alpha, depth, normal,
+    /// albedo, position, uv, motion, object-id, material-id, samples, variance.
+    /// [default: the scene's]
+    #[arg(long, value_name = "LAYER,LAYER,…", value_delimiter = ',')]
+    pub aov: Vec<String>,
     /// Seed of all random numbers: the same seed gives the same picture, bit for bit.
     /// [default: the scene's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(i32).range(0..))]
@@ -194,6 +199,7 @@ impl Changes {
             crop: self.crop,
             pixel: self.pixel,
             seed: self.seed,
+            layers: self.aov.clone(),
             ..Overrides::default()
         }
     }
@@ -502,6 +508,7 @@ mod tests {
             crop: Some([0.0, 0.5, 0.25, 1.0]),
             pixel: None,
             seed: Some(9),
+            layers: Vec::new(),
         };
         assert_eq!(render.overrides(), expected);
         assert_eq!(render.output, [PathBuf::from("a.exr"), PathBuf::from("b.png")]);

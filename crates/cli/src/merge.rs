@@ -60,9 +60,9 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
     }
     let header = merged.header().clone();
     let (state, films) = merged.into_state();
-    let picture = header.picture(&state);
     let films = films.iter().map(|(name, film)| (name.clone(), film));
-    let beside = write_results(&picture, &outputs, films, Vec::new())?;
+    let beside =
+        header.with_development(&state, |picture| write_results(picture, &outputs, films, Vec::new()))?;
     let passes = state.done.count();
     if arguments.json {
         let names = |paths: &[PathBuf]| paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>();

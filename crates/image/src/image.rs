@@ -9,6 +9,7 @@ use crate::{
     depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
+    memory::collected,
     metadata::{ImageMetadata, Window},
     source::{Channel, PixelSource, alpha_channel, color_channels},
     wrap::WrapMode,
@@ -56,7 +57,7 @@ pub struct Image {
     color: [usize; 3],
     /// The channel of opacity, whose 8-bit codes are linear whatever the encoding of the others.
     alpha: Option<usize>,
-    /// What the picture knows about itself.
+    /// Its metadata.
     pub metadata: ImageMetadata,
 }
 
@@ -302,21 +303,24 @@ impl Image {
 
     /// The same image stored as 8-bit codes; values are clamped to [0, 1].
     pub fn to_u8(&self, encoding: ColorEncoding) -> Self {
-        let count = self.channels.len();
-        let encoding_of =
-            |index| if self.alpha == Some(index % count) { ColorEncoding::Linear } else { encoding };
-        let codes =
-            self.values().enumerate().map(|(index, value)| encoding_of(index).quantize(value)).collect();
-        self.with_pixels(Pixels::U8(codes, encoding))
+        self.with_pixels(Pixels::U8(self.codes(encoding).collect(), encoding))
     }
 
-    /// The same image stored as `other` is.
-    pub(crate) fn stored_as(&self, other: &Pixels) -> Self {
-        match other {
-            Pixels::U8(_, encoding) => self.to_u8(*encoding),
-            Pixels::F16(_) => self.to_f16(),
-            Pixels::F32(_) => self.to_f32(),
-        }
+    fn codes(&self, encoding: ColorEncoding) -> impl Iterator<Item = u8> + '_ {
+        let count = self.channels.len();
+        let encoding_of =
+            move |index| if self.alpha == Some(index % count) { ColorEncoding::Linear } else { encoding };
+        self.values().enumerate().map(move |(index, value)| encoding_of(index).quantize(value))
+    }
+
+    /// The same image stored as `other` is; refused where there is no memory for it.
+    pub(crate) fn stored_as(&self, other: &Pixels) -> Result<Self, ImageError> {
+        let count = self.pixels.len();
+        Ok(self.with_pixels(match other {
+            Pixels::U8(_, encoding) => Pixels::U8(collected(count, self.codes(*encoding))?, *encoding),
+            Pixels::F16(_) => Pixels::F16(collected(count, self.values().map(f16::from_f32))?),
+            Pixels::F32(_) => Pixels::F32(collected(count, self.values())?),
+        }))
     }
 
     /// All linear values, as stored: row by row, pixel by pixel, channel by channel.
@@ -347,10 +351,13 @@ impl Image {
                 indices.iter().map(move |c| offset + c)
             })
         };
+        let count = width as usize * height as usize * indices.len();
         let pixels = match &self.pixels {
-            Pixels::U8(values, encoding) => Pixels::U8(offsets().map(|i| values[i]).collect(), *encoding),
-            Pixels::F16(values) => Pixels::F16(offsets().map(|i| values[i]).collect()),
-            Pixels::F32(values) => Pixels::F32(offsets().map(|i| values[i]).collect()),
+            Pixels::U8(values, encoding) => {
+                Pixels::U8(collected(count, offsets().map(|i| values[i]))?, *encoding)
+            }
+            Pixels::F16(values) => Pixels::F16(collected(count, offsets().map(|i| values[i]))?),
+            Pixels::F32(values) => Pixels::F32(collected(count, offsets().map(|i| values[i]))?),
         };
         let mut image = Self::new(width, height, names.iter().map(AsRef::as_ref), pixels)?;
         image.metadata = self.metadata.clone();

@@ -26,3 +26,23 @@ pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Res
 fn no_memory(bytes: usize) -> ImageError {
     ImageError::Limits(format!("no memory for {bytes} bytes of pixels"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_that_is_not_there_is_an_error() {
+        const COUNT: usize = isize::MAX as usize / 16;
+        for refused in [
+            reserved::<f32>(COUNT).map(drop),
+            filled(COUNT, 0.0_f32).map(drop),
+            collected(COUNT, std::iter::repeat(0.0_f32)).map(drop),
+            reserved::<f32>(usize::MAX).map(drop),
+        ] {
+            assert!(matches!(refused, Err(ImageError::Limits(_))), "{refused:?}");
+        }
+        assert_eq!(collected(2, 0..9).unwrap(), [0, 1]);
+        assert_eq!(filled(2, 7).unwrap(), [7, 7]);
+    }
+}

@@ -8,6 +8,7 @@
 use crate::{
     error::ImageError,
     image::{Image, Pixels},
+    memory::reserved,
 };
 
 /// The constant in relMSE's denominator.
@@ -77,7 +78,7 @@ pub fn compare(reference: &Image, test: &Image) -> Result<Difference, ImageError
 /// [`Difference::rel_mse`] on demand. Where a value is not finite it is that too.
 pub fn squared_error_map(reference: &Image, test: &Image, relative: bool) -> Result<Image, ImageError> {
     check_same_size(reference, test)?;
-    let mut values = Vec::with_capacity(reference.width() as usize * reference.height() as usize);
+    let mut values = reserved(reference.width() as usize * reference.height() as usize)?;
     for y in 0..reference.height() {
         for x in 0..reference.width() {
             let pairs = reference.rgb(x, y).into_iter().zip(test.rgb(x, y));

@@ -17,6 +17,7 @@
 use crate::{
     error::ImageError,
     image::{Image, Pixels},
+    memory::{collected, filled},
     wrap::WrapMode,
 };
 use math::{
@@ -128,10 +129,11 @@ impl Image {
         }
         let width = self.width().next_multiple_of(2);
         let height = if to == Projection::EqualArea { width } else { width / 2 };
-        let source: Vec<f32> = self.values().collect();
+        let source: Vec<f32> =
+            collected(self.width() as usize * self.height() as usize * self.channel_count(), self.values())?;
         let source = Source { values: &source, size: [self.width(), self.height()], projection: from };
         let count = self.channel_count();
-        let mut values = vec![0.0; width as usize * height as usize * count];
+        let mut values = filled(width as usize * height as usize * count, 0.0)?;
         values.par_chunks_mut(width as usize * count).zip(0..height).for_each(|(row, y)| {
             let mut sum = vec![0.0; count];
             for (pixel, x) in row.chunks_exact_mut(count).zip(0..width) {
@@ -150,7 +152,7 @@ impl Image {
         let mut image = Self::new(width, height, self.channels(), Pixels::F32(values))?;
         image.metadata = self.metadata.clone();
         (image.metadata.data_window, image.metadata.display_window) = (None, None);
-        Ok(image.stored_as(self.pixels()))
+        image.stored_as(self.pixels())
     }
 }
 

@@ -22,6 +22,7 @@ use rayon::prelude::*;
 use crate::{
     error::ImageError,
     image::{Image, Pixels},
+    memory::filled,
     wrap::WrapMode,
 };
 
@@ -71,12 +72,12 @@ impl Pyramid {
             (image.clone(), image.clone())
         } else {
             let resized = image.resize(width, height, wrap)?;
-            (Arc::new(resized.stored_as(image.pixels())), Arc::new(resized))
+            (Arc::new(resized.stored_as(image.pixels())?), Arc::new(resized))
         };
         let mut levels = vec![first];
         while exact.width() > 1 || exact.height() > 1 {
             exact = Arc::new(halved(&exact)?);
-            levels.push(Arc::new(exact.stored_as(image.pixels())));
+            levels.push(Arc::new(exact.stored_as(image.pixels())?));
         }
         Ok(Self { levels, wrap })
     }
@@ -201,7 +202,7 @@ fn size(image: &Image) -> Vec2 {
 fn halved(image: &Image) -> Result<Image, ImageError> {
     let (width, height) = ((image.width() / 2).max(1), (image.height() / 2).max(1));
     let count = image.channel_count();
-    let mut values = vec![0.0; width as usize * height as usize * count];
+    let mut values = filled(width as usize * height as usize * count, 0.0)?;
     values.par_chunks_mut(width as usize * count).zip(0..height).for_each(|(row, y)| {
         let (y0, y1) = (2 * y, (2 * y + 1).min(image.height() - 1));
         for (texel, x) in row.chunks_exact_mut(count).zip(0..width) {

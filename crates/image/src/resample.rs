@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use crate::{
     error::ImageError,
     image::{Image, Pixels},
+    memory::filled,
     wrap::WrapMode,
 };
 
@@ -38,7 +39,7 @@ impl Image {
         let (y0, y1) = extent(&rows);
 
         let new_row = width as usize * count;
-        let mut narrow = vec![0.0; (y1 - y0) as usize * new_row];
+        let mut narrow = filled((y1 - y0) as usize * new_row, 0.0)?;
         narrow.par_chunks_mut(new_row).zip(y0..y1).for_each(|(target, y)| {
             let source: Vec<f32> =
                 (x0..x1).flat_map(|x| (0..count).map(move |c| self.channel_wrapped(x, y, c, wrap))).collect();
@@ -48,7 +49,7 @@ impl Image {
             }
         });
 
-        let mut values = vec![0.0; height as usize * new_row];
+        let mut values = filled(height as usize * new_row, 0.0)?;
         values.par_chunks_mut(new_row).zip(&rows).for_each(|(target, taps)| {
             let near = narrow[(taps.first - y0) as usize * new_row..].chunks_exact(new_row);
             accumulate(target, near.zip(&taps.weights));
