@@ -123,7 +123,7 @@ fn things() -> Vec<(&'static str, String)> {
 }
 
 #[test]
-fn what_absorbs_nothing_vanishes_under_a_uniform_sky() {
+fn lossless_materials_are_invisible_under_a_uniform_sky() {
     let sky = sky();
     for (name, thing) in things() {
         assert_uniform(&exact(IN_GLASS, &format!("{SKY}{thing}")), &sky, name);
@@ -131,7 +131,7 @@ fn what_absorbs_nothing_vanishes_under_a_uniform_sky() {
 }
 
 #[test]
-fn what_absorbs_nothing_vanishes_in_a_furnace() {
+fn lossless_materials_are_invisible_in_a_furnace() {
     let sky = sky();
     for (name, thing) in things() {
         let world = format!("AttributeBegin\n{BLACK_WALL}{SPHERE}AttributeEnd\n{thing}");
@@ -141,7 +141,7 @@ fn what_absorbs_nothing_vanishes_in_a_furnace() {
 
 /// With lights sampled too, pixels have noise, and their mean little.
 #[test]
-fn a_furnace_shows_one() {
+fn a_furnace_has_radiance_one() {
     let walls = walls();
     for (name, wall) in &walls {
         let estimate =
@@ -151,7 +151,7 @@ fn a_furnace_shows_one() {
 }
 
 #[test]
-fn a_white_sky_shows_one() {
+fn a_white_sky_has_radiance_one() {
     let even = Overrides { settings: vec![("sampler".into(), "zsobol".into())], ..Overrides::default() };
     let found = means(&picture("\"path\"", 256, SKY, &even));
     assert!(found.iter().all(|mean| (mean - 1.0).abs() < 5e-5), "{found:?}");

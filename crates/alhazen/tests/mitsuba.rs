@@ -55,7 +55,7 @@ fn lit_planes() {
 
 /// A plane under a white sky, with and without what it reflects.
 #[test]
-fn a_plane_under_the_sky() {
+fn plane_under_the_sky() {
     let Some(folder) = data("ignis") else { return };
     let look_at = "278 273 -800  278 273 -799  0 1 0";
     for (name, max_depth) in [("plane-d1", 0), ("plane-d6", 5)] {
@@ -70,7 +70,7 @@ fn a_plane_under_the_sky() {
 
 /// A ball that casts its shadow from straight above.
 #[test]
-fn a_floating_sphere() {
+fn floating_sphere() {
     let Some(folder) = data("mitsuba-tests/tests/scenes/floating_sphere/refs") else { return };
     // What a lens of 50 mm sees of a frame of 24 × 36 mm, cut to a square of the same diagonal.
     let text = head("0 -5 1  0 0 0.5  0 0 1", 34.0227, 48, 1, 16)

@@ -51,7 +51,7 @@ fn job(name: &str, overrides: &Overrides) -> Job {
 }
 
 #[test]
-fn a_gathered_picture_has_the_light_of_path_tracing() {
+fn a_gathered_picture_has_the_mean_of_path_tracing() {
     let settings = [("maxdepth", "5"), ("gather", "1"), ("tolerance", "0.004"), ("patchsize", "90")];
     let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 24, 96, &settings));
     let reference = overrides("path", 24, 2048, &[("maxdepth", "5"), ("sampler", "sobol")]);
@@ -62,7 +62,7 @@ fn a_gathered_picture_has_the_light_of_path_tracing() {
 
 #[test]
 #[ignore = "slow: a path-traced picture without visible noise"]
-fn a_gathered_picture_is_that_of_path_tracing() {
+fn a_gathered_picture_agrees_with_path_tracing() {
     let settings = [("maxdepth", "5"), ("gather", "1")];
     let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 64, 1024, &settings));
     let reference = overrides("path", 64, 8192, &[("maxdepth", "5"), ("sampler", "sobol")]);
@@ -104,7 +104,7 @@ fn every_pass_is_better_than_the_last() {
 }
 
 #[test]
-fn a_pass_can_be_stopped() {
+fn a_pass_can_be_cancelled() {
     // Light that takes minutes to be sent in a single pass.
     let settings = [("tolerance", "0.000001"), ("steps", "1"), ("patchsize", "20"), ("maxdepth", "50")];
     let mut job = job("cornell-box.pbrt", &overrides("radiosity", 16, 1, &settings));
@@ -121,7 +121,7 @@ fn a_pass_can_be_stopped() {
 }
 
 #[test]
-fn a_gather_of_endless_rays_can_be_stopped() {
+fn a_long_gather_can_be_cancelled() {
     let settings = [("gather", "2147483647"), ("steps", "1"), ("tolerance", "0.9"), ("patchsize", "3")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 4, 1, &settings));
     let control = Control::default();
@@ -207,7 +207,7 @@ fn a_pass_depends_on_its_number_alone() {
 }
 
 #[test]
-fn the_light_is_saved_as_a_mesh() {
+fn the_solution_is_saved_as_a_mesh() {
     let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
     assert!(job.session.integrator().files().is_empty(), "nothing is known before the first pass");

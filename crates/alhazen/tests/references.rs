@@ -47,7 +47,7 @@ fn settings(side: i32, samples: u32, seed: Option<i32>) -> Overrides {
 }
 
 #[test]
-fn each_channel_of_the_cornell_box_as_a_grey() {
+fn cornell_box_in_grey_per_channel() {
     let Some((_, text, reference)) = cornell_box() else { return };
     let small = shrunk(&reference, 16);
     for channel in 0..3 {
@@ -65,7 +65,7 @@ fn each_channel_of_the_cornell_box_as_a_grey() {
 const SPECTRAL_MEAN: [f64; 3] = [0.19498, 0.12675, 0.03487];
 
 #[test]
-fn the_cornell_box_in_spectra() {
+fn cornell_box_with_spectra() {
     let Some((path, ..)) = cornell_box() else { return };
     let estimate = Estimate::new(4, |overrides| render_scene(&path, &settings(64, 16, overrides.seed)));
     estimate.assert_mean(SPECTRAL_MEAN, 2e-3, 1, "cornell box");
@@ -73,7 +73,7 @@ fn the_cornell_box_in_spectra() {
 
 #[test]
 #[ignore = "slow: 1024 samples for each of a million pixels, four times"]
-fn the_cornell_box_as_large_as_its_reference() {
+fn cornell_box_at_full_size() {
     let Some((path, text, reference)) = cornell_box() else { return };
     let overrides = Overrides { samples_per_pixel: Some(1024), ..Overrides::default() };
     let assert_close = |found: f64, expected: f64| {

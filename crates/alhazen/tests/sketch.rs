@@ -59,7 +59,7 @@ fn means(image: &Image) -> [f64; 9] {
 }
 
 #[test]
-fn a_sketch_shows_what_the_picture_will_show() {
+fn a_sketch_has_the_means_of_the_picture() {
     for overrides in [whole(), part()] {
         let mut path = job("path", overrides.clone());
         path.render(&Control::default()).unwrap();
@@ -102,7 +102,7 @@ fn middle(image: &Image) -> [f64; 2] {
 }
 
 #[test]
-fn a_sketch_shows_things_where_they_are() {
+fn a_sketch_has_the_positions_of_the_picture() {
     for overrides in [whole(), part()] {
         // The lamp alone.
         let mut job = job("path", of_depth("0", overrides));
@@ -125,7 +125,7 @@ fn a_sketch_has_large_pixels() {
 }
 
 #[test]
-fn a_sketch_leaves_no_trace_in_the_picture() {
+fn a_sketch_does_not_change_the_picture() {
     for integrator in ["path", "light-tracing", "mlt"] {
         let rendered = |with_sketch: bool| {
             let mut job = job(integrator, whole());
@@ -140,7 +140,7 @@ fn a_sketch_leaves_no_trace_in_the_picture() {
 }
 
 #[test]
-fn there_is_no_sketch_of_a_small_picture_or_a_render_that_was_stopped() {
+fn small_pictures_and_cancelled_renders_have_no_sketch() {
     let small = Overrides { resolution: Some([256, 256]), ..Overrides::default() };
     assert!(sketch(&mut job("path", small)).is_none());
     let few = Overrides { resolution: Some([4000, 4000]), pixel: Some([3999, 7]), ..Overrides::default() };

@@ -154,7 +154,7 @@ fn samples_by_area_have_their_density() {
 }
 
 #[test]
-fn a_bent_patch_knows_its_points_whatever_their_texture_coordinates() {
+fn patch_densities_do_not_depend_on_texture_coordinates() {
     let p = [[-1.0, -1.0, 0.0], [1.0, -0.8, 0.5], [-0.9, 1.0, 0.4], [1.1, 1.2, -0.3]].map(Vec3::from);
     let patch = BilinearPatch::new(p, None, Some([Vec2::splat(0.5); 4]), &Transform::IDENTITY, false);
     let (shape, rng) = (Shape::from(patch), &mut Rng::new(2, 0));
@@ -165,7 +165,7 @@ fn a_bent_patch_knows_its_points_whatever_their_texture_coordinates() {
 }
 
 #[test]
-fn an_image_guides_the_samples_of_a_patch() {
+fn patches_are_sampled_by_an_image() {
     let image = sampling::PiecewiseConstant2d::new(&[0.1, 2.0, 1.0, 0.0, 0.5, 3.0], 3, Bounds2::UNIT);
     let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.3, 1.2, 0.6)];
     let patch = BilinearPatch::new(p, None, None, &Transform::IDENTITY, false).with_image(image.into());
@@ -184,7 +184,7 @@ fn an_image_guides_the_samples_of_a_patch() {
 }
 
 #[test]
-fn both_ways_to_the_density_agree_at_any_distance() {
+fn pdf_from_agrees_with_sample_from_at_any_distance() {
     let rng = &mut Rng::new(1, 0);
     for distance in [1.5, 10.0, 300.0, 1e4] {
         for (name, shape) in transforms().iter().flat_map(shapes) {
@@ -205,7 +205,7 @@ fn both_ways_to_the_density_agree_at_any_distance() {
 }
 
 #[test]
-fn a_convex_shape_seen_whole_has_density_one() {
+fn the_density_of_a_convex_shape_integrates_to_one() {
     let reference = &references()[0].1;
     for (name, shape) in transforms()[..2].iter().flat_map(shapes) {
         if !matches!(name, "sphere" | "disk" | "ring" | "rectangle" | "triangle") {
@@ -219,7 +219,7 @@ fn a_convex_shape_seen_whole_has_density_one() {
 
 /// Rays at random points of the surface; those points, found again.
 #[test]
-fn hits_lie_on_the_surface_and_know_its_derivatives() {
+fn hits_are_on_the_surface_with_its_derivatives() {
     let rng = &mut Rng::new(2, 0);
     for (name, shape) in transforms().iter().flat_map(shapes) {
         let bounds = shape.bounds().expect("bounded");
@@ -355,7 +355,7 @@ fn areas() {
 }
 
 #[test]
-fn orientation_turns_normals() {
+fn reverse_orientation_flips_normals() {
     let mirror = Transform::scale(Vec3::new(-1.0, 1.0, 1.0));
     let down = Ray::new(Vec3::new(0.2, 0.1, 5.0), -Vec3::Z, 0.0);
     for (m, reverse, up) in [

@@ -61,7 +61,7 @@ fn assert_same_hits(world: &World, geometries: &[Geometry], rays: &[Ray], what: 
 }
 
 #[test]
-fn every_quality_equals_brute_force() {
+fn every_quality_finds_the_hits_of_brute_force() {
     let rng = &mut Rng::new(21, 0);
     let mut soup = |n: usize, spread: f32, size: &dyn Fn(&mut Rng) -> f32| {
         let triangle = |_| {
@@ -127,7 +127,7 @@ fn spatial_splits_save_tests_of_thin_triangles() {
 }
 
 #[test]
-fn a_refitted_world_equals_a_new_one() {
+fn a_refitted_world_equals_a_rebuilt_one() {
     let rng = &mut Rng::new(51, 0);
     let bump = |bump: f32| ball(90, bump, &Transform::IDENTITY);
     let place = |x: f32| Shape::from(Sphere::whole(&Transform::translate(Vec3::X * x), false, 0.4));
@@ -169,7 +169,7 @@ fn a_refitted_world_equals_a_new_one() {
 }
 
 #[test]
-fn vertices_that_are_not_finite_are_left_out_until_they_are() {
+fn refit_skips_non_finite_vertices() {
     let mesh = cube(&Transform::IDENTITY);
     let positions: Vec<Vec3> = Bounds3::new(-Vec3::ONE, Vec3::ONE).corners().collect();
     let mut world = world([mesh.clone().into()]);
@@ -185,7 +185,7 @@ fn vertices_that_are_not_finite_are_left_out_until_they_are() {
 }
 
 #[test]
-fn other_primitives_are_refused() {
+fn refit_refuses_other_primitives() {
     let sphere = Geometry::from(Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0)));
     let plane = Geometry::from(Shape::from(Plane::new(&Transform::IDENTITY, false)));
     let cube = Geometry::from(cube(&Transform::IDENTITY));

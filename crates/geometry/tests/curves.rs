@@ -91,7 +91,7 @@ fn misses(segment: &CurveSegment, ribbon: bool, ray: &Ray) -> Vec<(f32, f32, f32
 }
 
 #[test]
-fn hits_are_where_the_centre_line_is_near() {
+fn hits_are_within_half_the_width_of_the_centre_line() {
     let rng = &mut Rng::new(1, 0);
     let (mut hits, mut disputed) = (0, 0);
     for i in 0..600 {
@@ -133,7 +133,7 @@ fn hits_are_where_the_centre_line_is_near() {
 }
 
 #[test]
-fn a_ribbon_seen_across_is_a_rectangle() {
+fn a_ribbon_facing_the_ray_is_a_rectangle() {
     let rng = &mut Rng::new(2, 0);
     let m = &transforms()[1];
     let segment = straight([0.8, 0.4]);
@@ -167,7 +167,7 @@ fn a_ribbon_seen_across_is_a_rectangle() {
 }
 
 #[test]
-fn parts_change_nothing() {
+fn splitting_does_not_change_hits() {
     let rng = &mut Rng::new(3, 0);
     let (mut hits, mut differences) = (0, 0);
     for i in 0..300 {
@@ -192,7 +192,7 @@ fn parts_change_nothing() {
 }
 
 #[test]
-fn the_tree_finds_what_is_nearest() {
+fn the_bvh_finds_the_nearest_hit() {
     let rng = &mut Rng::new(4, 0);
     for (i, m) in transforms().iter().enumerate() {
         let segments: Vec<_> = (0..40).map(|_| random_segment(rng)).collect();
@@ -217,7 +217,7 @@ fn the_tree_finds_what_is_nearest() {
 }
 
 #[test]
-fn sides_and_tangents_are_those_of_the_format() {
+fn v_and_tangents_follow_the_format() {
     // A ray along −z at a curve along +x: v grows towards d × x = −y, and so does ∂p/∂v.
     let ray = Ray::new(Vec3::new(0.3, -0.1, 5.0), -Vec3::Z, 0.25);
     let m = &Transform::IDENTITY;
@@ -251,7 +251,7 @@ fn sides_and_tangents_are_those_of_the_format() {
 }
 
 #[test]
-fn rays_that_leave_a_straight_curve_do_not_meet_it() {
+fn spawned_rays_do_not_hit_a_straight_curve() {
     let rng = &mut Rng::new(5, 0);
     for (i, m) in transforms()[..2].iter().enumerate() {
         for profile in profiles(1).into_iter().take(2) {
@@ -320,6 +320,6 @@ fn hostile_curves_are_harmless() {
 }
 
 #[test]
-fn memory_grows_with_segments_alone() {
+fn memory_is_proportional_to_segments() {
     assert_eq!(size_of::<CurveSegment>(), 56);
 }

@@ -44,7 +44,7 @@ fn builder(rng: &mut Rng) -> WorldBuilder {
 }
 
 #[test]
-fn without_extents_every_primitive_is_tested_and_the_same_is_hit() {
+fn brute_force_finds_the_same_hits() {
     let rng = &mut Rng::new(1, 0);
     for _ in 0..8 {
         let builder = builder(rng);

@@ -57,7 +57,7 @@ fn value(formula: &Formula, p: DVec3) -> f64 {
 /// The first hit is where the formula is zero, and at no sample before it has the formula another
 /// sign.
 #[test]
-fn no_root_before_the_first_by_dense_sampling() {
+fn hits_are_the_first_roots_of_dense_sampling() {
     const STEPS: usize = 4000;
     let rng = &mut Rng::new(1, 0);
     let mut hits = 0;
@@ -100,7 +100,7 @@ fn no_root_before_the_first_by_dense_sampling() {
 }
 
 #[test]
-fn a_sphere_by_formula_is_the_sphere() {
+fn an_implicit_sphere_equals_the_sphere() {
     let rng = &mut Rng::new(2, 0);
     let turn = Transform::translate(Vec3::new(3.0, -2.0, 1.0))
         .after(&Transform::rotate(0.7, Vec3::new(0.3, 1.0, -0.2)));
@@ -136,7 +136,7 @@ fn a_sphere_by_formula_is_the_sphere() {
 
 /// The axis of the tube has radius 1, the tube 0.3.
 #[test]
-fn a_torus_along_its_planes_in_closed_form() {
+fn torus_hits_in_closed_form() {
     for text in [TORUS, "(sqrt(x^2 + y^2) - 1)^2 + z^2 - 0.09"] {
         let torus = surface(text, &Transform::IDENTITY);
         for i in 0..200 {
@@ -159,7 +159,7 @@ fn a_torus_along_its_planes_in_closed_form() {
 }
 
 #[test]
-fn rays_that_touch() {
+fn tangent_rays() {
     let at = |text: &str, o: Vec3, d: Vec3| first(&surface(text, &Transform::IDENTITY), o, d);
     let sphere = "x^2 + y^2 + z^2 - 1";
     let high = |x: f32| Vec3::new(x, 0.0, 5.0);
@@ -188,7 +188,7 @@ fn rays_that_touch() {
 }
 
 #[test]
-fn thin_shells_are_not_passed_over() {
+fn thin_shells_are_hit() {
     let rng = &mut Rng::new(3, 0);
     for exponent in [4, 6, 8, 10, 12] {
         // Two spheres that are 10^(-exponent/2) apart.
@@ -242,7 +242,7 @@ fn singular_points() {
 }
 
 #[test]
-fn far_origins_lose_nothing_but_their_own_rounding() {
+fn distant_origins_lose_only_their_own_rounding() {
     let rng = &mut Rng::new(5, 0);
     for distance in [1e2f32, 1e4, 1e6] {
         for text in ["x^2 + y^2 + z^2 - 1", "x^4 + y^4 + z^4 - 1", "sqrt(x^2 + y^2 + z^2) - 1"] {
@@ -262,7 +262,7 @@ fn far_origins_lose_nothing_but_their_own_rounding() {
 /// A box may be as large as it will: rays that start near the surface meet it as in a box of its
 /// own size, by directions of any length.
 #[test]
-fn small_surfaces_in_huge_boxes() {
+fn small_surfaces_in_huge_bounds() {
     let bounded = ["x^2 + y^2 + z^2 - 1", FORMULAS[2], TORUS, FORMULAS[4], FORMULAS[9], FORMULAS[12]];
     let rng = &mut Rng::new(12, 0);
     for text in bounded {
@@ -289,7 +289,7 @@ fn small_surfaces_in_huge_boxes() {
 }
 
 #[test]
-fn poles_are_no_surfaces() {
+fn poles_are_not_hit() {
     let at =
         |text: &str, d: Vec3| first(&surface(text, &Transform::IDENTITY), Vec3::new(-1.5, 0.01, 0.02), d);
     assert_eq!(at("1/x", Vec3::X), None);
@@ -305,7 +305,7 @@ fn poles_are_no_surfaces() {
 
 /// What varies faster than can be resolved ends in bounded time, and odd rays find nothing.
 #[test]
-fn hostile_formulas_and_rays_end() {
+fn hostile_formulas_and_rays_terminate() {
     let rng = &mut Rng::new(6, 0);
     for text in [
         "sin(1e9*x)",
@@ -345,7 +345,7 @@ fn hostile_formulas_and_rays_end() {
 
 /// Rays that leave a surface on a side where it bulges towards them never meet it again.
 #[test]
-fn spawned_rays_do_not_meet_their_own_surface() {
+fn spawned_rays_do_not_hit_their_own_surface() {
     let rng = &mut Rng::new(7, 0);
     for i in 0..24 {
         let size = [1.0f32, 1e-3, 1e4][i % 3];
@@ -389,7 +389,7 @@ fn spawned_rays_do_not_meet_their_own_surface() {
 }
 
 #[test]
-fn the_box_cuts_the_surface_off() {
+fn the_bounds_clip_the_surface() {
     let bounds = Bounds3 { min: Vec3::new(-1.0, -1.0, 0.0), max: Vec3::ONE };
     let dome =
         Shape::from(Implicit::new(&Transform::IDENTITY, false, formula("x^2 + y^2 + z^2 - 1"), &bounds));

@@ -61,7 +61,7 @@ fn agree(what: &str, moving: &World, still: &World, time: f32, rng: &mut Rng) {
 }
 
 #[test]
-fn vertices_that_move_are_at_each_moment_where_a_still_mesh_has_them() {
+fn moving_vertices_equal_a_static_mesh_at_each_time() {
     let rng = &mut Rng::new(1, 0);
     let (poses, moving) = (poses(), world([moving_ball()]));
     for frame in 0..40 {
@@ -71,7 +71,7 @@ fn vertices_that_move_are_at_each_moment_where_a_still_mesh_has_them() {
 }
 
 #[test]
-fn no_ray_slips_between_triangles_that_move() {
+fn moving_meshes_are_watertight() {
     let rng = &mut Rng::new(2, 0);
     let (poses, moving) = (poses(), world([moving_ball()]));
     for _ in 0..20_000 {
@@ -117,7 +117,7 @@ fn moving_transform(rng: &mut Rng) -> AnimatedTransform {
 }
 
 #[test]
-fn what_is_placed_in_motion_is_at_each_moment_where_its_transforms_are() {
+fn moving_instances_equal_static_ones_at_each_time() {
     let rng = &mut Rng::new(3, 0);
     for levels in 1..=3 {
         let motions: Vec<AnimatedTransform> = (0..levels).map(|_| moving_transform(rng)).collect();

@@ -121,7 +121,7 @@ fn body(rng: &mut Rng, depth: usize) -> Body {
 }
 
 #[test]
-fn the_first_hit_is_the_first_change_of_being_inside() {
+fn the_first_hit_is_the_first_boundary() {
     const STEPS: usize = 2000;
     let rng = &mut Rng::new(1, 0);
     let (mut hits, mut edges) = (0, 0);
@@ -271,7 +271,7 @@ fn rays_inside_do_not_leak() {
 }
 
 #[test]
-fn rays_that_leave_a_convex_solid_do_not_meet_it_again() {
+fn spawned_rays_do_not_hit_a_convex_solid() {
     let rng = &mut Rng::new(3, 0);
     for i in 0..12 {
         let m = placed(rng, i);
@@ -358,7 +358,7 @@ fn hits_in_closed_form() {
 }
 
 #[test]
-fn odd_rays_end() {
+fn degenerate_rays_terminate() {
     for (name, solid) in closed(&Transform::IDENTITY) {
         let shape = Shape::from(solid);
         for (o, d) in [

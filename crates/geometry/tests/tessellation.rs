@@ -53,7 +53,7 @@ fn area(mesh: &MeshArrays) -> f32 {
 }
 
 #[test]
-fn the_limit_does_not_depend_on_the_levels() {
+fn the_limit_surface_does_not_depend_on_the_levels() {
     let (positions, indices) = closed(&mut Rng::new(1, 0));
     let coarse = loop_subdivision(&positions, &indices, 0).unwrap();
     for levels in 1..5 {
@@ -89,7 +89,7 @@ fn normals_are_those_of_the_surface() {
 }
 
 #[test]
-fn what_is_flat_stays_flat() {
+fn flat_meshes_stay_flat() {
     let grid = |i: u32| Vec3::new((i % 5) as f32, (i / 5) as f32, 0.0);
     let positions: Vec<Vec3> = (0..25).map(grid).collect();
     let cell = |i: u32| [[i, i + 1, i + 6], [i, i + 6, i + 5]];
@@ -115,7 +115,7 @@ fn what_is_flat_stays_flat() {
 }
 
 #[test]
-fn meshes_that_have_no_limit_are_errors() {
+fn invalid_meshes_are_errors() {
     let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE];
     let error = |indices: &[[u32; 3]], levels| loop_subdivision(&p, indices, levels).unwrap_err();
     assert_eq!(error(&[[0, 1, 2], [0, 9, 2]], 1), MeshError::Index { triangle: 1, vertex: 9 });

@@ -91,7 +91,7 @@ fn axis_parallel_rays_along_shared_edges_do_not_leak() {
 /// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside
 /// none ever comes.
 #[test]
-fn walks_inside_do_not_leak() {
+fn random_walks_inside_do_not_leak() {
     let rng = &mut Rng::new(3, 0);
     // Far away, the rounding of a point near an edge may put it beyond the next wall.
     for i in (0..TRANSFORMS).filter(|i| AWAY[i % 3] < 10.0) {
@@ -114,7 +114,7 @@ fn walks_inside_do_not_leak() {
 
 /// Rays that leave a convex surface to its outside hit nothing.
 #[test]
-fn spawned_rays_do_not_meet_their_own_convex_surface() {
+fn spawned_rays_do_not_hit_their_own_convex_surface() {
     let rng = &mut Rng::new(4, 0);
     for i in 0..60 {
         let m = transform(rng, i);
@@ -189,7 +189,7 @@ fn transmitted_rays_reach_the_far_side() {
 
 /// Coordinates that are exactly zero are where a relative error bound says nothing.
 #[test]
-fn rays_do_not_meet_a_flat_surface_in_a_coordinate_plane_again() {
+fn spawned_rays_do_not_hit_a_surface_in_a_coordinate_plane() {
     let rng = &mut Rng::new(9, 0);
     let corners = [(-7.0, -6.0), (7.0, -7.0), (-6.5, 7.0), (7.0, 5.0)];
     for axis in 0..3 {

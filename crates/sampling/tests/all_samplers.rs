@@ -139,7 +139,7 @@ fn positions_in_a_pixel_of_different_seeds_are_uncorrelated() {
 }
 
 #[test]
-fn counts_are_those_asked_for_or_rounded_up() {
+fn sample_counts_are_as_requested_or_rounded_up() {
     for (name, sampler) in random_samplers(12, 0) {
         let rounds_up = name.starts_with("sobol") || name.starts_with("zsobol");
         assert_eq!(sampler.samples_per_pixel(), if rounds_up { 16 } else { 12 }, "{name}");
@@ -185,7 +185,7 @@ fn means_are_right_within_and_beyond_the_count() {
 }
 
 #[test]
-fn arranged_samples_beat_independent_ones() {
+fn stratified_and_low_discrepancy_samples_have_less_variance() {
     let makers = makers();
     for spp in [16, 64] {
         let independent = estimates(&makers[0].1, spp, 0, spp).variance();
@@ -197,7 +197,7 @@ fn arranged_samples_beat_independent_ones() {
 }
 
 #[test]
-fn further_rounds_go_on_improving() {
+fn variance_decreases_beyond_the_planned_count() {
     for (name, make) in makers() {
         let one = estimates(&make, SPP, 0, SPP).variance();
         let eight = estimates(&make, SPP, 0, 8 * SPP).variance();
@@ -245,7 +245,7 @@ fn points(sampler: &mut Sampler, indices: std::ops::Range<u32>, skipped: usize) 
 }
 
 #[test]
-fn two_dimensional_sobol_points_fill_elementary_intervals() {
+fn sobol_points_stratify_elementary_intervals() {
     for (name, mut sampler) in all_samplers(64, 9) {
         if name.starts_with("padded") || name.starts_with("zsobol") {
             for skipped in [0, 1, 4] {
@@ -263,7 +263,7 @@ fn two_dimensional_sobol_points_fill_elementary_intervals() {
 }
 
 #[test]
-fn sobol_pixel_samples_fill_elementary_intervals() {
+fn sobol_pixel_samples_stratify_elementary_intervals() {
     let mut sampler = Sampler::Sobol(Sobol::new(64, RESOLUTION, Randomize::None, 0));
     let points: Vec<Vec2> = (0..64)
         .map(|index| {
@@ -275,7 +275,7 @@ fn sobol_pixel_samples_fill_elementary_intervals() {
 }
 
 #[test]
-fn stratified_samples_take_every_cell_once() {
+fn stratified_samples_have_one_sample_per_cell() {
     for jitter in [true, false] {
         let mut sampler = Sampler::Stratified(Stratified::new([5, 3], jitter, 4));
         for round in 0..3 {

@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sets_of_kinds() {
+    fn flag_sets() {
         let glass = BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION | BxdfFlags::SPECULAR;
         assert!(glass.is_reflective() && glass.is_transmissive() && glass.is_specular());
         assert!(!glass.is_non_specular() && !glass.is_empty() && BxdfFlags::NONE.is_empty());
@@ -186,14 +186,14 @@ mod tests {
     }
 
     #[test]
-    fn directions_meet_what_scatters_to_them() {
+    fn directions_match_lobes() {
         let mirror = BxdfFlags::REFLECTION | BxdfFlags::SPECULAR;
         assert!(Directions::All.meet(mirror) && Directions::Reflection.meet(mirror));
         assert!(!Directions::Transmission.meet(mirror) && !Directions::All.meet(BxdfFlags::NONE));
     }
 
     #[test]
-    fn probabilities_leave_out_what_is_not_asked_for() {
+    fn lobe_probabilities_exclude_other_lobes() {
         assert_eq!(Directions::All.probability_of_reflection(1.0, 3.0), Some(0.25));
         assert_eq!(Directions::Reflection.probability_of_reflection(1.0, 3.0), Some(1.0));
         assert_eq!(Directions::Transmission.probability_of_reflection(1.0, 3.0), Some(0.0));

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn parallel_light_passes_at_the_angle_of_brewster() {
+    fn parallel_polarised_light_is_transmitted_at_brewsters_angle() {
         for eta in INDICES {
             let cos = (1.0 / (1.0 + eta * eta)).sqrt();
             let perpendicular = sqr((1.0 - eta * eta) / (1.0 + eta * eta));
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn no_angle_gives_not_a_number() {
+    fn no_angle_gives_nan() {
         for cos in [0.0, 1e-45, 1e-30, 1e-12, 1e-6, 0.5, 1.0, 1.0000002] {
             for eta in INDICES.into_iter().chain([1.0]) {
                 assert!(fr_dielectric(cos, eta).is_finite() && fr_dielectric(-cos, eta).is_finite());

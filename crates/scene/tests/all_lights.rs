@@ -59,7 +59,7 @@ fn check_directions(
 }
 
 #[test]
-fn samples_have_the_density_that_is_claimed() {
+fn samples_have_their_density() {
     let (cases, references) = (area_lights(), references());
     let tests = cases.len() * references.len();
     for case in &cases {
@@ -84,7 +84,7 @@ fn samples_have_the_density_that_is_claimed() {
 }
 
 #[test]
-fn samples_of_skies_have_the_density_that_is_claimed() {
+fn samples_of_environments_have_their_density() {
     let from = references()[0];
     let light_from_render = Transform::from_f64(placement()).unwrap().inverse();
     let cases = infinite_lights();
@@ -118,7 +118,7 @@ fn samples_of_skies_have_the_density_that_is_claimed() {
 }
 
 #[test]
-fn samples_say_their_density_and_radiance() {
+fn samples_agree_with_pdf_and_radiance() {
     let mut random = Random::new(1);
     for case in hittable_lights() {
         let light = case.light();
@@ -148,7 +148,7 @@ fn samples_say_their_density_and_radiance() {
 }
 
 #[test]
-fn only_delta_lights_cannot_be_met() {
+fn only_delta_lights_cannot_be_hit() {
     for case in hittable_lights() {
         assert!(!case.light().is_delta(), "{}", case.name);
     }
@@ -169,7 +169,7 @@ fn by_light(case: &Case, from: &LightSampleContext, n: Normal3, count: u32, rand
 }
 
 #[test]
-fn irradiance_is_the_same_by_light_and_by_direction() {
+fn irradiance_by_light_and_direction_sampling_agree() {
     let cases = hittable_lights();
     let normals = [Vec3::new(-0.2, 0.1, -1.0).normalize(), Vec3::new(0.1, 0.3, 1.0).normalize()];
     let tests = cases.len() * references().len() * normals.len();
@@ -195,7 +195,7 @@ fn irradiance_is_the_same_by_light_and_by_direction() {
 }
 
 #[test]
-fn a_panorama_and_the_square_made_of_it_give_the_same_light() {
+fn latitude_longitude_and_octahedral_maps_agree() {
     // A brightness that tells directions apart, also mirrored and with axes exchanged.
     let brightness = |w: Vec3| 2.0 + w.x + 0.5 * w.y + 0.2 * w.z;
     let size = [128, 64];
@@ -230,7 +230,7 @@ fn a_panorama_and_the_square_made_of_it_give_the_same_light() {
 }
 
 #[test]
-fn incomplete_samples_and_directions_make_a_whole() {
+fn mis_compensated_sampling_is_unbiased() {
     let cases = infinite_lights();
     let (n, from) = (Vec3::new(0.1, 0.3, 1.0).normalize(), references()[0]);
     let mut random = Random::new(3);
@@ -253,7 +253,7 @@ fn incomplete_samples_and_directions_make_a_whole() {
 }
 
 #[test]
-fn an_image_lies_upright_on_its_surface() {
+fn emission_images_are_upright() {
     // Red at the lower left (u, v) = (0, 0), which is the first pixel of the last row.
     let mut desc = area(rectangle([0.0, 0.0], [1.0, 1.0]), one_side);
     let red = |x, y| if (x, y) == (0, 1) { [1.0, 0.0, 0.0] } else { [0.0; 3] };
@@ -271,7 +271,7 @@ fn an_image_lies_upright_on_its_surface() {
 }
 
 #[test]
-fn a_light_that_is_cut_out_shines_by_its_alpha() {
+fn emission_is_scaled_by_alpha() {
     let alpha = |value: f32| area(disk(0.0, 1.0), move |_, shape| shape.alpha = Some(value.into()));
     let from = context(Vec3::new(0.1, 0.2, 1.5), Vec3::ZERO);
     let mut random = Random::new(8);
@@ -297,7 +297,7 @@ fn a_light_that_is_cut_out_shines_by_its_alpha() {
 }
 
 #[test]
-fn lights_far_away_are_hidden_by_what_is_far_away() {
+fn infinite_planes_occlude_infinite_lights() {
     // A floor and a ceiling without end, and a small ball: the sun comes through neither.
     for ceiling in [false, true] {
         let mut desc = free(distant(None));

@@ -24,7 +24,7 @@ fn emit(case: &Case, random: &mut Random) -> Option<LightLeSample> {
 }
 
 #[test]
-fn rays_carry_the_power() {
+fn emitted_rays_carry_the_power() {
     let cases = all_lights();
     let mut random = Random::new(1);
     for case in &cases {
@@ -47,7 +47,7 @@ fn rays_carry_the_power() {
 }
 
 #[test]
-fn a_ray_has_the_densities_that_are_claimed_for_it() {
+fn emitted_rays_have_their_densities() {
     let mut random = Random::new(2);
     let same = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
     for case in all_lights() {
@@ -83,7 +83,7 @@ fn a_ray_has_the_densities_that_are_claimed_for_it() {
 }
 
 #[test]
-fn directions_have_their_density() {
+fn emitted_directions_have_their_density() {
     let cases = area_lights();
     for (i, case) in cases.iter().enumerate() {
         let light = case.light();
@@ -124,7 +124,7 @@ fn directions_of_spots_have_their_density() {
 /// summed over all that lies one behind the other. Where that grows without bound, at the outline
 /// of what is round, cells are not held against it one by one.
 #[test]
-fn positions_have_their_density() {
+fn emitted_positions_have_their_density() {
     let cases = area_lights();
     let view = Frame::from_z(Vec3::new(0.8, -0.5, 0.7).normalize());
     let (side, fine, size, count) = (12, 40, 4.0, 5_000);
@@ -167,7 +167,7 @@ fn positions_have_their_density() {
 }
 
 #[test]
-fn light_from_far_away_falls_evenly_on_the_disk_around_the_scene() {
+fn distant_light_is_uniform_over_the_scene_disk() {
     let mut cases = infinite_lights();
     cases.push(delta_lights().remove(3));
     for (i, case) in cases.iter().enumerate() {
@@ -192,7 +192,7 @@ fn light_from_far_away_falls_evenly_on_the_disk_around_the_scene() {
 }
 
 #[test]
-fn rays_start_clear_of_the_surface_that_they_leave() {
+fn emitted_rays_do_not_hit_their_own_surface() {
     let mut random = Random::new(5);
     for case in area_lights() {
         for _ in 0..2_000 {
@@ -215,7 +215,7 @@ fn rays_start_clear_of_the_surface_that_they_leave() {
 
 /// The light that falls on a disk is that of the rays that hit it, and that which its points find.
 #[test]
-fn a_disk_finds_the_light_that_finds_it() {
+fn emitted_and_sampled_irradiance_agree() {
     let cases = all_lights();
     for (i, case) in cases.iter().enumerate() {
         let (light, sphere) = (case.light(), case.scene.sphere());
@@ -254,7 +254,7 @@ fn a_disk_finds_the_light_that_finds_it() {
 }
 
 #[test]
-fn a_light_that_is_cut_out_sends_by_its_alpha() {
+fn emission_is_scaled_by_alpha() {
     let mut random = Random::new(6);
     let mut power = |alpha: f32| -> Moments {
         let desc = area(disk(0.0, 1.0), |_, shape| shape.alpha = Some(alpha.into()));
@@ -268,7 +268,7 @@ fn a_light_that_is_cut_out_sends_by_its_alpha() {
 }
 
 #[test]
-fn lights_without_power_and_no_lights_are_safe() {
+fn dark_and_empty_light_tables_emit_nothing() {
     let none = PowerLightSampler::default();
     assert!(none.sample(0.5).is_none());
     let dark = scene(&area(disk(0.0, 1.0), |light, _| light.scale = 0.0));

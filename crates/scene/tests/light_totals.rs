@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 use testkit::{Moments, Random, t_test};
 
 #[test]
-fn power_is_what_leaves() {
+fn power_is_the_emitted_flux() {
     let (areas, lambda) = (area_lights(), lambda());
     let mut random = Random::new(4);
     for case in &areas {
@@ -53,7 +53,7 @@ fn power_is_what_leaves() {
 }
 
 #[test]
-fn power_of_lights_at_a_point_is_what_passes_a_sphere_around_them() {
+fn power_of_point_lights_is_the_flux_through_a_sphere() {
     let lambda = lambda();
     let mut random = Random::new(5);
     for case in delta_lights().iter().filter(|case| case.name != "distant") {
@@ -79,7 +79,7 @@ fn power_of_lights_at_a_point_is_what_passes_a_sphere_around_them() {
 }
 
 #[test]
-fn power_of_lights_far_away_is_what_falls_on_the_scene() {
+fn power_of_infinite_lights_is_the_flux_onto_the_scene() {
     let lambda = lambda();
     let mut random = Random::new(6);
     let cases = infinite_lights();
@@ -105,7 +105,7 @@ fn power_of_lights_far_away_is_what_falls_on_the_scene() {
 }
 
 #[test]
-fn irradiance_has_its_closed_forms() {
+fn irradiance_in_closed_form() {
     // Lights above the origin, which faces up; they shine down.
     let above = |shape: ShapeKind, height: f64| {
         area(shape, |light, shape| {
@@ -159,7 +159,7 @@ fn irradiance_has_its_closed_forms() {
 }
 
 #[test]
-fn point_lights_fall_off_by_the_square_of_the_distance() {
+fn point_lights_fall_off_with_squared_distance() {
     for case in delta_lights().iter().filter(|case| case.name != "distant") {
         let (p, axis) = match case.light().row() {
             Light::Point(light) => (light.p, Vec3::Z),
@@ -236,7 +236,7 @@ fn a_scale_of_one_is_a_luminance_of_one() {
 }
 
 #[test]
-fn power_and_illuminance_are_met() {
+fn requested_power_and_illuminance_are_met() {
     let power = |desc: &SceneDesc| {
         let scene = scene(desc);
         photometric(|lambda| scene.light(LightId(0)).phi(lambda))
@@ -277,7 +277,7 @@ fn power_and_illuminance_are_met() {
 }
 
 #[test]
-fn what_cannot_shine_has_no_power_rather_than_an_infinite_one() {
+fn degenerate_lights_have_zero_power() {
     let degenerate = triangles(&[[0.0; 3], [1.0; 3], [0.0, 1.0, 0.0]], &[[0, 1, 1], [0, 1, 2]]);
     let scene = scene(&area(degenerate, |light, _| light.power = Some(10.0)));
     let [flat, whole] = [0, 1].map(|i| scene.light(LightId(i)).phi(&lambda())[0]);

@@ -25,7 +25,7 @@ fn distance_along(desc: &SceneDesc, o: Vec3, d: Vec3, time: f32) -> Option<f32> 
 }
 
 #[test]
-fn moving_shapes_are_where_they_should_be() {
+fn moving_shapes_are_interpolated() {
     let desc = with(|desc| {
         desc.shapes.push(ShapeDesc { world_from_object: moving(), ..sphere(0.5).into() });
     });
@@ -40,7 +40,7 @@ fn moving_shapes_are_where_they_should_be() {
 }
 
 #[test]
-fn instances_are_where_they_should_be() {
+fn moving_instances_are_interpolated() {
     // A ball off the object's origin; an instance turned and scaled, one that moves, and a camera
     // that is elsewhere.
     let desc = with(|desc| {

@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn the_peak_lies_where_wien_says_and_is_one() {
+    fn the_peak_is_one_at_wiens_wavelength() {
         for temperature in [4000.0_f32, 5000.0, 6500.0] {
             let spectrum = Blackbody::new(temperature);
             let peak = (WIEN * 1e9) as f32 / temperature;
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn no_temperature_is_black() {
+    fn zero_temperature_is_black() {
         assert_eq!(Blackbody::new(0.0).at(500.0), 0.0);
         assert_eq!(Blackbody::new(-3.0).max_value(), 0.0);
     }

@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn conversion_there_and_back_changes_nothing() {
+    fn conversions_round_trip() {
         let colour = [0.2, 0.7, 0.4];
         for from in RgbColorSpace::all() {
             for to in RgbColorSpace::all() {

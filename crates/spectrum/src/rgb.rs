@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn chromaticity_and_luminance_make_the_colour_again() {
+    fn chromaticity_and_luminance_round_trip() {
         let colour = Xyz::new(0.3, 0.4, 0.7);
         let again = Xyz::from_xy(colour.xy(), colour.y);
         assert!((again - colour).map(f32::abs).max_component() < 1e-6);

@@ -340,7 +340,7 @@ mod tests {
     use testkit::Chi2;
 
     #[test]
-    fn the_visible_density_ends_with_the_range() {
+    fn the_visible_density_is_zero_outside_the_range() {
         assert_eq!(visible_wavelength_pdf(359.9), 0.0);
         assert_eq!(visible_wavelength_pdf(830.1), 0.0);
         assert_eq!(SampledWavelengths::sample_visible(0.0)[0].round(), LAMBDA_MIN);
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn wavelengths_are_one_number_rotated() {
+    fn wavelengths_are_rotations_of_the_hero() {
         let lambda = SampledWavelengths::sample_uniform(0.9);
         for (ours, expected) in lambda.lambda().iter().zip([783.0, 430.5, 548.0, 665.5]) {
             assert!((ours - expected).abs() < 1e-2);
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn termination_happens_once_and_leaves_a_quarter_of_the_density() {
+    fn termination_divides_the_density_once() {
         let mut lambda = SampledWavelengths::sample_uniform(0.3);
         assert!(!lambda.secondary_terminated());
         let before = lambda.pdf()[0];

@@ -169,14 +169,14 @@ mod tests {
     }
 
     #[test]
-    fn photometry_of_light_from_rgb_sees_its_illuminant_alone() {
+    fn photometry_of_rgb_light_is_that_of_the_illuminant() {
         let space = RgbColorSpace::srgb();
         let light = Spectrum::rgb_illuminant(space, Rgb::new(7.0, 0.5, 0.1));
         assert!((light.to_photometric() - CIE_Y_INTEGRAL).abs() < 1e-3);
     }
 
     #[test]
-    fn dense_values_are_those_at_whole_nanometres() {
+    fn dense_values_are_at_integer_nanometres() {
         let spectrum = Spectrum::blackbody(3000.0);
         let dense = spectrum.to_dense();
         for lambda in [360.0, 500.0, 830.0] {

@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_right_density_is_accepted() {
+    fn the_right_density_is_accepted() {
         for seed in 0..8 {
             let test = Chi2 { tests: 8, seed, ..Chi2::default() };
             test.sphere(uniform_sphere, |_| 1.0 / (4.0 * PI)).unwrap();
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_density_is_refused() {
+    fn a_wrong_density_is_rejected() {
         let test = Chi2 { tests: 50, ..Chi2::default() };
         test.sphere(uniform_sphere, |w| (1.0 + 0.06 * w[0] as f64) / (4.0 * PI)).unwrap_err();
         test.sphere(uniform_sphere, |_| 1.05 / (4.0 * PI)).unwrap_err();
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_sample_is_refused() {
+    fn wrong_samples_are_rejected() {
         let test = Chi2 { tests: 50, ..Chi2::default() };
         test.sphere(|u| uniform_sphere(u).map(|w| w.map(|x| 2.0 * x)), |_| 1.0 / (4.0 * PI)).unwrap_err();
         test.sphere(|_| Some([f32::NAN; 3]), |_| 1.0 / (4.0 * PI)).unwrap_err();
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_samples_are_what_the_density_lacks() {
+    fn missing_samples_match_the_missing_density() {
         let upper = |u: [f32; 2]| uniform_sphere(u).filter(|w| w[2] > 0.0);
         let density = |w: [f32; 3]| if w[2] > 0.0 { 0.25 / PI } else { 0.0 };
         Chi2::default().sphere(upper, density).unwrap();
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn the_refusal_names_the_worst_cell() {
+    fn rejections_name_the_worst_cell() {
         let message = Chi2::default().interval([0.0, 1.0], |_| Some(0.25), |_| 1.0).unwrap_err();
         assert!(message.contains("[0.2500, 0.2520]"), "{message}");
     }

@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_right_mean_is_accepted() {
+    fn the_right_mean_is_accepted() {
         for seed in 0..20 {
             t_test(&squares(2000, seed, 0.0), 1.0 / 3.0, 20).unwrap();
             welch_test(&squares(2000, seed, 0.0), &squares(900, seed + 100, 0.0), 20).unwrap();
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_mean_is_refused() {
+    fn a_wrong_mean_is_rejected() {
         let sample = squares(20_000, 1, 0.02);
         t_test(&sample, 1.0 / 3.0, 20).unwrap_err();
         z_test(sample.mean, sample.variance_of_mean().sqrt(), 1.0 / 3.0, 20).unwrap_err();
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_without_variance_needs_no_luck() {
+    fn means_without_variance_are_compared_exactly() {
         t_test(&Moments::from_iter([0.5; 10]), 0.5, 1).unwrap();
     }
 }

@@ -63,34 +63,34 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn smooth_functions_are_precise() {
+    fn smooth_functions_are_integrated_precisely() {
         let value = integrate(&|x, y| x.powi(3) * y.powi(4), [[0.0, 1.0], [0.0, 2.0]], 1e-9);
         assert!((value - 32.0 / 20.0).abs() < 1e-7);
     }
 
     #[test]
-    fn an_edge_is_followed() {
+    fn edges_are_resolved() {
         let disk = |x: f64, y: f64| if x * x + y * y < 1.0 { 1.0 } else { 0.0 };
         let value = integrate(&disk, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
         assert!((value - PI / 4.0).abs() < 1e-3, "{value}");
     }
 
     #[test]
-    fn a_corner_between_the_points_is_found() {
+    fn corners_between_nodes_are_found() {
         let corner = |x: f64, y: f64| if x + y < 0.03 { 1.0 } else { 0.0 };
         let value = search(&corner, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
         assert!((value / 0.00045 - 1.0).abs() < 0.01, "{value}");
     }
 
     #[test]
-    fn an_edge_along_an_axis_is_followed() {
+    fn axis_aligned_edges_are_resolved() {
         let half = |x: f64, _: f64| if x < 0.337 { 1.0 } else { 0.0 };
         let value = integrate(&half, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
         assert!((value - 0.337).abs() < 3e-4, "{value}");
     }
 
     #[test]
-    fn a_peak_is_found() {
+    fn peaks_are_found() {
         let peak =
             |x: f64, y: f64| (-((x - 0.3).powi(2) + (y - 0.6).powi(2)) / (2.0 * 0.02f64.powi(2))).exp();
         let value = integrate(&peak, [[0.0, 1.0], [0.0, 1.0]], 1e-9);

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn sidak_shares_the_significance() {
+    fn sidak_correction() {
         near(sidak(0.01, 1), 0.01);
         near(1.0 - (1.0 - sidak(0.01, 50)).powi(50), 0.01);
     }

@@ -140,7 +140,7 @@ impl Member {
 }
 
 #[test]
-fn a_closed_furnace_shows_all_paths_up_to_a_depth_once() {
+fn a_closed_furnace_has_every_path_up_to_a_depth_once() {
     let members = Member::all();
     // These do not follow light from surface to surface.
     let others = ["ray-casting", "whitted", "ambient-occlusion"];
@@ -179,7 +179,7 @@ const MIRRORS: &str = r#"Camera "perspective" "float fov" 40
     Material "diffuse" Translate 0 0 4 Shape "disk""#;
 
 #[test]
-fn glints_beside_the_edges_of_mirrors_are_what_path_tracing_finds_with_more_noise() {
+fn vcm_finds_glints_at_mirror_edges_with_less_noise() {
     let found = |integrator: &str, first_seed: i32| -> Moments {
         let depth = vec![("maxdepth".into(), "1".into())];
         let mean = |seed| {
