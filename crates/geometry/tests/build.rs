@@ -1,4 +1,4 @@
-//! Worlds of every quality answer alike, and so do worlds whose geometries have moved.
+//! Worlds of every build quality find the same hits, and so do refitted worlds.
 
 mod common;
 
@@ -27,7 +27,7 @@ fn triangles(corners: Vec<[Vec3; 3]>) -> TriangleMesh {
     mesh(corners.concat(), indices, &Transform::IDENTITY)
 }
 
-/// Long thin triangles side by side, slanted to all axes: a few sheets of strips.
+/// Long thin triangles, oblique to all axes: a few sheets of strips.
 fn strips(rng: &mut Rng, n: usize) -> TriangleMesh {
     let frames: Vec<Frame> = (0..5).map(|_| Frame::from_z(direction(rng))).collect();
     let strip = |i: usize| {
@@ -92,7 +92,7 @@ fn every_quality_finds_the_hits_of_brute_force() {
     }
 }
 
-/// Rays at points of the triangles, where planes that split space have cut them.
+/// Rays towards points of triangles that spatial splits have divided.
 #[test]
 fn spatial_splits_lose_no_hit() {
     let rng = &mut Rng::new(31, 0);

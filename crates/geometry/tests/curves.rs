@@ -1,4 +1,4 @@
-//! Curves: against what fine sampling of their centre line says, in the tree, and for hostile
+//! Curves: against dense sampling of their centre line, in a BVH, and with degenerate control
 //! points.
 
 mod common;
@@ -32,9 +32,8 @@ fn random_segment(rng: &mut Rng) -> CurveSegment {
     CurveSegment { points, width: [between(rng, 0.01, 0.3), between(rng, 0.01, 0.3)] }
 }
 
-/// A curve that runs along x and is nowhere much thinner than elsewhere. Where a curve turns within
-/// its own width as the ray sees it, whether it is met is a matter of how it is cut; and it is cut
-/// by what its largest width asks for.
+/// A curve along x of nearly constant width. Where a curve turns within its own width as seen along
+/// the ray, hits depend on the subdivision, which is chosen for the largest width.
 fn gentle_segment(rng: &mut Rng) -> CurveSegment {
     let points = [-1.2, -0.4, 0.4, 1.2].map(|x| Vec3::X * x + point_in(rng, 0.3));
     let width = between(rng, 0.01, 0.3);
@@ -45,7 +44,7 @@ fn straight(width: [f32; 2]) -> CurveSegment {
     CurveSegment { points: [-1.5, -0.5, 0.5, 1.5].map(|x| Vec3::new(x, 0.0, 0.0)), width }
 }
 
-/// The nearest hit of all primitives, and which it was.
+/// The nearest hit of all primitives, and its primitive.
 fn nearest_part(curves: &Curves, ray: &Ray) -> Option<(u32, ShapeHit)> {
     let mut nearest: Option<(u32, ShapeHit)> = None;
     for i in 0..curves.len() as u32 {
@@ -60,7 +59,7 @@ fn at(p: &[Vec3; 4], u: f32) -> Vec3 {
     p[0] * (v * v * v) + p[1] * (3.0 * v * v * u) + p[2] * (3.0 * v * u * u) + p[3] * (u * u * u)
 }
 
-/// A ray to a point near a curve, in its own space; never quite along x.
+/// A ray to a point near a curve, in object space; never quite along x.
 fn ray_near(rng: &mut Rng, segment: &CurveSegment) -> Ray {
     let u = rng.uniform_f32();
     let target = at(&segment.points, u) + direction(rng) * between(rng, 0.0, 0.3);
@@ -69,8 +68,8 @@ fn ray_near(rng: &mut Rng, segment: &CurveSegment) -> Ray {
     Ray::new(o, (target - o) * between(rng, 0.3, 3.0), 0.0)
 }
 
-/// Of points along the centre line: u, by how much the line of a ray misses them in halves of the
-/// width (1 is the edge), and how far along the ray they are.
+/// For points of the centre line: u, their distance from the ray in half widths (1 is the edge),
+/// and their t along the ray.
 fn misses(segment: &CurveSegment, ribbon: bool, ray: &Ray) -> Vec<(f32, f32, f32)> {
     const STEPS: usize = 2000;
     let d = ray.d.normalize();
@@ -104,7 +103,7 @@ fn hits_are_within_half_the_width_of_the_centre_line() {
             let local = ray_near(rng, &segment);
             let ray = m.ray(&local);
             let misses = misses(&segment, ribbon, &local);
-            // Behind the origin nothing is met; near it, perhaps. The ends are cut across.
+            // There are no hits behind the origin; near it there may be. The ends are flat.
             let sure = misses.windows(3).any(|of| {
                 let (_, miss, t) = of[1];
                 miss < 0.85 && miss <= of[0].1 && miss <= of[2].1 && t > 0.01
@@ -187,7 +186,7 @@ fn splitting_does_not_change_hits() {
             }
         }
     }
-    // Silhouettes shift by a fraction of the width, since the parts of parts are straighter.
+    // Silhouettes shift by a fraction of the width, since segments of segments are straighter.
     assert!(hits > 1000 && differences < hits / 30, "{differences} of {hits}");
 }
 
@@ -265,7 +264,7 @@ fn spawned_rays_do_not_hit_a_straight_curve() {
                     for _ in 0..10 {
                         let w = direction(rng);
                         let again = nearest_part(&curves, &surface.spawn_ray(w));
-                        // The far side of a tube's rim is within its width.
+                        // The far side of a cylinder's rim is within its width.
                         let grazes = surface.n.dot(surface.wo).abs() < 0.5
                             && surface.n.dot(w) * surface.n.dot(surface.wo) < 0.0;
                         assert!(again.is_none() || grazes, "{curves:?} {ray:?} {w} {again:?}");

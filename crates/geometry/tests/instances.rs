@@ -1,5 +1,5 @@
-//! Placed groups behave as if their members stood where they are placed, at rest or moving; and
-//! meshes keep the conventions of shading.
+//! Instances equal their transformed members, static or moving; and meshes follow the shading
+//! conventions.
 
 mod common;
 
@@ -94,7 +94,7 @@ fn an_instanced_plane_is_infinite() {
     assert!(nearest(&world, &Ray::new(Vec3::ZERO, Vec3::X, 0.0)).is_none(), "along the plane");
 }
 
-/// Rays that leave flat things far away, through an instance, do not meet them again.
+/// Rays spawned from flat surfaces in a distant instance do not hit them again.
 #[test]
 fn spawned_rays_do_not_hit_an_instanced_surface() {
     let rng = &mut Rng::new(3, 0);
@@ -183,7 +183,7 @@ fn shading_normals_are_weighted_by_their_lengths() {
     let patch = |m: &Transform| -> Geometry {
         Shape::from(BilinearPatch::new(corners, Some(normals), None, m, false)).into()
     };
-    // At a quarter of the way along both sides; the transform acts on the sum.
+    // At a quarter of both edges; the transform is applied to the sum.
     let object = [normals[0] * 0.5 + (normals[1] + normals[2]) * 0.25, Vec3::new(9.0, -3.0, 28.0) / 16.0];
     for (make, n) in [(&mesh as &dyn Fn(&Transform) -> Geometry, object[0]), (&patch, object[1])] {
         let expected = m.normal(n).normalize();
@@ -195,7 +195,7 @@ fn shading_normals_are_weighted_by_their_lengths() {
     }
 }
 
-/// A world whose ball is placed through several instances, and the same ball placed at once.
+/// A world with a sphere in nested instances, and one with the transformed sphere.
 fn nested(rng: &mut Rng, levels: usize) -> (World, World) {
     let mut builder = World::builder();
     let mut group = builder.add_group();
@@ -236,7 +236,7 @@ fn nested_instances_compose_their_transforms() {
             if a.primitive == b.primitive {
                 assert!(p.n.dot(q.n) > 0.9999 && p.dpdu.distance(q.dpdu) < 1e-3, "{p:?} and {q:?}");
             }
-            // What leaves to the outside of the ball's box does not meet the same triangle again.
+            // Rays spawned outwards do not hit the same triangle again.
             let away = nearest(&nested, &p.spawn_ray(face_forward(direction(rng), p.n)));
             assert!(away.is_none_or(|hit| hit.primitive != a.primitive), "{p:?}");
         }

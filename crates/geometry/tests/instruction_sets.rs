@@ -1,4 +1,4 @@
-//! All sets of instructions find the same hits, bit for bit.
+//! All instruction sets find the same hits, bit for bit.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::*;
 use math::*;
 use sampling::Rng;
 
-/// A world, once for each set that this processor has.
+/// The same world for each instruction set of this processor.
 fn worlds(geometries: Vec<Geometry>) -> Vec<(InstructionSet, World)> {
     let world = world(geometries);
     let sets = InstructionSet::ALL.into_iter().filter(|set| set.is_available());
@@ -59,7 +59,7 @@ fn closed_mesh() {
     let mesh = ball(60, 0.2, &Transform::IDENTITY);
     let rays = (0..30_000).map(|i| {
         let o = point_in(rng, [0.3, 2.0][i % 2]);
-        // Towards corners, middles of edges, and anywhere.
+        // Towards vertices, midpoints of edges, and random points.
         let triangle = ((rng.uniform_f32() * mesh.len() as f32) as usize).min(mesh.len() - 1);
         let [a, b, _] = mesh.corners(triangle);
         let d = match i % 5 {
@@ -105,8 +105,7 @@ fn hostile_geometry() {
     }
 }
 
-/// Rays from one point to neighbouring ones, which a batch takes through the tree together, and
-/// some that are not like their neighbours.
+/// Coherent rays from one point, which a batch traces as packets, and some incoherent ones.
 #[test]
 fn coherent_rays() {
     let rng = &mut Rng::new(4, 0);

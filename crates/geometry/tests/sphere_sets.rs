@@ -52,7 +52,7 @@ proptest! {
             let expected = brute_force(&set, &ray, t_max);
             let stats = &mut RayStats::default();
             let found = world.intersect(&ray, t_max, &keep_all, stats);
-            // A turned sphere's roots differ in the last bits of doubles.
+            // The roots of a rotated sphere differ in the last bits of double precision.
             let close = |a: f32, b: f32| (a - b).abs() <= a.abs() * 2.0 * f32::EPSILON;
             match (found, expected) {
                 (Some(hit), Some((t, i))) => {
@@ -90,7 +90,7 @@ proptest! {
     }
 }
 
-/// A closed world of spheres that touch, overlap and stand far from the origin of their own space.
+/// A closed world of spheres that touch, overlap, and are far from the origin of object space.
 fn crowds(rng: &mut Rng) -> Vec<SphereSet> {
     (0..12)
         .map(|i| {

@@ -1,5 +1,5 @@
-//! The trees find what testing every primitive finds, whatever they are given, and however many
-//! threads build them.
+//! BVHs find the hits of brute force for any input, and do not depend on the number of threads that
+//! build them.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! What every sampler promises: values in [0, 1), replay, right means, better than chance,
-//! independent dimensions.
+//! The contract of all samplers: values in [0, 1), replay, unbiased means, less variance than
+//! independent samples, independent dimensions.
 
 use alhazen_sampling::Sampler;
 use alhazen_sampling::sampler::*;
@@ -12,13 +12,13 @@ const SPP: u32 = 16;
 const RESOLUTION: [i32; 2] = [20, 13];
 const EACH_RANDOMIZE: [Randomize; 3] = [Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen];
 
-/// The one beside the independent sampler that arranges nothing.
+/// The sampler besides `independent` whose samples are independent.
 const PRIMARY: &str = "primary sample";
 
-/// Makes a sampler of a number of samples per pixel and a seed.
+/// Makes a sampler with a number of samples per pixel and a seed.
 type Make = Box<dyn Fn(u32, u32) -> Sampler>;
 
-/// Every sampler, in every arrangement in which it is random.
+/// Every sampler with every randomization.
 fn makers() -> Vec<(String, Make)> {
     let mut makers: Vec<(String, Make)> = vec![
         ("independent".into(), Box::new(|spp, seed| Sampler::Independent(Independent::new(spp, seed)))),
@@ -57,7 +57,7 @@ fn all_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
     samplers
 }
 
-/// The coordinates that a path might ask for.
+/// The dimensions that a path might use.
 fn draw(sampler: &mut Sampler, pixel: [i32; 2], index: u32) -> Vec<f32> {
     sampler.start_pixel_sample(pixel, index, 0);
     let mut values = sampler.get_pixel_2d().to_array().to_vec();
@@ -209,8 +209,7 @@ fn variance_decreases_beyond_the_planned_count() {
 fn dimensions_are_independent() {
     let makers = makers();
     for (name, make) in &makers {
-        // Pairs across calls, each from another seed, so that the points are independent of one
-        // another.
+        // Pairs of dimensions of different calls, one pair per seed, so that they are independent.
         let mut pairs = Vec::new();
         for seed in 0..6000 {
             let mut sampler = make(SPP, seed);

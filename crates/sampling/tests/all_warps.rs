@@ -1,14 +1,14 @@
-//! Every warp has the density it says and gives back what it was given.
+//! Every warp has its density, and its inverse returns the input.
 
 use alhazen_sampling::warp::*;
 use math::{Point3, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Random};
 
-/// More than the number of tests in this file, among which the significance is shared.
+/// An upper bound of the number of tests in this file, for the Šidák correction.
 const CHI2: Chi2 = Chi2 { bins: [16, 32], samples: 100_000, min_expected: 5.0, tests: 40, seed: 17 };
 
-/// Holds `invert(sample(u))` to u for many u.
+/// Asserts that `invert(sample(u))` is u for many u.
 fn round_trip<T>(sample: impl Fn(Vec2) -> T, invert: impl Fn(T) -> Vec2, tolerance: f32) {
     let mut random = Random::new(1);
     for _ in 0..5000 {

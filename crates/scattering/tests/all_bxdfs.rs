@@ -1,4 +1,4 @@
-//! What every BxDF owes its users, asked of every member.
+//! The contract of all BxDFs.
 
 use alhazen_scattering::{
     Bsdf, BsdfSample, Bxdf, BxdfFlags, Conductor, Dielectric, Diffuse, DiffuseTransmission, Directions,
@@ -32,7 +32,7 @@ fn conductor(alpha_x: f32, alpha_y: f32) -> Bxdf {
     Conductor { distribution: TrowbridgeReitz::new(alpha_x, alpha_y), eta, k }.into()
 }
 
-/// A metal of purely imaginary index, which absorbs nothing.
+/// A lossless metal, with a purely imaginary index of refraction.
 fn lossless_conductor(alpha: f32) -> Bxdf {
     let (eta, k) = (SampledSpectrum::ZERO, SampledSpectrum::splat(2.0));
     Conductor { distribution: TrowbridgeReitz::new(alpha, alpha), eta, k }.into()
@@ -46,7 +46,7 @@ fn thin_dielectric(eta: f32) -> Bxdf {
     ThinDielectric { eta }.into()
 }
 
-/// Every member, smooth and rough, even and brushed, from the air and from inside.
+/// Every BxDF: smooth and rough, isotropic and anisotropic, from outside and from inside.
 fn members() -> Vec<Bxdf> {
     let mut members = vec![
         diffuse(),
@@ -96,7 +96,7 @@ fn random_sample(
     bxdf.sample_f(wo, random.get_1d(), random.get_2d().into(), mode, directions)
 }
 
-/// What a path is multiplied by.
+/// The throughput weight of a sample.
 fn weight(sample: &BsdfSample) -> SampledSpectrum {
     sample.f * (sample.wi.z.abs() / sample.pdf)
 }
@@ -140,8 +140,9 @@ fn samples_have_their_density() {
     }
 }
 
-/// The sphere in three strips of θ, each one unit high: rough glass has an edge where its facets
-/// stand upright, and every surface one at the horizon; quadrature wants both between cells.
+/// The sphere in three strips of θ, each one unit high: rough glass has a discontinuity where its
+/// facets are vertical, and every surface one at the horizon; both have to be between cells of the
+/// quadrature.
 struct Strips([f32; 4]);
 
 impl Strips {
@@ -163,7 +164,7 @@ impl Strips {
     }
 }
 
-/// The relative index that light from `wo` meets where it is refracted.
+/// The relative index of refraction for light from `wo`.
 fn met(bxdf: &Bxdf, wo: Vector3) -> f32 {
     match bxdf {
         Bxdf::Dielectric(glass) if wo.z > 0.0 => glass.eta,
@@ -240,7 +241,8 @@ fn f_and_pdf_of_specular_lobes_are_zero() {
     }
 }
 
-/// Near total reflection the last digits of an angle show in f; the tolerance is wide for that.
+/// Near total internal reflection f is sensitive to the last digits of an angle; hence the wide
+/// tolerance.
 #[test]
 fn radiance_and_importance_are_reciprocal() {
     let mut random = Random::new(4);
@@ -266,8 +268,7 @@ fn radiance_and_importance_are_reciprocal() {
     }
 }
 
-/// Refracted radiance returns to where it came from with the same share, times η² for the solid
-/// angle.
+/// Refraction is reversible with the same transmittance, times η² for the solid angle.
 #[test]
 fn specular_refraction_is_reversible() {
     for bxdf in [dielectric(1.5, 0.0, 0.0), dielectric(1.0 / 1.5, 0.0, 0.0), thin_dielectric(1.5)] {
@@ -333,7 +334,7 @@ fn slightly_rough_lossless_surfaces_lose_little_energy() {
     }
 }
 
-/// The albedo by samples and by quadrature of f over all directions.
+/// The albedo by sampling and by quadrature of f over all directions.
 #[test]
 fn samples_integrate_f() {
     let mut random = Random::new(8);
@@ -375,7 +376,7 @@ fn albedos_of_diffuse_surfaces_are_their_reflectance() {
     assert!(diffuse().rho_hd(views()[1], []).is_black());
 }
 
-/// Barely rough members do what smooth ones do.
+/// BxDFs of very low roughness behave as smooth ones.
 #[test]
 fn low_roughness_converges_to_specular() {
     let mut random = Random::new(10);
@@ -416,7 +417,7 @@ fn regularization_roughens_narrow_lobes() {
     assert_eq!(glass.distribution, TrowbridgeReitz::new(0.3, 0.6));
 }
 
-/// The sum of the bounces inside a pane.
+/// The sum of the internal reflections of a pane.
 #[test]
 fn thin_glass_sums_internal_reflections() {
     for theta in [0.0f32, 30.0, 75.0, 120.0] {
@@ -430,7 +431,7 @@ fn thin_glass_sums_internal_reflections() {
     }
 }
 
-/// A sample on the way of a path: finite, not negative, and so for f and pdf.
+/// Samples, f and pdf are finite and not negative.
 fn check_sane(bxdf: Bxdf, wo: Vector3, uc: f32, u: Vec2) -> Result<(), String> {
     let bsdf = Bsdf { bxdf, frame: Frame { x: Vec3::X, y: Vec3::Y, z: Vec3::Z } };
     for mode in MODES {

@@ -1,5 +1,4 @@
-//! The distribution of microfacet normals: what its integrals must be, and that its samples have
-//! its density.
+//! The distribution of microfacet normals: its integrals, and the density of its samples.
 
 use alhazen_scattering::TrowbridgeReitz;
 use math::{Vector3, spherical_direction};

@@ -1,4 +1,4 @@
-//! What every light must do, on one list of configured lights: samples, densities and radiance
+//! The contract of all lights, on one list of configurations: samples, densities and radiance
 //! agree.
 
 mod common;
@@ -13,9 +13,9 @@ use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Moments, Random, welch_test};
 
-/// Holds samples against a density with edges, which is measured by the midpoint rule on cells of
-/// equal solid angle. Cells that are mostly dark count as one with the samples that fail, as their
-/// share is not measured well.
+/// Tests samples against a discontinuous density, integrated by the midpoint rule on cells of equal
+/// solid angle. Cells that are mostly dark are pooled with failed samples, as their integral is
+/// inaccurate.
 fn check_directions(
     sample: impl Fn([f32; 2]) -> Option<[f32; 3]>,
     density: impl Fn([f32; 3]) -> f64,
@@ -65,7 +65,7 @@ fn samples_have_their_density() {
     for case in &cases {
         let light = case.light();
         for (i, from) in references.iter().enumerate() {
-            // Directions from which nothing comes are no samples.
+            // Directions without radiance are not samples.
             let density = |w: [f32; 3]| {
                 let w = Vec3::from(w).normalize();
                 let pdf = light.pdf_li(from, w, false) as f64;
@@ -132,11 +132,11 @@ fn samples_agree_with_pdf_and_radiance() {
                     assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{}", case.name);
                     let pdf = light.pdf_li(&from, sample.wi, incomplete);
                     let arriving = arriving(&case.scene, &from, sample.wi);
-                    // At an edge, rounding decides on which side the direction lies.
+                    // At an edge, rounding decides whether the direction hits.
                     if pdf == 0.0 || arriving == 0.0 {
                         continue;
                     }
-                    // A density is the less certain the more obliquely it looks at the light.
+                    // The error of a density grows at grazing angles.
                     let cos = if light.is_infinite() { 1.0 } else { sample.n.dot(sample.wi).abs() as f64 };
                     let same = |a: f64, b: f64| (a - b).abs() <= 5e-4 / cos * a.max(b);
                     assert!(same(pdf as f64, sample.pdf as f64), "{}: {pdf} {sample:?}", case.name);
@@ -196,7 +196,7 @@ fn irradiance_by_light_and_direction_sampling_agree() {
 
 #[test]
 fn latitude_longitude_and_octahedral_maps_agree() {
-    // A brightness that tells directions apart, also mirrored and with axes exchanged.
+    // A brightness that distinguishes directions, also when mirrored or with swapped axes.
     let brightness = |w: Vec3| 2.0 + w.x + 0.5 * w.y + 0.2 * w.z;
     let size = [128, 64];
     let panorama = rgb_image(size[0], size[1], |x, y| {
@@ -277,7 +277,7 @@ fn emission_is_scaled_by_alpha() {
     let mut random = Random::new(8);
     let mut irradiance = |desc: &SceneDesc, count| {
         let case = Case { name: "alpha", scene: scene(desc) };
-        // Not through the light's own surface: it would hide some of its own samples.
+        // Without the light's own surface, which would occlude some of its samples.
         (0..count)
             .map(|_| {
                 let u = random.get_2d();
@@ -289,7 +289,7 @@ fn emission_is_scaled_by_alpha() {
     let whole = irradiance(&alpha(1.0), 10_000);
     let part: Moments = irradiance(&alpha(0.3), 10_000);
     assert!((part.mean / whole.mean - 0.3).abs() < 0.03, "{} {}", part.mean, whole.mean);
-    // Entirely cut out, it is invisible, but shines.
+    // With alpha 0 it is invisible, but still emits.
     let invisible = scene(&alpha(0.0));
     assert!(invisible.light(LightId(0)).is_delta());
     assert!(hit(&invisible, &ray(from.p.p, -Vec3::Z)).is_none());
@@ -298,7 +298,7 @@ fn emission_is_scaled_by_alpha() {
 
 #[test]
 fn infinite_planes_occlude_infinite_lights() {
-    // A floor and a ceiling without end, and a small ball: the sun comes through neither.
+    // An infinite floor and ceiling, and a small sphere: both planes occlude the sun.
     for ceiling in [false, true] {
         let mut desc = free(distant(None));
         desc.shapes.push(ShapeDesc {

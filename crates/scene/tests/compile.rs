@@ -1,4 +1,4 @@
-//! What compiling a scene makes of it: places, times, ids, and messages.
+//! Compilation of scenes: transforms, times, ids, and diagnostics.
 
 mod common;
 
@@ -49,7 +49,7 @@ fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     all
 }
 
-/// The one message about a scene.
+/// The only diagnostic of a scene.
 fn check(desc: &SceneDesc, severity: Severity, code: &str, message: &str, start: u32) {
     let all = diagnostics(desc);
     let [only] = &all[..] else { panic!("expected only `{message}`: {all:?}") };

@@ -1,5 +1,4 @@
-//! What every light must do as a source of rays: densities, power, and the same light as a point
-//! finds that looks for it.
+//! The contract of emission from all lights: densities, power, and agreement with light sampling.
 
 mod common;
 
@@ -28,7 +27,7 @@ fn emitted_rays_carry_the_power() {
     let cases = all_lights();
     let mut random = Random::new(1);
     for case in &cases {
-        // An image is taken as spread evenly over the surface, which on a disk it is not.
+        // The power of an image assumes uniform (u, v), which a disk has not.
         if case.name == "disk, image" {
             continue;
         }
@@ -57,7 +56,7 @@ fn emitted_rays_have_their_densities() {
             assert!((sample.ray.d.length() - 1.0).abs() < 1e-5 && sample.ray.time == TIME, "{}", case.name);
             assert!(sample.pdf_position > 0.0 && sample.pdf_direction > 0.0, "{}", case.name);
             assert_eq!(light.is_distant(), sample.p.is_none(), "{}", case.name);
-            // A ray that comes from where the light goes.
+            // The ray in the opposite direction.
             let back = Ray::new(sample.ray.at(10.0), -sample.ray.d, TIME);
             let far = light.pdf_le_infinite(&back);
             let Some(p) = sample.p else {
@@ -75,7 +74,7 @@ fn emitted_rays_have_their_densities() {
             let near = light.pdf_le(p.p, sample.n, sample.ray.d, TIME);
             let position = if light.is_delta() { 0.0 } else { sample.pdf_position };
             assert!(same(near.0, position), "{}: {near:?} {sample:?}", case.name);
-            // Rounding may not leave much of a cosine near 0.
+            // A cosine near 0 has a large relative error.
             let same_direction = (near.1 - sample.pdf_direction).abs() < 1e-4 * near.1 + 1e-6;
             assert!(same_direction, "{}: {near:?} {sample:?}", case.name);
         }
@@ -120,9 +119,9 @@ fn directions_of_spots_have_their_density() {
     }
 }
 
-/// Seen in parallel along some direction, a density per area p is p/|cos θ| per area of the view,
-/// summed over all that lies one behind the other. Where that grows without bound, at the outline
-/// of what is round, cells are not held against it one by one.
+/// In parallel projection along some direction, a density p per area becomes p/|cos θ| per
+/// projected area, summed over all layers. At the silhouettes of curved surfaces, where it is
+/// unbounded, cells are not tested one by one.
 #[test]
 fn emitted_positions_have_their_density() {
     let cases = area_lights();
@@ -201,7 +200,7 @@ fn emitted_rays_do_not_hit_their_own_surface() {
             let met = hit(&case.scene, &sample.ray).map(|surface| surface.p().distance(sample.ray.o));
             match case.name {
                 "bent patch" => {}
-                // Across the ball, by the chord.
+                // Across the sphere, by the chord.
                 "sphere, both sides" if !is_outside => {
                     let chord = -1.6 * sample.n.dot(sample.ray.d);
                     assert!((met.unwrap() - chord).abs() < 1e-4, "{met:?} {chord}");
@@ -213,7 +212,7 @@ fn emitted_rays_do_not_hit_their_own_surface() {
     }
 }
 
-/// The light that falls on a disk is that of the rays that hit it, and that which its points find.
+/// The flux onto a disk by emitted rays equals that by light sampling from its points.
 #[test]
 fn emitted_and_sampled_irradiance_agree() {
     let cases = all_lights();

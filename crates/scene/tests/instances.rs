@@ -1,4 +1,4 @@
-//! Where instances of objects and the shapes in them are, also while they move.
+//! Positions of instances and of the shapes in them, also in motion.
 
 mod common;
 
@@ -8,7 +8,7 @@ use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, TransformDesc}
 use math::{DMat4, DVec3, Ray, Vec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// A scene of one object in one place. The camera stands at `eye`.
+/// A scene of one instance. The camera is at `eye`.
 fn placed(shape: ShapeDesc, world_from_object: TransformDesc, eye: DVec3) -> Scene {
     let mut desc = SceneDesc::default();
     desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_translation(-eye));
@@ -19,7 +19,7 @@ fn placed(shape: ShapeDesc, world_from_object: TransformDesc, eye: DVec3) -> Sce
     scene(&desc)
 }
 
-/// Whether a ray along −z at a moment meets something above the point (x, y) of render space.
+/// Whether a ray along −z at a time hits something above the point (x, y) of render space.
 fn there(scene: &Scene, x: f32, y: f32, time: f32) -> bool {
     let ray = Ray::new(Vec3::new(x, y, 50.0), -Vec3::Z, time);
     scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).is_some()

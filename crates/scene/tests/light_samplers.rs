@@ -1,4 +1,4 @@
-//! What every way of choosing among lights must do.
+//! The contract of all light samplers.
 
 mod common;
 
@@ -36,7 +36,7 @@ fn add_area(desc: &mut SceneDesc, shape: ShapeKind, p: Vec3, turn: f64, two_side
     });
 }
 
-/// Lights of every bounded kind, some of them dark.
+/// Bounded lights of every kind, some of them black.
 fn mixed() -> SceneDesc {
     let mut desc = SceneDesc::default();
     let mut random = Random::new(11);
@@ -154,7 +154,7 @@ fn choices_have_their_probability() {
     }
 }
 
-/// What a light sends to a surface, at the first wavelength, without a look at what stands between.
+/// The unoccluded contribution of a light to a surface, at the first wavelength.
 fn sent(scene: &Scene, light: LightId, from: &LightSampleContext, u: [f32; 2]) -> f64 {
     let sample = scene.sample_light(light, from, u.into(), &lambda(), false);
     sample.map_or(0.0, |s| f64::from(s.l[0] * s.wi.dot(from.ns).abs() / s.pdf))
@@ -243,7 +243,7 @@ fn coincident_lights_are_distinguished() {
 #[test]
 fn the_light_bvh_prefers_near_and_facing_lights() {
     let mut desc = SceneDesc::default();
-    // One faces the origin, one looks away, one is far.
+    // One faces the origin, one faces away, one is far.
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -1.0), 0.0, false, 1.0);
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, 1.0), 0.0, false, 1.0);
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -4.0), 0.0, false, 1.0);

@@ -1,5 +1,4 @@
-//! How much light there is: power, irradiance in closed form, falloff, and the totals that an
-//! author asks for.
+//! Power, irradiance in closed form, falloff, and requested power and illuminance.
 
 mod common;
 
@@ -18,11 +17,11 @@ fn power_is_the_emitted_flux() {
     let (areas, lambda) = (area_lights(), lambda());
     let mut random = Random::new(4);
     for case in &areas {
-        // An image is taken as spread evenly over the surface, which on a disk it is not.
+        // The power of an image assumes uniform (u, v), which a disk has not.
         if case.name == "disk, image" {
             continue;
         }
-        // Emitted rays test what is seen through instances, and what moves by itself.
+        // For instanced and moving lights, emitted rays are the test.
         let geometry = case.scene.world().geometry(GeometryId(0));
         if !case.scene.instances().is_empty() || geometry.is_moving() {
             continue;
@@ -106,7 +105,7 @@ fn power_of_infinite_lights_is_the_flux_onto_the_scene() {
 
 #[test]
 fn irradiance_in_closed_form() {
-    // Lights above the origin, which faces up; they shine down.
+    // Lights above the origin that face down; the receiver faces up.
     let above = |shape: ShapeKind, height: f64| {
         area(shape, |light, shape| {
             light.two_sided = true;
@@ -138,7 +137,7 @@ fn irradiance_in_closed_form() {
         let scene = scene(desc);
         let radiance = 100.0 / spectrum::Spectrum::Constant(100.0).to_photometric();
         for from in [from, from_space] {
-            // One sample of every light makes one estimate of the whole.
+            // One sample of every light is one estimate of the sum.
             let estimates: Moments = (0..20_000)
                 .map(|_| {
                     let one = |light| match seen_sample(&scene, light, &from, random.get_2d(), false) {
@@ -173,7 +172,7 @@ fn point_lights_fall_off_with_squared_distance() {
         for distance in [0.3, 2.0, 70.0] {
             assert!((at(distance) / at(1.0) - 1.0).abs() < 1e-5, "{}", case.name);
         }
-        // Nothing, rather than infinity, arrives in the light itself.
+        // At the position of the light the radiance is zero rather than infinite.
         let inside = context(p, Vec3::ZERO);
         assert!(seen_sample(&case.scene, case.light(), &inside, [0.0; 2], false).is_none());
     }

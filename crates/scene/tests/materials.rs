@@ -1,4 +1,4 @@
-//! What every material becomes at a point, and how large a pixel is there.
+//! The BSDF of every material, and the footprint of a pixel.
 
 mod common;
 
@@ -106,7 +106,7 @@ fn dispersion_terminates_secondary_wavelengths() {
     let (Some(Bxdf::ThinDielectric(dispersive)), true) = bxdf(pane(named("glass-BK7"))) else { panic!() };
     assert_eq!(dispersive.eta, first);
 
-    // Where a table says nothing there is no glass.
+    // Outside the range of its table the index is invalid.
     let blue_only = SpectrumDesc::Samples([(360.0, 1.5), (361.0, 1.5)].into());
     let (Some(Bxdf::Dielectric(nothing)), true) = bxdf(glass(blue_only)) else { panic!() };
     assert_eq!(nothing.eta, 1.0);
@@ -308,7 +308,7 @@ fn footprints_without_differentials_are_those_of_the_camera() {
     let with = through(&observed.1, 1000.0, 1000.0);
     let seen = met(&observed, &with).footprint;
     let guessed = met(&observed, &with.ray.into()).footprint;
-    // The least of the film: never more than in its middle, and not by much.
+    // The minimum over the film: at most that of the centre, and not much less.
     let ratio = guessed.dpdx.length() / seen.dpdx.length();
     assert!(ratio > 0.5 && ratio < 1.05, "{ratio}");
 }

@@ -1,4 +1,4 @@
-//! Formulas and solids: what is drawn of them, and what is said of those that are wrong.
+//! Implicit surfaces and solids: hits, and diagnostics of invalid ones.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn solid(operation: SolidOperation, operands: Vec<Spanned<Handle<ObjectDesc>>>) 
     ShapeKind::Solid { operation, operands }.into()
 }
 
-/// The one message about a shape.
+/// The only diagnostic of a shape.
 fn message(mut desc: SceneDesc, shape: ShapeDesc) -> Diagnostic {
     desc.shapes.push_stated(Stated::new(shape, Origin::new(span(0, 10))));
     let mut all = match compile(&desc) {
@@ -43,7 +43,7 @@ fn message(mut desc: SceneDesc, shape: ShapeDesc) -> Diagnostic {
     all.remove(0)
 }
 
-/// How far along z a scene of one shape is met from below.
+/// The distance along z at which a scene of one shape is hit from below.
 fn met(mut desc: SceneDesc, shape: ShapeDesc) -> Option<f32> {
     desc.shapes.push(shape);
     let compiled = compile(&desc).expect("a scene");

@@ -1,5 +1,4 @@
-//! Sets of spheres in a scene: each sphere can emit, and under any transform each stands where it
-//! would stand alone.
+//! Sphere sets in a scene: each sphere can emit, and equals a single sphere under any transform.
 
 mod common;
 

@@ -1,8 +1,9 @@
-//! RGB values made into spectra and seen by the standard observer are the RGB values again.
+//! RGB values uplifted to spectra and integrated with the standard observer are the same RGB
+//! values.
 
 use alhazen_spectrum::{Rgb, RgbColorSpace, SampledWavelengths, Spectrum, xyz_from};
 
-/// The RGB values that a reflectance shows under the colour space's illuminant.
+/// The RGB values of a reflectance under the colour space's illuminant.
 fn seen(space: &RgbColorSpace, reflectance: &Spectrum) -> Rgb {
     let light = space.illuminant();
     let pairs: Vec<(f32, f32)> = (360..=830)
@@ -38,7 +39,7 @@ fn srgb_round_trips() {
 fn moderate_colours_of_every_space_round_trip() {
     for space in RgbColorSpace::all() {
         for rgb in grid(6) {
-            // Half way to grey: every space has such a reflectance.
+            // Half way to grey: such colours have a reflectance in every space.
             let rgb = rgb.lerp(Rgb::splat(rgb.average()), 0.6) * 0.9;
             let again = seen(space, &Spectrum::rgb_albedo(space, rgb));
             assert!(largest_difference(again, rgb) < 2e-3, "{space:?}: {rgb:?} became {again:?}");
