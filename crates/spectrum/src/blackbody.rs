@@ -1,4 +1,4 @@
-//! The radiance of a body that absorbs all light, by Planck's law.
+//! The radiance of a blackbody, by Planck's law.
 //!
 //! L(λ, T) = 2hc² / (λ⁵ (e^{hc / (λ k T)} − 1)), in W / (m² sr m) with λ in metres
 //! [Pharr 2023 §4.4.1].
@@ -13,7 +13,7 @@ const K_B: f64 = 1.380_648_8e-23;
 const WIEN: f64 = 2.897_772_1e-3;
 
 /// Radiance of a blackbody of `temperature` kelvin at `lambda` nanometres, per metre of wavelength;
-/// zero for no temperature.
+/// zero at 0 K.
 pub fn blackbody(lambda: f32, temperature: f32) -> f32 {
     if temperature <= 0.0 {
         return 0.0;
@@ -34,7 +34,7 @@ pub struct Blackbody {
 }
 
 impl Blackbody {
-    /// The normalized spectrum of a body of `temperature` kelvin; black for no temperature.
+    /// The normalized spectrum of a body of `temperature` kelvin; black at 0 K.
     pub fn new(temperature: f32) -> Self {
         let temperature = f64::from(temperature);
         let normalization =

@@ -1,14 +1,14 @@
 //! Spectra given by values at some wavelengths, linear between them and zero outside, and the text
 //! form of them.
 //!
-//! Text: numbers divided by white space, wavelength and value in turn, wavelengths in nanometres
-//! and strictly increasing; `#` begins a comment that ends with the line.
+//! Text: numbers separated by white space, alternately wavelength and value, wavelengths in
+//! nanometres and strictly increasing; `#` starts a comment to the end of the line.
 
 use std::fmt;
 
 use crate::dense::DenselySampled;
 
-/// Why pairs of wavelength and value are no spectrum.
+/// Why pairs of wavelength and value are not a spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectrumError {
     /// There are no values at all.
@@ -27,7 +27,7 @@ pub enum SpectrumError {
     NotIncreasing {
         /// The wavelength before.
         previous: f32,
-        /// The wavelength at fault.
+        /// The wavelength that is not larger.
         lambda: f32,
     },
 }
@@ -47,7 +47,7 @@ impl fmt::Display for SpectrumError {
 
 impl std::error::Error for SpectrumError {}
 
-/// A [`SpectrumError`] and where in a text it is.
+/// A [`SpectrumError`] and its position in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParseError {
     /// Line, from 1.

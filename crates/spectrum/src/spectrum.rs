@@ -1,4 +1,4 @@
-//! Any function of wavelength that a scene may name: [`Spectrum`].
+//! Functions of wavelength in scenes: [`Spectrum`].
 
 use std::sync::Arc;
 
@@ -16,11 +16,11 @@ use crate::sampled::{LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
 pub enum Spectrum {
     /// The same at all wavelengths.
     Constant(f32),
-    /// Linear between given wavelengths.
+    /// Piecewise linear between given wavelengths.
     PiecewiseLinear(Arc<PiecewiseLinear>),
     /// A value each nanometre.
     DenselySampled(Arc<DenselySampled>),
-    /// Light of a hot body, at most 1.
+    /// A blackbody, normalized to the maximum 1.
     Blackbody(Blackbody),
     /// A reflectance from RGB.
     RgbAlbedo(RgbAlbedoSpectrum),
@@ -88,7 +88,7 @@ impl Spectrum {
         }
     }
 
-    /// A bound on the values, attained by most kinds.
+    /// An upper bound of the values, tight for most kinds.
     pub fn max_value(&self) -> f32 {
         match self {
             Self::Constant(value) => *value,
@@ -114,8 +114,8 @@ impl Spectrum {
         Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
     }
 
-    /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB
-    /// the illuminant alone counts, so that its RGB values remain factors.
+    /// ∫ f(λ) ȳ(λ) dλ, by which lights of given power or illuminance are scaled. For light from RGB
+    /// it is that of the illuminant, so that the RGB values remain factors.
     pub fn to_photometric(&self) -> f32 {
         let y_bar = &cie::matching_functions().y;
         match self {
@@ -124,7 +124,7 @@ impl Spectrum {
         }
     }
 
-    /// The values at whole nanometres, for fast repeated use.
+    /// The values at integer nanometres, for fast evaluation.
     pub fn to_dense(&self) -> Self {
         match self {
             Self::Constant(_) | Self::DenselySampled(_) => self.clone(),

@@ -84,8 +84,8 @@ fn ratio_position(ratio: f32) -> f32 {
     ((0.36 + 1.6 * ratio).sqrt() - 0.6) / 0.8
 }
 
-/// What coefficients are about linear in over the largest component z: (z − ½) / √(z (1 − z)), kept
-/// finite at z = 1.
+/// The variable in which coefficients are about linear over the largest component z: (z − ½) / √(z
+/// (1 − z)), kept finite at z = 1.
 fn value_coordinate(z: f32) -> f32 {
     (z - 0.5) / (z * (1.05 - z)).sqrt()
 }

@@ -1,15 +1,15 @@
 //! Adaptive quadrature over a rectangle.
 //!
-//! A cell is measured by Simpson's rule, once whole and once in quarters; where the two disagree by
-//! more than the tolerance, each quarter is treated alike. As the rule looks at the border of each
-//! cell, no straight edge of the density slips between its points unseen; edges are so followed to
-//! a fine width.
+//! A cell is integrated by Simpson's rule, once whole and once in quarters; where these differ by
+//! more than the tolerance, the quarters are refined recursively. The rule has nodes on the
+//! boundary of each cell, so that no straight discontinuity lies between them unnoticed;
+//! discontinuities are resolved to a fine width.
 
-/// How often a cell is quartered at least and at most.
+/// The least and greatest number of subdivisions.
 const MIN_DEPTH: u32 = 2;
 const MAX_DEPTH: u32 = 9;
-/// How often it is quartered at least where all points of the usual grid have missed what the
-/// density has there.
+/// The least number of subdivisions where all nodes of the usual grid have missed the support of
+/// the density.
 const SEARCH_DEPTH: u32 = 6;
 
 /// ∬ `f` over `[x0, x1] × [y0, y1]`, given as `[[x0, x1], [y0, y1]]`, to about `tolerance`.
@@ -17,7 +17,7 @@ pub fn integrate(f: &impl Fn(f64, f64) -> f64, cell: [[f64; 2]; 2], tolerance: f
     refine(f, cell, simpson(f, cell), 0.1 * tolerance, [MIN_DEPTH, MAX_DEPTH])
 }
 
-/// As [`integrate`], for a cell of which it is known that `f` is not 0 everywhere.
+/// As [`integrate`], for a cell where `f` is known not to be 0 everywhere.
 pub(crate) fn search(f: &impl Fn(f64, f64) -> f64, cell: [[f64; 2]; 2], tolerance: f64) -> f64 {
     refine(f, cell, simpson(f, cell), 0.1 * tolerance, [SEARCH_DEPTH, MAX_DEPTH])
 }
