@@ -1,5 +1,5 @@
-//! Damaged, odd and old files of others, from import to a small picture where they can be read: no
-//! panic, and soon an end.
+//! Damaged, unusual and old third-party files, from import to a small picture where they are valid:
+//! no panic, and bounded time.
 
 mod common;
 
@@ -79,7 +79,7 @@ fn images_as_textures() {
     });
 }
 
-/// Environments too: their sizes and values are held to more.
+/// Also as environment maps, which have further requirements.
 #[test]
 fn images_as_environment_maps() {
     draw_all(&["exr"], &["exr"], |path| {

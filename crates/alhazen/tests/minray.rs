@@ -1,5 +1,5 @@
-//! The picture of the business card, held to the one that the card's own program printed, and to
-//! some pixels of it where that is absent.
+//! The picture of the business card ray tracer against that of the original program, or some of its
+//! pixels where that is absent.
 
 #[allow(dead_code)]
 #[path = "../examples/minray.rs"]

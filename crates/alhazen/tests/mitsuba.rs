@@ -1,8 +1,7 @@
-//! Test scenes of Mitsuba and Ignis, written anew, against the pictures that come with them or
-//! means found by Mitsuba.
+//! Test scenes of Mitsuba and Ignis, converted, against their reference pictures or means by
+//! Mitsuba.
 //!
-//! The references hold three numbers for a colour, our pictures many: where light is reflected once
-//! both say the same.
+//! The references are RGB, our pictures spectral: for light reflected once both agree.
 
 mod common;
 
@@ -16,7 +15,7 @@ fn reference(path: &Path) -> Image {
     image::open(path).expect("the reference is readable")
 }
 
-/// What all scenes begin with: a camera of Mitsuba's hand, and pixels without overlap.
+/// The head of all scenes: a camera with Mitsuba's handedness, and a box filter.
 fn head(look_at: &str, fov: f32, side: u32, max_depth: u32, samples: u32) -> String {
     format!(
         "Scale -1 1 1 LookAt {look_at}\nCamera \"perspective\" \"float fov\" {fov}\n\

@@ -1,4 +1,4 @@
-//! Every scene in `scenes/` is without fault, and shows something.
+//! Every scene in `scenes/` renders without diagnostics.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The first look at a picture: like it, and without any part in it.
+//! Sketches: like the picture, without changing it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -24,12 +24,12 @@ fn job(integrator: &str, overrides: Overrides) -> Job {
     Job::compile(&desc).unwrap().job
 }
 
-/// A picture whose sides are no multiples of what the pixels of its sketch are wide.
+/// A picture whose sides are not multiples of the sketch's pixel size.
 fn whole() -> Overrides {
     of_depth("3", Overrides { resolution: Some([401, 299]), ..Overrides::default() })
 }
 
-/// A part that begins and ends between pixels of its sketch.
+/// A crop that starts and ends between pixels of its sketch.
 fn part() -> Overrides {
     let crop = Some([0.25, 0.87, 0.0053, 0.69]);
     of_depth("3", Overrides { resolution: Some([601, 451]), crop, ..Overrides::default() })
@@ -65,8 +65,8 @@ fn a_sketch_has_the_means_of_the_picture() {
         path.render(&Control::default()).unwrap();
         let picture = path.picture();
         let expected = means(&picture);
-        // Chains dwell, the photons of a pass have four wavelengths, and large patches blur
-        // shadows.
+        // Markov chains are correlated, the photons of a pass have four wavelengths, and large
+        // patches blur shadows.
         for (integrator, tolerance) in [
             ("path", 0.2),
             ("light-tracing", 0.2),
@@ -90,7 +90,7 @@ fn a_sketch_has_the_means_of_the_picture() {
     }
 }
 
-/// Where the middle of all light is, in pixels.
+/// The centroid of the picture, in pixels.
 fn middle(image: &Image) -> [f64; 2] {
     let width = image.width() as usize;
     let mut sums = [0.0; 3];
@@ -104,7 +104,7 @@ fn middle(image: &Image) -> [f64; 2] {
 #[test]
 fn a_sketch_has_the_positions_of_the_picture() {
     for overrides in [whole(), part()] {
-        // The lamp alone.
+        // Only the light.
         let mut job = job("path", of_depth("0", overrides));
         let sketch = sketch(&mut job).unwrap();
         job.render(&Control::default()).unwrap();

@@ -1,5 +1,5 @@
-//! Algorithms that claim the same light, against each other: pictures of small scenes, part by part
-//! and as a whole.
+//! Integrators with the same expected value, against each other: pictures of small scenes, as a
+//! whole and by squares.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -87,7 +87,7 @@ static REFERENCES: LazyLock<Vec<Pictures>> = LazyLock::new(|| {
     SCENES.iter().map(reference).collect()
 });
 
-/// Holds an algorithm to path tracing on every scene that it can see all of.
+/// Tests an integrator against path tracing on every scene that it can render completely.
 fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can: impl Fn(&Scene) -> bool) {
     let scenes: Vec<_> = SCENES.iter().zip(&*REFERENCES).filter(|(scene, _)| can(scene)).collect();
     let mut failures = Vec::new();
@@ -116,7 +116,7 @@ fn vcm_agrees_with_path_tracing() {
 
 #[test]
 fn sppm_agrees_with_path_tracing() {
-    // Light of one side of a wall without thickness is found on the other, within the radius.
+    // Photons on one side of a wall without thickness leak to the other, within the radius.
     let can = |scene: &Scene| !["a door that is almost closed", "a plane without end"].contains(&scene.name);
     assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, can);
 }
@@ -140,7 +140,7 @@ const BLUR: f64 = 0.02;
 
 #[test]
 fn photon_mapping_nearly_agrees_with_path_tracing() {
-    // Under a door photons seep.
+    // Photons leak under the door.
     let can = |scene: &Scene| !["a door that is almost closed", "a plane without end"].contains(&scene.name);
     let scenes = SCENES.iter().zip(&*REFERENCES).filter(|(scene, _)| can(scene));
     let settings = [("photons", "2000"), ("causticphotons", "2000"), ("nearest", "20"), ("radius", "0.1")];

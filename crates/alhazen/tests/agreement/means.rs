@@ -1,5 +1,5 @@
-//! Means of whole pictures, each known to a part in a thousand: the same for all algorithms to
-//! three.
+//! Means of whole pictures, with a standard error of one per mille, which agree within three for
+//! all integrators.
 //!
 //! Pictures with one seed after another are made until the mean of each channel is known well
 //! enough. The mean does not mind how many pixels there are, so each algorithm has as many as make
@@ -11,7 +11,7 @@ use testkit::{Moments, welch_test};
 use crate::common::{means, render_text};
 use crate::scenes::{SCENES, Scene};
 
-/// How far means may differ.
+/// The tolerated difference of means.
 const THREE_IN_A_THOUSAND: f64 = 3e-3;
 
 /// In the pool, path tracing knows the mean to a part in a thousand after many minutes. In the

@@ -1,4 +1,4 @@
-//! What every algorithm promises, whatever it is.
+//! The contract of all integrators.
 
 use std::f64::consts::PI;
 
@@ -93,7 +93,7 @@ impl Member {
         Self { integrator, settings, lost: [0.0; 2] }
     }
 
-    /// All that follow light.
+    /// All integrators of global illumination.
     ///
     /// A final gather looks for photons where its rays fall, on the other walls: nowhere more than
     /// 2.5 times as often as in the mean. Connecting loses nothing, so vcm loses less than merging
@@ -166,7 +166,7 @@ fn a_closed_furnace_has_every_path_up_to_a_depth_once() {
     }
 }
 
-/// Small mirrors, on which a lamp behind the camera glints.
+/// Small mirrors that reflect a light behind the camera.
 const MIRRORS: &str = r#"Camera "perspective" "float fov" 40
     Film "rgb" "integer xresolution" 4 "integer yresolution" 4 "bool savefp16" false
     PixelFilter "mitchell"
