@@ -1,7 +1,7 @@
 //! Decomposition of the error into noise and bias.
 //!
-//! Let a and b be two independent pictures with the same budget, r the reference, and ⟨·⟩ the mean over
-//! pixels and colour channels. Then
+//! Let a and b be two independent pictures with the same budget, r the reference, and ⟨·⟩ the mean
+//! over pixels and colour channels. Then
 //!
 //! error = ⟨(a − r)² + (b − r)²⟩ / 2 = ⟨(a − b)²⟩ / 2 + ⟨(a − r)(b − r)⟩,
 //!
