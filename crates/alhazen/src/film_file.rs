@@ -88,8 +88,17 @@ impl RenderOrder {
 
     /// What all parts of a render have in common.
     fn settings(&self, header: &Header) -> Value {
-        let Overrides { integrator, settings, accelerator, samples_per_pixel, resolution, crop, pixel, seed } =
-            &self.overrides;
+        let Overrides {
+            integrator,
+            settings,
+            accelerator,
+            samples_per_pixel,
+            resolution,
+            crop,
+            pixel,
+            seed,
+            layers,
+        } = &self.overrides;
         json!({
             "alhazen": VERSION,
             "integrator": integrator,
@@ -100,6 +109,7 @@ impl RenderOrder {
             "crop": crop,
             "pixel": pixel,
             "seed": seed,
+            "layers": layers,
             "header": header.to_json(),
         })
     }
@@ -245,6 +255,11 @@ fn overrides(json: &Value) -> Option<Overrides> {
         crop: array(&json["crop"], |side| side.as_f64().map(|side| side as f32)),
         pixel: array(&json["pixel"], integer),
         seed: integer(&json["seed"]),
+        layers: json["layers"]
+            .as_array()?
+            .iter()
+            .map(|name| Some(name.as_str()?.to_owned()))
+            .collect::<Option<_>>()?,
     })
 }
 

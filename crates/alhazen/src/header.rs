@@ -1,19 +1,19 @@
-//! What the header of a picture says: the scene's camera, and settings.
+//! The header of a picture: the camera and settings of the scene.
 
 use description::schema::Settings;
 use description::{CameraKind, SceneDesc};
-use film::Film;
+use film::{Development, Film};
 use image::{Attribute, Image, ImageMetadata};
 use integrators::SessionState;
 use math::Mat4;
 use serde_json::{Map, Value, json};
 
-/// What the header of a picture says: the scene's camera, and settings.
+/// The header of a picture: the camera and settings of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header(Vec<(String, Attribute)>);
 
 impl Header {
-    /// Of the pictures of a scene.
+    /// The header of pictures of a scene.
     pub(crate) fn of(desc: &SceneDesc) -> Self {
         let camera = match &desc.camera.kind {
             CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
@@ -33,22 +33,36 @@ impl Header {
         Self(attributes.map(|(name, value)| (name.to_owned(), value)).to_vec())
     }
 
-    /// The picture of a render as it stands, with this and the number of passes in its header.
+    /// The picture of a render so far, with this header and the number of passes.
     pub fn picture(&self, state: &SessionState) -> Image {
         state.with_film(|film| self.picture_of(film, state.done.count()))
     }
 
-    /// The picture on a film of so many samples per pixel.
+    /// Calls `look` with [`Self::picture`] and all layers. Rows are computed when they are read, so
+    /// that a large picture needs no copy in memory.
+    pub fn with_development<T>(&self, state: &SessionState, look: impl FnOnce(&Development) -> T) -> T {
+        state.with_film(|film| {
+            let mut development = film.development();
+            self.set(&mut development.metadata, state.done.count());
+            look(&development)
+        })
+    }
+
+    /// The picture of a film with this number of samples per pixel.
     pub(crate) fn picture_of(&self, film: &Film, samples_per_pixel: u32) -> Image {
         let mut picture = film.develop();
-        for (name, value) in &self.0 {
-            picture.metadata.set(name, value.clone());
-        }
-        picture.metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
+        self.set(&mut picture.metadata, samples_per_pixel);
         picture
     }
 
-    /// As JSON: text, whole numbers and matrices stand for themselves.
+    fn set(&self, metadata: &mut ImageMetadata, samples_per_pixel: u32) {
+        for (name, value) in &self.0 {
+            metadata.set(name, value.clone());
+        }
+        metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
+    }
+
+    /// As JSON: strings, integers and matrices.
     pub(crate) fn to_json(&self) -> Value {
         let value = |value: &Attribute| match value {
             Attribute::Text(text) => json!(text),
@@ -59,7 +73,7 @@ impl Header {
         self.0.iter().map(|(name, attribute)| (name.clone(), value(attribute))).collect::<Map<_, _>>().into()
     }
 
-    /// From what [`to_json`](Self::to_json) has written.
+    /// Parses the JSON of [`to_json`](Self::to_json).
     pub(crate) fn from_json(json: &Value) -> Option<Self> {
         let value = |value: &Value| match value {
             Value::String(text) => Some(Attribute::Text(text.clone())),

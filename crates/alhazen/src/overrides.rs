@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use description::{AcceleratorDesc, Diagnostic, FileId, IntegratorDesc, SceneDesc, Span};
+use description::{AcceleratorDesc, Diagnostic, FileId, IntegratorDesc, SceneDesc, Span, Spanned};
+use film::Layer;
 
 use crate::settings::{self, Unset, called, drawn, integrator_called};
 
@@ -27,6 +28,8 @@ pub struct Overrides {
     pub pixel: Option<[i32; 2]>,
     /// Seed of all random numbers.
     pub seed: Option<i32>,
+    /// The names of layers beside the colour, in addition to the scene's.
+    pub layers: Vec<String>,
 }
 
 /// A change that makes no sense.
@@ -92,6 +95,12 @@ impl Overrides {
             }
             desc.film.pixel_bounds = Some([x, x + 1, y, y + 1]);
             desc.film.crop_window = None;
+        }
+        for name in &self.layers {
+            if Layer::from_name(name).is_none() {
+                return Err(unknown("layer", name, &Layer::ALL.map(Layer::name)));
+            }
+            desc.film.layers.push(Spanned::new(name.clone(), Span::NONE));
         }
         if let Some(seed) = self.seed {
             desc.options.seed = seed;

@@ -154,7 +154,10 @@ impl Task<'_> {
         let session = &self.job.session;
         let files = session.integrator().files();
         let films = if self.outputs.is_empty() { Vec::new() } else { session.integrator().films() };
-        let beside = write_results(&self.job.picture(), &self.outputs, films, files);
+        let beside = self
+            .job
+            .header()
+            .with_development(session.state(), |picture| write_results(picture, &self.outputs, films, files));
         // Where a cancelled pass has left a part of its light on the film, the last checkpoint
         // stays as it is.
         let saved = match &mut self.checkpoint {
@@ -215,7 +218,7 @@ impl<'a> Preview<'a> {
         if self.outputs.is_empty() || elapsed < self.next {
             return;
         }
-        write_preview(&self.header.picture(session.state()), self.outputs);
+        self.header.with_development(session.state(), |picture| write_preview(picture, self.outputs));
         self.interrupt.note_written(self.outputs, session.progress().pass);
         let writing = self.begin.elapsed() - elapsed;
         self.next = elapsed + writing + elapsed.min(PREVIEW_INTERVAL).max(PREVIEW_SHARE * writing);

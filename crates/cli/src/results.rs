@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use alhazen::film::Film;
-use alhazen::image::{Image, replace_file};
+use alhazen::image::{PixelSource, replace_file};
 use alhazen::integrators::OutputFile;
 use alhazen::write_picture;
 
@@ -13,7 +13,7 @@ use crate::failure::{Failure, about_file};
 /// gives the paths of the latter. A file that cannot be written does not keep the others from being
 /// written.
 pub fn write_results<'a>(
-    picture: &Image,
+    picture: &dyn PixelSource,
     outputs: &[PathBuf],
     films: impl IntoIterator<Item = (String, &'a Film)>,
     files: Vec<OutputFile>,
@@ -32,7 +32,7 @@ pub fn write_results<'a>(
     for (name, film) in films {
         let path = named_beside(&outputs[0], &name);
         beside.extend(write(&path, &|| {
-            write_picture(&film.develop(), &path).map_err(|error| about_file(&path, error))
+            write_picture(&film.development(), &path).map_err(|error| about_file(&path, error))
         }));
     }
     for OutputFile { path, contents } in &files {
@@ -45,7 +45,7 @@ pub fn write_results<'a>(
 }
 
 /// Writes a picture that a better one will replace. Whether it can be written shows at the end.
-pub fn write_preview(picture: &Image, outputs: &[PathBuf]) {
+pub fn write_preview(picture: &dyn PixelSource, outputs: &[PathBuf]) {
     for path in outputs {
         let _ = write_picture(picture, path);
     }

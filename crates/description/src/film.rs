@@ -1,7 +1,7 @@
 //! The film: what is stored of the light that arrives.
 
-use crate::ColorSpaceDesc;
 use crate::schema::{above, choices, from, one_of, settings};
+use crate::{ColorSpaceDesc, Spanned};
 
 /// The sensors of the format: an ideal one with the responses of CIE 1931 XYZ, and measured
 /// cameras.
@@ -56,6 +56,8 @@ settings! {
         sensor: SensorDesc = SensorDesc::default() => ..;
         /// The colour space of the image.
         color_space: ColorSpaceDesc = ColorSpaceDesc::Srgb;
+        /// The names of layers beside the colour.
+        layers: Vec<Spanned<String>> = Vec::new();
     }
 }
 
@@ -66,7 +68,7 @@ settings! {
         /// Colour.
         Rgb = "rgb",
         /// Colour and geometry.
-        GBuffer = "gbuffer" (not drawn) {
+        GBuffer = "gbuffer" {
             /// The space of positions and normals.
             space: GBufferSpace = GBufferSpace::Camera => ["coordinatesystem"];
         },

@@ -1,24 +1,28 @@
-//! From what a scene's author said about film and filter to a [`Film`].
+//! From the description of film and filter to a [`Film`].
 
-use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, SceneDesc};
+use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, GBufferSpace, SceneDesc, Spanned};
 use math::Bounds2i;
 use spectrum::RgbColorSpace;
 
-use crate::{Film, FilmSettings, Filter, LayerSet, PixelSensor};
+use crate::{Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
 
-/// The lowest and the highest temperature in kelvin that white balance takes.
+/// The range of white balance temperatures in kelvin.
 const WHITE_BALANCE: std::ops::RangeInclusive<f32> = 500.0..=100_000.0;
+
+/// The layers of the format's film `gbuffer`, as far as there are any for them.
+const GBUFFER_LAYERS: [Layer; 6] =
+    [Layer::Depth, Layer::Normal, Layer::Albedo, Layer::Position, Layer::Uv, Layer::Variance];
 
 /// What [`compile`] gives.
 #[derive(Debug)]
 pub struct Compiled {
     /// The film, without light.
     pub film: Film,
-    /// What is drawn otherwise than described.
+    /// What is rendered differently from its description.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Makes the film of a scene, or tells everything that is wrong with it.
+/// Makes the film of a scene, or returns all its errors and warnings.
 pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     let film = settings(desc, &mut diagnostics).and_then(|settings| {
@@ -37,11 +41,18 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
 
 fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmSettings> {
     let film = &desc.film;
+    let mut layers = layers(&film.layers, diagnostics);
     match film.kind {
         FilmKind::Rgb => {}
-        FilmKind::GBuffer { .. } | FilmKind::Spectral { .. } => {
-            let name = if matches!(film.kind, FilmKind::GBuffer { .. }) { "gbuffer" } else { "spectral" };
-            let message = format!("film `{name}` is not drawn yet; drawn as `rgb`");
+        FilmKind::GBuffer { space } => {
+            layers = GBUFFER_LAYERS.into_iter().fold(layers, LayerSet::with);
+            if space == GBufferSpace::Camera {
+                let message = "positions and normals of film `gbuffer` are written in world space";
+                diagnostics.push(Diagnostic::warning("not-drawn", message, film.origin.span));
+            }
+        }
+        FilmKind::Spectral { .. } => {
+            let message = "film `spectral` is not drawn yet; drawn as `rgb`";
             diagnostics.push(Diagnostic::warning("not-drawn", message, film.origin.span));
         }
     }
@@ -65,11 +76,25 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
         max_component_value: film.max_component_value,
         color_space,
         half_floats: film.save_fp16,
-        layers: LayerSet::NONE,
+        layers,
     })
 }
 
-/// The pixels to render: those asked for, within the whole image. A crop window counts before pixel
+/// The layers of these names.
+fn layers(names: &[Spanned<String>], diagnostics: &mut Vec<Diagnostic>) -> LayerSet {
+    let layer = |name: &Spanned<String>| {
+        let layer = Layer::from_name(&name.value);
+        if layer.is_none() {
+            let known = Layer::ALL.map(Layer::name).join(", ");
+            let message = format!("no layer is called `{}`; known are {known}", name.value);
+            diagnostics.push(Diagnostic::error("invalid-film", message, name.span));
+        }
+        layer
+    };
+    names.iter().filter_map(layer).collect()
+}
+
+/// The pixels to render, clipped to the whole image. A crop window takes precedence over pixel
 /// bounds.
 pub fn pixel_bounds(film: &FilmDesc) -> Bounds2i {
     let full = Bounds2i::new([0, 0], film.resolution);

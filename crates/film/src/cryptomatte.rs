@@ -1,9 +1,8 @@
 //! Layers of identifiers in the form of Cryptomatte: the identifiers of a pixel that cover most of
 //! it, in pairs of channels of identifier and coverage [Friedman 2015].
 //!
-//! An identifier is a hash of a name whose bits make a finite single float.
-
-use std::collections::BTreeMap;
+//! An identifier is a hash of a name whose bits make a finite single float. The list of names that
+//! files may have (the manifest) is not written.
 
 use image::{Attribute, ImageMetadata};
 
@@ -78,24 +77,6 @@ fn attribute(layer: Layer, key: &str) -> String {
     format!("cryptomatte/{}/{key}", &digits[..7])
 }
 
-/// Lists the names behind identifiers in a picture's header.
-pub fn set_names(layer: Layer, names: &[impl AsRef<str>], metadata: &mut ImageMetadata) {
-    let names: BTreeMap<&str, u32> =
-        names.iter().map(|name| (name.as_ref(), id_of_name(name.as_ref()))).collect();
-    let entries = names.iter().map(|(name, id)| format!("{}:\"{id:08x}\"", json_string(name)));
-    let manifest = format!("{{{}}}", entries.collect::<Vec<_>>().join(","));
-    metadata.set(&attribute(layer, "manifest"), Attribute::Text(manifest));
-}
-
-fn json_string(text: &str) -> String {
-    let escaped = text.chars().map(|c| match c {
-        '"' | '\\' => format!("\\{c}"),
-        c if c.is_control() => format!("\\u{:04x}", u32::from(c)),
-        c => c.to_string(),
-    });
-    format!("\"{}\"", escaped.collect::<String>())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,16 +110,5 @@ mod tests {
         assert_eq!(ids, [2, 1, 4, 0, 0, 0]);
         let coverage: Vec<f32> = ranks.into_iter().skip(1).step_by(2).collect();
         assert_eq!(coverage, [0.25, 0.125, 0.125, 0.0, 0.0, 0.0]);
-    }
-
-    #[test]
-    fn names_are_listed_as_json() {
-        let mut metadata = ImageMetadata::default();
-        set_names(Layer::ObjectId, &["b", "a\"\n"], &mut metadata);
-        let Some(Attribute::Text(manifest)) = metadata.get(&attribute(Layer::ObjectId, "manifest")) else {
-            panic!("no manifest: {metadata:?}");
-        };
-        let id = |name| format!("{:08x}", id_of_name(name));
-        assert_eq!(*manifest, format!(r#"{{"a\"\u000a":"{}","b":"{}"}}"#, id("a\"\n"), id("b")));
     }
 }

@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
+use half::f16;
 use image::{Channel, Chromaticities, Image, ImageMetadata, PixelSource, SampleDepth, Window};
 use spectrum::{Matrix3, Rgb};
 
-use crate::exposure::within_half;
 use crate::film::ID_LAYERS;
 use crate::sum::value;
 use crate::{Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
@@ -49,7 +49,7 @@ pub struct Development<'film> {
     layers: LayerSet,
     output_from_sensor: Matrix3,
     channels: Vec<Channel>,
-    /// What the picture knows about itself.
+    /// The metadata of the picture.
     pub metadata: ImageMetadata,
 }
 
@@ -89,7 +89,7 @@ impl<'film> Development<'film> {
         let splat = film.splats.value(tile, pixel);
         let response = [0, 1, 2].map(|c| mean[c] + splat[c]);
         let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
-        let rgb = if film.half_floats() { within_half(rgb) } else { rgb };
+        let rgb = if film.half_floats() { as_half(rgb) } else { rgb };
         rgb.to_array().into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
@@ -133,6 +133,12 @@ impl<'film> Development<'film> {
         let squares = (wwyy - 2.0 * mean * wwy + mean * mean * ww).max(0.0);
         (count / (count - 1.0) * squares / (weight * weight)) as f32
     }
+}
+
+/// A colour as half floats can hold it.
+fn as_half(rgb: Rgb) -> Rgb {
+    let (least, most) = (f16::MIN.to_f32(), f16::MAX.to_f32());
+    Rgb::from(rgb.clamp(least, most).to_array().map(|value| f16::from_f32(value).to_f32()))
 }
 
 /// The identifiers of a pixel among those of its tile.

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use spectrum::{CIE_Y_INTEGRAL, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum, xyz_from};
+use spectrum::{CIE_Y_INTEGRAL, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum, xyz_from};
 
 use crate::sum::can_add;
 use crate::{PixelSensor, Rejected, Sample};
@@ -77,12 +77,4 @@ impl Exposure {
         let xyz = xyz_from(&(*albedo * self.white.sample(lambda)), lambda) * self.white_scale;
         self.color_space.to_rgb(xyz).to_array()
     }
-}
-
-/// The largest finite half float.
-const MAX_HALF: f32 = 65504.0;
-
-/// A colour as half floats can hold it.
-pub(crate) fn within_half(rgb: Rgb) -> Rgb {
-    rgb.clamp(-MAX_HALF, MAX_HALF)
 }

@@ -5,15 +5,16 @@ use std::fmt;
 /// A layer beside the colour: what is known of the samples of a pixel, or of what they hit first.
 ///
 /// Alpha, albedo and variance are means as the colour is. The other quantities of a first hit are
-/// means over the samples that hit something, of which those with a negative filter weight do not
-/// count: such a mean never lies outside the range of its values.
+/// means over the samples that hit something, without those of negative filter weight: such a mean
+/// never lies outside the range of its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
     /// Opacity: which part of a pixel is covered.
     Alpha,
-    /// Distance from the camera, in units of the scene.
+    /// Distance from the plane of the camera along its axis, or from a spherical camera, in units
+    /// of the scene.
     Depth,
-    /// Shading normal in world space.
+    /// Shading normal in world space, towards the camera.
     Normal,
     /// Reflectance under white light.
     Albedo,
@@ -108,9 +109,9 @@ impl Layer {
         matches!(self, Self::ObjectId | Self::MaterialId)
     }
 
-    /// Whether it takes what a sample hits first.
+    /// Whether it takes what a sample hits first, or that it hits something.
     fn is_of_first_hit(self) -> bool {
-        self.is_mean_of_hits() || self.is_id() || self == Self::Albedo
+        !matches!(self, Self::Samples | Self::Variance)
     }
 }
 
@@ -144,7 +145,7 @@ impl LayerSet {
         Layer::ALL.into_iter().filter(move |&layer| self.has(layer))
     }
 
-    /// Whether some layer takes what samples hit first.
+    /// Whether some layer takes what samples hit first, or that they hit something.
     pub fn has_first_hit(self) -> bool {
         self.iter().any(Layer::is_of_first_hit)
     }

@@ -1,10 +1,11 @@
 //! Radiance samples to pixels: filters, sensors and exact accumulation.
 //!
-//! [`compile`] makes a [`Film`] of what a scene's author said. An integrator takes its [`Filter`]'s
-//! samples, traces, and gives the light to [`Film::add_sample`], or, from many threads, to the
-//! tiles of [`Film::tiles_mut`]; light that arrives anywhere goes to a [`Splatter`].
-//! [`Film::develop`] gives the picture at any time. A [`FilmFile`] keeps films for later, or for
-//! merging with others.
+//! [`compile`] makes a [`Film`] of a scene's description. An integrator draws positions from its
+//! [`Filter`], traces rays, and adds a [`Sample`] to the film, or, from many threads, to the tiles
+//! of [`Film::tiles_mut`]; light that arrives anywhere goes to a [`Splatter`]. Beside the colours a
+//! film may have [`Layer`]s (AOVs). [`Film::develop`] gives the picture at any time, and
+//! [`Film::development`] writes colours and layers row by row. A [`FilmFile`] keeps films for
+//! later, or for merging with others.
 //!
 //! Film coordinates have x to the right, y down, pixel (0, 0) at the top left; the centre of pixel
 //! (x, y) is at (x + ½, y + ½).
@@ -27,7 +28,7 @@ mod sum;
 mod tile;
 
 pub use compile::{Compiled, compile, pixel_bounds};
-pub use cryptomatte::{id_of_name, set_names};
+pub use cryptomatte::id_of_name;
 pub use develop::Development;
 pub use file::{FilmFile, FilmFileError, FilmHeader, FilmWriter, ReadLimits, State};
 pub use film::{Film, FilmSettings, PIXEL_BYTES};

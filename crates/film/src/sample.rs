@@ -29,7 +29,7 @@ impl<'a> Sample<'a> {
 /// What a sample hits first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstHit {
-    /// Distance from the camera, in units of the scene.
+    /// As [`Layer::Depth`](crate::Layer::Depth) has it, in units of the scene.
     pub depth: f32,
     /// Position in world space.
     pub position: [f32; 3],

@@ -5,15 +5,15 @@
 //! lights are scaled so that one of unit strength has ∫ L ȳ dλ = 1, and thus gives the response 1
 //! at g = 1.
 //!
-//! White balance turns the colour of the light at the scene, of chromaticity s, into the white of
-//! the film's colour space, by von Kries' scaling in Bradford's cone space.
+//! White balance maps the chromaticity of the illuminant to the white point of the film's colour
+//! space, by a von Kries transform in the Bradford cone space.
 
 use spectrum::{
     CIE_Y_INTEGRAL, Matrix3, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, daylight,
     white_balance, xyz_from,
 };
 
-/// A sensor of XYZ: the eye of the CIE 1931 standard observer.
+/// A sensor whose sensitivities are the CIE 1931 colour matching functions.
 #[derive(Clone, Debug)]
 pub struct PixelSensor {
     scale: f32,
@@ -21,8 +21,8 @@ pub struct PixelSensor {
 }
 
 impl PixelSensor {
-    /// The ideal XYZ sensor. `white_temperature`, in kelvin, is that of the daylight that shall
-    /// look white in `color_space`; `None` leaves colours as they are.
+    /// The ideal XYZ sensor. `white_temperature` is the correlated colour temperature in kelvin of
+    /// the daylight that becomes white in `color_space`; `None` means no white balance.
     pub fn cie1931(color_space: &RgbColorSpace, white_temperature: Option<f32>, imaging_ratio: f32) -> Self {
         let balance = |kelvin| white_balance(daylight(kelvin).to_xyz().xy(), color_space.white());
         Self {

@@ -1,12 +1,12 @@
 //! Light that arrives anywhere on the film, from paths that begin at lights.
 //!
-//! Such a path does not choose its pixel: it adds its contribution c to every pixel whose filter h
-//! reaches its film position p. With n paths traced, wherever they ended, the pixel's value is 1/n
-//! Σ c·h(p)/∫h. That is why paths are counted apart from what they bring: most bring nothing.
+//! Such a path does not choose its pixel: its contribution c is splatted to every pixel whose
+//! filter h covers its film position p. With n paths traced, wherever they ended, the pixel's value
+//! is 1/n Σ c·h(p)/∫h. Paths are counted separately from their splats, because most have none.
 //! [Pharr 2023 §5.4.4]
 //!
-//! Threads add to the same pixels, so each tile has a lock; the sums are exact, so the order does
-//! not matter.
+//! Threads add to the same pixels, so each tile has a lock. The sums are exact, so the order of
+//! threads does not matter.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -26,7 +26,7 @@ const SPLAT_SUMS: usize = 3;
 /// What the splats of a film take for each of its pixels, in bytes.
 pub const SPLAT_BYTES: usize = SPLAT_SUMS * SUM_BYTES;
 
-/// All that has been splatted on a film; takes no memory for pixels before it is reserved.
+/// The sums of all splats on a film. They take no memory before it is reserved.
 #[derive(Debug, Default)]
 pub(crate) struct SplatSums {
     tiles: Vec<Mutex<OwnTileSums>>,
@@ -53,12 +53,12 @@ impl SplatSums {
         self.tiles.is_empty()
     }
 
-    /// How many paths had their chance to add splats.
+    /// The number of light paths, whether or not they have added splats.
     pub(crate) fn paths(&self) -> u64 {
         self.paths.load(Ordering::Relaxed)
     }
 
-    /// Counts paths that had their chance to add splats.
+    /// Counts light paths, whether or not they have added splats.
     pub(crate) fn add_paths(&self, count: u64) {
         self.paths.fetch_add(count, Ordering::Relaxed);
     }
@@ -76,7 +76,7 @@ impl SplatSums {
         *self.paths.get_mut() += other.paths();
     }
 
-    /// What the paths have brought to a pixel of a tile, in sensor RGB.
+    /// The contribution of all paths to a pixel of a tile, in sensor RGB.
     pub(crate) fn value(&self, tile: usize, pixel: usize) -> [f64; 3] {
         let paths = self.paths();
         if paths == 0 || self.tiles.is_empty() {
@@ -108,7 +108,7 @@ impl<'film> Splatter<'film> {
         Self { grid, filter, filter_integral: filter.integral(), exposure, sums }
     }
 
-    /// Counts paths that had their chance to add splats.
+    /// Counts light paths, whether or not they have added splats.
     pub fn add_paths(&self, count: u64) {
         self.sums.add_paths(count);
     }

@@ -31,7 +31,7 @@ impl FilmTile<'_> {
         self.bounds
     }
 
-    /// Whether some layer of the film takes [`Sample::first_hit`].
+    /// Whether some layer of the film takes [`Sample::first_hit`] or [`Sample::alpha`].
     pub fn wants_first_hit(&self) -> bool {
         self.data.as_ref().is_some_and(|data| data.layout.layers().has_first_hit())
     }
@@ -67,21 +67,6 @@ impl FilmTile<'_> {
         weight: f32,
     ) {
         self.add(pixel, &Sample::new(l, lambda, weight));
-    }
-
-    /// Adds a sample of radiance alone that is known at several groups of wavelengths, which count
-    /// alike.
-    ///
-    /// # Panics
-    /// If the pixel is not in the tile.
-    pub fn add_groups(
-        &mut self,
-        pixel: [i32; 2],
-        l: &[SampledSpectrum],
-        lambda: &[SampledWavelengths],
-        weight: f32,
-    ) {
-        self.add(pixel, &Sample { l, lambda, weight, alpha: 0.0, first_hit: None });
     }
 }
 

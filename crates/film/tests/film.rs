@@ -1,7 +1,7 @@
 //! The film as a whole: order, merging, refusal, bounds and development.
 
-use alhazen_film::{Film, compile};
-use description::{ColorSpaceDesc, FilmKind, GBufferSpace, SceneDesc, Severity};
+use alhazen_film::{Film, Layer, compile};
+use description::{ColorSpaceDesc, FilmKind, GBufferSpace, SceneDesc, Severity, Span, Spanned};
 use image::Pixels;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
@@ -234,12 +234,31 @@ fn what_makes_no_film_is_an_error() {
 #[test]
 fn what_is_not_drawn_is_a_warning() {
     let mut desc = scene([10, 10]);
-    desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
+    desc.film.kind = FilmKind::Spectral { buckets: 8, lambda_min: 400.0, lambda_max: 700.0 };
     desc.film.sensor.name = "canon_eos_100d".into();
     let said = said(&desc);
     assert_eq!(said.len(), 2);
     assert!(said.iter().all(|(severity, code, _)| *severity == Severity::Warning && *code == "not-drawn"));
-    assert_eq!(said[0].2, "film `gbuffer` is not drawn yet; drawn as `rgb`");
+    assert_eq!(said[0].2, "film `spectral` is not drawn yet; drawn as `rgb`");
+}
+
+#[test]
+fn layers_are_asked_for_by_name_or_as_a_gbuffer() {
+    let layer = |name: &str| Spanned::new(name.to_owned(), Span::NONE);
+    let mut desc = scene([10, 10]);
+    desc.film.layers = ["samples", "depth"].map(layer).into();
+    let layers = |desc: &SceneDesc| film_of(desc).layers().iter().map(Layer::name).collect::<Vec<_>>();
+    assert_eq!(layers(&desc), ["depth", "samples"]);
+    desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
+    assert_eq!(said(&desc), []);
+    let gbuffer = ["depth", "normal", "albedo", "position", "uv", "samples", "variance"];
+    assert_eq!(layers(&desc), gbuffer);
+    desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::Camera };
+    assert_eq!(said(&desc)[0].0, Severity::Warning);
+    desc.film.layers = vec![layer("depht")];
+    let (severity, _, message) = said(&desc).remove(0);
+    assert_eq!(severity, Severity::Error);
+    assert!(message.starts_with("no layer is called `depht`; known are alpha, depth, "), "{message}");
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub struct Image {
     color: [usize; 3],
     /// The channel of opacity, whose 8-bit codes are linear whatever the encoding of the others.
     alpha: Option<usize>,
-    /// What the picture knows about itself.
+    /// Its metadata.
     pub metadata: ImageMetadata,
 }
 
@@ -362,10 +362,13 @@ impl Image {
                 indices.iter().map(move |c| offset + c)
             })
         };
+        let count = width as usize * height as usize * indices.len();
         let pixels = match &self.pixels {
-            Pixels::U8(values, encoding) => Pixels::U8(offsets().map(|i| values[i]).collect(), *encoding),
-            Pixels::F16(values) => Pixels::F16(offsets().map(|i| values[i]).collect()),
-            Pixels::F32(values) => Pixels::F32(offsets().map(|i| values[i]).collect()),
+            Pixels::U8(values, encoding) => {
+                Pixels::U8(collected(count, offsets().map(|i| values[i]))?, *encoding)
+            }
+            Pixels::F16(values) => Pixels::F16(collected(count, offsets().map(|i| values[i]))?),
+            Pixels::F32(values) => Pixels::F32(collected(count, offsets().map(|i| values[i]))?),
         };
         let mut image = Self::new(width, height, names.iter().map(AsRef::as_ref), pixels)?;
         image.metadata = self.metadata.clone();

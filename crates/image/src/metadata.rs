@@ -1,4 +1,4 @@
-//! What a picture knows about itself beside its pixels.
+//! Metadata of pictures.
 
 use std::collections::BTreeMap;
 
@@ -61,7 +61,7 @@ pub enum Attribute {
     Matrix(Mat4),
 }
 
-/// What a picture knows about itself beside its pixels. Only EXR files keep all of it.
+/// Metadata of a picture. Only EXR files keep all of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageMetadata {
     /// The colour space of the R, G and B channels; `None` means sRGB's primaries.

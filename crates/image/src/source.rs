@@ -23,7 +23,7 @@ pub trait PixelSource: Sync {
     /// The channels, in the order of their values.
     fn channels(&self) -> Vec<Channel>;
 
-    /// What the picture knows about itself.
+    /// Its metadata.
     fn metadata(&self) -> &ImageMetadata;
 
     /// Writes the linear values of row `y` to `values`, pixel by pixel from the left, the channels

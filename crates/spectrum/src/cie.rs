@@ -1,4 +1,4 @@
-//! The CIE 1931 standard observer: from light to what an eye sees of it.
+//! The CIE 1931 standard observer: from spectra to tristimulus values.
 //!
 //! X = ∫ L(λ) x̄(λ) dλ / ∫ ȳ(λ) dλ, likewise Y and Z, with the integral taken as the sum over whole
 //! nanometres from 360 to 830. For light known at sampled wavelengths the same is estimated by 1/N
@@ -17,7 +17,7 @@ pub const CIE_Y_INTEGRAL: f32 = 106.856_895;
 pub struct MatchingFunctions {
     /// x̄(λ).
     pub x: DenselySampled,
-    /// ȳ(λ), the eye's sensitivity in daylight.
+    /// ȳ(λ), the photopic luminous efficiency.
     pub y: DenselySampled,
     /// z̄(λ).
     pub z: DenselySampled,
@@ -41,6 +41,18 @@ fn row(line: &str) -> Option<[f32; 3]> {
         (Ok(x), Ok(y), Ok(z)) => Some([x, y, z]),
         _ => None,
     }
+}
+
+/// The sum of `f` over the whole nanometres of the range: ∫ f dλ.
+pub(crate) fn integrate(f: impl Fn(f32) -> f32) -> f32 {
+    (0..COUNT).map(|i| f64::from(f(LAMBDA_MIN + i as f32))).sum::<f64>() as f32
+}
+
+/// The colour of light with the spectrum `f`.
+pub(crate) fn integrate_xyz(f: impl Fn(f32) -> f32) -> Xyz {
+    let functions = matching_functions();
+    let component = |g: &DenselySampled| integrate(|lambda| f(lambda) * g.at(lambda)) / CIE_Y_INTEGRAL;
+    Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
 }
 
 /// The colour of light sampled at `lambda`: an unbiased estimate.

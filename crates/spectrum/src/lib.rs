@@ -1,5 +1,4 @@
-//! Light over wavelength: spectra, sampled wavelengths, colour spaces, RGB uplifting, measured
-//! data.
+//! Spectra, sampled wavelengths, colour spaces, RGB uplifting, measured data.
 //!
 //! Wavelengths are in nanometres, from [`LAMBDA_MIN`] to [`LAMBDA_MAX`]. A path carries [`N`] of
 //! them ([`SampledWavelengths`]) and its quantities are [`SampledSpectrum`]s at them; a scene's
@@ -12,7 +11,7 @@ pub mod color_space;
 pub mod daylight;
 pub mod dense;
 pub mod matrix;
-pub mod named;
+mod measured;
 pub mod piecewise;
 pub mod rgb;
 pub mod rgb_spectrum;
@@ -26,10 +25,10 @@ pub use color_space::{RgbColorSpace, white_balance};
 pub use daylight::daylight;
 pub use dense::DenselySampled;
 pub use matrix::Matrix3;
-pub use named::{named, names};
+pub use measured::names;
 pub use piecewise::{ParseError, PiecewiseLinear, SpectrumError};
 pub use rgb::{Rgb, Xyz};
 pub use rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
 pub use sampled::{LAMBDA_MAX, LAMBDA_MIN, N, SampledSpectrum, SampledWavelengths};
-pub use spectrum::Spectrum;
+pub use spectrum::{Spectrum, named};
 pub use uplift::RgbSigmoidPolynomial;

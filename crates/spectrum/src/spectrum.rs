@@ -1,26 +1,27 @@
-//! Any function of wavelength that a scene may name: [`Spectrum`].
+//! Functions of wavelength in scenes: [`Spectrum`].
 
 use std::sync::Arc;
 
 use crate::blackbody::Blackbody;
-use crate::cie::{self, CIE_Y_INTEGRAL};
+use crate::cie::{self, integrate};
 use crate::color_space::RgbColorSpace;
-use crate::dense::{COUNT, DenselySampled};
+use crate::dense::DenselySampled;
+use crate::measured::measured;
 use crate::piecewise::{PiecewiseLinear, SpectrumError};
 use crate::rgb::{Rgb, Xyz};
 use crate::rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
-use crate::sampled::{LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
+use crate::sampled::{SampledSpectrum, SampledWavelengths};
 
 /// A function of wavelength in nanometres. Cheap to clone: tables are shared.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spectrum {
     /// The same at all wavelengths.
     Constant(f32),
-    /// Linear between given wavelengths.
+    /// Piecewise linear between given wavelengths.
     PiecewiseLinear(Arc<PiecewiseLinear>),
     /// A value each nanometre.
     DenselySampled(Arc<DenselySampled>),
-    /// Light of a hot body, at most 1.
+    /// A blackbody, normalized to the maximum 1.
     Blackbody(Blackbody),
     /// A reflectance from RGB.
     RgbAlbedo(RgbAlbedoSpectrum),
@@ -88,7 +89,7 @@ impl Spectrum {
         }
     }
 
-    /// A bound on the values, attained by most kinds.
+    /// An upper bound of the values, tight for most kinds.
     pub fn max_value(&self) -> f32 {
         match self {
             Self::Constant(value) => *value,
@@ -108,14 +109,11 @@ impl Spectrum {
 
     /// The colour of light with this spectrum.
     pub fn to_xyz(&self) -> Xyz {
-        let functions = cie::matching_functions();
-        let component =
-            |f: &DenselySampled| integrate(|lambda| self.at(lambda) * f.at(lambda)) / CIE_Y_INTEGRAL;
-        Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
+        cie::integrate_xyz(|lambda| self.at(lambda))
     }
 
-    /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB
-    /// the illuminant alone counts, so that its RGB values remain factors.
+    /// ∫ f(λ) ȳ(λ) dλ, by which lights of given power or illuminance are scaled. For light from RGB
+    /// it is that of the illuminant, so that the RGB values remain factors.
     pub fn to_photometric(&self) -> f32 {
         let y_bar = &cie::matching_functions().y;
         match self {
@@ -124,12 +122,19 @@ impl Spectrum {
         }
     }
 
-    /// The values at whole nanometres, for fast repeated use.
+    /// The values at integer nanometres, for fast evaluation.
     pub fn to_dense(&self) -> Self {
         match self {
             Self::Constant(_) | Self::DenselySampled(_) => self.clone(),
             _ => DenselySampled::from_fn(|lambda| self.at(lambda)).into(),
         }
+    }
+}
+
+impl RgbColorSpace {
+    /// The light that is white in this space, with unit luminance.
+    pub fn illuminant(&self) -> Spectrum {
+        Spectrum::DenselySampled(self.shared_illuminant())
     }
 }
 
@@ -151,14 +156,15 @@ impl From<DenselySampled> for Spectrum {
     }
 }
 
-/// Sum of `f` over the whole nanometres of the range.
-fn integrate(f: impl Fn(f32) -> f32) -> f32 {
-    (0..COUNT).map(|i| f64::from(f(LAMBDA_MIN + i as f32))).sum::<f64>() as f32
+/// The measured spectrum called `name`, one of [`names`](crate::names).
+pub fn named(name: &str) -> Option<Spectrum> {
+    measured(name).map(Spectrum::PiecewiseLinear)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cie::CIE_Y_INTEGRAL;
 
     #[test]
     fn equal_energy_has_luminance_one() {
@@ -169,14 +175,14 @@ mod tests {
     }
 
     #[test]
-    fn photometry_of_light_from_rgb_sees_its_illuminant_alone() {
+    fn photometry_of_rgb_light_is_that_of_the_illuminant() {
         let space = RgbColorSpace::srgb();
         let light = Spectrum::rgb_illuminant(space, Rgb::new(7.0, 0.5, 0.1));
         assert!((light.to_photometric() - CIE_Y_INTEGRAL).abs() < 1e-3);
     }
 
     #[test]
-    fn dense_values_are_those_at_whole_nanometres() {
+    fn dense_values_are_at_integer_nanometres() {
         let spectrum = Spectrum::blackbody(3000.0);
         let dense = spectrum.to_dense();
         for lambda in [360.0, 500.0, 830.0] {

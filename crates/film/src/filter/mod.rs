@@ -1,4 +1,4 @@
-//! Pixel filters: how the light around a pixel's centre is weighed in the pixel.
+//! Pixel reconstruction filters: the weight of radiance around a pixel's centre in the pixel.
 //!
 //! A pixel's value is ∫ f(p) L(p) dp / ∫ f(p) dp, p being the position relative to its centre in
 //! pixels and f zero beyond the filter's radius. It is estimated by filter importance sampling
@@ -55,9 +55,8 @@ pub enum Filter {
 }
 
 impl Filter {
-    /// The filter that is described. Refused with the format's name of the parameter and what is
-    /// wrong with it, where a radius is not in (0, [`MAX_RADIUS`]] or another parameter makes no
-    /// filter.
+    /// The filter of a description. The error is the format's name of a parameter and what is wrong
+    /// with it: radii are in (0, [`MAX_RADIUS`]].
     pub fn new(desc: &FilterDesc) -> Result<Self, (&'static str, String)> {
         let radius = |radius: &[f32; 2]| {
             for (name, radius) in ["xradius", "yradius"].into_iter().zip(*radius) {

@@ -1,9 +1,9 @@
 //! File formats: bytes ↔ [`Image`].
 //!
 //! Each member of [`Format`] is known by its first bytes, then by the extension of its name (TGA
-//! has no signature). Decoders are fed with bytes of strangers: a size that a header claims is held
-//! against what its bytes could possibly hold before memory is taken for it, and a panic inside a
-//! third-party decoder becomes [`ImageError::Invalid`].
+//! has no signature). Input is not trusted: the size in a header is checked against what
+//! the file could possibly hold before memory is allocated, and a panic inside a third-party
+//! decoder becomes [`ImageError::Invalid`].
 
 mod exr;
 mod info;
@@ -118,8 +118,8 @@ impl ReadOptions {
     }
 
     /// The most bytes that a decoded image may take, given the length of its file. No format here
-    /// packs more than some thousand bytes into one, so a small file that claims a huge picture is
-    /// lying.
+    /// packs more than some thousand bytes into one, so a small file with a huge size in its
+    /// header is damaged.
     fn byte_limit(&self, file_length: usize) -> u64 {
         const GREATEST_RATIO: u64 = 4096;
         const ALWAYS_ALLOWED: u64 = 64 << 20;

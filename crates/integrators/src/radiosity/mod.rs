@@ -49,7 +49,7 @@ mod surfaces;
 mod tests;
 
 use description::RadiosityDesc;
-use film::{Film, FilmTile};
+use film::{Film, FilmTile, Sample};
 use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::Sampler;
@@ -179,18 +179,16 @@ impl Integrator for Radiosity {
             for y in bounds.min[1]..bounds.max[1] {
                 for x in bounds.min[0]..bounds.max[0] {
                     let sample = pixels.begin(None, [x, y], &mut sampler);
-                    let mut l = Bands::ZERO;
+                    let (mut l, lambda) = (Bands::ZERO, shown.solution.wavelengths.groups());
+                    let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
                     if let Some(CameraRayDifferential { ray, weight }) = sample.camera_ray {
-                        let mut tracer = Tracer::new(scene, view, control, &mut sampler, &mut stats);
                         l = shown.radiance(&mut tracer, ray) * weight;
-                        tracer.finish()?;
                     }
-                    tile.add_groups(
-                        [x, y],
-                        l.groups(),
-                        shown.solution.wavelengths.groups(),
-                        sample.filter_weight,
-                    );
+                    let first_hit = pixels.first_hit(&tile, &sample, &lambda[0], &mut tracer);
+                    tracer.finish()?;
+                    let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
+                    let (l, weight) = (l.groups(), sample.filter_weight);
+                    tile.add([x, y], &Sample { l, lambda, weight, alpha, first_hit });
                 }
             }
             Ok(stats)

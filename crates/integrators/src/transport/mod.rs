@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `tracer` | scene, view, random numbers and statistics of a sample; cancellation |
 //! | `pixel_samples` | camera rays of all pixels of a pass |
+//! | `first_hit` | what a camera ray hits first, for the layers of the film |
 //! | `shutter_sample` | wavelengths and time of a sample |
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |
@@ -11,6 +12,7 @@
 //! | `visibility` | shadow rays |
 
 pub(crate) mod direct;
+pub(crate) mod first_hit;
 pub(crate) mod path_state;
 pub(crate) mod pixel_samples;
 pub(crate) mod roulette;

@@ -4,7 +4,7 @@
 //! wavelengths (1), position in the pixel's filter (2), time (1), position on the lens (2), and
 //! then whatever the algorithm asks for. [Pharr 2023 §1.3.4, §5.4.1]
 
-use film::{FilmTile, Filter};
+use film::{FilmTile, Filter, FirstHit};
 use geometry::RayStats;
 use math::Vec2;
 use rayon::prelude::*;
@@ -14,6 +14,7 @@ use scene::{Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
+use super::first_hit::first_hit;
 use super::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
@@ -72,8 +73,11 @@ impl PixelSamples<'_> {
                     let mut sample = self.begin(shutter, [x, y], &mut sampler);
                     let mut tracer = Tracer::new(self.scene, self.view, control, &mut sampler, &mut stats);
                     let l = radiance(&mut sample, &mut tracer);
+                    let first_hit = self.first_hit(&tile, &sample, &sample.lambda, &mut tracer);
                     tracer.finish()?;
-                    tile.add_sample([x, y], &l, &sample.lambda, sample.filter_weight);
+                    let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
+                    let radiance = film::Sample::new(&l, &sample.lambda, sample.filter_weight);
+                    tile.add([x, y], &film::Sample { alpha, first_hit, ..radiance });
                 }
                 Ok(())
             });
@@ -84,6 +88,19 @@ impl PixelSamples<'_> {
             sum += stats;
             Ok(sum)
         })
+    }
+
+    /// What a sample hits first, if a layer of the film needs it. Radiance is estimated before, so
+    /// that the random numbers for this do not change it.
+    pub fn first_hit(
+        &self,
+        tile: &FilmTile,
+        sample: &PixelSample,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> Option<FirstHit> {
+        let camera_ray = sample.camera_ray.as_ref().filter(|_| tile.wants_first_hit())?;
+        first_hit(tracer, &camera_ray.ray, lambda)
     }
 
     /// Starts the sampler for a sample of a pixel and takes what the camera needs of it.

@@ -9,6 +9,7 @@ mod build;
 mod cancellation;
 mod direct_light;
 mod furnace;
+mod layers;
 mod merging;
 mod mlt;
 mod photon_mapping;

@@ -7,7 +7,7 @@ use description::{
 };
 
 use super::Builder;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::{Statement, Statements};
 
 impl Builder<'_> {
@@ -54,6 +54,7 @@ impl Builder<'_> {
 fn film(reader: &mut Reader) -> Option<FilmDesc> {
     let mut film: FilmDesc = reader.member("film", "film")?;
     film.color_space = reader.color_space;
+    film.layers = reader.strings("layers").unwrap_or_default();
     if let FilmKind::Spectral { lambda_min, lambda_max, .. } = film.kind
         && lambda_min >= lambda_max
     {

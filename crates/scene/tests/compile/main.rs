@@ -1,16 +1,16 @@
-//! What compiling a scene makes of it: places, times, ids, and messages.
+//! Compilation of scenes: transforms, times, ids, and diagnostics.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod materials;
 
 use alhazen_scene::light::LightId;
 use alhazen_scene::{RayStats, View, compile, world_from_render};
 use common::*;
 use description::{
-    AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, CurveBasis, CurveDesc,
-    CurveProfile, Diagnostic, FileId, HairColor, ImageDesc, InfiniteRadiance, InstanceDesc, LightDesc,
-    LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, Origin, PatchMeshDesc, RoughnessDesc,
-    SceneDesc, Severity, ShapeDesc, ShapeKind, Span, SpectrumDesc, Stated, SubsurfaceScattering,
-    TransformDesc,
+    AreaLightDesc, CurveBasis, CurveDesc, CurveProfile, Diagnostic, FileId, ImageDesc, InfiniteRadiance,
+    InstanceDesc, LightDesc, LightKind, MaterialDesc, MaterialKind, MeshDesc, ObjectDesc, Origin,
+    PatchMeshDesc, SceneDesc, Severity, ShapeDesc, ShapeKind, Span, SpectrumDesc, Stated, TransformDesc,
 };
 use geometry::GeometryId;
 use image::Image;
@@ -49,7 +49,7 @@ fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     all
 }
 
-/// The one message about a scene.
+/// The only diagnostic of a scene.
 fn check(desc: &SceneDesc, severity: Severity, code: &str, message: &str, start: u32) {
     let all = diagnostics(desc);
     let [only] = &all[..] else { panic!("expected only `{message}`: {all:?}") };
@@ -112,7 +112,7 @@ fn transforms_without_an_inverse_are_errors() {
 }
 
 #[test]
-fn objects_within_themselves_or_too_deep_in_each_other_are_errors() {
+fn recursive_or_too_deeply_nested_objects_are_errors() {
     let place = |object| InstanceDesc { object, world_from_object: TransformDesc::default() };
     let endless = with(|desc| {
         let mut a = ObjectDesc { name: "a".into(), ..ObjectDesc::default() };
@@ -154,18 +154,7 @@ fn objects_within_themselves_or_too_deep_in_each_other_are_errors() {
 }
 
 #[test]
-fn a_mix_of_itself_is_an_error() {
-    let desc = with(|desc| {
-        let other = desc.materials.push(MaterialDesc::default());
-        let itself = description::Handle::new(1);
-        let kind = MaterialKind::Mix { materials: [other, itself], amount: 0.5.into() };
-        desc.materials.push_stated(stated(MaterialDesc { name: "loop".into(), ..kind.into() }, 7));
-    });
-    check(&desc, Severity::Error, "material-cycle", "material `loop` is a mix of itself", 7);
-}
-
-#[test]
-fn images_that_serve_for_nothing_are_errors() {
+fn unusable_images_are_errors() {
     let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
     error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
     error(
@@ -202,7 +191,7 @@ fn images_that_serve_for_nothing_are_errors() {
 }
 
 #[test]
-fn lights_without_sense_are_errors() {
+fn invalid_lights_are_errors() {
     let plane = with(|desc| {
         let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
         desc.shapes.push_stated(stated(ShapeDesc { area_light, ..ShapeKind::Plane.into() }, 8));
@@ -225,60 +214,7 @@ fn lights_without_sense_are_errors() {
 }
 
 #[test]
-fn materials_without_sense_are_errors() {
-    let material = |kind: MaterialKind, name| {
-        with(|desc| {
-            desc.materials.push_stated(with_parameter(kind.into(), name, 4));
-        })
-    };
-    let message = "an index of refraction must be above 0";
-    for eta in [
-        0.0.into(),
-        SpectrumDesc::from(-1.5),
-        SpectrumDesc::rgb(0.0, 0.0, 0.0),
-        SpectrumDesc::Samples([(400.0, 1.5), (700.0, 0.0)].into()),
-    ] {
-        let roughness = RoughnessDesc::default();
-        let glass = MaterialKind::Dielectric { eta: eta.clone(), roughness };
-        check(&material(glass, "eta"), Severity::Error, "invalid-value", message, 4);
-        let thin = MaterialKind::ThinDielectric { eta };
-        check(&material(thin, "eta"), Severity::Error, "invalid-value", message, 4);
-    }
-    let rough = |value: f32| {
-        let roughness = RoughnessDesc { u: value.into(), v: 0.5.into(), remap: true };
-        MaterialKind::Conductor(ConductorDesc { roughness, ..ConductorDesc::default() })
-    };
-    let message = "roughness cannot be negative, as -0.1 is";
-    for name in ["roughness", "uroughness"] {
-        check(&material(rough(-0.1), name), Severity::Error, "invalid-value", message, 4);
-    }
-    let message = "roughness goes from 0 to 1; 2 is rougher than that";
-    check(&material(rough(2.0), "uroughness"), Severity::Warning, "roughness-range", message, 4);
-    let leaf = |scale| MaterialKind::DiffuseTransmission {
-        reflectance: 0.25.into(),
-        transmittance: 0.25.into(),
-        scale,
-    };
-    let message = "NaN is no factor on a reflectance";
-    check(&material(leaf(f32::NAN), "scale"), Severity::Error, "invalid-value", message, 4);
-    let message = "the values of a spectrum must be at most 1e30";
-    let bright = MaterialKind::Diffuse { reflectance: SpectrumDesc::Constant(1e35).into() };
-    check(&material(bright, "reflectance"), Severity::Error, "invalid-value", message, 4);
-}
-
-#[test]
-fn an_interface_does_not_emit() {
-    let desc = with(|desc| {
-        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
-        let material = Some(desc.materials.push(MaterialKind::Interface.into()));
-        desc.shapes.push_stated(stated(ShapeDesc { area_light, material, ..sphere(1.0).into() }, 2));
-    });
-    check(&desc, Severity::Warning, "light-ignored", "a shape of material `interface` does not emit", 2);
-    assert!(compile(&desc).unwrap().scene.lights().is_empty());
-}
-
-#[test]
-fn meshes_that_hang_together_badly_are_errors() {
+fn inconsistent_meshes_are_errors() {
     let shape = |kind: ShapeKind| with(|desc| desc.shapes.push_stated(stated(kind.into(), 3)));
     let message = "a patch names a vertex that does not exist";
     let patches = |indices, normals: usize| {
@@ -297,7 +233,7 @@ fn meshes_that_hang_together_badly_are_errors() {
 }
 
 #[test]
-fn all_mistakes_come_in_one_run() {
+fn all_errors_are_reported_at_once() {
     let desc = with(|desc| {
         desc.shapes.push_stated(stated(ShapeDesc { world_from_object: flat(), ..sphere(1.0).into() }, 1));
         let eta = SpectrumDesc::Named("no-glass".into());
@@ -309,52 +245,6 @@ fn all_mistakes_come_in_one_run() {
     let all = diagnostics(&desc);
     let places: Vec<_> = all.iter().map(|d| d.span().start).collect();
     assert!([1, 2, 3].iter().all(|start| places.contains(start)) && all.len() == 4, "{all:?}");
-}
-
-#[test]
-fn materials_that_are_not_drawn_yet_say_what_is_drawn() {
-    let coated = CoatedConductorDesc {
-        conductor: ConductorDesc::default(),
-        eta: 1.5.into(),
-        roughness: RoughnessDesc::default(),
-        layers: Default::default(),
-    };
-    let hair = MaterialKind::Hair {
-        color: HairColor::Melanin { eumelanin: 1.3.into(), pheomelanin: 0.0.into() },
-        eta: 1.55.into(),
-        beta_m: 0.3.into(),
-        beta_n: 0.3.into(),
-        alpha: 2.0.into(),
-    };
-    let skin = MaterialKind::Subsurface {
-        scattering: SubsurfaceScattering::Named("Skin1".into()),
-        scale: 1.0,
-        eta: 1.33,
-        g: 0.0,
-        roughness: RoughnessDesc::default(),
-    };
-    let cases = [
-        (
-            MaterialKind::CoatedDiffuse(CoatedDiffuseDesc::default()),
-            "`coateddiffuse` is not drawn yet; drawn as `diffuse`, without its coat",
-        ),
-        (
-            MaterialKind::CoatedConductor(coated),
-            "`coatedconductor` is not drawn yet; drawn as `conductor`, without its coat",
-        ),
-        (hair, "`hair` is not drawn yet; drawn as diffuse"),
-        (skin, "`subsurface` is not drawn yet; drawn as diffuse"),
-        (
-            MaterialKind::Measured { filename: "a.bsdf".into() },
-            "`measured` is not drawn yet; drawn as diffuse",
-        ),
-    ];
-    for (kind, message) in cases {
-        warns(&with(|desc| desc.materials.push_stated(stated(kind.into(), 4))), message, 4);
-    }
-    let displaced = MaterialDesc { displacement: Some(0.1.into()), ..MaterialDesc::default() };
-    let desc = with(|desc| desc.materials.push_stated(with_parameter(displaced, "displacement", 6)));
-    warns(&desc, "displacement is not drawn yet; the surface stays as it is", 6);
 }
 
 fn curve() -> CurveDesc {
@@ -390,7 +280,7 @@ fn curves_are_checked() {
 }
 
 #[test]
-fn curves_stand_where_they_are_put() {
+fn curves_are_at_their_control_points() {
     let desc = with(|desc| {
         let curve = CurveDesc {
             control_points: [-3.0, -1.0, 1.0, 3.0].map(|x| Vec3::new(x, 0.0, 0.0)).into(),
@@ -414,7 +304,7 @@ fn curves_stand_where_they_are_put() {
 }
 
 #[test]
-fn strands_become_one_geometry() {
+fn successive_curves_become_one_geometry() {
     let shape = |curve: CurveDesc| ShapeDesc::from(ShapeKind::Curve(curve));
     let ribbon = || CurveDesc { profile: CurveProfile::Ribbon, normals: [Vec3::Z; 2].into(), ..curve() };
     let desc = with(|desc| {
@@ -513,7 +403,7 @@ fn moving() -> TransformDesc {
 }
 
 #[test]
-fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
+fn unsupported_lights_are_replaced_with_a_warning() {
     let light = |light: LightDesc| with(|desc| desc.lights.push_stated(stated(light, 4)));
     let image = |desc: &mut SceneDesc| desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
     let moving_sky = with(|desc| {
@@ -535,56 +425,8 @@ fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
     warns(&desc, "portals are not drawn yet; light comes from everywhere", 7);
 }
 
-fn distance_along(desc: &SceneDesc, o: Vec3, d: Vec3, time: f32) -> Option<f32> {
-    let scene = scene(desc);
-    scene.intersect(&Ray::new(o, d, time), f32::INFINITY, &mut RayStats::default()).map(|(_, t)| t)
-}
-
 #[test]
-fn moving_shapes_are_where_they_should_be() {
-    let desc = with(|desc| {
-        desc.shapes.push(ShapeDesc { world_from_object: moving(), ..sphere(0.5).into() });
-    });
-    for time in [-1.0f32, 0.0, 0.25, 0.5, 0.9, 1.0, 3.0] {
-        let x = -2.0 + 4.0 * time.clamp(0.0, 1.0);
-        let t = distance_along(&desc, Vec3::new(x, 0.0, 0.0), Vec3::Z, time).expect("the ball");
-        assert!((t - 4.5).abs() < 1e-4, "at {time}: {t}");
-        assert!(distance_along(&desc, Vec3::new(x + 0.6, 0.0, 0.0), Vec3::Z, time).is_none());
-        let left = distance_along(&desc, Vec3::new(-10.0, 0.0, 5.0), Vec3::X, time).expect("the ball");
-        assert!((left - (x + 9.5)).abs() < 1e-4);
-    }
-}
-
-#[test]
-fn instances_are_where_they_should_be() {
-    // A ball off the object's origin; an instance turned and scaled, one that moves, and a camera
-    // that is elsewhere.
-    let desc = with(|desc| {
-        let mut object = ObjectDesc::default();
-        let in_object = TransformDesc::translation(1.0, 0.0, 0.0);
-        object.shapes.push(ShapeDesc { world_from_object: in_object, ..sphere(0.5).into() });
-        let object = desc.objects.push(object);
-        let turned = DMat4::from_translation(DVec3::new(0.0, 0.0, 10.0))
-            * DMat4::from_rotation_z(std::f64::consts::FRAC_PI_2)
-            * DMat4::from_scale(DVec3::splat(2.0));
-        desc.instances.push(InstanceDesc { object, world_from_object: TransformDesc::fixed(turned) });
-        desc.instances.push(InstanceDesc { object, world_from_object: moving() });
-        desc.camera.camera_from_world = TransformDesc::translation(0.0, 0.0, 7.0);
-    });
-    // The camera stands at z = −7 of the world, the origin of render space.
-    let camera = Vec3::new(0.0, 0.0, -7.0);
-    let from = |x: f32, y: f32, time| distance_along(&desc, Vec3::new(x, y, 0.0) - camera, Vec3::Z, time);
-    assert!((from(0.0, 2.0, 0.3).expect("the turned ball") - 9.0).abs() < 1e-4);
-    assert!(from(2.0, 2.0, 0.3).is_none());
-    for time in [0.0, 0.5, 0.75, 1.0] {
-        let x = -2.0 + 4.0 * time + 1.0;
-        assert!((from(x, 0.0, time).expect("the moving ball") - 4.5).abs() < 1e-4, "at {time}");
-        assert!(from(x - 0.6, 0.0, time).is_none());
-    }
-}
-
-#[test]
-fn emitting_primitives_know_their_lights() {
+fn emissive_primitives_map_to_their_lights() {
     let desc = with(|desc| {
         let light = |desc: &mut SceneDesc| Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
         // Dark, two triangles, dark, one ball, then lights that are no surfaces.
@@ -629,79 +471,4 @@ fn emitting_primitives_know_their_lights() {
         let p = sample.expect("the lit side").p.expect("a surface").p;
         assert_eq!(light(p.x, p.y), light(x, y));
     }
-}
-
-#[test]
-fn hits_of_instances_find_the_light_that_was_sampled() {
-    // An object of two triangles and a ball that emit, twice within another, which has a light of
-    // its own and is shown twice, one of them moving; and a light before them all.
-    let desc = with(|desc| {
-        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
-        let quad = triangles(
-            &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
-            &[[0, 1, 2], [0, 2, 3]],
-        );
-        let at = |x, y| TransformDesc::translation(x, y, 0.0);
-        let ball = |x, y| ShapeDesc { area_light, world_from_object: at(x, y), ..sphere(0.5).into() };
-        desc.shapes.push(ball(0.0, -5.0));
-        let mut inner = ObjectDesc::default();
-        inner.shapes.push(ShapeDesc { area_light, ..quad.into() });
-        inner.shapes.push(ball(2.0, 0.0));
-        let inner = desc.objects.push(inner);
-        let mut outer = ObjectDesc::default();
-        outer.instances.push(InstanceDesc { object: inner, world_from_object: at(0.0, 0.0) });
-        outer.instances.push(InstanceDesc { object: inner, world_from_object: at(4.0, 0.0) });
-        outer.shapes.push(ball(8.0, 0.0));
-        let object = desc.objects.push(outer);
-        desc.instances.push(InstanceDesc { object, world_from_object: at(0.0, 0.0) });
-        let up = DMat4::from_translation(DVec3::Y * 10.0);
-        let world_from_object = TransformDesc { end: up, ..at(0.0, 5.0) };
-        desc.instances.push(InstanceDesc { object, world_from_object });
-    });
-    let scene = scene(&desc);
-    assert_eq!(scene.lights().len(), 15);
-    let from = |p: Vec3| context(p, Vec3::ZERO);
-    let mut ids = std::collections::HashSet::new();
-    for x in [-0.5, 0.5, 2.0, 3.5, 4.5, 6.0, 8.0, 0.0] {
-        for y in if x == 0.0 { vec![-5.0] } else { vec![0.0, 5.0 + 5.0 * TIME] } {
-            // Near the diagonals, off which the triangles differ.
-            let o = Vec3::new(x, y - 0.1 * x.signum(), 9.0);
-            let id = hit(&scene, &ray(o, -Vec3::Z)).and_then(|s| s.area_light).expect("a light");
-            assert!(ids.insert(id), "a light of its own at ({x}, {y})");
-            assert!(scene.light(id).pdf_li(&from(o), -Vec3::Z, false) > 0.0);
-            for u in [[0.2, 0.3], [0.8, 0.6]] {
-                let sample = scene.sample_light(id, &from(o), u.into(), &lambda(), false).expect("light");
-                assert_eq!(hit(&scene, &ray(o, sample.wi)).and_then(|s| s.area_light), Some(id));
-            }
-        }
-    }
-    assert_eq!(ids.len(), 15);
-}
-
-#[test]
-fn scenes_without_light_say_so() {
-    let codes = |desc: &SceneDesc| all_diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
-    assert_eq!(codes(&SceneDesc::default()), ["empty-scene"]);
-    assert_eq!(codes(&with(|desc| desc.shapes.push(sphere(1.0).into()))), ["no-light"]);
-    let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
-    assert_eq!(codes(&with(|desc| desc.lights.push(point.into()))), [""; 0]);
-}
-
-#[test]
-fn brightness_that_makes_no_sense_is_refused() {
-    let light = |scale, power| {
-        with(|desc| {
-            let kind = LightKind::Point { intensity: 1.0.into(), power, from: Vec3::ZERO };
-            desc.lights.push_stated(with_parameter(LightDesc { scale, ..kind.into() }, "scale", 7));
-        })
-    };
-    let refused = |desc: &SceneDesc, message| check(desc, Severity::Error, "invalid-value", message, 7);
-    refused(&light(-2.0, None), "`scale` of a light is -2; it must be finite and not negative");
-    let codes = |desc: &SceneDesc| diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
-    assert_eq!(codes(&light(1.0, Some(-1.0))), ["invalid-value"]);
-    let glaring = with(|desc| {
-        let light = AreaLightDesc { scale: f32::MAX, ..AreaLightDesc::new(1e-20.into()) };
-        desc.area_lights.push(light);
-    });
-    assert_eq!(codes(&glaring)[0], "invalid-value");
 }

@@ -1,0 +1,85 @@
+//! What a camera ray hits first, for the layers of the film.
+
+use film::{FirstHit, id_of_name};
+use geometry::Hit;
+use math::{RayDifferential, Vec2, Vec3};
+use scene::camera::Projection;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::Tracer;
+
+/// How many changes of medium a ray passes before it counts as hitting nothing.
+const MAX_INTERFACES: u32 = 64;
+
+/// Directions that the albedo is averaged over.
+const ALBEDO_SAMPLES: u32 = 16;
+
+/// The first surface that a camera ray hits; changes of medium are none. The albedo is that at
+/// `lambda`.
+pub(crate) fn first_hit(
+    tracer: &mut Tracer,
+    ray: &RayDifferential,
+    lambda: &SampledWavelengths,
+) -> Option<FirstHit> {
+    let mut ray = *ray;
+    let mut lambda = *lambda;
+    for _ in 0..MAX_INTERFACES {
+        let hit = tracer.hit(&ray.ray)?;
+        let mut surface = tracer.scene.interaction(&hit, tracer.scene.world().surface(&ray.ray, &hit));
+        let Some(bsdf) = tracer.bsdf(&mut surface, &ray, &mut lambda) else {
+            ray = surface.spawn_ray(ray.ray.d).into();
+            continue;
+        };
+        let (p, time) = (surface.p(), ray.ray.time);
+        let wo = -ray.ray.d.normalize();
+        let samples = (0..ALBEDO_SAMPLES).map(|i| {
+            let u = (i as f32 + 0.5) / ALBEDO_SAMPLES as f32;
+            let v = (i.reverse_bits() >> 8) as f32 / (1 << 24) as f32;
+            ((u + v).fract(), Vec2::new(u, v))
+        });
+        let albedo: SampledSpectrum = bsdf.rho(wo, samples);
+        let world_from_render = tracer.scene.world_from_render();
+        let in_camera = tracer.view.camera.transform().render_from_camera(time).inverse().point(p);
+        let depth = match tracer.view.camera.projection() {
+            Projection::Spherical(_) => in_camera.length(),
+            _ => in_camera.z,
+        };
+        // Towards the camera, as compositing expects it.
+        let normal = surface.surface.shading.n;
+        let normal = if normal.dot(wo) < 0.0 { -normal } else { normal };
+        let instances = hit.instance.ids().iter().map(|id| format!("instance-{}/", id.0));
+        let object = format!("{}object-{}", instances.collect::<String>(), hit.geometry.0);
+        return Some(FirstHit {
+            depth,
+            position: world_from_render.transform_point3(p.as_dvec3()).as_vec3().to_array(),
+            normal: world_from_render
+                .transform_vector3(normal.as_dvec3())
+                .as_vec3()
+                .normalize_or_zero()
+                .to_array(),
+            albedo,
+            uv: surface.surface.uv.to_array(),
+            motion: motion(tracer, &hit, p).to_array(),
+            object: id_of_name(&object),
+            material: id_of_name(&format!("material-{}", surface.material.0)),
+        });
+    }
+    None
+}
+
+/// How far a point of a surface moves on the film while the shutter is open, in pixels; 0 where it
+/// is not in view all the time. Surfaces without parameters count as standing still.
+fn motion(tracer: &Tracer, hit: &Hit, p: Vec3) -> Vec2 {
+    let camera = &tracer.view.camera;
+    let seen = |time: f32| {
+        let surface =
+            tracer.scene.world().surface_at(hit.geometry, hit.primitive, hit.instance, hit.uv, time);
+        let p = surface.map_or(p, |surface| surface.p.p);
+        camera.sample_wi(p, time, Vec2::splat(0.5)).map(|seen| seen.film)
+    };
+    let [open, close] = camera.shutter();
+    match (seen(open), seen(close)) {
+        (Some(first), Some(last)) => last - first,
+        _ => Vec2::ZERO,
+    }
+}
