@@ -37,8 +37,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn work_without_memory_is_refused() {
-        assert!(require_memory(1 << 20).is_ok());
-        assert!(matches!(require_memory(1 << 62), Err(ImageError::Limits(_))));
+    fn memory_that_is_not_there_is_an_error() {
+        const COUNT: usize = isize::MAX as usize / 16;
+        for refused in [
+            reserved::<f32>(COUNT).map(drop),
+            filled(COUNT, 0.0_f32).map(drop),
+            collected(COUNT, std::iter::repeat(0.0_f32)).map(drop),
+            reserved::<f32>(usize::MAX).map(drop),
+            require_memory(COUNT),
+        ] {
+            assert!(matches!(refused, Err(ImageError::Limits(_))), "{refused:?}");
+        }
+        assert_eq!(collected(2, 0..9).unwrap(), [0, 1]);
+        assert_eq!(filled(2, 7).unwrap(), [7, 7]);
     }
 }
