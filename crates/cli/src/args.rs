@@ -8,7 +8,7 @@ use alhazen::{Overrides, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::help;
-use crate::values::{crop, key_value, noise, pixel, resolution, shard, time};
+use crate::values::{crop, film_file, key_value, noise, pixel, resolution, shard, time};
 
 /// A physically based renderer.
 #[derive(Debug, Parser)]
@@ -105,7 +105,7 @@ pub struct Render {
     /// Save the render here while it runs, so that `alhazen resume` can go on with it: the film,
     /// which samples it holds, the scene's path and the options. The file is replaced whole, so
     /// that it is valid at any moment.
-    #[arg(long, value_name = "FILE.film")]
+    #[arg(long, value_name = "FILE.film", value_parser = film_file)]
     pub checkpoint: Option<PathBuf>,
     /// How often --checkpoint saves, unless a pass takes longer.
     #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]

@@ -1,5 +1,6 @@
 //! The values of options, as they are written on the command line.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use alhazen::Shard;
@@ -31,6 +32,12 @@ pub fn time(text: &str) -> Result<Duration, String> {
 pub fn noise(text: &str) -> Result<f64, String> {
     let noise = text.parse().ok().filter(|&noise: &f64| noise > 0.0 && noise.is_finite());
     noise.ok_or_else(|| "it is a number above 0: 0.02".into())
+}
+
+/// The name of a film file.
+pub fn film_file(text: &str) -> Result<PathBuf, String> {
+    // A slip such as the scene's own name must not cost a file.
+    if text.ends_with(".film") { Ok(text.into()) } else { Err("its name ends in .film".into()) }
 }
 
 /// Which of how many parts.

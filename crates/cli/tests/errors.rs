@@ -149,6 +149,7 @@ fn a_wrong_command_line_is_told() {
         (&["render", "scene.pbrt", "--pixel", "24,0"], "not in the image of 24 × 16 pixels"),
         (&["render", "scene.pbrt", "--threads", "60000"], "cannot start 60000 threads: this machine has"),
         (&["render", "scene.pbrt", "--resolution", "12"], "640x480"),
+        (&["render", "scene.pbrt", "--checkpoint", "scene.obj"], "its name ends in .film"),
         (&["paint", "scene.pbrt"], "paint"),
     ] {
         let finished = folder.alhazen(arguments).expect(2);
@@ -169,4 +170,22 @@ fn help_names_every_algorithm_and_setting() {
         assert!(help.contains(name), "{name} is not in the help");
     }
     folder.alhazen(&["--version"]).expect(0);
+}
+
+#[test]
+fn a_camera_that_looks_away_gives_a_warning() {
+    let folder = Folder::new("nothing-in-view");
+    let scene = |look_at: &str| {
+        format!(
+            "LookAt {look_at} Camera \"perspective\"\nFilm \"rgb\" \"integer xresolution\" 8 \
+             \"integer yresolution\" 8\nWorldBegin LightSource \"point\" \"point3 from\" [0 0 -3] \
+             Shape \"sphere\""
+        )
+    };
+    let warning = "no surface seems to be in view";
+    for (look_at, is_away) in [("0 0 -5  0 0 0  0 1 0", false), ("0 0 -5  0 0 -9  0 1 0", true)] {
+        folder.write("scene.pbrt", &scene(look_at));
+        let finished = folder.alhazen(&["render", "scene.pbrt", "--spp", "1", "-o", "a.exr"]).expect(0);
+        assert_eq!(finished.err.contains(warning), is_away, "{finished:?}");
+    }
 }

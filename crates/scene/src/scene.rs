@@ -1,5 +1,6 @@
 //! The compiled world: what rays meet, what it is made of, and what shines.
 
+use crate::camera::{CameraRay, CameraSample};
 use crate::interaction::{Footprint, SurfaceInteraction};
 use crate::light::{
     AreaEmission, LightId, LightLeSample, LightLiSample, LightRef, LightSampleContext, LightTable, Lights,
@@ -10,7 +11,7 @@ use crate::material::{Material, MaterialId, Materials};
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use crate::view::View;
 use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
-use math::{DMat4, Point2, Ray, RayDifferential, Vector3};
+use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -149,6 +150,19 @@ impl Scene {
     /// Where the nearest surface at 0 < t < `t_max` is met.
     pub fn hit(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> Option<Hit> {
         self.world.intersect(ray, t_max, &|hit, ray| self.is_there(hit, ray), stats)
+    }
+
+    /// Whether one of 64 × 64 camera rays, spread over a view of the given resolution, hits a
+    /// surface.
+    pub fn has_surface_in(&self, view: &View, resolution: [i32; 2]) -> bool {
+        const SIDE: u32 = 64;
+        let position = |i: u32, axis: usize| (i as f32 + 0.5) / SIDE as f32 * resolution[axis] as f32;
+        (0..SIDE * SIDE).any(|i| {
+            let film = Vec2::new(position(i % SIDE, 0), position(i / SIDE, 1));
+            let sample = CameraSample { film, lens: Vec2::splat(0.5), time: 0.5, filter_weight: 1.0 };
+            let hit = |ray: CameraRay| self.hit(&ray.ray, f32::INFINITY, &mut RayStats::default());
+            view.camera.generate_ray(&sample).and_then(hit).is_some()
+        })
     }
 
     /// What belongs to the primitive of a hit, at a point of its surface.

@@ -74,7 +74,12 @@ fn scenes_without_light_give_a_warning() {
     assert_eq!(codes(&SceneDesc::default()), ["empty-scene"]);
     assert_eq!(codes(&with(|desc| desc.shapes.push(sphere(1.0).into()))), ["no-light"]);
     let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
-    assert_eq!(codes(&with(|desc| desc.lights.push(point.into()))), [""; 0]);
+    assert_eq!(codes(&with(|desc| desc.lights.push(point.clone().into()))), ["empty-scene"]);
+    let lit = with(|desc| {
+        desc.shapes.push(sphere(1.0).into());
+        desc.lights.push(point.into());
+    });
+    assert_eq!(codes(&lit), [""; 0]);
 }
 
 #[test]

@@ -49,3 +49,10 @@ fn coarser_pixels_view_the_same_scene() {
     let ((fine, _), (coarse, _)) = (seen(&scene, &view, film), seen(&scene, &view.coarser(4), film / 4.0));
     assert!((fine - coarse).abs() < 1e-5, "{fine} {coarse}");
 }
+
+#[test]
+fn surfaces_in_view_are_found() {
+    let in_view = |desc: &SceneDesc| scene(desc).has_surface_in(&view(desc), desc.film.resolution);
+    assert!(in_view(&from_distance(4.0)));
+    assert!(!in_view(&from_distance(-4.0)), "the ball is behind the camera");
+}

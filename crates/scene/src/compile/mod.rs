@@ -117,12 +117,9 @@ impl Compiler<'_> {
     /// Warns where there is nothing to see.
     fn warn_of_darkness(&mut self, lights: &LightTable) {
         let needs_light = !matches!(*self.desc.integrator, IntegratorDesc::AmbientOcclusion { .. });
-        if self.entries.is_empty() && lights.is_empty() {
-            self.warn(
-                "empty-scene",
-                "the scene has neither shapes nor lights; the picture is black",
-                Span::NONE,
-            );
+        if self.entries.is_empty() && lights.infinite().is_empty() {
+            let message = "the scene has neither shapes nor an infinite light; the picture is black";
+            self.warn("empty-scene", message, Span::NONE);
         } else if lights.is_empty() && needs_light {
             self.warn("no-light", "the scene has no light; the picture is black", Span::NONE);
         }
