@@ -49,8 +49,13 @@ impl Job {
             return Err(diagnostics.concat());
         };
         let warnings = [scene.warnings, view.warnings, film.warnings, built.warnings].concat();
-        let (scene, view, film) = (Arc::new(scene.scene), view.view, film.film);
-        let header = Header::of(desc);
+        let (scene, view, mut film) = (Arc::new(scene.scene), view.view, film.film);
+        if built.integrator.splats() {
+            film.reserve_splats().map_err(|error| {
+                vec![Diagnostic::error("invalid-film", error.to_string(), desc.film.origin.span)]
+            })?;
+        }
+        let header = Header::of(desc, &scene, &film);
         let sketch = Sketch::new(desc, &film);
         let planned = built.integrator.passes();
         let is_arranged = is_arranged(desc, scene.needs_footprints(&view));
