@@ -1,4 +1,4 @@
-//! The system's clock, for those who have one.
+//! The system clock, for platforms that have one.
 
 use std::sync::Arc;
 use std::time::Instant;

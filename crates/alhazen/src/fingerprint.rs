@@ -1,4 +1,4 @@
-//! A hash of all files that make a scene, by which another scene is recognised.
+//! A hash of all files of a scene, which identifies the scene of a saved render.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 use import::AssetSource;
 
-/// Passes files on to the importer and hashes them on the way: the scene, what it includes, meshes
+/// An asset source that hashes all files that the importer reads: the scene, its includes, meshes
 /// and images.
 pub struct Fingerprint<'a> {
     assets: &'a dyn AssetSource,
@@ -17,13 +17,13 @@ pub struct Fingerprint<'a> {
 }
 
 impl<'a> Fingerprint<'a> {
-    /// Of a scene file among these assets.
+    /// Hashes the files of the scene file `scene` among these assets.
     pub fn new(assets: &'a dyn AssetSource, scene: &Path) -> Self {
         let folder = scene.parent().unwrap_or(Path::new("")).to_owned();
         Self { assets, folder, hashes: Mutex::default() }
     }
 
-    /// The hash of all files that have been read: of their paths and contents, whatever the order.
+    /// The hash of all files read so far: of their paths and contents, in any order.
     pub fn hash(&self) -> [u8; 32] {
         let hashes = self.hashes.lock().unwrap_or_else(PoisonError::into_inner);
         let mut all = blake3::Hasher::new();
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn names_and_contents_count_but_neither_folder_nor_order() {
+    fn the_hash_is_of_names_and_contents_not_folder_and_order() {
         let scene = hash("a/room.pbrt", &[("a/room.pbrt", "x"), ("a/wood.png", "y")]);
         assert_eq!(scene, hash("/b/c/room.pbrt", &[("/b/c/wood.png", "y"), ("/b/c/room.pbrt", "x")]));
         for other in [

@@ -1,4 +1,4 @@
-//! What the header of a picture says: the scene's camera, and settings.
+//! The header of a picture: the camera and settings of the scene.
 
 use description::schema::Settings;
 use description::{CameraKind, SceneDesc};
@@ -9,10 +9,10 @@ use math::Mat4;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-/// How many bytes of names a table of identifiers has. Those of the objects beyond it are left out.
+/// How many bytes the names of a table may take; further names are left out.
 const MAX_NAME_BYTES: usize = 4 << 20;
 
-/// What the header of a picture says: the scene's camera, settings, and the names of identifiers.
+/// The header of a picture: the camera and settings of the scene, and the names of identifiers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     attributes: Vec<(String, Attribute)>,
@@ -24,7 +24,7 @@ pub struct Header {
 const ID_LAYERS: [(Layer, &str); 2] = [(Layer::ObjectId, "objects"), (Layer::MaterialId, "materials")];
 
 impl Header {
-    /// Of the pictures of a scene.
+    /// The header of pictures of a scene.
     pub(crate) fn of(desc: &SceneDesc, scene: &Scene, film: &Film) -> Self {
         let camera = match &desc.camera.kind {
             CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
@@ -55,13 +55,13 @@ impl Header {
         }
     }
 
-    /// The picture of a render as it stands, with this and the number of passes in its header.
+    /// The picture of a render so far, with this header and the number of passes.
     pub fn picture(&self, state: &SessionState) -> Image {
         state.with_film(|film| self.picture_of(film, state.done.count()))
     }
 
-    /// What `look` makes of [`Self::picture`] with all layers, which is computed row by row while
-    /// it is looked at: a large picture needs no copy in memory.
+    /// Calls `look` with [`Self::picture`] and all layers. Rows are computed when they are read, so
+    /// that a large picture needs no copy in memory.
     pub fn with_development<T>(&self, state: &SessionState, look: impl FnOnce(&Development) -> T) -> T {
         state.with_film(|film| {
             let mut development = film.development();
@@ -73,7 +73,7 @@ impl Header {
         })
     }
 
-    /// The picture on a film of so many samples per pixel.
+    /// The picture of a film with this number of samples per pixel.
     pub(crate) fn picture_of(&self, film: &Film, samples_per_pixel: u32) -> Image {
         let mut picture = film.develop();
         self.set(&mut picture.metadata, samples_per_pixel);
@@ -87,7 +87,7 @@ impl Header {
         metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
     }
 
-    /// As JSON: text, whole numbers and matrices stand for themselves.
+    /// As JSON: strings, integers and matrices.
     pub(crate) fn to_json(&self) -> Value {
         let value = |value: &Attribute| match value {
             Attribute::Text(text) => json!(text),
@@ -103,7 +103,7 @@ impl Header {
         json
     }
 
-    /// From what [`to_json`](Self::to_json) has written.
+    /// Parses the JSON of [`to_json`](Self::to_json).
     pub(crate) fn from_json(json: &Value) -> Option<Self> {
         let value = |value: &Value| match value {
             Value::String(text) => Some(Attribute::Text(text.clone())),

@@ -1,10 +1,10 @@
 //! alhazen, a physically based renderer, as a library.
 //!
-//! The crates of the house under their names, and what joins them into a program: [`Overrides`]
-//! change a scene before it is rendered, a [`Job`] takes it from description to picture,
-//! [`write_picture`] puts that into a file, a [`RenderOrder`] saves it so that it can go on later
-//! as a [`SavedRender`]. [`render_file`] does all of it but the last. [`compare`] renders one scene
-//! by several algorithms and measures them.
+//! Re-exports the other crates, and joins them into a renderer: [`Overrides`] change a scene before
+//! it is rendered, a [`Job`] renders a description to a picture, [`write_picture`] writes that to a
+//! file. A [`RenderOrder`] saves a render, so that it can be continued as a [`SavedRender`].
+//! [`render_file`] does all but the last. [`compare`] renders one scene with several integrators
+//! and measures their errors.
 
 pub use description;
 pub use film;

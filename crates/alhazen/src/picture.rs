@@ -1,4 +1,4 @@
-//! Developed films written to files.
+//! Writing of pictures to files.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -7,8 +7,8 @@ use image::{Channel, Chromaticities, Format, Image, ImageError, ImageMetadata, P
 use spectrum::{Matrix3, Rgb, RgbColorSpace};
 
 /// Writes a picture in the format of the name's extension. EXR files keep all channels, the
-/// picture's colour space and everything that its header says; other formats keep the colours
-/// alone, cannot tell their colour space, and get sRGB.
+/// picture's colour space and its header; other formats keep only the colours and cannot state
+/// their colour space, so these are converted to sRGB.
 pub fn write_picture(picture: &dyn PixelSource, path: impl AsRef<Path>) -> Result<(), ImageError> {
     let path = path.as_ref();
     let format = Format::from_name(&path.to_string_lossy());
@@ -18,12 +18,12 @@ pub fn write_picture(picture: &dyn PixelSource, path: impl AsRef<Path>) -> Resul
     }
 }
 
-/// A picture whose colours are converted to sRGB while it is read.
+/// A pixel source that converts colours to sRGB as rows are read.
 struct InSrgb<'a> {
     picture: &'a dyn PixelSource,
     srgb_from_picture: Matrix3,
     metadata: ImageMetadata,
-    /// Where the channels R, G and B are.
+    /// Indices of the channels R, G and B.
     color: Option<[usize; 3]>,
 }
 
@@ -69,14 +69,14 @@ impl PixelSource for InSrgb<'_> {
     }
 }
 
-/// The colour space with these primaries, unless it is sRGB, or none that is known.
+/// The colour space with these chromaticities, if it is known and not sRGB.
 fn color_space(chromaticities: Option<Chromaticities>) -> Option<&'static RgbColorSpace> {
     let Chromaticities { red, green, blue, white } = chromaticities?;
     RgbColorSpace::from_chromaticities([red, green, blue], white)
         .filter(|&space| space != RgbColorSpace::srgb())
 }
 
-/// The picture in the colour space of screens.
+/// The picture converted to sRGB.
 pub(crate) fn in_srgb(picture: &Image) -> Cow<'_, Image> {
     let Some(space) = color_space(picture.metadata.chromaticities) else { return Cow::Borrowed(picture) };
     let matrix = space.convert(RgbColorSpace::srgb());

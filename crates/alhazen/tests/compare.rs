@@ -1,6 +1,6 @@
-//! The laboratory: its figures against direct computation, what it says of algorithms with and
-//! without bias, and its page.
-#![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
+//! The laboratory: its figures against direct computation, the bias of unbiased and biased
+//! integrators, and its page.
+#![allow(clippy::unwrap_used, reason = "test helpers may, as tests do")]
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -15,7 +15,7 @@ use alhazen::integrators::{Cancelled, Control};
 use alhazen::{Overrides, render_file, system_clock};
 use serde_json::Value;
 
-/// Two walls that light each other, and a lamp.
+/// Two walls and a light, with diffuse interreflection.
 const SCENE: &str = r#"
 LookAt 0 0.5 -4  0 0 0  0 1 0
 Camera "perspective" "float fov" 40
@@ -75,7 +75,7 @@ fn difference(comparison: &Comparison, run: &Run, picture: usize) -> metrics::Di
 }
 
 #[test]
-fn figures_are_those_of_the_pictures() {
+fn figures_match_direct_computation() {
     let comparison =
         compared(Plan { reference: rendered(64), ..plan(&["path", "simplepath"], Budget::Samples(8)) });
     let json = comparison.to_json();
@@ -112,7 +112,7 @@ fn figures_are_those_of_the_pictures() {
 }
 
 #[test]
-fn the_picture_is_that_of_a_render() {
+fn the_first_picture_is_that_of_a_render() {
     let comparison = compared(plan(&["path:maxdepth=2"], Budget::Samples(4)));
     let overrides = Overrides {
         settings: vec![("maxdepth".into(), "2".into()), ("savefp16".into(), "false".into())],
@@ -121,11 +121,11 @@ fn the_picture_is_that_of_a_render() {
     let render = render_file(NAME, &assets(), &overrides, &Control::default()).unwrap();
     let bits = |image: &Image| image.values().map(f32::to_bits).collect::<Vec<_>>();
     assert_eq!(bits(&comparison.runs[0].pictures[0]), bits(&render));
-    assert_ne!(bits(&comparison.runs[0].pictures[1]), bits(&render), "the second has a seed of its own");
+    assert_ne!(bits(&comparison.runs[0].pictures[1]), bits(&render), "the second has another seed");
 }
 
 #[test]
-fn algorithms_that_agree_have_no_bias_and_those_that_leave_light_out_have() {
+fn only_integrators_that_miss_light_are_biased() {
     let contenders = ["path", "simple-path", "path:maxdepth=1"];
     let comparison = compared(Plan { reference: rendered(512), ..plan(&contenders, Budget::Samples(64)) });
     let [path, simple, short] = comparison.runs.as_slice() else { panic!("three runs") };
@@ -140,18 +140,15 @@ fn algorithms_that_agree_have_no_bias_and_those_that_leave_light_out_have() {
     }
     assert!(short.last().measure.relative.is_biased() && z(short) < -10.0, "{:?}", short.last().measure);
     let of_reference = short.last().measure.mean_error / comparison.reference.mean();
-    assert!(
-        (-0.6..-0.1).contains(&of_reference),
-        "light after the first reflection is missing: {of_reference}"
-    );
-    // Error is inversely proportional to samples, so that noise can be foretold.
+    assert!((-0.6..-0.1).contains(&of_reference), "indirect light is missing: {of_reference}");
+    // Variance is inversely proportional to the number of samples.
     let variance = |run: &Run, point: usize| run.checkpoints[point].measure.relative.variance;
     let fall = variance(path, 0) / variance(path, path.checkpoints.len() - 1);
     assert!((fall / 64.0).ln().abs() < 0.5, "64 times the samples have 1 / {fall} of the variance");
 }
 
 #[test]
-fn a_reference_that_misses_light_is_doubted() {
+fn a_reference_that_misses_light_gives_a_warning() {
     let short =
         ReferenceSource::Render { by: Some("path:maxdepth=1".parse().unwrap()), samples_per_pixel: Some(64) };
     let contenders = ["path:maxdepth=1", "path", "simple-path"];
@@ -163,7 +160,7 @@ fn a_reference_that_misses_light_is_doubted() {
 }
 
 #[test]
-fn nothing_but_times_depends_on_threads() {
+fn figures_do_not_depend_on_threads() {
     let figures = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -179,7 +176,7 @@ fn nothing_but_times_depends_on_threads() {
 }
 
 #[test]
-fn time_is_given_to_all_alike() {
+fn every_run_uses_its_budget_of_time() {
     let time = Duration::from_millis(100);
     let comparison =
         compared(Plan { reference: rendered(32), ..plan(&["path", "ray-casting"], Budget::Time(time)) });
@@ -187,14 +184,14 @@ fn time_is_given_to_all_alike() {
         let last = run.last();
         let pass = last.seconds / f64::from(last.passes);
         assert!(last.seconds >= time.as_secs_f64() || last.passes == 65_536, "{last:?}");
-        // A pass that the machine held up may be longer than others.
+        // Other load on the machine may make a pass longer.
         assert!(last.seconds < time.as_secs_f64() + 100.0 * pass + 1.0, "{last:?}");
     }
     assert_eq!(comparison.to_json()["budget"]["seconds"], 0.1);
 }
 
 #[test]
-fn a_given_reference_has_to_fit() {
+fn a_given_reference_must_have_the_size_of_the_picture() {
     let whole = compared(plan(&["path"], Budget::Samples(2))).reference.picture;
     let given = |picture: &Image, crop| Plan {
         reference: ReferenceSource::Picture { name: "r.exr".into(), picture: picture.clone() },
@@ -203,7 +200,7 @@ fn a_given_reference_has_to_fit() {
     };
     let comparison = compared(given(&whole, None));
     assert!(comparison.reference.noise.is_none() && comparison.to_json()["reference"]["variance"].is_null());
-    // The part that is rendered is taken from a picture of the whole.
+    // A picture of the whole image is cropped to the part that is rendered.
     let comparison = compared(given(&whole, Some([0.5, 1.0, 0.0, 0.5])));
     assert_eq!(comparison.reference.picture.rgb(1, 2), whole.rgb(17, 2));
     let small = Image::from_fn(5, 7, ["Y"], |_, _| [0.0]);
@@ -211,12 +208,12 @@ fn a_given_reference_has_to_fit() {
         Err(PlanError::Reference(message)) => {
             assert_eq!(message, "the reference r.exr has 5 × 7 pixels, not the scene's 32 × 24");
         }
-        _ => panic!("a reference of another size was taken"),
+        _ => panic!("a reference of the wrong size was accepted"),
     }
 }
 
 #[test]
-fn a_cancelled_comparison_is_of_what_was_done() {
+fn a_cancelled_comparison_reports_completed_runs() {
     let from = |stage: &'static str| {
         let plan = Plan { reference: rendered(2), ..plan(&["path", "whitted"], Budget::Samples(2)) };
         let control = Control::default();
@@ -238,7 +235,7 @@ fn a_cancelled_comparison_is_of_what_was_done() {
 }
 
 #[test]
-fn the_page_is_well_formed_and_needs_no_network() {
+fn the_page_is_well_formed_and_self_contained() {
     let comparison = compared(plan(&["path", "ray-casting"], Budget::Samples(2)));
     let page = comparison.to_html();
     for outside in ["http:", "https:", "url(", "@import", "src=\"/", "<link", "fetch("] {
@@ -256,7 +253,7 @@ fn the_page_is_well_formed_and_needs_no_network() {
 }
 
 #[test]
-fn black_pictures_and_single_pixels_have_a_report_too() {
+fn black_pictures_and_single_pixels_can_be_reported() {
     let dark = plan(&["ambient-occlusion:maxdistance=0.001", "path:maxdepth=0"], Budget::Samples(1));
     let overrides = Overrides { crop: Some([0.0, 0.1, 0.9, 1.0]), ..Overrides::default() };
     let one = Overrides { pixel: Some([3, 4]), ..Overrides::default() };
@@ -269,8 +266,7 @@ fn black_pictures_and_single_pixels_have_a_report_too() {
     }
 }
 
-/// Panics unless every element is closed where it has to be; gives their ids, none of which occurs
-/// twice.
+/// Panics unless elements are properly nested and their ids unique; returns the ids.
 fn check_elements(page: &str) -> BTreeSet<String> {
     const EMPTY: [&str; 4] = ["!DOCTYPE", "meta", "img", "input"];
     let (mut open, mut ids) = (Vec::new(), BTreeSet::new());
@@ -287,7 +283,7 @@ fn check_elements(page: &str) -> BTreeSet<String> {
         if let Some((_, id)) = tag.split_once(" id=\"").or_else(|| tag.split_once("id=\"")) {
             assert!(ids.insert(id.split('"').next().unwrap().to_owned()), "two elements are {id}");
         }
-        // What stands in a script or style is no markup.
+        // Scripts and style sheets are not markup.
         if name == "script" || name == "style" {
             rest = &rest[rest.find("</").unwrap()..];
         }

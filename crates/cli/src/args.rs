@@ -8,8 +8,7 @@ use alhazen::{Overrides, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::help;
-use crate::merge::Merge;
-use crate::resume::Resume;
+use crate::values::{crop, key_value, noise, pixel, resolution, shard, time};
 
 /// A physically based renderer.
 #[derive(Debug, Parser)]
@@ -206,6 +205,55 @@ impl Changes {
     }
 }
 
+/// Options of `alhazen resume`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Resume {
+    /// The film file.
+    pub film: PathBuf,
+    /// Write the picture here, in the format of the extension. Can be given several times.
+    /// [default: the film file's name with .exr, in the current folder]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Samples per pixel of the whole render, those before included. [default: as begun]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
+    pub spp: Option<u32>,
+    /// What else ends the render. [default: as begun, unless there is --spp]
+    #[command(flatten)]
+    pub limits: RenderLimits,
+    /// How often the film file is saved, unless a pass takes longer.
+    #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]
+    pub every: Duration,
+    /// Threads to render with; their number never changes the picture. [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print nothing but errors; with --json, the JSON object too.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write one JSON object to standard output instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `alhazen merge`.
+#[derive(Args, Debug)]
+#[command(after_help = EXIT_CODES)]
+pub struct Merge {
+    /// The film files, in any order.
+    #[arg(value_name = "FILM", required = true)]
+    pub films: Vec<PathBuf>,
+    /// Write the picture here, in the format of the extension. Can be given several times.
+    /// [default: the first film file's name with .exr, in the current folder]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Print nothing but errors; with --json, the JSON object too.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Write one JSON object to standard output instead of text, errors too.
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// Options of `alhazen compare`.
 #[derive(Args, Debug)]
 #[command(after_help = EXIT_CODES, after_long_help = render_long_help())]
@@ -392,69 +440,6 @@ pub struct Man {
 
 fn render_long_help() -> String {
     help::settings() + "\n" + EXIT_CODES
-}
-
-fn key_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE")?;
-    Ok((key.trim().to_owned(), value.trim().to_owned()))
-}
-
-/// A duration as it is written on the command line.
-pub fn time(text: &str) -> Result<Duration, String> {
-    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let unit = match text[number.len()..].trim() {
-        "" | "s" => Some(1.0),
-        "ms" => Some(1e-3),
-        "min" | "m" => Some(60.0),
-        "h" => Some(3600.0),
-        _ => None,
-    };
-    let seconds = unit.zip(number.trim().parse().ok()).map(|(unit, number): (f64, f64)| unit * number);
-    seconds
-        .filter(|&seconds| seconds > 0.0)
-        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
-        .ok_or_else(|| "expected a duration such as 30s, 1.5min or 2h".into())
-}
-
-fn noise(text: &str) -> Result<f64, String> {
-    let noise = text.parse().ok().filter(|&noise: &f64| noise > 0.0 && noise.is_finite());
-    noise.ok_or_else(|| "it is a number above 0: 0.02".into())
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    let numbers = text
-        .split_once('/')
-        .and_then(|(index, count)| Some(Shard { index: index.parse().ok()?, count: count.parse().ok()? }));
-    numbers
-        .filter(|shard| (1..=shard.count).contains(&shard.index))
-        .ok_or_else(|| "it is written 3/8, from 1/8 to 8/8".into())
-}
-
-fn resolution(text: &str) -> Result<[i32; 2], String> {
-    let numbers =
-        text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
-    numbers
-        .filter(|sides| sides.iter().all(|&side| side > 0))
-        .ok_or_else(|| "expected WIDTHxHEIGHT, such as 640x480".into())
-}
-
-fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
-    let numbers: Option<Vec<T>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
-    numbers?.try_into().ok()
-}
-
-fn crop(text: &str) -> Result<[f32; 4], String> {
-    numbers(text)
-        .filter(|&[x0, x1, y0, y1]: &[f32; 4]| {
-            0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0
-        })
-        .ok_or_else(|| "expected four fractions from 0 to 1, such as 0.25,0.75,0,1".into())
-}
-
-fn pixel(text: &str) -> Result<[i32; 2], String> {
-    numbers(text)
-        .filter(|pixel: &[i32; 2]| pixel.iter().all(|&coordinate| coordinate >= 0))
-        .ok_or_else(|| "expected a column and a row, such as 120,45".into())
 }
 
 #[cfg(test)]

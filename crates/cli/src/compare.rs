@@ -183,7 +183,7 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
         format!("{:.2e}", parts.error),
         percent(parts.variance.sqrt()),
         match parts.bias() {
-            Bias::Seen(bias) => percent(bias),
+            Bias::Significant(bias) => percent(bias),
             Bias::Below(_) => "none seen".into(),
             Bias::Hidden => "hidden by noise".into(),
         },

@@ -22,6 +22,7 @@ mod resume;
 mod scene;
 mod summary;
 mod threads;
+mod values;
 
 use std::io::ErrorKind;
 use std::process::ExitCode;

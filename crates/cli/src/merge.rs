@@ -3,34 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use alhazen::film::{FilmFileError, PassSet};
-use clap::Args;
 use serde_json::json;
 
-use crate::args::EXIT_CODES;
+use crate::args::Merge;
 use crate::checkpoint;
 use crate::console::say;
 use crate::failure::{Failure, about_file};
 use crate::results::write_results;
 use crate::resume::outputs;
-
-/// Options of `alhazen merge`.
-#[derive(Args, Debug)]
-#[command(after_help = EXIT_CODES)]
-pub struct Merge {
-    /// The film files, in any order.
-    #[arg(value_name = "FILM", required = true)]
-    pub films: Vec<PathBuf>,
-    /// Write the picture here, in the format of the extension. Can be given several times.
-    /// [default: the first film file's name with .exr, in the current folder]
-    #[arg(short, long = "output", value_name = "FILE")]
-    pub output: Vec<PathBuf>,
-    /// Print nothing but errors; with --json, the JSON object too.
-    #[arg(long)]
-    pub quiet: bool,
-    /// Write one JSON object to standard output instead of text, errors too.
-    #[arg(long)]
-    pub json: bool,
-}
 
 /// Merges film files and writes the picture.
 pub fn merge(arguments: &Merge) -> Result<(), Failure> {

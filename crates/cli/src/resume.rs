@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
 
 use alhazen::import::Files;
 use alhazen::integrators::Limits;
 use alhazen::{Fingerprint, Shard};
-use clap::Args;
 
-use crate::args::{EXIT_CODES, RenderLimits, time};
+use crate::args::Resume;
 use crate::checkpoint::{self, Checkpoint};
 use crate::drive::{Prepared, Task, Verbosity};
 use crate::failure::{Failure, about_file};
@@ -17,36 +15,6 @@ use crate::interrupt::Interrupt;
 use crate::output;
 use crate::results::named_after;
 use crate::threads::start_threads;
-
-/// Options of `alhazen resume`.
-#[derive(Args, Debug)]
-#[command(after_help = EXIT_CODES)]
-pub struct Resume {
-    /// The film file.
-    pub film: PathBuf,
-    /// Write the picture here, in the format of the extension. Can be given several times.
-    /// [default: the film file's name with .exr, in the current folder]
-    #[arg(short, long = "output", value_name = "FILE")]
-    pub output: Vec<PathBuf>,
-    /// Samples per pixel of the whole render, those before included. [default: as begun]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
-    pub spp: Option<u32>,
-    /// What else ends the render. [default: as begun, unless there is --spp]
-    #[command(flatten)]
-    pub limits: RenderLimits,
-    /// How often the film file is saved, unless a pass takes longer.
-    #[arg(long, value_name = "TIME", value_parser = time, default_value = "30s")]
-    pub every: Duration,
-    /// Threads to render with; their number never changes the picture. [default: all cores]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Print nothing but errors; with --json, the JSON object too.
-    #[arg(long)]
-    pub quiet: bool,
-    /// Write one JSON object to standard output instead of text, errors too.
-    #[arg(long)]
-    pub json: bool,
-}
 
 /// Goes on with a render, saves it and writes the picture.
 pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {

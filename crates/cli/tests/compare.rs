@@ -60,7 +60,7 @@ fn a_picture_can_be_the_reference() {
 }
 
 #[test]
-fn what_cannot_be_is_told_before_anything_is_rendered() {
+fn invalid_plans_are_refused_before_rendering() {
     let folder = Folder::with_scene("compare-errors");
     folder.alhazen(&["render", "scene.pbrt", "--quiet", "--resolution", "8x8", "-o", "small.exr"]).expect(0);
     // Each of these would take an hour if it began.
@@ -88,7 +88,7 @@ fn what_cannot_be_is_told_before_anything_is_rendered() {
     );
     fails(&["--integrators", "path,bdpt", "--set", "maxdepth=-1"], 2, "path: cannot set maxdepth to `-1`");
     fails(&["--integrators", "path,vcm,path"], 2, "path is listed twice");
-    fails(&["--integrators", "bdpt:techniques=true"], 2, "a comparison writes nothing beside its report");
+    fails(&["--integrators", "bdpt:techniques=true"], 2, "a comparison writes no files but its report");
     fails(&["--integrators", "path", "--reference", "none.exr"], 1, "none.exr: ");
     fails(&["--integrators", "path", "--reference", "scene.pbrt"], 1, "scene.pbrt: ");
     fails(

@@ -141,10 +141,10 @@ fn a_wrong_command_line_is_told() {
         (
             &[
                 &["render", "scene.pbrt", "--integrator", "bdpt", "--set", "techniques=true"][..],
-                &["--set", "maxdepth=8", "--resolution", "700x700"],
+                &["--set", "maxdepth=8", "--resolution", "760x760"],
             ]
             .concat(),
-            "cannot set techniques to `true`: pictures of all strategies take 2.3 GiB, more than 2 GiB",
+            "cannot set techniques to `true`: pictures of all strategies take 2.1 GiB, more than 2 GiB",
         ),
         (&["render", "scene.pbrt", "--pixel", "24,0"], "not in the image of 24 × 16 pixels"),
         (&["render", "scene.pbrt", "--threads", "60000"], "cannot start 60000 threads: this machine has"),

@@ -92,7 +92,8 @@ fn the_import_ends_at_once() {
     let folder = Folder::new("interrupt-import");
     // The scene never comes.
     let mut command = folder.command(&["render", "-", "--json", "-o", "a.exr"]);
-    let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program runs");
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program runs");
+    let _open = child.stdin.take();
     interrupt(&child);
     let (code, json) = end(child);
     assert_eq!(code, Some(130));

@@ -22,6 +22,7 @@ mod integrator;
 mod light;
 mod material;
 mod medium;
+mod names;
 mod options;
 mod sampler;
 mod scene;
@@ -47,10 +48,10 @@ pub use integrator::{
     LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc, PhotonMappingShow,
     RadiosityDesc, RandomWalkDesc, SimplePathDesc, SimpleVolPathDesc, SppmDesc, VcmDesc, WhittedDesc,
 };
-pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind};
+pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType};
 pub use material::{
     CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, HairColor, LayersDesc,
-    MaterialDesc, MaterialKind, RoughnessDesc, SubsurfaceScattering,
+    MaterialDesc, MaterialKind, MaterialType, RoughnessDesc, SubsurfaceScattering,
 };
 pub use medium::{CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, TemperatureDesc};
 pub use options::{OptionsDesc, RenderSpace};
@@ -58,7 +59,7 @@ pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
 pub use shape::{
     CurveBasis, CurveDesc, CurveProfile, InstanceDesc, MeshDesc, MeshKey, ObjectDesc, PatchMeshDesc,
-    ShapeDesc, ShapeKind, SolidOperation, SpheresDesc,
+    ShapeDesc, ShapeKind, ShapeTraits, ShapeType, SolidOperation, SpheresDesc,
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
 pub use texture::{

@@ -2,6 +2,7 @@
 
 use math::Point3;
 
+use crate::names::names;
 use crate::{Handle, ImageDesc, MediumDesc, SpectrumDesc, TransformDesc};
 
 /// A light that is not a surface.
@@ -88,6 +89,30 @@ pub enum LightKind {
         /// The corners of a rectangle in world space through which alone it shines.
         portal: Option<[Point3; 4]>,
     },
+}
+
+names! {
+    /// The names of lights.
+    LightType of LightKind {
+        Point = "point",
+        Spot = "spot",
+        Distant = "distant",
+        Goniometric = "goniometric",
+        Projection = "projection",
+        Infinite = "infinite",
+    }
+}
+
+impl LightKind {
+    /// Whether its light comes from infinitely far away.
+    pub fn is_distant(&self) -> bool {
+        match self {
+            Self::Distant { .. } | Self::Infinite { .. } => true,
+            Self::Point { .. } | Self::Spot { .. } | Self::Goniometric { .. } | Self::Projection { .. } => {
+                false
+            }
+        }
+    }
 }
 
 /// What an infinite light shines with.

@@ -1,5 +1,6 @@
 //! Materials: how surfaces scatter light.
 
+use crate::names::names;
 use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
 
 /// A material.
@@ -149,6 +150,44 @@ pub enum MaterialKind {
     },
     /// No surface at all: only a change of medium.
     Interface,
+}
+
+names! {
+    /// The names of materials.
+    MaterialType of MaterialKind {
+        Diffuse = "diffuse",
+        CoatedDiffuse = "coateddiffuse",
+        CoatedConductor = "coatedconductor",
+        Conductor = "conductor",
+        Dielectric = "dielectric",
+        ThinDielectric = "thindielectric",
+        DiffuseTransmission = "diffusetransmission",
+        Hair = "hair",
+        Subsurface = "subsurface",
+        Measured = "measured",
+        Mix = "mix",
+        Interface = "interface",
+    }
+}
+
+impl MaterialKind {
+    /// Whether it scatters as a diffuse surface does, or not at all. A mix leaves that to its
+    /// parts.
+    pub fn is_diffuse(&self) -> bool {
+        match self {
+            Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Mix { .. } | Self::Interface => {
+                true
+            }
+            Self::Conductor(_)
+            | Self::Dielectric { .. }
+            | Self::ThinDielectric { .. }
+            | Self::CoatedDiffuse(_)
+            | Self::CoatedConductor(_)
+            | Self::Hair { .. }
+            | Self::Subsurface { .. }
+            | Self::Measured { .. } => false,
+        }
+    }
 }
 
 /// A metal.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use math::{Normal3, Point2, Point3, Vector3};
 
+use crate::names::names;
 use crate::{
     AreaLightDesc, Arena, FloatParameter, Handle, ImageDesc, MaterialDesc, MediumInterface, Spanned,
     TransformDesc,
@@ -152,6 +153,61 @@ pub enum ShapeKind {
         /// Times that it is divided.
         levels: i32,
     },
+}
+
+names! {
+    /// The names of shapes. Triangles are also called `polygon`.
+    ShapeType of ShapeKind {
+        Sphere = "sphere",
+        Spheres = "spheres",
+        Cylinder = "cylinder",
+        Cone = "cone",
+        Paraboloid = "paraboloid",
+        Hyperboloid = "hyperboloid",
+        Disk = "disk",
+        Plane = "plane",
+        Triangles = "trianglemesh",
+        Patches = "bilinearmesh",
+        PlyMesh = "plymesh",
+        Curve = "curve",
+        LoopSubdivision = "loopsubdiv",
+        Implicit = "implicit",
+        Solid = "csg",
+    }
+}
+
+/// What renderers need to know of a kind of shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShapeTraits {
+    /// It has no end, whatever its parameters.
+    pub is_unbounded: bool,
+    /// It may be an area light.
+    pub can_emit: bool,
+    /// It can be cut into patches, over which radiosity is computed.
+    pub has_patches: bool,
+}
+
+impl ShapeKind {
+    /// What holds for all shapes of its kind.
+    pub fn traits(&self) -> ShapeTraits {
+        let (is_unbounded, can_emit, has_patches) = match self {
+            Self::Plane => (true, true, false),
+            Self::Implicit { .. } | Self::Solid { .. } => (false, false, false),
+            Self::Curve(_) => (false, true, false),
+            Self::Sphere { .. }
+            | Self::Cylinder { .. }
+            | Self::Cone { .. }
+            | Self::Paraboloid { .. }
+            | Self::Hyperboloid { .. }
+            | Self::Disk { .. }
+            | Self::Spheres(_)
+            | Self::Triangles(_)
+            | Self::Patches(_)
+            | Self::PlyMesh { .. }
+            | Self::LoopSubdivision { .. } => (false, true, true),
+        };
+        ShapeTraits { is_unbounded, can_emit, has_patches }
+    }
 }
 
 /// Whole spheres, as arrays.

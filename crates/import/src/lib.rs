@@ -7,6 +7,7 @@
 mod assets;
 mod foreign;
 mod images;
+mod imported;
 mod mesh;
 mod number;
 mod pbrt;
@@ -15,29 +16,10 @@ mod suggest;
 
 use std::path::Path;
 
-use description::{Diagnostic, SceneDesc, SourceMap};
-
 pub use assets::{AssetSource, Files, MemoryAssets};
+pub use imported::Imported;
 pub use mesh::{Mesh, MeshError, read_obj, read_ply};
 pub use suggest::closest;
-
-/// A scene that was read.
-#[derive(Clone, Debug)]
-pub struct Imported {
-    /// The scene, as far as it could be understood.
-    pub desc: SceneDesc,
-    /// The texts that the spans of the scene and its messages refer to.
-    pub sources: SourceMap,
-    /// All errors and warnings, in the order of the text.
-    pub diagnostics: Vec<Diagnostic>,
-}
-
-impl Imported {
-    /// Whether there is any error.
-    pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(Diagnostic::is_error)
-    }
-}
 
 /// Reads a scene: a pbrt-v4 file, packed by gzip or not (`-` is standard input of [`Files`]), or a
 /// PLY or OBJ file, which becomes a scene of one object with a camera and light that show it.

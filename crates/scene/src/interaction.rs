@@ -7,8 +7,8 @@
 //! refractions off smooth surfaces carry the differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
 
 use crate::camera::differential_scale;
-use crate::light::{LightId, LightSampleContext};
-use crate::material::MaterialId;
+use crate::id::{LightId, MaterialId};
+use crate::light::LightSampleContext;
 use crate::texture::TextureContext;
 use crate::view::View;
 use geometry::SurfacePoint;

@@ -5,6 +5,7 @@
 
 pub mod camera;
 mod compile;
+mod id;
 mod interaction;
 pub mod light;
 pub mod light_sampler;

@@ -43,6 +43,18 @@ fn row(line: &str) -> Option<[f32; 3]> {
     }
 }
 
+/// The sum of `f` over the whole nanometres of the range: ∫ f dλ.
+pub(crate) fn integrate(f: impl Fn(f32) -> f32) -> f32 {
+    (0..COUNT).map(|i| f64::from(f(LAMBDA_MIN + i as f32))).sum::<f64>() as f32
+}
+
+/// The colour of light with the spectrum `f`.
+pub(crate) fn integrate_xyz(f: impl Fn(f32) -> f32) -> Xyz {
+    let functions = matching_functions();
+    let component = |g: &DenselySampled| integrate(|lambda| f(lambda) * g.at(lambda)) / CIE_Y_INTEGRAL;
+    Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
+}
+
 /// The colour of light sampled at `lambda`: an unbiased estimate.
 pub fn xyz_from(light: &SampledSpectrum, lambda: &SampledWavelengths) -> Xyz {
     let functions = matching_functions();

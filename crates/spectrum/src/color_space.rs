@@ -9,11 +9,11 @@
 use std::fmt;
 use std::sync::{Arc, LazyLock, OnceLock};
 
+use crate::cie::integrate_xyz;
 use crate::dense::DenselySampled;
 use crate::matrix::Matrix3;
-use crate::named;
+use crate::measured::measured;
 use crate::rgb::{Rgb, Xyz};
-use crate::spectrum::Spectrum;
 use crate::uplift::{RgbSigmoidPolynomial, RgbToSpectrumTable};
 
 /// An RGB colour space.
@@ -71,8 +71,8 @@ impl RgbColorSpace {
         table_data: &'static [u8],
     ) -> Self {
         let illuminant =
-            named::named(illuminant).expect("invariant: the illuminants of colour spaces are named spectra");
-        let white_xyz = illuminant.to_xyz();
+            measured(illuminant).expect("invariant: the illuminants of colour spaces are named spectra");
+        let white_xyz = integrate_xyz(|lambda| illuminant.at(lambda));
         let columns = primaries.map(|[x, y]| {
             let [x, y] = [f64::from(x), f64::from(y)];
             [x / y, 1.0, (1.0 - x - y) / y]
@@ -127,11 +127,6 @@ impl RgbColorSpace {
     /// Chromaticity of the white.
     pub fn white(&self) -> [f32; 2] {
         self.white
-    }
-
-    /// The light that is white in this space, with unit luminance.
-    pub fn illuminant(&self) -> Spectrum {
-        Spectrum::DenselySampled(Arc::clone(&self.illuminant))
     }
 
     /// The light that is white in this space, shared.

@@ -52,7 +52,7 @@ fn row(line: &str) -> Option<[f64; 4]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::named::named;
+    use crate::spectrum::named;
 
     #[test]
     fn daylight_of_6500_kelvin_is_d65() {

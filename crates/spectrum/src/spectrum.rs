@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use crate::blackbody::Blackbody;
-use crate::cie::{self, CIE_Y_INTEGRAL};
+use crate::cie::{self, integrate};
 use crate::color_space::RgbColorSpace;
-use crate::dense::{COUNT, DenselySampled};
+use crate::dense::DenselySampled;
+use crate::measured::measured;
 use crate::piecewise::{PiecewiseLinear, SpectrumError};
 use crate::rgb::{Rgb, Xyz};
 use crate::rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
-use crate::sampled::{LAMBDA_MIN, SampledSpectrum, SampledWavelengths};
+use crate::sampled::{SampledSpectrum, SampledWavelengths};
 
 /// A function of wavelength in nanometres. Cheap to clone: tables are shared.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,10 +109,7 @@ impl Spectrum {
 
     /// The colour of light with this spectrum.
     pub fn to_xyz(&self) -> Xyz {
-        let functions = cie::matching_functions();
-        let component =
-            |f: &DenselySampled| integrate(|lambda| self.at(lambda) * f.at(lambda)) / CIE_Y_INTEGRAL;
-        Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
+        cie::integrate_xyz(|lambda| self.at(lambda))
     }
 
     /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB
@@ -133,6 +131,13 @@ impl Spectrum {
     }
 }
 
+impl RgbColorSpace {
+    /// The light that is white in this space, with unit luminance.
+    pub fn illuminant(&self) -> Spectrum {
+        Spectrum::DenselySampled(self.shared_illuminant())
+    }
+}
+
 impl From<f32> for Spectrum {
     fn from(value: f32) -> Self {
         Self::Constant(value)
@@ -151,14 +156,15 @@ impl From<DenselySampled> for Spectrum {
     }
 }
 
-/// Sum of `f` over the whole nanometres of the range.
-fn integrate(f: impl Fn(f32) -> f32) -> f32 {
-    (0..COUNT).map(|i| f64::from(f(LAMBDA_MIN + i as f32))).sum::<f64>() as f32
+/// The measured spectrum called `name`, one of [`names`](crate::names).
+pub fn named(name: &str) -> Option<Spectrum> {
+    measured(name).map(Spectrum::PiecewiseLinear)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cie::CIE_Y_INTEGRAL;
 
     #[test]
     fn equal_energy_has_luminance_one() {

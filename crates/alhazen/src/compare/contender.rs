@@ -1,4 +1,4 @@
-//! What takes part in a comparison: an integrator with settings of its own.
+//! The contenders of a comparison: integrators with settings of their own.
 
 use std::fmt;
 use std::str::FromStr;
@@ -18,8 +18,8 @@ pub struct Contender {
 }
 
 impl Contender {
-    /// What this contender changes of the scene: what `shared` says, without settings that its
-    /// algorithm does not have, and then what its own settings say.
+    /// The overrides of this contender: the `shared` ones, without settings that its integrator
+    /// does not have, then its own settings.
     pub(super) fn overrides(&self, scene: &SceneDesc, shared: &Overrides) -> Overrides {
         let mut overrides = Overrides { integrator: Some(self.integrator.clone()), ..shared.clone() };
         if let Some(integrator) = integrator_called(&self.integrator, &scene.integrator) {
@@ -29,45 +29,46 @@ impl Contender {
         overrides
     }
 
-    /// The scene as this contender renders it, changed by its [`overrides`](Self::overrides). Its
-    /// own settings may concern the algorithm and its sampler only, as all contenders render one
-    /// scene onto one kind of film.
+    /// The description that this contender renders, with its [`overrides`](Self::overrides)
+    /// applied. Its own settings may concern integrator and sampler only, as all contenders share
+    /// one scene and film.
     pub(super) fn scene(&self, scene: &SceneDesc, overrides: &Overrides) -> Result<SceneDesc, OverrideError> {
-        let wrong = |problem: &dyn fmt::Display| OverrideError::new(format!("{self}: {problem}"));
-        let changed = |settings: &[(String, String)]| {
+        let error = |problem: &dyn fmt::Display| OverrideError::new(format!("{self}: {problem}"));
+        let with_settings = |settings: &[(String, String)]| {
             let mut desc = scene.clone();
-            write_nothing_beside(&mut desc.integrator);
+            remove_extra_outputs(&mut desc.integrator);
             let overrides = Overrides { settings: settings.to_vec(), ..overrides.clone() };
-            overrides.apply(&mut desc).map(|()| desc).map_err(|error| wrong(&error))
+            overrides.apply(&mut desc).map(|()| desc).map_err(|problem| error(&problem))
         };
-        let mut desc = changed(&overrides.settings)?;
-        if write_nothing_beside(&mut desc.integrator) {
-            return Err(wrong(&"a comparison writes nothing beside its report"));
+        let mut desc = with_settings(&overrides.settings)?;
+        if remove_extra_outputs(&mut desc.integrator) {
+            return Err(error(&"a comparison writes no files but its report"));
         }
         if !self.settings.is_empty() {
-            let shared = changed(&overrides.settings[..overrides.settings.len() - self.settings.len()])?;
-            let own = desc.options.value != shared.options.value
+            let shared =
+                with_settings(&overrides.settings[..overrides.settings.len() - self.settings.len()])?;
+            let differs = desc.options.value != shared.options.value
                 || desc.film.value != shared.film.value
                 || desc.filter.value != shared.filter.value
                 || desc.accelerator.value != shared.accelerator.value;
-            if own {
-                return Err(wrong(
-                    &"scene and film are the same for all; of its own an integrator has its settings and a sampler",
+            if differs {
+                return Err(error(
+                    &"scene and film are shared by all; only settings of integrator and sampler may differ",
                 ));
             }
         }
         Ok(desc)
     }
 
-    /// What it is called in a report, once its scene is known to make sense.
+    /// Its name in a report: the integrator of its `desc`, with its own settings.
     pub(super) fn title(&self, desc: &SceneDesc) -> String {
         let settings = self.settings.iter().map(|(key, value)| format!(":{key}={value}"));
         settings.fold(desc.integrator.name().to_owned(), |title, setting| title + &setting)
     }
 }
 
-/// Turns off what would be written beside pictures; tells whether there was something.
-fn write_nothing_beside(integrator: &mut IntegratorDesc) -> bool {
+/// Turns off outputs other than the picture; returns whether there were any.
+fn remove_extra_outputs(integrator: &mut IntegratorDesc) -> bool {
     match integrator {
         IntegratorDesc::Bdpt(BdptDesc { visualize_strategies, visualize_weights, .. }) => {
             std::mem::take(visualize_strategies) | std::mem::take(visualize_weights)
@@ -89,7 +90,7 @@ impl FromStr for Contender {
         });
         match settings.collect() {
             Some(settings) if !integrator.is_empty() => Ok(Self { integrator, settings }),
-            _ => Err("it is written NAME or NAME:KEY=VALUE, as in path:maxdepth=8".into()),
+            _ => Err("expected NAME or NAME:KEY=VALUE, as in path:maxdepth=8".into()),
         }
     }
 }
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn of_what_is_set_for_all_each_takes_what_it_has() {
+    fn shared_settings_apply_to_integrators_that_have_them() {
         let shared = [("radius", "3"), ("maxdepth", "2"), ("alpha", "0.5")];
         let [path, vcm] =
             ["path", "vcm:alpha=0.75"].map(|name| with(&name.parse().unwrap(), &shared).unwrap());
@@ -129,18 +130,18 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_written_beside_the_report() {
+    fn extra_outputs_are_refused() {
         for wrong in ["radiosity:mesh-out=a.ply", "bdpt:techniques=true"] {
             assert_eq!(
                 scene(wrong).unwrap_err(),
-                format!("{wrong}: a comparison writes nothing beside its report")
+                format!("{wrong}: a comparison writes no files but its report")
             );
         }
         assert!(scene("bdpt:techniques=false").is_ok());
     }
 
     #[test]
-    fn names_and_settings_are_read() {
+    fn names_and_settings_are_parsed() {
         let contender: Contender = " path:maxdepth=8: lightsampler = power".parse().unwrap();
         assert_eq!(contender.to_string(), "path:maxdepth=8:lightsampler=power");
         let desc = scene("simplepath:maxdepth=2").unwrap();
@@ -154,13 +155,13 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_told_with_who_said_it() {
+    fn errors_name_the_contender() {
         assert_eq!(scene("paht").unwrap_err(), "paht: no integrator is called `paht`; did you mean `path`?");
         assert!(
             scene("path:maxdepth=deep").unwrap_err().starts_with("path:maxdepth=deep: cannot set maxdepth")
         );
         assert!(
-            scene("path:filter=box").unwrap_err().starts_with("path:filter=box: scene and film are the same")
+            scene("path:filter=box").unwrap_err().starts_with("path:filter=box: scene and film are shared")
         );
         assert!(scene("path:sampler=halton").is_ok());
     }

@@ -1,12 +1,12 @@
-//! How an error falls with time: the slope of its curve, and when it is as low as asked for.
+//! Convergence of an error over time: the slope of its curve, and the time to a given error.
 
-/// The part of the longest time from which on checkpoints count for the slope: before it,
-/// preparation and the coarseness of passes bend the curve.
+/// Checkpoints count for the slope from this fraction of the total time on: earlier, preparation
+/// and whole passes distort the curve.
 const SLOPE_FROM: f64 = 1.0 / 32.0;
 
-/// The exponent k in error ∝ time^k: of independent samples −1, where error is a mean square.
-/// Fitted by least squares in logarithms to `(seconds, error)` with times in order; `None` where
-/// fewer than three of them are of use.
+/// The exponent k in error ∝ time^k: −1 for the mean squared error of independent samples. A least
+/// squares fit in log–log space to `(seconds, error)` in order of time; `None` if fewer than three
+/// points are usable.
 pub(super) fn slope(curve: &[(f64, f64)]) -> Option<f64> {
     let end = curve.last()?.0;
     let logs =
@@ -18,14 +18,13 @@ pub(super) fn slope(curve: &[(f64, f64)]) -> Option<f64> {
     let count = logs.len() as f64;
     let mean_x = logs.iter().map(|(x, _)| x).sum::<f64>() / count;
     let mean_y = logs.iter().map(|(_, y)| y).sum::<f64>() / count;
-    let spread: f64 = logs.iter().map(|(x, _)| (x - mean_x) * (x - mean_x)).sum();
-    let together: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
-    (spread > 0.0).then(|| together / spread)
+    let variance: f64 = logs.iter().map(|(x, _)| (x - mean_x) * (x - mean_x)).sum();
+    let covariance: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    (variance > 0.0).then(|| covariance / variance)
 }
 
-/// When the curve first comes down to `error`, straight lines drawn between its points in
-/// logarithms; `None` where it does not. What is below it from the first point on is there at that
-/// point's time.
+/// The time at which the curve first reaches `error`, interpolated linearly in log–log space;
+/// `None` if it does not. If the first point is below it already, the time of that point.
 pub(super) fn seconds_to(error: f64, curve: &[(f64, f64)]) -> Option<f64> {
     let reached = curve.iter().position(|&(_, found)| found <= error)?;
     let (seconds, found) = curve[reached];
@@ -62,14 +61,14 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_early_does_not_count() {
+    fn early_checkpoints_do_not_count() {
         let mut curve = power_law(-1.0);
         curve[0].1 *= 100.0;
         assert!((slope(&curve).unwrap() + 1.0).abs() < 1e-12);
     }
 
     #[test]
-    fn the_time_to_an_error_lies_on_the_curve() {
+    fn the_time_to_an_error_is_interpolated() {
         let curve = power_law(-0.5);
         for seconds in [1.0, 3.7, 100.0, 2048.0] {
             let found = seconds_to(3.0 * f64::powf(seconds, -0.5) * (1.0 + 1e-12), &curve).unwrap();

@@ -1,13 +1,13 @@
-//! A comparison as JSON. What cannot be told (noise of a given reference, a slope of two points) is
-//! null.
+//! A comparison as JSON. Unknown values (the noise of a given reference, the slope of two points)
+//! are null.
 
 use serde_json::{Map, Value, json};
 
 use super::{Budget, Checkpoint, Comparison, Measure, Run, settings};
 
 impl Comparison {
-    /// Everything in numbers: the setup, the reference, and for each run its figures at the end and
-    /// at every checkpoint.
+    /// All numbers: the setup, the reference, and for each run its figures at the end and at every
+    /// checkpoint.
     pub fn to_json(&self) -> Value {
         let setup = &self.setup;
         json!({

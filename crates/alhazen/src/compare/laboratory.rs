@@ -1,4 +1,4 @@
-//! A plan on its way to a comparison: checked, rendered, measured.
+//! Carries out a plan: checks it, renders, measures.
 
 use std::sync::Arc;
 
@@ -17,32 +17,32 @@ use super::{
 use crate::settings::listed;
 use crate::{OverrideError, Overrides};
 
-/// How many times a contender's budget a reference gets that is not told otherwise: its noise is
-/// then a sixteenth of the variance of who rendered it.
+/// The default budget of a reference, in budgets of a contender: its variance is then a sixteenth
+/// of that of the same contender.
 const REFERENCE_FACTOR: u32 = 16;
 
-/// A plan that makes sense, with its scene compiled.
+/// A valid plan, with its scene compiled.
 pub struct Laboratory {
     setup: Setup,
     scene: Arc<Scene>,
     view: View,
     contenders: Vec<Entry>,
     reference: ReferencePlan,
-    /// What will be drawn otherwise than described.
+    /// What will be rendered differently than described.
     warnings: Vec<String>,
 }
 
-/// A contender with the scene as it renders it.
+/// A contender with the description that it renders.
 struct Entry {
     name: String,
     desc: SceneDesc,
-    /// How its scene came about.
+    /// The overrides in `desc`.
     overrides: Overrides,
 }
 
 impl Entry {
-    /// What is wrong with its scene: the scene itself, or what was changed of it.
-    fn wrong(&self, errors: Vec<Diagnostic>) -> PlanError {
+    /// The error of a description that does not compile: of an override, or of the scene itself.
+    fn error(&self, errors: Vec<Diagnostic>) -> PlanError {
         match self.overrides.blamed(&errors) {
             Some(error) => PlanError::Plan(format!("{}: {error}", self.name)),
             None => PlanError::Scene(errors),
@@ -52,13 +52,13 @@ impl Entry {
 
 enum ReferencePlan {
     Picture(Box<Reference>),
-    /// To be rendered as two halves, each of which may take so much.
+    /// To be rendered as two halves, each with this budget.
     Render(Box<Entry>, Budget),
 }
 
 impl Laboratory {
-    /// Finds all that is wrong with a plan for a scene, or makes everything that it needs; and
-    /// tells what will be drawn otherwise than described.
+    /// Checks a plan for a scene and compiles it. Also returns warnings of what will be rendered
+    /// differently than described.
     pub fn new(scene: &SceneDesc, plan: Plan) -> Result<(Self, Vec<Diagnostic>), PlanError> {
         let entry = |contender: &Contender, budget| entry(scene, &plan.overrides, contender, budget);
         let contenders: Vec<Entry> = plan
@@ -76,14 +76,14 @@ impl Laboratory {
         }
 
         let mut warnings = Vec::new();
-        // One view for all, so that textures are filtered alike; where time is the limit, for the
-        // samples that the scene asks for, as when it is rendered.
+        // One view for all, so that textures are filtered alike. With a budget of time it is made
+        // for the scene's number of samples, as in a render.
         let view = View::compile(&first.desc, scene::world_from_render(&first.desc));
-        let view = view.map_err(|errors| first.wrong(errors))?;
+        let view = view.map_err(|errors| first.error(errors))?;
         warnings.extend(view.warnings);
-        let compiled = scene::compile(&first.desc).map_err(|errors| first.wrong(errors))?;
+        let compiled = scene::compile(&first.desc).map_err(|errors| first.error(errors))?;
         warnings.extend(compiled.warnings);
-        let film = film::compile(&first.desc).map_err(|errors| first.wrong(errors))?.film;
+        let film = film::compile(&first.desc).map_err(|errors| first.error(errors))?.film;
         let (bounds, desc) = (film.pixel_bounds(), &first.desc);
         let setup = Setup {
             title: plan.title,
@@ -97,7 +97,7 @@ impl Laboratory {
         };
         let reference = match plan.reference {
             ReferenceSource::Picture { name, picture } => {
-                let picture = fitting(&name, &picture, &setup).map_err(PlanError::Reference)?;
+                let picture = cropped_reference(&name, &picture, &setup).map_err(PlanError::Reference)?;
                 ReferencePlan::Picture(Box::new(Reference { source: name, by: None, picture, noise: None }))
             }
             ReferenceSource::Render { by, samples_per_pixel } => {
@@ -124,7 +124,7 @@ impl Laboratory {
         for entry in laboratory.entries() {
             let pair =
                 PairedRenders::new(&entry.desc, (&laboratory.scene, &laboratory.view), laboratory.setup.seed);
-            let (_, more) = pair.map_err(|errors| entry.wrong(errors))?;
+            let (_, more) = pair.map_err(|errors| entry.error(errors))?;
             warnings.extend(more.into_iter().filter(|more| !warnings.contains(more)).collect::<Vec<_>>());
         }
         laboratory.warnings = warnings.iter().map(|warning| warning.message.clone()).collect();
@@ -140,11 +140,11 @@ impl Laboratory {
     }
 
     /// Renders the reference, then all contenders in turn, on the threads of rayon's current pool,
-    /// and measures them. `progress` hears what is being rendered: at its beginning and after each
-    /// pass of both pictures.
+    /// and measures them. `progress` is called with the name of what is rendered, at its start and
+    /// after each pass of both pictures.
     ///
-    /// After a cancellation the comparison is of what has been done. `Err` means that there is
-    /// nothing to compare: no contender has done a pass.
+    /// After a cancellation the comparison covers what has been done. `Err` means that there is
+    /// nothing to compare: no contender has completed a pass.
     pub fn compare(
         self,
         control: &Control,
@@ -154,8 +154,8 @@ impl Laboratory {
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
-                // Seeds of its own: a picture judged by its own samples would look better than it
-                // is.
+                // Different seeds: errors against a reference with the same samples would be too
+                // small.
                 let pair = paired_renders(&entry, (&scene, &view), setup.seed.wrapping_add(2));
                 render_reference(&entry, half, pair, control, progress)?
             }
@@ -181,7 +181,8 @@ impl Laboratory {
     }
 }
 
-/// A contender's scene. Pictures are measured in single floats, and seeds are the laboratory's.
+/// A contender with its description. Pictures are measured in single precision, and the laboratory
+/// sets the seeds.
 fn entry(
     scene: &SceneDesc,
     overrides: &Overrides,
@@ -200,14 +201,14 @@ fn entry(
     Ok(Entry { name: contender.title(&desc), desc, overrides })
 }
 
-/// What is changed for all, as `key=value`.
+/// The overrides of all contenders, as `key=value`.
 fn changes(overrides: &Overrides) -> Vec<String> {
     let accelerator = overrides.accelerator.iter().map(|name| format!("accelerator={name}"));
     accelerator.chain(overrides.settings.iter().map(|(key, value)| format!("{key}={value}"))).collect()
 }
 
-/// The part of a reference that is rendered.
-fn fitting(name: &str, picture: &Image, setup: &Setup) -> Result<Image, String> {
+/// The part of a given reference that corresponds to the pixels rendered.
+fn cropped_reference(name: &str, picture: &Image, setup: &Setup) -> Result<Image, String> {
     let [x0, x1, y0, y1] = setup.pixel_bounds;
     let [width, height] = setup.resolution;
     let size = [picture.width() as i32, picture.height() as i32];
@@ -255,7 +256,7 @@ fn render_reference(
     Ok(reference)
 }
 
-/// Renders and measures one contender; `None` where it was cancelled before a pass was done.
+/// Renders and measures one contender; `None` if it was cancelled before its first pass was done.
 fn run(
     entry: &Entry,
     setup: &Setup,
@@ -293,6 +294,6 @@ fn run(
 
 fn paired_renders(entry: &Entry, viewed: (&Arc<Scene>, &View), seed: i32) -> PairedRenders {
     let (pair, _) = PairedRenders::new(&entry.desc, viewed, seed)
-        .expect("invariant: these were built before, with another seed");
+        .expect("invariant: they have been built before, with another seed");
     pair
 }

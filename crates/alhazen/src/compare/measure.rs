@@ -1,65 +1,64 @@
-//! Error taken apart into noise and bias.
+//! Decomposition of the error into noise and bias.
 //!
-//! Let a and b be two independent pictures of equal length, r the reference, and ⟨·⟩ the mean over
-//! pixels and colour channels. Then
+//! Let a and b be two independent pictures with the same budget, r the reference, and ⟨·⟩ the mean
+//! over pixels and colour channels. Then
 //!
 //! error = ⟨(a − r)² + (b − r)²⟩ / 2 = ⟨(a − b)²⟩ / 2 + ⟨(a − r)(b − r)⟩,
 //!
 //! exactly. In expectation the first term is the variance of one picture: noise. As a and b are
-//! independent, the second is (E[a] − r)²: the square of the bias, plus the noise of the reference
-//! itself, which is taken off where it is known. So a noisy algorithm without bias is told from a
-//! smooth one that is wrong. Estimates scatter: a bias squared may come out below 0, and is given
-//! with its standard deviation, taken from the spread over pixels.
+//! independent, the second is (E[a] − r)²: the squared bias, plus the variance of the reference
+//! itself, which is subtracted where it is known. This tells a noisy unbiased algorithm from a
+//! smooth biased one. The squared bias is an estimate, which may be below 0; its standard deviation
+//! is estimated from the variance over pixels.
 //!
 //! Relative figures have each term divided by r² + 0.01, as relMSE has [Rousselle 2011]. The mean
-//! of the error, which a squared bias cannot have a sign for, says how much too bright the whole
-//! picture is; its standard deviation is the larger of two estimates, one from the pixels' noise,
-//! the other from the difference of the two pictures' means, which sees noise that all pixels
+//! error has a sign, which the squared bias lacks: it is positive where the picture is too bright.
+//! Its standard deviation is the larger of two estimates, one from the variance of the pixels, the
+//! other from the difference of the two pictures' means, which includes noise that all pixels
 //! share.
 
 use image::Image;
 use image::metrics::RELATIVE_EPSILON;
 
-/// Error, and the noise and the bias that it is made of.
+/// A mean squared error, and its parts: noise and bias.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Parts {
     /// Mean squared error of one picture.
     pub error: f64,
     /// Variance of one picture.
     pub variance: f64,
-    /// Squared bias, as far as it can be told.
+    /// Estimate of the squared bias; may be negative.
     pub bias_squared: f64,
-    /// The standard deviation of the estimate of the squared bias; infinite for a single pixel,
-    /// which cannot tell.
+    /// Standard deviation of that estimate; infinite for a single pixel.
     pub bias_squared_deviation: f64,
-    /// Variance of the reference, where it is known: the rest of the error.
+    /// Variance of the reference, the rest of the error; 0 if unknown.
     pub reference_variance: f64,
 }
 
-/// What can be said of an algorithm's bias, as a share of the reference.
+/// An estimate of an algorithm's bias, relative to the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bias {
-    /// There is so much: more than chance explains.
-    Seen(f64),
-    /// None was seen, and there is not more than this.
+    /// Significant, and this large.
+    Significant(f64),
+    /// Not significant, and at most this large.
     Below(f64),
-    /// Noise would hide as much as there is light.
+    /// Noise would hide a bias as large as the picture.
     Hidden,
 }
 
 impl Parts {
-    /// What the parts of a relative error say of bias.
+    /// The bias, of the parts of a relative error.
     pub fn bias(&self) -> Bias {
         if self.is_biased() {
-            return Bias::Seen(self.bias_squared.sqrt());
+            return Bias::Significant(self.bias_squared.sqrt());
         }
         let most = (self.bias_squared.max(0.0) + 3.0 * self.bias_squared_deviation).sqrt();
         if most < 1.0 { Bias::Below(most) } else { Bias::Hidden }
     }
 
-    /// Whether there is more bias than chance explains: three standard deviations, or more than all
-    /// noise. The latter is for bias in a few pixels, such as those of a caustic, which make the
-    /// spread over pixels large.
+    /// Whether the bias is significant: more than three standard deviations, or more than all
+    /// noise. The latter is for bias in a few pixels, such as those of a caustic, for which the
+    /// variance over pixels is large.
     pub fn is_biased(&self) -> bool {
         let noise = self.variance + self.reference_variance;
         let is_more_than_noise = self.bias_squared_deviation.is_finite() && self.bias_squared > noise;
@@ -67,12 +66,12 @@ impl Parts {
     }
 }
 
-/// How far an algorithm is from the reference.
+/// The error of an algorithm against the reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measure {
-    /// In squares of the picture's values.
+    /// In squared units of the picture.
     pub absolute: Parts,
-    /// In squares of shares of the reference.
+    /// Relative to the squared reference.
     pub relative: Parts,
     /// The mean of the error over both pictures: positive where they are too bright.
     pub mean_error: f64,
@@ -80,12 +79,12 @@ pub struct Measure {
     pub mean_error_deviation: f64,
 }
 
-/// The noise of a reference that was rendered: variances of its picture.
+/// The noise of a rendered reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReferenceNoise {
-    /// Mean variance of a value.
+    /// Variance of a value, the mean over all.
     pub absolute: f64,
-    /// The same, of shares of the reference.
+    /// The same, relative to the squared reference.
     pub relative: f64,
     /// Variance of the mean of the whole picture.
     pub of_mean: f64,
@@ -101,7 +100,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// Adds one pixel: both pictures' errors in each channel, and the channels' weights.
+    /// Adds a pixel: both pictures' errors per channel, and the weights of the channels.
     fn add(&mut self, errors: [[f64; 3]; 2], weights: [f64; 3]) {
         let [a, b] = errors;
         let sum = |term: &dyn Fn(usize) -> f64| (0..3).map(|c| weights[c] * term(c)).sum::<f64>();
@@ -114,7 +113,7 @@ impl Sums {
 
     fn parts(&self, pixels: f64, reference_noise: f64) -> Parts {
         let values = 3.0 * pixels;
-        // The channels of a pixel share their samples, so that they count as one number.
+        // The channels of a pixel have the same samples, so they count as one observation.
         let spread = self.products_squared / pixels - (self.products / pixels).powi(2);
         let deviation = if pixels < 2.0 { f64::INFINITY } else { (spread.max(0.0) / pixels).sqrt() / 3.0 };
         Parts {
@@ -127,8 +126,8 @@ impl Sums {
     }
 }
 
-/// How far two independent pictures of one algorithm are from a reference of the same size. Pixels
-/// with a value that is not finite in any of the three are left out.
+/// The error of two independent pictures of one algorithm against a reference of the same size.
+/// Pixels that are not finite in any of the three are left out.
 pub(super) fn measure([a, b]: &[Image; 2], reference: &Image, noise: Option<ReferenceNoise>) -> Measure {
     let noise = noise.unwrap_or_default();
     let (mut absolute, mut relative) = (Sums::default(), Sums::default());
@@ -146,7 +145,7 @@ pub(super) fn measure([a, b]: &[Image; 2], reference: &Image, noise: Option<Refe
             absolute.add(errors, [1.0; 3]);
             relative.add(errors, r.map(|r| 1.0 / (r * r + RELATIVE_EPSILON)));
             let pixel_means = errors.map(|errors| errors.iter().sum::<f64>() / 3.0);
-            (0..2).for_each(|twin| means[twin] += pixel_means[twin]);
+            (0..2).for_each(|picture| means[picture] += pixel_means[picture]);
             pixel_noise += (pixel_means[0] - pixel_means[1]).powi(2) / 4.0;
             pixels += 1.0;
         }
@@ -180,15 +179,15 @@ mod tests {
 
     const SIDE: u32 = 64;
 
-    /// A picture of value 1 + `bias`, with uniform noise of this variance; of every pixel's
-    /// channels alike.
+    /// A picture of value 1 + `bias` with uniform noise of this variance, the same in all channels
+    /// of a pixel.
     fn picture(random: &mut Random, bias: f32, variance: f32) -> Image {
         let width = (12.0 * variance).sqrt();
         Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |_, _| [1.0 + bias + width * (random.get_1d() - 0.5); 3])
     }
 
     #[test]
-    fn the_parts_are_the_whole() {
+    fn parts_sum_to_the_error() {
         let mut random = Random::new(1);
         let reference = picture(&mut random, 0.0, 0.2);
         let pair = [0.1, 0.3].map(|variance| picture(&mut random, 0.2, variance));
@@ -205,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_and_bias_are_told_apart() {
+    fn noise_and_bias_are_separated() {
         let mut random = Random::new(2);
         let halves = [0; 2].map(|_| picture(&mut random, 0.0, 0.02));
         let reference = Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |x, y| {
@@ -225,7 +224,7 @@ mod tests {
             assert!(measured.mean_error_deviation < 0.01, "{measured:?}");
             assert_eq!(measured.absolute.is_biased(), bias != 0.0, "{measured:?}");
             match measured.absolute.bias() {
-                Bias::Seen(seen) => assert!((seen - bias.abs()).abs() < 0.02, "{seen}"),
+                Bias::Significant(found) => assert!((found - bias.abs()).abs() < 0.02, "{found}"),
                 Bias::Below(most) => assert!(bias == 0.0 && most < 0.1, "{most}"),
                 Bias::Hidden => panic!("{measured:?}"),
             }
@@ -233,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_that_all_pixels_share_is_seen_in_the_mean() {
+    fn the_mean_deviation_includes_correlated_noise() {
         let flat = |value: f32| Image::from_fn(8, 8, ["Y"], |_, _| [value]);
         let measured = measure(&[flat(1.3), flat(0.9)], &flat(1.0), None);
         assert!(
@@ -242,10 +241,10 @@ mod tests {
     }
 
     #[test]
-    fn bias_in_a_few_pixels_is_seen() {
+    fn bias_in_a_few_pixels_is_significant() {
         let mut random = Random::new(3);
         let reference = Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |_, _| [1.0; 3]);
-        for (spot, seen) in [(0.0, false), (5.0, true)] {
+        for (spot, significant) in [(0.0, false), (5.0, true)] {
             let pair = [0; 2].map(|_| {
                 let noise = picture(&mut random, 0.0, 0.001);
                 Image::from_fn(SIDE, SIDE, ["R", "G", "B"], |x, y| {
@@ -254,14 +253,14 @@ mod tests {
             });
             let parts = measure(&pair, &reference, None).absolute;
             assert!(
-                parts.bias_squared < 3.0 * parts.bias_squared_deviation && parts.is_biased() == seen,
+                parts.bias_squared < 3.0 * parts.bias_squared_deviation && parts.is_biased() == significant,
                 "{parts:?}"
             );
         }
     }
 
     #[test]
-    fn much_noise_hides_bias() {
+    fn large_noise_hides_bias() {
         let parts =
             Parts { variance: 3.0, bias_squared: 2.0, bias_squared_deviation: 1.0, ..Parts::default() };
         assert_eq!(parts.bias(), Bias::Hidden);

@@ -1,20 +1,17 @@
-//! The laboratory: several algorithms over one scene, each for the same time or the same number of
-//! samples, and how far from a reference each is.
+//! The laboratory: compares several integrators on one scene, each with the same time or number of
+//! samples, by their errors against a reference.
 //!
-//! A [`Plan`] says what to compare; [`Laboratory::new`] finds everything that is wrong with it
-//! before anything long begins and compiles the scene, once for all; [`Laboratory::compare`]
-//! renders; the [`Comparison`] can be had as a page ([`Comparison::to_html`]) and as JSON
-//! ([`Comparison::to_json`]).
+//! A [`Plan`] says what to compare; [`Laboratory::new`] checks it before rendering starts and
+//! compiles the scene, once for all; [`Laboratory::compare`] renders; the [`Comparison`] is
+//! converted to a page ([`Comparison::to_html`]) or to JSON ([`Comparison::to_json`]).
 //!
-//! Each algorithm renders two pictures from different seeds, the time or samples asked for *each*,
-//! so that noise and bias can be told apart ([`Measure`]). Rendering alone is timed, preparation
-//! included; measuring at checkpoints is not. Figures are means over both; the picture shown is the
-//! first, which is what a render with the scene's seed gives.
+//! Each integrator renders two pictures from different seeds, each with the whole budget, so that
+//! noise and bias can be separated ([`Measure`]). Only rendering is timed, preparation included;
+//! measuring at checkpoints is not. Figures are means over both; the picture shown is the first,
+//! the one that a render with the scene's seed gives.
 //!
-//! Where time is the limit, samplers are made for 65,536 samples per pixel, and the render ends
-//! there at the latest. `independent`, `halton`, `sobol` and `zsobol` are as even as ever then;
-//! `stratified` and `paddedsobol`, which spread samples over the number they are made for, are as
-//! uneven as random ones.
+//! With a budget of time, samplers are made for the scene's number of samples per pixel, as in a
+//! render, and the number may be exceeded.
 
 mod contender;
 mod convergence;
@@ -38,17 +35,17 @@ pub use settings::Settings;
 
 use crate::Overrides;
 
-/// How long each picture is rendered.
+/// The budget of each picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
-    /// So long, and then to the end of the pass.
+    /// Rendering time; the last pass is completed.
     Time(Duration),
-    /// With so many samples per pixel; some samplers round them up.
+    /// Samples per pixel; some samplers round them up.
     Samples(u32),
 }
 
 impl Budget {
-    /// Whether a render that took so long is at its end.
+    /// Whether a render that took this time has used it up.
     fn is_spent(self, seconds: f64) -> bool {
         match self {
             Self::Time(time) => seconds >= time.as_secs_f64(),
@@ -75,24 +72,24 @@ impl fmt::Display for Budget {
     }
 }
 
-/// What the others are held against.
+/// Where the reference comes from.
 #[derive(Clone, Debug)]
 pub enum ReferenceSource {
-    /// A picture that is there, of the size of the whole image or of the part to render; nothing is
-    /// known of its noise.
+    /// A given picture, of the size of the whole image or of the part to render; its noise is
+    /// unknown.
     Picture {
-        /// Where it is from, for the report.
+        /// Its name in the report.
         name: String,
         /// The picture.
         picture: Image,
     },
-    /// A picture to render first, as the mean of two independent halves that tell its noise. Its
-    /// seeds are not those of the pictures that it judges.
+    /// A picture to render first, as the mean of two independent halves, whose difference gives its
+    /// noise. Its seeds differ from those of the pictures that it judges.
     Render {
-        /// By whom; by the first of the contenders if `None`.
+        /// What renders it; the first of the contenders if `None`.
         by: Option<Contender>,
-        /// Samples per pixel of both halves together; if `None`, 16 times the contenders' budget in
-        /// all.
+        /// Samples per pixel of both halves together; if `None`, they get 16 times a contender's
+        /// budget.
         samples_per_pixel: Option<u32>,
     },
 }
@@ -100,58 +97,58 @@ pub enum ReferenceSource {
 /// What to compare.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What the report calls the scene.
+    /// The scene's name in the report.
     pub title: String,
-    /// Who takes part.
+    /// The integrators to compare.
     pub contenders: Vec<Contender>,
-    /// What each picture may take.
+    /// The budget of each picture.
     pub budget: Budget,
-    /// What they are held against.
+    /// The reference.
     pub reference: ReferenceSource,
-    /// Changes to the scene for all; the integrator and the number of samples are the plan's own.
+    /// Overrides for all contenders; integrator and number of samples are those of the plan.
     pub overrides: Overrides,
-    /// How many threads there are, for the report.
+    /// Number of threads, for the report.
     pub threads: usize,
 }
 
-/// Why a plan cannot be followed.
+/// Why a plan cannot be carried out.
 #[derive(Debug)]
 pub enum PlanError {
-    /// It asks for what cannot be.
+    /// The plan is invalid.
     Plan(String),
-    /// The reference is of another size.
+    /// The reference has the wrong size.
     Reference(String),
-    /// The scene is wrong; with everything there is to say about it.
+    /// The scene has errors; these are all diagnostics of it.
     Scene(Vec<Diagnostic>),
 }
 
-/// What is the same for all.
+/// What all runs have in common.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// What the scene is called.
+    /// The scene's name.
     pub title: String,
     /// Width and height of the whole image in pixels.
     pub resolution: [i32; 2],
     /// The pixels rendered, `[x0, x1, y0, y1)`.
     pub pixel_bounds: [i32; 4],
-    /// What each picture might take.
+    /// The budget of each picture.
     pub budget: Budget,
     /// Seed of the first picture; the second has the next one.
     pub seed: i32,
-    /// How many threads there were.
+    /// Number of threads.
     pub threads: usize,
     /// The pixel filter with its settings.
     pub filter: Settings,
-    /// What was changed of the scene for all, as `key=value`.
+    /// Overrides of the scene for all, as `key=value`.
     pub changes: Vec<String>,
 }
 
-/// What the others were held against.
+/// The reference that errors are measured against.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// Where it is from: a file, or an algorithm and how long it took.
+    /// Its origin: a file, or an integrator with passes and time.
     pub source: String,
-    /// Which contender rendered it, or would have, had it been listed; `None` for a file.
+    /// The name of the contender that rendered it; `None` for a file.
     pub by: Option<String>,
     /// The picture.
     pub picture: Image,
@@ -171,87 +168,86 @@ impl Reference {
     }
 }
 
-/// How far a render was at a moment, and how far from the reference.
+/// Progress and error of a run at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checkpoint {
     /// Passes of each picture.
     pub passes: u32,
-    /// Seconds that one picture took.
+    /// Rendering time of one picture in seconds.
     pub seconds: f64,
-    /// Rays that one picture took.
+    /// Rays of one picture.
     pub rays: f64,
-    /// How far they are from the reference.
+    /// The error of both.
     pub measure: Measure,
 }
 
-/// What came of one contender.
+/// The results of one contender.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// Its name, with settings of its own.
     pub name: String,
-    /// All settings of the algorithm.
+    /// All settings of the integrator.
     pub settings: Settings,
     /// The sampler with its settings.
     pub sampler: Settings,
-    /// What the algorithm tells of itself: names, and what there is to say.
+    /// The integrator's summary: pairs of name and text.
     pub notes: Vec<(&'static str, String)>,
     /// From the first pass to the end; never empty.
     pub checkpoints: Vec<Checkpoint>,
     /// The two pictures.
     pub pictures: [Image; 2],
-    /// The mean visible difference of the first picture from the reference; `None` where it cannot
-    /// be told.
+    /// Mean FLIP of the first picture against the reference; `None` where it is undefined.
     pub flip: Option<f64>,
-    /// Whether it was stopped before its end.
+    /// Whether it was cancelled before its end.
     pub interrupted: bool,
 }
 
 impl Run {
-    /// The state at the end.
+    /// The last checkpoint.
     pub fn last(&self) -> &Checkpoint {
         self.checkpoints.last().expect("invariant: a run has a checkpoint")
     }
 
-    /// 1 / (relMSE · s): how much is gained for a second, whatever the time given.
+    /// Efficiency, 1 / (relMSE · seconds): independent of the budget for an unbiased integrator.
     pub fn efficiency(&self) -> f64 {
         let last = self.last();
         1.0 / (last.measure.relative.error * last.seconds)
     }
 
-    /// Rays traced in a second.
+    /// Rays per second.
     pub fn rays_per_second(&self) -> f64 {
         self.last().rays / self.last().seconds.max(1e-9)
     }
 
-    /// relMSE against seconds.
+    /// Pairs of seconds and relMSE.
     fn curve(&self) -> Vec<(f64, f64)> {
         self.checkpoints.iter().map(|point| (point.seconds, point.measure.relative.error)).collect()
     }
 }
 
-/// What came of a plan.
+/// The results of a plan.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// What is the same for all.
+    /// What all runs have in common.
     pub setup: Setup,
-    /// What the runs were held against.
+    /// The reference of all runs.
     pub reference: Reference,
-    /// In the order of the plan; at least one.
+    /// The runs in the order of the plan; at least one.
     pub runs: Vec<Run>,
-    /// Names of contenders to whom it did not come.
+    /// Names of contenders that were not rendered.
     pub missing: Vec<String>,
-    /// What is drawn otherwise than described, and whatever else the reader has to know.
+    /// What is rendered differently than described, and other warnings.
     pub warnings: Vec<String>,
 }
 
 impl Comparison {
-    /// Whether it was stopped before its end.
+    /// Whether it was cancelled before its end.
     pub fn interrupted(&self) -> bool {
         !self.missing.is_empty() || self.runs.iter().any(|run| run.interrupted)
     }
 
-    /// The slope of a run's error over time in logarithms: −1 for independent samples. The
-    /// reference's noise is taken off the error first, as it would flatten the curve.
+    /// The slope of a run's error over time in log–log space: −1 for independent samples. The
+    /// reference's variance is subtracted from the error first, as it would flatten the curve.
     pub fn slope(&self, run: &Run) -> Option<f64> {
         let floor = self.reference.noise.map_or(0.0, |noise| noise.relative);
         let curve: Vec<_> =
@@ -259,25 +255,25 @@ impl Comparison {
         convergence::slope(&curve)
     }
 
-    /// A run's mean error and its standard deviation as shares of the reference's mean; `None`
+    /// A run's mean error and its standard deviation, relative to the reference's mean; `None`
     /// where the reference is black.
     pub fn relative_mean_error(&self, run: &Run) -> Option<[f64; 2]> {
         let (mean, measure) = (self.reference.mean(), &run.last().measure);
         (mean > 0.0).then(|| [measure.mean_error, measure.mean_error_deviation].map(|value| value / mean))
     }
 
-    /// The largest relMSE at the end of a run: an error that all have reached.
+    /// The largest final relMSE: an error that all runs have reached.
     pub fn common_error(&self) -> f64 {
         self.runs.iter().map(|run| run.last().measure.relative.error).fold(0.0, f64::max)
     }
 
-    /// The seconds after which a run had come down to [`Self::common_error`].
+    /// The seconds after which a run reached [`Self::common_error`].
     pub fn seconds_to_common_error(&self, run: &Run) -> Option<f64> {
         convergence::seconds_to(self.common_error(), &run.curve())
     }
 
-    /// Why the reference is perhaps not what all should tend to: two others or more, or all, find
-    /// more light than who rendered it.
+    /// Why the reference is perhaps not the common limit of all: at least two other integrators, or
+    /// all others, find more light than the one that rendered it.
     pub fn doubt(&self) -> Option<String> {
         let by = self.reference.by.as_deref()?;
         let others: Vec<&Run> = self.runs.iter().filter(|run| run.name != by).collect();
@@ -292,14 +288,14 @@ impl Comparison {
         let found: Vec<_> =
             brighter.iter().map(|(name, error)| format!("{name} {:.1} %", 100.0 * error)).collect();
         Some(format!(
-            "The reference may miss light: {by} rendered it, and others find more than it has ({}). Errors are then those of the reference; \
-             one by another algorithm would tell.",
+            "The reference may miss light: {by} rendered it, and others find more light ({}). Errors may then be \
+             those of the reference; render it with another integrator to find out.",
             found.join(", ")
         ))
     }
 
-    /// Whether the reference's own noise is more than a tenth of a run's error, which then says
-    /// little.
+    /// Whether the reference's own variance is more than a tenth of a run's error, which is then
+    /// unreliable.
     pub fn is_below_reference_noise(&self, run: &Run) -> bool {
         self.reference.noise.is_some_and(|noise| noise.relative > 0.1 * run.last().measure.relative.error)
     }

@@ -1,9 +1,9 @@
-//! One algorithm rendered twice, from different seeds, pass by pass in turn.
+//! Two renders with one integrator, from different seeds, alternating pass by pass.
 //!
-//! Two independent pictures a and b of equal length tell noise and bias apart, which one picture
-//! cannot: where they differ there is noise, and where they agree on something else than the truth
-//! there is bias (see [`measure`](super::measure)). The first picture is what a render with the
-//! scene's seed gives.
+//! Two independent pictures with the same budget separate noise and bias, which one picture cannot:
+//! their difference is noise, and their common difference from the reference is bias (see
+//! [`measure`](super::measure)). The first picture is the one that a render with the scene's seed
+//! gives.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use scene::{Scene, View};
 use super::Budget;
 use crate::Overrides;
 
-/// How far both renders are, each of which took this time and these rays.
+/// The passes that both renders have done, with the mean time and rays of one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Effort {
-    /// Passes of each, drafts not included.
+    /// Passes of each.
     pub passes: u32,
     /// Mean time in seconds.
     pub seconds: f64,
@@ -27,13 +27,13 @@ pub(super) struct Effort {
     pub rays: f64,
 }
 
-/// Two renders of one scene by one algorithm that differ in their seeds alone.
+/// Two renders of one scene with one integrator that differ only in their seeds.
 pub(super) struct PairedRenders {
     pair: [Session; 2],
 }
 
 impl PairedRenders {
-    /// Renders of a view of the scene, as described, with seeds `first_seed` and the next one.
+    /// Two sessions of a view of the scene, with seeds `first_seed` and the next one.
     pub fn new(
         desc: &SceneDesc,
         (scene, view): (&Arc<Scene>, &View),
@@ -44,7 +44,7 @@ impl PairedRenders {
         let mut session = |seed: i32| -> Result<Session, Vec<Diagnostic>> {
             Overrides { seed: Some(seed), ..Overrides::default() }
                 .apply(&mut desc)
-                .expect("invariant: any seed will do");
+                .expect("invariant: any seed is valid");
             let built = integrators::build(&desc)?;
             let film = film::compile(&desc)?;
             warnings = [built.warnings, film.warnings].concat();
@@ -55,9 +55,9 @@ impl PairedRenders {
         Ok((Self { pair }, warnings))
     }
 
-    /// Renders until the budget is used up, and calls `at_checkpoint` at pass counts that grow
-    /// geometrically, and at the end: also where it is cancelled, unless no pass was done by both
-    /// until then. `progress` hears of each pass of both.
+    /// Renders until the budget is used up. Calls `at_checkpoint` at pass counts that grow
+    /// geometrically, and at the end, also after a cancellation, unless no pass was done by both
+    /// since the last checkpoint. Calls `progress` after each pass of both.
     pub fn render(
         &mut self,
         budget: Budget,
@@ -71,7 +71,7 @@ impl PairedRenders {
             if budget.is_spent(self.effort().seconds) {
                 break;
             }
-            // A cancelled pass counts for nothing, though the films may have a part of its light.
+            // A cancelled pass does not count, though the films may have a part of its samples.
             let outcome = self.pass(pass, control);
             let done = self.effort().passes;
             if done == next_checkpoint(checkpoint) || (outcome.is_err() && done > checkpoint) {
@@ -87,8 +87,7 @@ impl PairedRenders {
         Ok(())
     }
 
-    /// Time alone limits a render that has a budget of time: it may have more passes than the
-    /// scene plans.
+    /// Only time limits a render with a budget of time: it may exceed the scene's number of passes.
     fn most_passes(&self, budget: Budget) -> u32 {
         match budget {
             Budget::Samples(_) => self.pair[0].integrator().passes(),
@@ -96,7 +95,7 @@ impl PairedRenders {
         }
     }
 
-    /// One pass of each.
+    /// Runs one pass of each.
     fn pass(&mut self, pass: u32, control: &Control) -> Result<(), Cancelled> {
         let mut run = |session: &mut Session| {
             session.run(pass..pass + 1, &Limits::default(), control, &mut |_| ()).map(|_| ())
@@ -104,7 +103,7 @@ impl PairedRenders {
         self.pair.iter_mut().try_for_each(&mut run)
     }
 
-    /// How far both renders are together. Where time is the limit, the number of passes is a guess.
+    /// Progress of both renders together. With a budget of time the number of passes is estimated.
     fn progress(&self, budget: Budget) -> Progress {
         let Effort { passes: pass, seconds, .. } = self.effort();
         let passes = match budget {
@@ -129,7 +128,7 @@ impl PairedRenders {
         stats
     }
 
-    /// How far both renders are. A pass that only one has done does not count.
+    /// Passes, time and rays. A pass that only one has done does not count.
     pub fn effort(&self) -> Effort {
         let [a, b] = self.pair.each_ref().map(Session::progress);
         let passes = self.pair.each_ref().map(|session| session.state().done.count());
@@ -140,18 +139,18 @@ impl PairedRenders {
         }
     }
 
-    /// What the algorithm tells of itself, in the first render.
+    /// The integrator's summary, of the first render.
     pub fn notes(&self) -> Vec<(&'static str, String)> {
         self.pair[0].integrator().summary()
     }
 
-    /// The two pictures as they stand.
+    /// The two pictures so far.
     pub fn pictures(&self) -> [Image; 2] {
         self.pair.each_ref().map(|session| session.state().film.develop())
     }
 }
 
-/// The first of the pass counts 1, 2, 3, 4, 6, 8, 11, 16, … (two for each doubling) above `passes`.
+/// The first of the pass counts 1, 2, 3, 4, 6, 8, 11, 16, … (two per doubling) above `passes`.
 fn next_checkpoint(passes: u32) -> u32 {
     let mut counts = (0..64).map(|half_doublings| (f64::from(half_doublings) / 2.0).exp2().round() as u32);
     counts.find(|&count| count > passes).unwrap_or(u32::MAX)

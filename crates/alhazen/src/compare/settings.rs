@@ -1,4 +1,4 @@
-//! Settings as a report shows them: by the names that `--set` and the pbrt-v4 format have for them.
+//! Settings in reports, by their names in `--set` and the pbrt-v4 format.
 
 use serde_json::{Map, Value as Json};
 
@@ -10,14 +10,14 @@ use crate::settings::listed;
 /// Names and values, in a fixed order.
 pub type Settings = Vec<(&'static str, Value)>;
 
-/// A sampler: its name and its settings but for the number of samples.
+/// A sampler's name and its settings, without the number of samples.
 pub(super) fn of_sampler(kind: &SamplerKind) -> Settings {
     let mut settings = listed(kind);
     settings.retain(|(name, _)| *name != "pixelsamples");
     settings
 }
 
-/// For people: `maxdepth 5, radius automatic`.
+/// As text: `maxdepth 5, radius automatic`.
 pub(super) fn text(settings: &Settings) -> String {
     let texts = settings.iter().map(|(name, value)| match *name {
         "name" => value.to_string(),
@@ -26,7 +26,7 @@ pub(super) fn text(settings: &Settings) -> String {
     texts.collect::<Vec<_>>().join(", ")
 }
 
-/// For programs: an object of numbers, booleans and texts; null for what is left to the renderer.
+/// As a JSON object of numbers, booleans and strings; null for automatic values.
 pub(super) fn json(settings: &Settings) -> Json {
     Json::Object(
         settings.iter().map(|(name, value)| ((*name).to_owned(), json_value(value))).collect::<Map<_, _>>(),
@@ -37,7 +37,7 @@ fn json_value(value: &Value) -> Json {
     match value {
         Value::Bool(value) => (*value).into(),
         Value::Integer(value) => (*value).into(),
-        // By way of its text, which has no more digits than the number.
+        // Converted by its text: an `f32` as `f64` would have more digits.
         Value::Number(_) => {
             let text = value.to_string();
             serde_json::from_str(&text).unwrap_or(Json::String(text))
@@ -55,7 +55,7 @@ mod tests {
     use serde_json::json as object;
 
     #[test]
-    fn both_show_the_same() {
+    fn text_and_json_have_the_same_settings() {
         let settings = listed(&FilterDesc::default());
         assert_eq!(text(&settings), "gaussian, xradius 1.5, yradius 1.5, sigma 0.5");
         let expected = object!({ "name": "gaussian", "xradius": 1.5, "yradius": 1.5, "sigma": 0.5 });

@@ -35,7 +35,7 @@ impl fmt::Display for FilmFileError {
             Self::Io(error) => error.fmt(f),
             Self::Foreign => f.write_str("not a film file"),
             Self::Version(version) => {
-                let known = super::section::VERSION;
+                let known = super::VERSION;
                 write!(f, "a film file of version {version}; this program reads version {known}")
             }
             Self::Damaged { section, problem } => {

@@ -2,14 +2,11 @@
 
 use std::io::{self, ErrorKind, Read, Write};
 
-use super::FilmFileError;
+use super::{FilmFileError, VERSION};
 
 /// The first bytes of every film file. The first is no ASCII, and the line ends are those that a
 /// transfer in text mode would change.
 const MAGIC: [u8; 8] = *b"\x89ALZF\r\n\x1a";
-
-/// The version of the format that is written, and the only one that is read.
-pub const VERSION: u32 = 1;
 
 /// How much memory is taken at a time for a section that claims to be long.
 const STEP: usize = 1 << 20;

@@ -9,7 +9,6 @@ mod declarations;
 mod interpreter;
 mod names;
 mod parameter;
-mod reader;
 mod state;
 mod statement;
 mod token;

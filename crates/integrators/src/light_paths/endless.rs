@@ -5,16 +5,13 @@
 //! lights from surfaces are not affected; those that trace light subpaths miss what lies beyond.
 
 use description::{
-    Diagnostic, Handle, InstanceDesc, LightKind, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation,
-    Stated,
+    Diagnostic, Handle, InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Stated,
 };
 
 /// Warns of each unbounded shape that is lit from infinity, for the algorithm `name`, which traces
 /// light subpaths.
 pub(crate) fn warnings(desc: &SceneDesc, name: &str) -> Vec<Diagnostic> {
-    let from_infinity =
-        |kind: &LightKind| matches!(kind, LightKind::Infinite { .. } | LightKind::Distant { .. });
-    if !desc.lights.iter().any(|(_, light)| from_infinity(&light.kind)) {
+    if !desc.lights.iter().any(|(_, light)| light.kind.is_distant()) {
         return Vec::new();
     }
     let mut drawn = vec![false; desc.objects.iter().len()];
@@ -53,7 +50,6 @@ fn endless_objects(desc: &SceneDesc) -> Vec<bool> {
 
 fn is_endless(shape: &ShapeDesc, endless: &[bool]) -> bool {
     match &shape.kind {
-        ShapeKind::Plane => true,
         ShapeKind::Solid { operation, operands } => {
             let is_endless = |object: Handle<ObjectDesc>| endless.get(object.index()) == Some(&true);
             let mut operands = operands.iter().map(|operand| is_endless(operand.value));
@@ -63,6 +59,6 @@ fn is_endless(shape: &ShapeDesc, endless: &[bool]) -> bool {
                 SolidOperation::Difference => operands.next() == Some(true),
             }
         }
-        _ => false,
+        kind => kind.traits().is_unbounded,
     }
 }

@@ -1,6 +1,6 @@
 //! Warnings of what radiosity draws otherwise than described.
 
-use description::{Diagnostic, Handle, MaterialDesc, MaterialKind, SceneDesc, ShapeDesc, ShapeKind, Stated};
+use description::{Diagnostic, Handle, MaterialDesc, MaterialKind, SceneDesc, ShapeDesc, Stated};
 
 /// Tells of each material that is not diffuse, and of each shape that cannot be cut into patches.
 pub(crate) fn warnings(desc: &SceneDesc) -> Vec<Diagnostic> {
@@ -10,31 +10,21 @@ pub(crate) fn warnings(desc: &SceneDesc) -> Vec<Diagnostic> {
     for material in shapes.iter().filter_map(|shape| shape.material) {
         mark(desc, material, &mut used);
     }
-    let materials = desc.materials.iter().zip(&used).filter(|((_, material), used)| {
-        let is_diffuse = matches!(
-            material.kind,
-            MaterialKind::Diffuse { .. }
-                | MaterialKind::DiffuseTransmission { .. }
-                | MaterialKind::Mix { .. }
-                | MaterialKind::Interface
-        );
-        **used && !is_diffuse
-    });
+    let materials = desc
+        .materials
+        .iter()
+        .zip(&used)
+        .filter(|((_, material), used)| **used && !material.kind.is_diffuse());
     let of_material = materials.map(|((_, material), _)| {
         let message = "this material is not diffuse; radiosity draws it by its albedo";
         Diagnostic::warning("not-diffuse", message, material.origin.span)
     });
-    let of_shape = shapes.iter().filter_map(|shape| {
-        let what = match shape.kind {
-            ShapeKind::Plane => "a plane without end",
-            ShapeKind::Implicit { .. } => "a surface given by a formula",
-            ShapeKind::Solid { .. } => "a solid",
-            ShapeKind::Curve(_) => "a curve",
-            _ => return None,
-        };
-        let message =
-            format!("{what} cannot be cut into patches; radiosity lights it, but it passes no light on");
-        Some(Diagnostic::warning("no-patches", message, shape.origin.span))
+    let of_shape = shapes.iter().filter(|shape| !shape.kind.traits().has_patches).map(|shape| {
+        let name = shape.kind.name();
+        let message = format!(
+            "shape `{name}` cannot be cut into patches; radiosity lights it, but it passes no light on"
+        );
+        Diagnostic::warning("no-patches", message, shape.origin.span)
     });
     of_material.chain(of_shape).collect()
 }

@@ -64,7 +64,7 @@ fn radiosity_tells_what_it_draws_otherwise() {
         messages(&told),
         [
             "this material is not diffuse; radiosity draws it by its albedo",
-            "a plane without end cannot be cut into patches; radiosity lights it, but it passes no light on",
+            "shape `plane` cannot be cut into patches; radiosity lights it, but it passes no light on",
         ]
     );
 }

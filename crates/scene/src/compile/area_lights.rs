@@ -9,7 +9,7 @@ use crate::light::{AreaEmission, AreaLight, EmissionId, Light, LightTable, Scene
 use crate::material::Material;
 use crate::scene::InstanceEntry;
 use crate::texture::FloatTextureId;
-use description::{AreaLightDesc, Origin, ShapeDesc, ShapeKind, Span, Stated};
+use description::{AreaLightDesc, Origin, ShapeDesc, Span, Stated};
 use geometry::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, World};
 
 /// The most lights of a scene, primitives and instances counted: the tables with which one is
@@ -71,7 +71,7 @@ impl Compiler<'_> {
     ) -> Option<Emitter> {
         let handle = shape.area_light?;
         let span = shape.origin.span;
-        if matches!(shape.kind, ShapeKind::Implicit { .. } | ShapeKind::Solid { .. }) {
+        if !shape.kind.traits().can_emit {
             let message = "solids and surfaces given by formulas do not emit; drawn without light";
             self.warn("not-drawn", message, span);
             return None;

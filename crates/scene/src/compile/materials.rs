@@ -100,19 +100,19 @@ impl Compiler<'_> {
             }),
             MaterialKind::Interface => Material::Interface,
             MaterialKind::CoatedDiffuse(coated) => {
-                self.not_drawn("coateddiffuse", "`diffuse`, without its coat", origin);
+                self.not_drawn(kind.name(), "`diffuse`, without its coat", origin);
                 self.index_of_refraction(&coated.eta, "eta", origin);
                 self.roughness(&coated.roughness, "", origin);
                 self.diffuse(&coated.reflectance, origin)
             }
             MaterialKind::CoatedConductor(coated) => {
-                self.not_drawn("coatedconductor", "`conductor`, without its coat", origin);
+                self.not_drawn(kind.name(), "`conductor`, without its coat", origin);
                 self.index_of_refraction(&coated.eta, "interface.eta", origin);
                 self.roughness(&coated.roughness, "interface.", origin);
                 self.conductor(&coated.conductor, "conductor.", origin)
             }
             MaterialKind::Hair { color, .. } => {
-                self.not_drawn("hair", "diffuse", origin);
+                self.not_drawn(kind.name(), "diffuse", origin);
                 match color {
                     HairColor::Reflectance(reflectance) => self.diffuse(reflectance, origin),
                     HairColor::SigmaA(_) | HairColor::Melanin { .. } => {
@@ -121,7 +121,7 @@ impl Compiler<'_> {
                 }
             }
             MaterialKind::Subsurface { scattering, .. } => {
-                self.not_drawn("subsurface", "diffuse", origin);
+                self.not_drawn(kind.name(), "diffuse", origin);
                 match scattering {
                     SubsurfaceScattering::Reflectance { reflectance, .. } => {
                         self.diffuse(reflectance, origin)
@@ -132,7 +132,7 @@ impl Compiler<'_> {
                 }
             }
             MaterialKind::Measured { .. } => {
-                self.not_drawn("measured", "diffuse", origin);
+                self.not_drawn(kind.name(), "diffuse", origin);
                 self.diffuse(&0.5.into(), origin)
             }
         }

@@ -9,39 +9,16 @@
 //! on either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
 
 use super::emitter::{Emitter, motion_bounds};
-use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
+use super::{
+    EmissionId, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext,
+};
 use crate::texture::{FloatTextureId, TextureContext};
 use geometry::{GeometryId, InstancePath, ShapeSample, World};
-use image::{Image, WrapMode};
+use image::WrapMode;
 use math::{DirectionCone, Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
 use sampling::{hash_float, warp};
-use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
+use spectrum::{Rgb, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
-use std::sync::Arc;
-
-/// Index of an emission in its scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct EmissionId(pub u32);
-
-/// What emitting surfaces send out; shared by all lights that are described alike.
-#[derive(Clone, Debug)]
-pub struct AreaEmission {
-    /// Radiance; with an image only its scale counts.
-    pub radiance: Emission,
-    /// Colours over (u, v).
-    pub image: Option<EmissionImage>,
-    /// Emits on the side against the normal, too.
-    pub two_sided: bool,
-}
-
-/// An image of emitted colours.
-#[derive(Clone, Debug)]
-pub struct EmissionImage {
-    /// Pixels with red, green and blue; v = 0 is the bottom row.
-    pub image: Arc<Image>,
-    /// What the channels mean.
-    pub color_space: &'static RgbColorSpace,
-}
 
 /// The primitives of an emitting geometry.
 #[derive(Clone, Debug)]
@@ -59,45 +36,6 @@ pub struct AreaLight {
     /// The scale of the emission by primitive, where every primitive has a power that is asked for;
     /// `None` where all have the emission's own.
     pub scales: Option<Box<[f32]>>,
-}
-
-impl EmissionImage {
-    fn pixels(&self) -> impl Iterator<Item = Rgb> + '_ {
-        let (width, height) = (self.image.width(), self.image.height());
-        (0..width * height).map(move |i| Rgb::from(self.image.rgb(i % width, i / width)).clamp_zero())
-    }
-
-    /// Mean luminance in the image's colour space.
-    pub fn mean_luminance(&self) -> f32 {
-        let y = self.color_space.luminance_weights();
-        let sum: f64 = self.pixels().map(|p| (p.r * y.r + p.g * y.g + p.b * y.b) as f64).sum();
-        (sum / (self.image.width() * self.image.height()) as f64) as f32
-    }
-}
-
-impl AreaEmission {
-    /// No light.
-    pub fn black() -> Self {
-        let radiance = Emission { spectrum: Spectrum::Constant(0.0), scale: 0.0 };
-        Self { radiance, image: None, two_sided: false }
-    }
-
-    /// The scale with which a primitive of `area` emits `power`; 0 where it cannot emit.
-    pub fn scale_for_power(&self, power: f32, area: f32) -> f32 {
-        let sides = if self.two_sided { 2.0 } else { 1.0 };
-        let mean = self.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
-        let unscaled = mean * sides * area * PI;
-        self.radiance.scale * if unscaled > 0.0 { power / unscaled } else { 0.0 }
-    }
-
-    fn pdf_direction(&self, n: Normal3, w: Vector3) -> f32 {
-        let cos_theta = n.dot(w);
-        if self.two_sided {
-            0.5 * warp::cosine_hemisphere_pdf(cos_theta.abs())
-        } else {
-            warp::cosine_hemisphere_pdf(cos_theta.max(0.0))
-        }
-    }
 }
 
 impl AreaLight {

@@ -1,6 +1,11 @@
-//! A light's spectrum and its scale.
+//! What lights emit: a spectrum and its scale; on surfaces, also an image.
 
-use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
+use image::Image;
+use math::{Normal3, Vector3};
+use sampling::warp;
+use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
+use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// What a light emits: `scale · spectrum(λ)`.
 #[derive(Clone, Debug)]
@@ -21,5 +26,66 @@ impl Emission {
     /// The largest value over all wavelengths.
     pub fn max_value(&self) -> f32 {
         self.spectrum.max_value() * self.scale
+    }
+}
+
+/// What emitting surfaces send out; shared by all lights that are described alike.
+#[derive(Clone, Debug)]
+pub struct AreaEmission {
+    /// Radiance; with an image only its scale counts.
+    pub radiance: Emission,
+    /// Colours over (u, v).
+    pub image: Option<EmissionImage>,
+    /// Emits on the side against the normal, too.
+    pub two_sided: bool,
+}
+
+/// An image of emitted colours.
+#[derive(Clone, Debug)]
+pub struct EmissionImage {
+    /// Pixels with red, green and blue; v = 0 is the bottom row.
+    pub image: Arc<Image>,
+    /// What the channels mean.
+    pub color_space: &'static RgbColorSpace,
+}
+
+impl EmissionImage {
+    /// Its colours, none negative.
+    pub(super) fn pixels(&self) -> impl Iterator<Item = Rgb> + '_ {
+        let (width, height) = (self.image.width(), self.image.height());
+        (0..width * height).map(move |i| Rgb::from(self.image.rgb(i % width, i / width)).clamp_zero())
+    }
+
+    /// Mean luminance in the image's colour space.
+    pub fn mean_luminance(&self) -> f32 {
+        let y = self.color_space.luminance_weights();
+        let sum: f64 = self.pixels().map(|p| (p.r * y.r + p.g * y.g + p.b * y.b) as f64).sum();
+        (sum / (self.image.width() * self.image.height()) as f64) as f32
+    }
+}
+
+impl AreaEmission {
+    /// No light.
+    pub fn black() -> Self {
+        let radiance = Emission { spectrum: Spectrum::Constant(0.0), scale: 0.0 };
+        Self { radiance, image: None, two_sided: false }
+    }
+
+    /// The scale with which a primitive of `area` emits `power`; 0 where it cannot emit.
+    pub fn scale_for_power(&self, power: f32, area: f32) -> f32 {
+        let sides = if self.two_sided { 2.0 } else { 1.0 };
+        let mean = self.image.as_ref().map_or(1.0, EmissionImage::mean_luminance);
+        let unscaled = mean * sides * area * PI;
+        self.radiance.scale * if unscaled > 0.0 { power / unscaled } else { 0.0 }
+    }
+
+    /// Density per solid angle of emission along `w` where the normal is `n`.
+    pub(super) fn pdf_direction(&self, n: Normal3, w: Vector3) -> f32 {
+        let cos_theta = n.dot(w);
+        if self.two_sided {
+            0.5 * warp::cosine_hemisphere_pdf(cos_theta.abs())
+        } else {
+            warp::cosine_hemisphere_pdf(cos_theta.max(0.0))
+        }
     }
 }

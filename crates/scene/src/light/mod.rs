@@ -44,10 +44,11 @@ mod spot;
 mod table;
 mod uniform_infinite;
 
-pub use area::{AreaEmission, AreaLight, EmissionId, EmissionImage};
+pub use crate::id::{EmissionId, LightId};
+pub use area::AreaLight;
 pub use bounds::LightBounds;
 pub use distant::DistantLight;
-pub use emission::Emission;
+pub use emission::{AreaEmission, Emission, EmissionImage};
 pub use geometry::ShapeSampleContext as LightSampleContext;
 pub use image_infinite::ImageInfiniteLight;
 pub use point::PointLight;
@@ -59,11 +60,6 @@ pub use uniform_infinite::UniformInfiniteLight;
 
 use math::{Normal3, Point2, Point3, Point3Error, Ray, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
-
-/// Index of a light in its scene. The lights of an emitting geometry follow each other in the order
-/// of its primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LightId(pub u32);
 
 /// A row of the table of lights.
 #[derive(Clone, Debug)]

@@ -14,6 +14,7 @@ mod normal_map;
 mod roughness;
 mod thin_dielectric;
 
+pub use crate::id::MaterialId;
 pub use conductor::{ConductorIndex, ConductorMaterial};
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
@@ -27,10 +28,6 @@ use crate::interaction::SurfaceInteraction;
 use crate::texture::{TextureContext, Textures};
 use scattering::Bxdf;
 use spectrum::{SampledWavelengths, Spectrum};
-
-/// Index of a material in its scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MaterialId(pub u32);
 
 /// One material.
 #[derive(Clone, Debug)]

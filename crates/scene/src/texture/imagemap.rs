@@ -7,17 +7,17 @@
 //!
 //! Source: [Pharr 2023 §10.4].
 
-use super::{SpectrumType, TextureContext, Textures};
-use image::TextureFilter;
+use super::{Mapping2d, SpectrumType, TextureContext};
+use image::{Pyramid, TextureFilter};
 use math::Vec2;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
 /// A filtered lookup in an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImageLookup {
-    /// Index of the map to the image in [`Textures::mappings`].
+    /// Index of the map to the image in [`Textures::mappings`](super::Textures::mappings).
     pub mapping: u32,
-    /// Index of the image in [`Textures::pyramids`].
+    /// Index of the image in [`Textures::pyramids`](super::Textures::pyramids).
     pub pyramid: u32,
     /// How texels are averaged.
     pub filter: TextureFilter,
@@ -28,16 +28,9 @@ pub struct ImageLookup {
 }
 
 impl ImageLookup {
-    /// Where the pyramid is looked up: the position, and its derivatives by film x and y.
-    fn position(&self, textures: &Textures, ctx: &TextureContext) -> [Vec2; 3] {
-        let c = textures.mappings[self.mapping as usize].map(ctx);
-        [Vec2::new(c.st.x, 1.0 - c.st.y), c.dstdx, c.dstdy]
-    }
-
     /// The number at a point: that of the image's first channel.
-    pub(super) fn evaluate(&self, textures: &Textures, ctx: &TextureContext) -> f32 {
-        let [st, dst0, dst1] = self.position(textures, ctx);
-        let pyramid = &textures.pyramids[self.pyramid as usize];
+    pub(super) fn evaluate(&self, mapping: &Mapping2d, pyramid: &Pyramid, ctx: &TextureContext) -> f32 {
+        let [st, dst0, dst1] = position(mapping, ctx);
         let value = self.scale * pyramid.lookup(st, dst0, dst1, self.filter);
         if self.invert { (1.0 - value).max(0.0) } else { value }
     }
@@ -58,15 +51,21 @@ impl SpectrumImage {
     /// The spectrum at a point.
     pub(super) fn evaluate(
         &self,
-        textures: &Textures,
+        mapping: &Mapping2d,
+        pyramid: &Pyramid,
         ctx: &TextureContext,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        let [st, dst0, dst1] = self.lookup.position(textures, ctx);
-        let pyramid = &textures.pyramids[self.lookup.pyramid as usize];
+        let [st, dst0, dst1] = position(mapping, ctx);
         let pixel = pyramid.lookup_rgb(st, dst0, dst1, self.lookup.filter);
         let scaled = Rgb::from(pixel) * self.lookup.scale;
         let rgb = if self.lookup.invert { Rgb::splat(1.0) - scaled } else { scaled };
         self.spectrum_type.from_rgb(self.space, rgb.clamp_zero()).sample(lambda)
     }
+}
+
+/// Where a pyramid is looked up: the position, and its derivatives by film x and y.
+fn position(mapping: &Mapping2d, ctx: &TextureContext) -> [Vec2; 3] {
+    let c = mapping.map(ctx);
+    [Vec2::new(c.st.x, 1.0 - c.st.y), c.dstdx, c.dstdy]
 }

@@ -172,7 +172,11 @@ impl Textures {
     ) -> SampledSpectrum {
         let spectral = |code| match code {
             Code::Spectrum(index) => self.spectra[index as usize].sample(lambda),
-            Code::SpectrumImage(index) => self.spectrum_images[index as usize].evaluate(self, ctx, lambda),
+            Code::SpectrumImage(index) => {
+                let image = &self.spectrum_images[index as usize];
+                let (mapping, pyramid) = self.image(&image.lookup);
+                image.evaluate(mapping, pyramid, ctx, lambda)
+            }
             _ => SampledSpectrum::ZERO,
         };
         // A number is the spectrum that has its value at all wavelengths.
@@ -182,6 +186,11 @@ impl Textures {
     pub(super) fn program(&self, index: u32) -> &[Operation] {
         let Program { first, length } = self.programs[index as usize];
         &self.operations[first as usize..][..length as usize]
+    }
+
+    /// The tables' entries that a lookup refers to.
+    fn image(&self, lookup: &ImageLookup) -> (&Mapping2d, &Pyramid) {
+        (&self.mappings[lookup.mapping as usize], &self.pyramids[lookup.pyramid as usize])
     }
 
     /// Runs a program on values `V`: `splat` makes one of a number, `number` is its inverse, and
@@ -197,7 +206,11 @@ impl Textures {
     ) -> V {
         let leaf = |code| match code {
             Code::Number(value) => splat(value),
-            Code::FloatImage(index) => splat(self.float_images[index as usize].evaluate(self, ctx)),
+            Code::FloatImage(index) => {
+                let lookup = &self.float_images[index as usize];
+                let (mapping, pyramid) = self.image(lookup);
+                splat(lookup.evaluate(mapping, pyramid, ctx))
+            }
             Code::Squares(index) => splat(checkerboard::squares(&self.mappings[index as usize].map(ctx))),
             Code::Cubes(index) => splat(checkerboard::cubes(&self.solid_mappings[index as usize].map(ctx))),
             _ => spectral(code),

@@ -4,6 +4,7 @@
 mod citations;
 mod code;
 mod crates;
+mod cycles;
 mod documents;
 mod rust;
 mod text;
@@ -41,8 +42,8 @@ impl fmt::Display for Finding {
 }
 
 /// All checks.
-const CHECKS: [fn(&Tree) -> Vec<Finding>; 5] =
-    [text::check, code::check, crates::check, citations::check, documents::check];
+const CHECKS: [fn(&Tree) -> Vec<Finding>; 6] =
+    [text::check, code::check, crates::check, cycles::check, citations::check, documents::check];
 
 /// Holds the workspace at `root` to the house rules; what is broken goes to standard error.
 pub fn run(root: &Path) -> Result<(), String> {

@@ -1,4 +1,4 @@
-//! Curves over time as vector graphics, both axes logarithmic.
+//! Curves over time as SVG, on logarithmic axes.
 
 use std::ops::RangeInclusive;
 
@@ -12,10 +12,10 @@ const RIGHT: f64 = 680.0;
 const TOP: f64 = 14.0;
 const BOTTOM: f64 = 352.0;
 
-/// The least distance between the lines of labels.
+/// The least distance between labels.
 const LABEL_HEIGHT: f64 = 15.0;
 
-/// How a curve is drawn.
+/// The line style of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     Line,
@@ -25,33 +25,33 @@ pub enum Shape {
 /// One curve.
 pub struct Series {
     pub label: String,
-    /// The number of its colour in the style.
+    /// The number of its colour in the style sheet.
     pub color: usize,
     pub shape: Shape,
-    /// Seconds and values; those that have no logarithm are left out.
+    /// Seconds and values; those without a logarithm are left out.
     pub points: Vec<(f64, f64)>,
 }
 
 /// Curves over seconds.
 pub struct Chart<'a> {
     pub title: &'a str,
-    /// What the values are.
+    /// The quantity of the values.
     pub y: &'a str,
     pub series: Vec<Series>,
-    /// A slope to draw for comparison.
+    /// The slope of a guide line.
     pub slope: Option<f64>,
-    /// A value to draw across the chart, with its name.
+    /// A horizontal line: its value and name.
     pub floor: Option<(f64, &'a str)>,
 }
 
-/// One logarithmic axis: from logarithms of values to places on the page.
+/// A logarithmic axis: maps values to positions on the page.
 struct Axis {
     logs: RangeInclusive<f64>,
     places: [f64; 2],
 }
 
 impl Axis {
-    /// Holds all these values with some air around them.
+    /// Covers all these values, with a margin.
     fn new(values: impl Iterator<Item = f64>, places: [f64; 2]) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         values.map(f64::log10).for_each(|log| (low, high) = (low.min(log), high.max(log)));
@@ -70,7 +70,7 @@ impl Axis {
         self.logs.contains(&value.log10())
     }
 
-    /// Powers of ten, and where there are few of them 2 and 5 times them.
+    /// Powers of ten, and where these are few, also 2 and 5 times them.
     fn ticks(&self) -> Vec<f64> {
         let steps: &[f64] = if self.logs.end() - self.logs.start() > 2.5 { &[1.0] } else { &[1.0, 2.0, 5.0] };
         let decades = self.logs.start().floor() as i32..=self.logs.end().floor() as i32;
@@ -80,7 +80,7 @@ impl Axis {
 }
 
 impl Chart<'_> {
-    /// The chart as an element of a page.
+    /// The chart as an SVG element.
     pub fn to_svg(&self) -> String {
         let drawn = |series: &Series| -> Vec<(f64, f64)> {
             let points = series.points.iter().copied();
@@ -90,7 +90,7 @@ impl Chart<'_> {
             self.series.iter().map(|series| (series, drawn(series))).collect();
         let all = || curves.iter().flat_map(|(_, points)| points);
         if all().next().is_none() {
-            return "<p class=\"note\">There is nothing to draw.</p>\n".into();
+            return "<p class=\"note\">No data.</p>\n".into();
         }
         let x = Axis::new(all().map(|point| point.0), [LEFT, RIGHT]);
         let y = Axis::new(all().map(|point| point.1), [BOTTOM, TOP]);
@@ -174,7 +174,7 @@ fn tick_label(tick: f64) -> String {
     format!("{factor}10{}", digits.collect::<String>())
 }
 
-/// A straight line of this slope through the middle of the chart, as far as it lies inside.
+/// A straight line of this slope through the centre of the chart, clipped to it.
 fn guide(svg: &mut String, slope: f64, x: &Axis, y: &Axis) {
     let middle = |axis: &Axis| (axis.logs.start() + axis.logs.end()) / 2.0;
     let (mx, my) = (middle(x), middle(y));
@@ -229,7 +229,7 @@ fn curve(svg: &mut String, series: &Series, points: &[(f64, f64)], x: &Axis, y: 
     svg.push_str("</g>\n");
 }
 
-/// The names of curves beside their ends, moved apart where they would meet.
+/// The names of curves beside their ends, moved apart where they would overlap.
 fn labels(svg: &mut String, curves: &[(&Series, Vec<(f64, f64)>)], y: &Axis) {
     let ends = curves.iter().filter_map(|(series, points)| Some((y.place(points.last()?.1) + 4.0, *series)));
     let mut ends: Vec<(f64, &Series)> = ends.collect();
@@ -257,17 +257,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_have_few_round_ticks() {
+    fn ticks_are_few_and_round() {
         let axis = |low: f64, high: f64| Axis::new([low, high].into_iter(), [0.0, 100.0]);
         assert_eq!(axis(0.5, 600.0).ticks(), [1.0, 10.0, 100.0]);
         assert_eq!(axis(1.0, 9.0).ticks(), [1.0, 2.0, 5.0]);
-        assert!(axis(3.0, 3.0).ticks().len() >= 2, "one value has an axis, too");
+        assert!(axis(3.0, 3.0).ticks().len() >= 2, "an axis of one value has ticks");
         let labels = [0.01, 5.0, 2000.0, 1e-6, 5e-12, 1e5].map(tick_label);
         assert_eq!(labels, ["0.01", "5", "2000", "10⁻⁶", "5·10⁻¹²", "10⁵"]);
     }
 
     #[test]
-    fn curves_lie_inside_and_labels_apart() {
+    fn curves_are_inside_and_labels_do_not_overlap() {
         let series = |label: &str, value: f64| Series {
             label: label.into(),
             color: 0,
@@ -288,7 +288,7 @@ mod tests {
                 .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
                 .collect()
         };
-        assert_eq!(places(" cx=\"").len(), 4, "what has no logarithm is left out");
+        assert_eq!(places(" cx=\"").len(), 4, "values without a logarithm are left out");
         assert!(places(" cx=\"").iter().all(|x| (LEFT..=RIGHT).contains(x)));
         assert!(places(" cy=\"").iter().all(|y| (TOP..=BOTTOM).contains(y)));
         let names: Vec<f64> = svg
@@ -298,6 +298,6 @@ mod tests {
             .collect();
         assert!(names.len() == 2 && names[1] - names[0] >= LABEL_HEIGHT - 0.1, "{names:?}");
         assert!(svg.contains("a &amp; b") && svg.contains("floor") && svg.contains("slope −1"));
-        assert!(Chart { series: Vec::new(), ..chart }.to_svg().contains("nothing to draw"));
+        assert!(Chart { series: Vec::new(), ..chart }.to_svg().contains("No data"));
     }
 }

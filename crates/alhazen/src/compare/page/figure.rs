@@ -1,6 +1,6 @@
-//! Numbers and text as a page shows them.
+//! Formatting of numbers and text.
 
-/// A number with three digits.
+/// A number with three significant digits.
 pub fn figure(value: f64) -> String {
     let magnitude = value.abs();
     match magnitude {
@@ -14,7 +14,7 @@ pub fn figure(value: f64) -> String {
     }
 }
 
-/// A share in hundredths.
+/// A fraction as a percentage.
 pub fn percent(value: f64) -> String {
     if value.is_finite() { format!("{} %", figure(100.0 * value)) } else { "–".into() }
 }
@@ -28,7 +28,7 @@ pub fn count(value: f64) -> String {
     }
 }
 
-/// Text without characters that mean something in HTML.
+/// Text with the special characters of HTML escaped.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_three_digits() {
+    fn numbers_have_three_significant_digits() {
         let figures = [0.0, 0.01234, 1.0, 123.4, -5.678, 45678.9, 1e-9, f64::INFINITY].map(figure);
         assert_eq!(figures, ["0", "0.0123", "1.00", "123", "-5.68", "45679", "1.00e-9", "–"]);
         assert_eq!((percent(0.0123).as_str(), percent(f64::NAN).as_str()), ("1.23 %", "–"));
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn text_cannot_become_markup() {
+    fn markup_is_escaped() {
         assert_eq!(escape("<a b=\"c\"> & d"), "&lt;a b=&quot;c&quot;&gt; &amp; d");
     }
 }

@@ -1,4 +1,4 @@
-//! The pictures of a page, and maps of their errors, as data that stands in the page itself.
+//! The pictures of a page and their error maps, as data URIs.
 
 use image::false_color::signed_false_color;
 use image::metrics::RELATIVE_EPSILON;
@@ -7,23 +7,23 @@ use image::{Format, Image, WriteOptions, encode};
 use crate::compare::Comparison;
 use crate::picture::in_srgb;
 
-/// Side of a block over which errors are averaged, in pixels.
+/// Width of the blocks over which errors are averaged, in pixels.
 const BLOCK: u32 = 8;
 
-/// The share of a map's values that its scale is to hold.
+/// The fraction of a map's values that its colour scale covers.
 const WITHIN_SCALE: f64 = 0.98;
 
 /// Every picture of a page as a data URI.
 pub struct Maps {
     pub reference: String,
     pub runs: Vec<RunMaps>,
-    /// The relative error that has the full colour.
+    /// The relative error at the end of the colour scale.
     pub scale: f32,
-    /// The same, of errors over blocks.
+    /// The same for errors over blocks.
     pub block_scale: f32,
 }
 
-/// Those of one run.
+/// The pictures of one run.
 pub struct RunMaps {
     pub picture: String,
     pub error: String,
@@ -48,8 +48,8 @@ impl Maps {
     }
 }
 
-/// The mean error of some pictures at each pixel as a share of the reference: the mean over
-/// channels of (x − r) / √(r² + 0.01).
+/// The mean relative error of some pictures at each pixel: the mean over channels of
+/// (x − r) / √(r² + 0.01).
 fn error_map(reference: &Image, pictures: &[Image]) -> Image {
     Image::from_fn(reference.width(), reference.height(), ["Y"], |x, y| {
         let r = reference.rgb(x, y);
@@ -61,7 +61,7 @@ fn error_map(reference: &Image, pictures: &[Image]) -> Image {
     })
 }
 
-/// Each pixel the mean of its block.
+/// Replaces each pixel by the mean of its block.
 fn block_means(map: &Image) -> Image {
     let [width, height] = [map.width(), map.height()].map(|side| side.div_ceil(BLOCK));
     let means = Image::from_fn(width, height, ["Y"], |x, y| {
@@ -73,10 +73,11 @@ fn block_means(map: &Image) -> Image {
     Image::from_fn(map.width(), map.height(), ["Y"], |x, y| [means.channel(x / BLOCK, y / BLOCK, 0)])
 }
 
-/// The error that has the full colour, a round number: 1, 2 or 5 times a power of ten. Nearly all
-/// values of a usual map are below it; one map that is worse than the others does not darken them.
+/// The error at the end of the colour scale: 1, 2 or 5 times a power of ten, which nearly all
+/// values of the median map do not exceed, so that one map with large errors does not darken the
+/// others.
 fn scale(maps: &[Image]) -> f32 {
-    let mut sizes: Vec<f32> = maps.iter().map(usual_limit).collect();
+    let mut sizes: Vec<f32> = maps.iter().map(quantile).collect();
     sizes.sort_by(f32::total_cmp);
     let size = sizes[(sizes.len() - 1) / 2].max(1e-6);
     let decade = 10f32.powf(size.log10().floor());
@@ -87,8 +88,8 @@ fn scale(maps: &[Image]) -> f32 {
         .unwrap_or(10.0 * decade)
 }
 
-/// The size that nearly all finite values of a map do not exceed; 1 where none is finite.
-fn usual_limit(map: &Image) -> f32 {
+/// The magnitude that nearly all finite values of a map do not exceed; 1 where none is finite.
+fn quantile(map: &Image) -> f32 {
     let mut sizes: Vec<f32> = map.values().map(f32::abs).filter(|size| size.is_finite()).collect();
     if sizes.is_empty() {
         return 1.0;
@@ -98,17 +99,17 @@ fn usual_limit(map: &Image) -> f32 {
 }
 
 fn colored(map: &Image, scale: f32) -> String {
-    data_uri(&signed_false_color(map, scale).expect("invariant: a map has a size"))
+    data_uri(&signed_false_color(map, scale).expect("invariant: a map is not empty"))
 }
 
-/// A picture for screens as a PNG inside a URI.
+/// An sRGB picture as a PNG in a data URI.
 fn data_uri(picture: &Image) -> String {
     let png =
         encode(picture, Format::Png, &WriteOptions::default()).expect("invariant: PNG takes any picture");
     format!("data:image/png;base64,{}", base64(&png))
 }
 
-/// Three bytes as four characters, by RFC 4648.
+/// Base64 by RFC 4648.
 fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
@@ -130,23 +131,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_become_characters() {
+    fn base64_of_the_rfc() {
         let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"].map(|text| base64(text.as_bytes()));
         assert_eq!(texts, ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"]);
         assert_eq!(base64(&[255; 3]), "////");
     }
 
     #[test]
-    fn errors_have_a_sign_and_a_round_scale() {
+    fn errors_are_signed_and_scales_round() {
         let flat = |value: f32| Image::from_fn(10, 9, ["R", "G", "B"], |_, _| [value; 3]);
         let map = error_map(&flat(2.0), &[flat(1.0), flat(2.2)]);
         assert!((map.channel(3, 4, 0) + 0.2).abs() < 1e-3);
-        assert_eq!(scale(&[flat(100.0), map]), 0.2, "the better half decides");
+        assert_eq!(scale(&[flat(100.0), map]), 0.2, "of the map with smaller errors");
         assert_eq!(scale(&[flat(0.0)]), 1e-6);
     }
 
     #[test]
-    fn blocks_keep_the_mean() {
+    fn blocks_have_the_mean_of_their_pixels() {
         let map = Image::from_fn(10, 9, ["Y"], |x, y| [if x < 8 && y < 8 { (x % 2) as f32 } else { 3.0 }]);
         let blocks = block_means(&map);
         assert_eq!(

@@ -1,5 +1,5 @@
-//! A comparison as one HTML page that needs nothing else: styles, script, charts and pictures are
-//! all inside it, and everything but the slider works without the script.
+//! A comparison as one self-contained HTML page, with style sheet, script, charts and pictures.
+//! Everything but the slider works without the script.
 
 mod chart;
 mod figure;
@@ -12,7 +12,7 @@ use self::figure::{count, escape, figure, percent};
 use self::map::Maps;
 use super::{Bias, Comparison, Parts, Run, settings};
 
-/// How many colours the style has for runs; further runs start again.
+/// Number of colours for runs in the style sheet; further runs repeat them.
 const COLORS: usize = 8;
 
 impl Comparison {
@@ -55,9 +55,9 @@ impl Comparison {
             escape(&self.reference.source),
         );
         if self.interrupted() {
-            text += "<p class=\"warning\">Interrupted: these are the figures of what had been done";
+            text += "<p class=\"warning\">Interrupted: figures are of the passes done until then";
             if !self.missing.is_empty() {
-                text += &format!("; {} had not begun", escape(&self.missing.join(", ")));
+                text += &format!("; not started: {}", escape(&self.missing.join(", ")));
             }
             text += ".</p>\n";
         }
@@ -71,8 +71,8 @@ impl Comparison {
         if !below.is_empty() {
             let names: Vec<_> = below.iter().map(|run| run.name.as_str()).collect();
             text += &format!(
-                "<p class=\"warning\">The reference's own noise is more than a tenth of the error of {}: \
-                 a better reference would show more.</p>\n",
+                "<p class=\"warning\">The reference's own variance is more than a tenth of the error of {}: \
+                 use a reference with more samples.</p>\n",
                 escape(&names.join(", "))
             );
         }
@@ -172,24 +172,19 @@ impl Comparison {
             y: "relMSE",
             series: series(Shape::Line, &|parts| Some(parts.error), &with_slope),
             slope: Some(-1.0),
-            floor: self.reference.noise.map(|noise| (noise.relative, "noise of the reference")),
+            floor: self.reference.noise.map(|noise| (noise.relative, "variance of the reference")),
         };
         let name = |run: &Run| run.name.clone();
         let biased = |parts: &Parts| parts.is_biased().then_some(parts.bias_squared);
         let mut apart = series(Shape::Line, &|parts| Some(parts.variance), &name);
         apart.extend(series(Shape::Dashes, &biased, &|run| format!("{} bias²", run.name)));
-        let apart = Chart {
-            title: "Noise and bias apart",
-            y: "variance, bias²",
-            series: apart,
-            slope: None,
-            floor: None,
-        };
+        let apart =
+            Chart { title: "Noise and bias", y: "variance, bias²", series: apart, slope: None, floor: None };
         format!(
-            "<section>\n<h2>{}</h2>\n<p>Relative squared error of a picture that took so long. The number beside a name is the \
-             slope of its curve; that of independent samples is −1.</p>\n{}</section>\n\
-             <section>\n<h2>{}</h2>\n<p>What the error is made of: variance is drawn as lines, and squared bias as dashes where it is \
-             more than chance explains.</p>\n{}</section>\n",
+            "<section>\n<h2>{}</h2>\n<p>relMSE over rendering time. The number beside a name is the slope of its curve; \
+             that of independent samples is −1.</p>\n{}</section>\n\
+             <section>\n<h2>{}</h2>\n<p>The parts of the error: variance as solid lines, and squared bias as dashed lines where it is \
+             significant.</p>\n{}</section>\n",
             error.title,
             error.to_svg(),
             apart.title,
@@ -227,9 +222,9 @@ impl Comparison {
             );
             text += "</div>\n";
         }
-        text + "<p class=\"note\">Error maps show the error of each pixel as a share of the reference, √(r² + 0.01), all on one \
-                scale: blue where a picture is too dark, orange where it is too bright. Over blocks of 8 × 8 pixels of both \
-                pictures noise averages out, and bias stays.</p>\n</section>\n"
+        text + "<p class=\"note\">Error maps show (x − r) / √(r² + 0.01) at each pixel, all on one scale: blue where a picture is \
+                too dark, orange where it is too bright. Over blocks of 8 × 8 pixels of both pictures noise averages out, and \
+                bias remains.</p>\n</section>\n"
     }
 
     fn settings(&self) -> String {
@@ -248,15 +243,15 @@ impl Comparison {
             ("scene".into(), setup.title.clone()),
             (
                 "image".into(),
-                format!("{width} × {height} pixels, of them x {x0} to {}, y {y0} to {}", x1 - 1, y1 - 1),
+                format!("{width} × {height} pixels, rendered x {x0} to {}, y {y0} to {}", x1 - 1, y1 - 1),
             ),
             ("each picture".into(), setup.budget.to_string()),
             ("seeds".into(), format!("{} and {}", setup.seed, setup.seed.wrapping_add(1))),
             ("threads".into(), setup.threads.to_string()),
             ("filter".into(), settings::text(&setup.filter)),
-            ("changed for all".into(), changes),
+            ("overrides for all".into(), changes),
             ("reference".into(), self.reference.source.clone()),
-            ("its noise".into(), noise),
+            ("noise of the reference".into(), noise),
         ];
         for run in &self.runs {
             rows.push((
@@ -279,26 +274,26 @@ fn write_to(text: &mut String, what: std::fmt::Arguments) {
     text.write_fmt(what).expect("invariant: a string can be written to");
 }
 
-/// A spot of a run's colour.
+/// A patch of a run's colour.
 fn swatch(index: usize) -> String {
     format!("<span class=\"swatch\" style=\"background:var(--run{})\"></span>", index % COLORS)
 }
 
-/// Bias as a share of the reference, or how large it may be without being seen.
+/// The relative bias, or an upper bound of it.
 fn bias(parts: &Parts) -> String {
     match parts.bias() {
-        Bias::Seen(bias) => percent(bias),
+        Bias::Significant(bias) => percent(bias),
         Bias::Below(most) => format!("&lt; {}", percent(most)),
         Bias::Hidden => "hidden by noise".into(),
     }
 }
 
-/// The colours of an error map between their ends.
+/// The colour scale of an error map.
 fn legend(scale: &str) -> String {
     format!("<span class=\"legend\">−{scale}<i></i>+{scale}</span>")
 }
 
-/// The slider between two pictures; the script fills it and makes it visible.
+/// The slider that compares two pictures; the script fills it and makes it visible.
 const VIEWER: &str = r#"<section id="viewer" hidden>
 <h2>Side by side</h2>
 <div class="controls">
@@ -307,18 +302,18 @@ const VIEWER: &str = r#"<section id="viewer" hidden>
 <label>zoom <select id="zoom"><option value="0">fit</option><option>1</option><option>2</option><option>4</option><option>8</option></select></label>
 </div>
 <div class="scroll"><div id="frame"><div id="stack"><img id="under" alt="the picture on the right"><img id="over" alt="the picture on the left"><div id="edge"></div></div>
-<input id="slider" type="range" min="0" max="1000" value="500" aria-label="where the left picture ends"></div></div>
+<input id="slider" type="range" min="0" max="1000" value="500" aria-label="right edge of the left picture"></div></div>
 </section>
 "#;
 
 const MEANING: &str = "<details>\n<summary>What the figures mean</summary>\n<dl>\n\
-    <dt>seconds</dt><dd>of rendering, preparation included, for one picture. Two are rendered, from different seeds; figures are means over both.</dd>\n\
+    <dt>seconds</dt><dd>rendering time of one picture, preparation included. Two are rendered, from different seeds; figures are means over both.</dd>\n\
     <dt>relMSE</dt><dd>mean of (x − r)² / (r² + 0.01) over pixels and channels, x being the picture and r the reference.</dd>\n\
-    <dt>FLIP</dt><dd>visible difference between 0 and 1, of the first picture.</dd>\n\
-    <dt>noise</dt><dd>standard deviation of a picture, as a share of the reference: from the difference of the two pictures.</dd>\n\
-    <dt>bias</dt><dd>root mean square of what both pictures are wrong by together, as a share of the reference and without the reference's noise; or how large it may be without having been seen; hidden by noise where that is as much as there is light.</dd>\n\
-    <dt>mean error</dt><dd>how much too bright the whole picture is, with one standard deviation.</dd>\n\
-    <dt>efficiency</dt><dd>1 / (relMSE · seconds): the ratio of two is that of the times to equal relMSE, where there is no bias.</dd>\n\
-    <dt>s to relMSE</dt><dd>seconds until the error had come down to that of the worst.</dd>\n\
-    <dt>slope</dt><dd>k in relMSE ∝ time^k, fitted over the last five doublings of time, the reference's noise taken off; −1 for independent samples.</dd>\n\
+    <dt>FLIP</dt><dd>perceived difference of the first picture, from 0 to 1.</dd>\n\
+    <dt>noise</dt><dd>relative standard deviation of a picture, from the difference of the two pictures.</dd>\n\
+    <dt>bias</dt><dd>root mean square of the relative error that both pictures have in common, the reference's variance subtracted; where it is not significant, an upper bound; hidden by noise where that is as large as the picture.</dd>\n\
+    <dt>mean error</dt><dd>mean of x − r relative to the mean of r, with one standard deviation; positive if the picture is too bright.</dd>\n\
+    <dt>efficiency</dt><dd>1 / (relMSE · seconds): without bias, the ratio of two is the ratio of times to equal relMSE.</dd>\n\
+    <dt>s to relMSE</dt><dd>seconds to reach the largest final error.</dd>\n\
+    <dt>slope</dt><dd>k in relMSE ∝ time^k, fitted over the last five doublings of time, the reference's variance subtracted; −1 for independent samples.</dd>\n\
     </dl>\n</details>\n";

@@ -5,7 +5,7 @@ use description::{
 };
 
 use super::Builder;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::CameraStatement;
 
 impl Builder<'_> {

@@ -1,13 +1,11 @@
 //! Lights and area lights.
 
-use description::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, SpectrumDesc, Stated};
+use description::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType, SpectrumDesc, Stated};
 use math::Vec3;
 
 use super::Builder;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::{LightStatement, Statement};
-
-const TYPES: [&str; 6] = ["point", "spot", "distant", "goniometric", "projection", "infinite"];
 
 impl Builder<'_> {
     pub(super) fn light(&mut self, light: LightStatement) -> Option<Stated<LightDesc>> {
@@ -63,13 +61,17 @@ fn cone(reader: &mut Reader) -> [f32; 2] {
 }
 
 fn kind(reader: &mut Reader) -> Option<LightKind> {
-    Some(match reader.kind.value.as_str() {
-        "point" => LightKind::Point {
+    let Some(light) = LightType::named(&reader.kind.value) else {
+        reader.unknown_type("light", "light", LightType::NAMES);
+        return None;
+    };
+    Some(match light {
+        LightType::Point => LightKind::Point {
             intensity: color(reader, "I"),
             power: total(reader, "power"),
             from: reader.point3("from", Vec3::ZERO),
         },
-        "spot" => {
+        LightType::Spot => {
             let [cone_angle, cone_delta_angle] = cone(reader);
             LightKind::Spot {
                 intensity: color(reader, "I"),
@@ -80,18 +82,18 @@ fn kind(reader: &mut Reader) -> Option<LightKind> {
                 cone_delta_angle,
             }
         }
-        "distant" => LightKind::Distant {
+        LightType::Distant => LightKind::Distant {
             radiance: color(reader, "L"),
             illuminance: total(reader, "illuminance"),
             from: reader.point3("from", Vec3::ZERO),
             to: reader.point3("to", Vec3::Z),
         },
-        "goniometric" => LightKind::Goniometric {
+        LightType::Goniometric => LightKind::Goniometric {
             intensity: color(reader, "I"),
             power: total(reader, "power"),
             image: reader.image("filename", None),
         },
-        "projection" => {
+        LightType::Projection => {
             let (power, fov) = (total(reader, "power"), reader.positive("fov", 90.0));
             let Some(image) = reader.image("filename", None) else {
                 reader.missing("filename");
@@ -99,11 +101,7 @@ fn kind(reader: &mut Reader) -> Option<LightKind> {
             };
             LightKind::Projection { image, power, fov }
         }
-        "infinite" => infinite(reader),
-        _ => {
-            reader.unknown_type("light", "light", &TYPES);
-            return None;
-        }
+        LightType::Infinite => infinite(reader),
     })
 }
 

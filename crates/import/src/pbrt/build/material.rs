@@ -2,30 +2,15 @@
 
 use description::{
     Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
-    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, RoughnessDesc, Spanned,
-    SpectrumDesc, SubsurfaceScattering,
+    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, RoughnessDesc,
+    Spanned, SpectrumDesc, SubsurfaceScattering,
 };
 
 use super::Builder;
+use super::reader::Reader;
 use crate::pbrt::names;
-use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::MaterialStatement;
 use crate::suggest::did_you_mean;
-
-const TYPES: [&str; 12] = [
-    "diffuse",
-    "coateddiffuse",
-    "coatedconductor",
-    "conductor",
-    "dielectric",
-    "thindielectric",
-    "diffusetransmission",
-    "hair",
-    "subsurface",
-    "measured",
-    "mix",
-    "interface",
-];
 
 impl Builder<'_> {
     /// Builds all materials; one that cannot be read stands as the format's default.
@@ -93,29 +78,42 @@ fn material(reader: &mut Reader) -> Option<MaterialDesc> {
 }
 
 fn kind(reader: &mut Reader) -> Option<MaterialKind> {
-    Some(match reader.kind.value.as_str() {
-        "diffuse" => MaterialKind::Diffuse { reflectance: reader.spectrum_parameter("reflectance", 0.5) },
-        "diffusetransmission" => MaterialKind::DiffuseTransmission {
+    if matches!(reader.kind.value.as_str(), "" | "none") {
+        let span = reader.kind.span;
+        reader.builder.report.warning("deprecated", "this material is now called `interface`", span);
+        return Some(MaterialKind::Interface);
+    }
+    let Some(material) = MaterialType::named(&reader.kind.value) else {
+        reader.unknown_type("material", "material", MaterialType::NAMES);
+        return None;
+    };
+    Some(match material {
+        MaterialType::Diffuse => {
+            MaterialKind::Diffuse { reflectance: reader.spectrum_parameter("reflectance", 0.5) }
+        }
+        MaterialType::DiffuseTransmission => MaterialKind::DiffuseTransmission {
             reflectance: reader.spectrum_parameter("reflectance", 0.25),
             transmittance: reader.spectrum_parameter("transmittance", 0.25),
             scale: reader.float("scale", 1.0),
         },
-        "conductor" => MaterialKind::Conductor(ConductorDesc {
+        MaterialType::Conductor => MaterialKind::Conductor(ConductorDesc {
             reflectance: conductor_reflectance(reader, ["eta", "k"]),
             roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
         }),
-        "dielectric" => MaterialKind::Dielectric {
+        MaterialType::Dielectric => MaterialKind::Dielectric {
             eta: reader.index_of_refraction("eta", 1.5),
             roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
         },
-        "thindielectric" => MaterialKind::ThinDielectric { eta: reader.index_of_refraction("eta", 1.5) },
-        "coateddiffuse" => MaterialKind::CoatedDiffuse(CoatedDiffuseDesc {
+        MaterialType::ThinDielectric => {
+            MaterialKind::ThinDielectric { eta: reader.index_of_refraction("eta", 1.5) }
+        }
+        MaterialType::CoatedDiffuse => MaterialKind::CoatedDiffuse(CoatedDiffuseDesc {
             reflectance: reader.spectrum_parameter("reflectance", 0.5),
             eta: reader.index_of_refraction("eta", 1.5),
             roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
             layers: layers(reader),
         }),
-        "coatedconductor" => MaterialKind::CoatedConductor(CoatedConductorDesc {
+        MaterialType::CoatedConductor => MaterialKind::CoatedConductor(CoatedConductorDesc {
             conductor: ConductorDesc {
                 reflectance: conductor_reflectance(reader, ["conductor.eta", "conductor.k"]),
                 roughness: roughness(
@@ -132,26 +130,17 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
             ),
             layers: layers(reader),
         }),
-        "hair" => hair(reader),
-        "subsurface" => subsurface(reader)?,
-        "measured" => {
+        MaterialType::Hair => hair(reader),
+        MaterialType::Subsurface => subsurface(reader)?,
+        MaterialType::Measured => {
             let Some(file) = reader.string("filename") else {
                 reader.missing("filename");
                 return None;
             };
             MaterialKind::Measured { filename: reader.builder.path(&file).to_string_lossy().into_owned() }
         }
-        "mix" => mix(reader)?,
-        "interface" => MaterialKind::Interface,
-        "" | "none" => {
-            let span = reader.kind.span;
-            reader.builder.report.warning("deprecated", "this material is now called `interface`", span);
-            MaterialKind::Interface
-        }
-        _ => {
-            reader.unknown_type("material", "material", &TYPES);
-            return None;
-        }
+        MaterialType::Mix => mix(reader)?,
+        MaterialType::Interface => MaterialKind::Interface,
     })
 }
 

@@ -9,7 +9,7 @@ use math::Vec3;
 
 use super::Builder;
 use super::material::substance;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::MediumStatement;
 
 const TYPES: [&str; 5] = ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"];

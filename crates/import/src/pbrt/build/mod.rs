@@ -6,6 +6,7 @@ mod files;
 mod light;
 mod material;
 mod medium;
+mod reader;
 mod settings;
 mod shape;
 mod texture;
@@ -20,7 +21,7 @@ use description::{
 };
 
 use self::files::ImageRequests;
-use super::reader::Reader;
+use self::reader::Reader;
 use super::state::MaterialReference;
 use super::statement::{MaterialStatement, MediumStatement, Statement, Statements};
 use crate::assets::AssetSource;

@@ -7,7 +7,7 @@ use description::{
 };
 
 use super::Builder;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::{Statement, Statements};
 
 impl Builder<'_> {

@@ -6,37 +6,18 @@ use std::sync::Arc;
 
 use description::{
     Arena, CurveBasis, CurveDesc, CurveProfile, Diagnostic, Handle, InstanceDesc, MeshDesc, MeshKey,
-    ObjectDesc, Origin, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, SolidOperation, Spanned, SpheresDesc,
-    Stated,
+    ObjectDesc, Origin, PatchMeshDesc, SceneDesc, ShapeDesc, ShapeKind, ShapeType, SolidOperation, Spanned,
+    SpheresDesc, Stated,
 };
 use math::Vec3;
 use rayon::prelude::*;
 
+use super::reader::Reader;
 use super::{Builder, unknown_reference};
 use crate::assets::{AssetSource, read_unpacked};
 use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
-use crate::pbrt::reader::Reader;
 use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
-
-const TYPES: [&str; 16] = [
-    "sphere",
-    "spheres",
-    "cylinder",
-    "cone",
-    "paraboloid",
-    "hyperboloid",
-    "disk",
-    "plane",
-    "trianglemesh",
-    "polygon",
-    "bilinearmesh",
-    "plymesh",
-    "curve",
-    "loopsubdiv",
-    "implicit",
-    "csg",
-];
 
 /// Mesh files by path, each read once; or why it could not be.
 pub(super) type Meshes = HashMap<PathBuf, Result<ShapeKind, String>>;
@@ -125,28 +106,35 @@ fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<ShapeKi
 }
 
 fn kind(reader: &mut Reader) -> Option<ShapeKind> {
-    Some(match reader.kind.value.as_str() {
-        "sphere" => {
+    if reader.kind.value == "polygon" {
+        return polygon(reader).map(ShapeKind::Triangles);
+    }
+    let Some(shape) = ShapeType::named(&reader.kind.value) else {
+        reader.unknown_type("shape", "shape", &[ShapeType::NAMES, &["polygon"]].concat());
+        return None;
+    };
+    Some(match shape {
+        ShapeType::Sphere => {
             let radius = reader.positive("radius", 1.0);
             let (z_min, z_max) = z_range(reader, [-radius, radius], [-radius, radius])?;
             ShapeKind::Sphere { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
         }
-        "cylinder" => {
+        ShapeType::Cylinder => {
             let radius = reader.positive("radius", 1.0);
             let (z_min, z_max) = z_range(reader, [-1.0, 1.0], [f32::NEG_INFINITY, f32::INFINITY])?;
             ShapeKind::Cylinder { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
         }
-        "cone" => ShapeKind::Cone {
+        ShapeType::Cone => ShapeKind::Cone {
             radius: reader.positive("radius", 1.0),
             height: reader.positive("height", 1.0),
             phi_max: reader.positive("phimax", 360.0),
         },
-        "paraboloid" => {
+        ShapeType::Paraboloid => {
             let radius = reader.positive("radius", 1.0);
             let (z_min, z_max) = z_range(reader, [0.0, 1.0], [0.0, f32::INFINITY])?;
             ShapeKind::Paraboloid { radius, z_min, z_max, phi_max: reader.positive("phimax", 360.0) }
         }
-        "hyperboloid" => {
+        ShapeType::Hyperboloid => {
             let ends = [reader.point3("p1", Vec3::ZERO), reader.point3("p2", Vec3::ONE)];
             if ends[0].z == ends[1].z {
                 reader.refuse("p2", "`p1` and `p2` have the same z: a `disk` draws what such a line sweeps");
@@ -158,7 +146,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             }
             ShapeKind::Hyperboloid { ends, phi_max: reader.positive("phimax", 360.0) }
         }
-        "disk" => {
+        ShapeType::Disk => {
             let (height, radius) = (reader.float("height", 0.0), reader.positive("radius", 1.0));
             let inner_radius = reader.float("innerradius", 0.0);
             if !(0.0..radius).contains(&inner_radius) {
@@ -167,24 +155,19 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
             }
             ShapeKind::Disk { height, radius, inner_radius, phi_max: reader.positive("phimax", 360.0) }
         }
-        "plane" => ShapeKind::Plane,
-        "spheres" => ShapeKind::Spheres(spheres(reader)?),
-        "implicit" => implicit(reader)?,
-        "csg" => solid(reader)?,
-        "trianglemesh" => ShapeKind::Triangles(triangle_mesh(reader, true)?),
-        "polygon" => ShapeKind::Triangles(polygon(reader)?),
-        "bilinearmesh" => ShapeKind::Patches(patch_mesh(reader)?),
-        "plymesh" => mesh_file(reader)?,
-        "curve" => ShapeKind::Curve(curve(reader)?),
-        "loopsubdiv" => {
+        ShapeType::Plane => ShapeKind::Plane,
+        ShapeType::Spheres => ShapeKind::Spheres(spheres(reader)?),
+        ShapeType::Implicit => implicit(reader)?,
+        ShapeType::Solid => solid(reader)?,
+        ShapeType::Triangles => ShapeKind::Triangles(triangle_mesh(reader, true)?),
+        ShapeType::Patches => ShapeKind::Patches(patch_mesh(reader)?),
+        ShapeType::PlyMesh => mesh_file(reader)?,
+        ShapeType::Curve => ShapeKind::Curve(curve(reader)?),
+        ShapeType::LoopSubdivision => {
             let levels = reader.integer("levels", 3, 0..=12);
             // The format knows one scheme only.
             reader.choice("scheme", (), &[("loop", ())]);
             ShapeKind::LoopSubdivision { mesh: triangle_mesh(reader, false)?, levels }
-        }
-        _ => {
-            reader.unknown_type("shape", "shape", &TYPES);
-            return None;
         }
     })
 }

@@ -7,7 +7,7 @@ use description::{
 use math::Vec3;
 
 use super::Builder;
-use crate::pbrt::reader::Reader;
+use super::reader::Reader;
 use crate::pbrt::statement::{Statements, TextureStatement};
 
 /// The differences between textures of numbers and of spectra.

@@ -5,14 +5,13 @@
 //! from is said in the files of `data/`.
 
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
-use crate::cie::CIE_Y_INTEGRAL;
+use crate::cie::{CIE_Y_INTEGRAL, integrate, matching_functions};
 use crate::piecewise::PiecewiseLinear;
-use crate::spectrum::Spectrum;
 
 /// The spectrum called `name`.
-pub fn named(name: &str) -> Option<Spectrum> {
+pub(crate) fn measured(name: &str) -> Option<Arc<PiecewiseLinear>> {
     TABLE.get(name).cloned()
 }
 
@@ -21,12 +20,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     TABLE.keys().copied()
 }
 
-static TABLE: LazyLock<BTreeMap<&'static str, Spectrum>> = LazyLock::new(|| {
+static TABLE: LazyLock<BTreeMap<&'static str, Arc<PiecewiseLinear>>> = LazyLock::new(|| {
     let measured = [include_str!("../data/metals.txt"), include_str!("../data/glasses.txt")];
-    let mut table: BTreeMap<&str, Spectrum> =
+    let mut table: BTreeMap<&str, Arc<PiecewiseLinear>> =
         measured.into_iter().flat_map(sections).map(|(name, spectrum)| (name, spectrum.into())).collect();
     for (name, light) in sections(include_str!("../data/illuminants.txt")) {
-        table.insert(name, with_unit_luminance(light));
+        table.insert(name, Arc::new(with_unit_luminance(light)));
     }
     table
 });
@@ -40,14 +39,16 @@ fn sections(text: &'static str) -> impl Iterator<Item = (&'static str, Piecewise
 }
 
 /// The light scaled so that its Y is one.
-fn with_unit_luminance(light: PiecewiseLinear) -> Spectrum {
-    let luminance = Spectrum::from(light.clone()).to_photometric() / CIE_Y_INTEGRAL;
-    light.scaled(1.0 / luminance).into()
+fn with_unit_luminance(light: PiecewiseLinear) -> PiecewiseLinear {
+    let y_bar = &matching_functions().y;
+    let luminance = integrate(|lambda| light.at(lambda) * y_bar.at(lambda)) / CIE_Y_INTEGRAL;
+    light.scaled(1.0 / luminance)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spectrum::named;
 
     #[test]
     fn every_name_has_a_spectrum() {

@@ -12,10 +12,10 @@ use description::{
 };
 use math::{Vec2, Vec3};
 
-use super::build::Builder;
-use super::names;
-use super::parameter::{ParameterType, RawParameter, Values};
-use super::statement::Statement;
+use super::Builder;
+use crate::pbrt::names;
+use crate::pbrt::parameter::{ParameterType, RawParameter, Values};
+use crate::pbrt::statement::Statement;
 use crate::suggest::{closest, did_you_mean};
 
 /// Reads the parameters of a statement.

@@ -1,0 +1,74 @@
+//! The values of options, as they are written on the command line.
+
+use std::time::Duration;
+
+use alhazen::Shard;
+
+/// A pair of name and value.
+pub fn key_value(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE")?;
+    Ok((key.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// A duration as it is written on the command line.
+pub fn time(text: &str) -> Result<Duration, String> {
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = match text[number.len()..].trim() {
+        "" | "s" => Some(1.0),
+        "ms" => Some(1e-3),
+        "min" | "m" => Some(60.0),
+        "h" => Some(3600.0),
+        _ => None,
+    };
+    let seconds = unit.zip(number.trim().parse().ok()).map(|(unit, number): (f64, f64)| unit * number);
+    seconds
+        .filter(|&seconds| seconds > 0.0)
+        .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+        .ok_or_else(|| "expected a duration such as 30s, 1.5min or 2h".into())
+}
+
+/// A relative standard error.
+pub fn noise(text: &str) -> Result<f64, String> {
+    let noise = text.parse().ok().filter(|&noise: &f64| noise > 0.0 && noise.is_finite());
+    noise.ok_or_else(|| "it is a number above 0: 0.02".into())
+}
+
+/// Which of how many parts.
+pub fn shard(text: &str) -> Result<Shard, String> {
+    let numbers = text
+        .split_once('/')
+        .and_then(|(index, count)| Some(Shard { index: index.parse().ok()?, count: count.parse().ok()? }));
+    numbers
+        .filter(|shard| (1..=shard.count).contains(&shard.index))
+        .ok_or_else(|| "it is written 3/8, from 1/8 to 8/8".into())
+}
+
+/// Width and height in pixels.
+pub fn resolution(text: &str) -> Result<[i32; 2], String> {
+    let numbers =
+        text.split_once('x').and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    numbers
+        .filter(|sides| sides.iter().all(|&side| side > 0))
+        .ok_or_else(|| "expected WIDTHxHEIGHT, such as 640x480".into())
+}
+
+fn numbers<T: std::str::FromStr, const N: usize>(text: &str) -> Option<[T; N]> {
+    let numbers: Option<Vec<T>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
+/// Fractions of the picture: x0, x1, y0, y1.
+pub fn crop(text: &str) -> Result<[f32; 4], String> {
+    numbers(text)
+        .filter(|&[x0, x1, y0, y1]: &[f32; 4]| {
+            0.0 <= x0 && x0 < x1 && x1 <= 1.0 && 0.0 <= y0 && y0 < y1 && y1 <= 1.0
+        })
+        .ok_or_else(|| "expected four fractions from 0 to 1, such as 0.25,0.75,0,1".into())
+}
+
+/// Column and row of a pixel.
+pub fn pixel(text: &str) -> Result<[i32; 2], String> {
+    numbers(text)
+        .filter(|pixel: &[i32; 2]| pixel.iter().all(|&coordinate| coordinate >= 0))
+        .ok_or_else(|| "expected a column and a row, such as 120,45".into())
+}

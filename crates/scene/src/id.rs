@@ -1,0 +1,14 @@
+//! Indices into the tables of a scene, by which everything refers to everything else.
+
+/// Index of a material in its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+
+/// Index of a light in its scene. The lights of an emitting geometry follow each other in the order
+/// of its primitives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LightId(pub u32);
+
+/// Index of an emission in its scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct EmissionId(pub u32);

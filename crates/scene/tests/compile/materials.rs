@@ -1,0 +1,119 @@
+//! What compiling makes of materials.
+
+use super::{check, stated, warns, with, with_parameter};
+use crate::common::*;
+use alhazen_scene::compile;
+use description::{
+    AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, HairColor, MaterialDesc,
+    MaterialKind, RoughnessDesc, Severity, ShapeDesc, SpectrumDesc, SubsurfaceScattering,
+};
+
+#[test]
+fn a_mix_of_itself_is_an_error() {
+    let desc = with(|desc| {
+        let other = desc.materials.push(MaterialDesc::default());
+        let itself = description::Handle::new(1);
+        let kind = MaterialKind::Mix { materials: [other, itself], amount: 0.5.into() };
+        desc.materials.push_stated(stated(MaterialDesc { name: "loop".into(), ..kind.into() }, 7));
+    });
+    check(&desc, Severity::Error, "material-cycle", "material `loop` is a mix of itself", 7);
+}
+
+#[test]
+fn materials_without_sense_are_errors() {
+    let material = |kind: MaterialKind, name| {
+        with(|desc| {
+            desc.materials.push_stated(with_parameter(kind.into(), name, 4));
+        })
+    };
+    let message = "an index of refraction must be above 0";
+    for eta in [
+        0.0.into(),
+        SpectrumDesc::from(-1.5),
+        SpectrumDesc::rgb(0.0, 0.0, 0.0),
+        SpectrumDesc::Samples([(400.0, 1.5), (700.0, 0.0)].into()),
+    ] {
+        let roughness = RoughnessDesc::default();
+        let glass = MaterialKind::Dielectric { eta: eta.clone(), roughness };
+        check(&material(glass, "eta"), Severity::Error, "invalid-value", message, 4);
+        let thin = MaterialKind::ThinDielectric { eta };
+        check(&material(thin, "eta"), Severity::Error, "invalid-value", message, 4);
+    }
+    let rough = |value: f32| {
+        let roughness = RoughnessDesc { u: value.into(), v: 0.5.into(), remap: true };
+        MaterialKind::Conductor(ConductorDesc { roughness, ..ConductorDesc::default() })
+    };
+    let message = "roughness cannot be negative, as -0.1 is";
+    for name in ["roughness", "uroughness"] {
+        check(&material(rough(-0.1), name), Severity::Error, "invalid-value", message, 4);
+    }
+    let message = "roughness goes from 0 to 1; 2 is rougher than that";
+    check(&material(rough(2.0), "uroughness"), Severity::Warning, "roughness-range", message, 4);
+    let leaf = |scale| MaterialKind::DiffuseTransmission {
+        reflectance: 0.25.into(),
+        transmittance: 0.25.into(),
+        scale,
+    };
+    let message = "NaN is no factor on a reflectance";
+    check(&material(leaf(f32::NAN), "scale"), Severity::Error, "invalid-value", message, 4);
+    let message = "the values of a spectrum must be at most 1e30";
+    let bright = MaterialKind::Diffuse { reflectance: SpectrumDesc::Constant(1e35).into() };
+    check(&material(bright, "reflectance"), Severity::Error, "invalid-value", message, 4);
+}
+
+#[test]
+fn an_interface_does_not_emit() {
+    let desc = with(|desc| {
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
+        let material = Some(desc.materials.push(MaterialKind::Interface.into()));
+        desc.shapes.push_stated(stated(ShapeDesc { area_light, material, ..sphere(1.0).into() }, 2));
+    });
+    check(&desc, Severity::Warning, "light-ignored", "a shape of material `interface` does not emit", 2);
+    assert!(compile(&desc).unwrap().scene.lights().is_empty());
+}
+
+#[test]
+fn materials_that_are_not_drawn_yet_say_what_is_drawn() {
+    let coated = CoatedConductorDesc {
+        conductor: ConductorDesc::default(),
+        eta: 1.5.into(),
+        roughness: RoughnessDesc::default(),
+        layers: Default::default(),
+    };
+    let hair = MaterialKind::Hair {
+        color: HairColor::Melanin { eumelanin: 1.3.into(), pheomelanin: 0.0.into() },
+        eta: 1.55.into(),
+        beta_m: 0.3.into(),
+        beta_n: 0.3.into(),
+        alpha: 2.0.into(),
+    };
+    let skin = MaterialKind::Subsurface {
+        scattering: SubsurfaceScattering::Named("Skin1".into()),
+        scale: 1.0,
+        eta: 1.33,
+        g: 0.0,
+        roughness: RoughnessDesc::default(),
+    };
+    let cases = [
+        (
+            MaterialKind::CoatedDiffuse(CoatedDiffuseDesc::default()),
+            "`coateddiffuse` is not drawn yet; drawn as `diffuse`, without its coat",
+        ),
+        (
+            MaterialKind::CoatedConductor(coated),
+            "`coatedconductor` is not drawn yet; drawn as `conductor`, without its coat",
+        ),
+        (hair, "`hair` is not drawn yet; drawn as diffuse"),
+        (skin, "`subsurface` is not drawn yet; drawn as diffuse"),
+        (
+            MaterialKind::Measured { filename: "a.bsdf".into() },
+            "`measured` is not drawn yet; drawn as diffuse",
+        ),
+    ];
+    for (kind, message) in cases {
+        warns(&with(|desc| desc.materials.push_stated(stated(kind.into(), 4))), message, 4);
+    }
+    let displaced = MaterialDesc { displacement: Some(0.1.into()), ..MaterialDesc::default() };
+    let desc = with(|desc| desc.materials.push_stated(with_parameter(displaced, "displacement", 6)));
+    warns(&desc, "displacement is not drawn yet; the surface stays as it is", 6);
+}
