@@ -1,4 +1,4 @@
-//! Paul Heckbert's ray tracer on a business card, done again on this house's geometry
+//! Paul Heckbert's business card ray tracer, with the geometry of alhazen
 //! ([Heckbert 1994]).
 //!
 //! Five spheres on the sky's own faint light. At each hit a ray splits in a reflected and a

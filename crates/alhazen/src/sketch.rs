@@ -19,19 +19,19 @@ use scene::View;
 
 use crate::{Header, Overrides};
 
-/// Most pixels of a sketch.
+/// The maximum number of pixels of a sketch.
 const MOST_PIXELS: usize = 1 << 16;
 
 /// How a sketch of a picture is made.
 pub(crate) struct Sketch {
-    /// Pixels of the picture along a side of one of the sketch.
+    /// Pixels of the picture along a side of a pixel of the sketch.
     n: u32,
     /// Film, sampler and algorithm of the sketch.
     desc: SceneDesc,
 }
 
 impl Sketch {
-    /// Of the picture on `film`; `None` where that is as small itself.
+    /// A sketch of the picture on `film`; `None` if that is as small itself.
     pub fn new(desc: &SceneDesc, film: &Film) -> Option<Self> {
         let bounds = film.pixel_bounds();
         if bounds.area() <= MOST_PIXELS {
@@ -78,8 +78,7 @@ fn div_ceil(x: i32, n: i32) -> i32 {
     x / n + i32::from(x % n > 0)
 }
 
-/// Takes the work that pixels do not share out, and what is made beside the picture, from an
-/// algorithm.
+/// Reduces work that does not depend on the number of pixels, and removes other outputs.
 fn lighten(integrator: &mut IntegratorDesc, n: i32) {
     let fewer = |count: &mut u32| *count = count.div_ceil((n as u32).saturating_pow(2));
     match integrator {

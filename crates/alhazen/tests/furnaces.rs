@@ -1,9 +1,9 @@
-//! Closed furnaces, and things that absorb nothing under a uniform sky, from the text of a scene to
-//! the picture in its file.
+//! Closed furnaces, and lossless objects under a uniform sky, from the text of a scene to the
+//! picture file.
 //!
 //! Where every path carries the same radiance, a pixel's only noise is that of its wavelengths. The
 //! sky alone, seen with the same seed, has the same wavelengths: so each pixel, not only their
-//! mean, has a known value, and a single leaking ray shows.
+//! mean, has a known value, and a single leaking ray is detected.
 
 mod common;
 
@@ -16,7 +16,7 @@ use common::{Estimate, means, render_text, rgb_values};
 /// Where each reflection halves what a path carries, the rest after these is less than rounding.
 const IN_FURNACE: u32 = 24;
 
-/// Light is caught in glass for long where it meets the surface at grazing angles.
+/// Light is trapped in glass for long where it hits the surface at grazing angles.
 const IN_GLASS: u32 = 1000;
 
 /// The picture of a world, written to a file and read again.
@@ -36,7 +36,7 @@ fn picture(integrator: &str, samples: u32, world: &str, overrides: &Overrides) -
     picture
 }
 
-/// The picture found by following the BSDF alone: no choice changes what a path carries.
+/// A picture by BSDF sampling only: every path has the same throughput.
 fn exact(max_depth: u32, world: &str) -> Image {
     let integrator = format!("\"simplepath\" \"integer maxdepth\" {max_depth} \"bool samplelights\" false");
     picture(&integrator, 64, world, &Overrides::default())
@@ -85,7 +85,7 @@ fn walls() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Holds each pixel to that of the sky alone.
+/// Asserts that each pixel is that of the sky.
 fn assert_uniform(found: &Image, sky: &Image, name: &str) {
     for (i, (found, sky)) in rgb_values(found).zip(rgb_values(sky)).enumerate() {
         let (x, y) = (i / 3 % 32, i / 96);
@@ -101,7 +101,7 @@ fn no_pixel_of_a_closed_furnace_leaks() {
     }
 }
 
-/// Instances of glass, mirrors and white things in front of the camera.
+/// Instances of glass, mirrors and white objects in front of the camera.
 fn things() -> Vec<(&'static str, String)> {
     let ball = "Translate 0.4 -0.2 1 Shape \"sphere\" \"float radius\" 0.4\n";
     let balls = "Shape \"spheres\" \"point3 P\" [0.4 -0.2 1  -0.5 0.1 1.4  0.2 0.4 1.2] \"float radius\" [0.4 0.3 0.2]\n";
@@ -123,7 +123,7 @@ fn things() -> Vec<(&'static str, String)> {
 }
 
 #[test]
-fn what_absorbs_nothing_vanishes_under_a_uniform_sky() {
+fn lossless_materials_are_invisible_under_a_uniform_sky() {
     let sky = sky();
     for (name, thing) in things() {
         assert_uniform(&exact(IN_GLASS, &format!("{SKY}{thing}")), &sky, name);
@@ -131,7 +131,7 @@ fn what_absorbs_nothing_vanishes_under_a_uniform_sky() {
 }
 
 #[test]
-fn what_absorbs_nothing_vanishes_in_a_furnace() {
+fn lossless_materials_are_invisible_in_a_furnace() {
     let sky = sky();
     for (name, thing) in things() {
         let world = format!("AttributeBegin\n{BLACK_WALL}{SPHERE}AttributeEnd\n{thing}");
@@ -139,9 +139,9 @@ fn what_absorbs_nothing_vanishes_in_a_furnace() {
     }
 }
 
-/// With lights sampled too, pixels have noise, and their mean little.
+/// With light sampling, pixels are noisy, but their mean is not.
 #[test]
-fn a_furnace_shows_one() {
+fn a_furnace_has_radiance_one() {
     let walls = walls();
     for (name, wall) in &walls {
         let estimate =
@@ -151,7 +151,7 @@ fn a_furnace_shows_one() {
 }
 
 #[test]
-fn a_white_sky_shows_one() {
+fn a_white_sky_has_radiance_one() {
     let even = Overrides { settings: vec![("sampler".into(), "zsobol".into())], ..Overrides::default() };
     let found = means(&picture("\"path\"", 256, SKY, &even));
     assert!(found.iter().all(|mean| (mean - 1.0).abs() < 5e-5), "{found:?}");

@@ -1,5 +1,5 @@
-//! Damaged, odd and old files of others, from import to a small picture where they can be read: no
-//! panic, and soon an end.
+//! Damaged, unusual and old third-party files, from import to a small picture where they are valid:
+//! no panic, and bounded time.
 
 mod common;
 
@@ -79,9 +79,9 @@ fn images_as_textures() {
     });
 }
 
-/// Environments too: their sizes and values are held to more.
+/// Also as environment maps, which have further requirements.
 #[test]
-fn images_as_skies() {
+fn images_as_environment_maps() {
     draw_all(&["exr"], &["exr"], |path| {
         let text = format!("WorldBegin LightSource \"infinite\" \"string filename\" \"{}\"", path.display());
         let (name, assets) = scene_text(&text);
@@ -90,7 +90,7 @@ fn images_as_skies() {
 }
 
 #[test]
-fn old_scenes() {
+fn scenes_of_older_formats() {
     let drawn = draw_all(&["pbrt-old-syntax"], &["pbrt"], |path| draws(path, &Files));
     assert_eq!(drawn, 0, "scenes of old syntax are refused");
 }

@@ -1,5 +1,5 @@
-//! The picture of the business card, held to the one that the card's own program printed, and to
-//! some pixels of it where that is absent.
+//! The picture of the business card ray tracer against that of the original program, or some of its
+//! pixels where that is absent.
 
 #[allow(dead_code)]
 #[path = "../examples/minray.rs"]
@@ -13,7 +13,7 @@ fn numbers(text: &str) -> Vec<i32> {
 }
 
 #[test]
-fn the_picture_is_that_of_the_card() {
+fn the_picture_is_that_of_the_original_program() {
     let data = std::env::var_os("ALHAZEN_DATA").map(PathBuf::from);
     let data = data.unwrap_or(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
     let path = data.join("../minray/minray.ppm");
@@ -36,7 +36,7 @@ fn the_picture_is_that_of_the_card() {
 }
 
 #[test]
-fn pixels_of_every_sphere_and_of_none() {
+fn pixels_on_every_sphere_and_on_the_background() {
     let picture = minray::picture(32);
     for ([x, y], expected) in [
         ([0, 0], [5, 5, 5]),
@@ -59,7 +59,7 @@ fn pixels_of_every_sphere_and_of_none() {
 }
 
 #[test]
-fn another_size_shows_the_same_scene() {
+fn another_resolution_shows_the_same_scene() {
     let (small, large) = (minray::picture(32), minray::picture(64));
     assert_eq!(large.len(), 64 * 64);
     let same = (0..32 * 32).filter(|i| small[*i] == large[64 * 2 * (i / 32) + 2 * (i % 32)]).count();

@@ -1,8 +1,7 @@
-//! Test scenes of Mitsuba and Ignis, written anew, against the pictures that come with them or
-//! means found by Mitsuba.
+//! Test scenes of Mitsuba and Ignis, converted, against their reference pictures or means by
+//! Mitsuba.
 //!
-//! The references hold three numbers for a colour, our pictures many: where light is reflected once
-//! both say the same.
+//! The references are RGB, our pictures spectral: for light reflected once both agree.
 
 mod common;
 
@@ -16,7 +15,7 @@ fn reference(path: &Path) -> Image {
     image::open(path).expect("the reference is readable")
 }
 
-/// What all scenes begin with: a camera of Mitsuba's hand, and pixels without overlap.
+/// The head of all scenes: a camera with Mitsuba's handedness, and a box filter.
 fn head(look_at: &str, fov: f32, side: u32, max_depth: u32, samples: u32) -> String {
     format!(
         "Scale -1 1 1 LookAt {look_at}\nCamera \"perspective\" \"float fov\" {fov}\n\
@@ -55,7 +54,7 @@ fn lit_planes() {
 
 /// A plane under a white sky, with and without what it reflects.
 #[test]
-fn a_plane_under_the_sky() {
+fn plane_under_the_sky() {
     let Some(folder) = data("ignis") else { return };
     let look_at = "278 273 -800  278 273 -799  0 1 0";
     for (name, max_depth) in [("plane-d1", 0), ("plane-d6", 5)] {
@@ -70,7 +69,7 @@ fn a_plane_under_the_sky() {
 
 /// A ball that casts its shadow from straight above.
 #[test]
-fn a_floating_sphere() {
+fn floating_sphere() {
     let Some(folder) = data("mitsuba-tests/tests/scenes/floating_sphere/refs") else { return };
     // What a lens of 50 mm sees of a frame of 24 × 36 mm, cut to a square of the same diagonal.
     let text = head("0 -5 1  0 0 0.5  0 0 1", 34.0227, 48, 1, 16)

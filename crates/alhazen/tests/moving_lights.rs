@@ -54,7 +54,7 @@ fn assert_same(found: &[String], expected: &[String], what: &str) {
 }
 
 #[test]
-fn emitting_shapes_of_objects_are_as_if_written_out() {
+fn instanced_area_lights_equal_separate_ones() {
     let lamps = "AreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\n\
         Shape \"trianglemesh\" \"point3 P\" [-0.3 -0.3 0  -0.3 0.3 0  0.3 0.3 0  0.3 -0.3 0]\n\
         \"integer indices\" [0 1 2 0 2 3]\n\
@@ -80,7 +80,7 @@ fn assert_moves(world: &str, what: &str) {
 }
 
 #[test]
-fn emitting_shapes_move() {
+fn area_lights_move() {
     assert_moves(
         "ObjectBegin \"lamp\" AreaLightSource \"diffuse\" \"rgb L\" [8 8 8]\n\
          Shape \"disk\" \"float radius\" 0.3 ObjectEnd\n\

@@ -1,5 +1,5 @@
-//! Scenes of the Nori course, written anew: direct light with known answers, and means found by
-//! another renderer.
+//! Scenes of the Nori course, converted: direct light in closed form, and means by another
+//! renderer.
 
 mod common;
 
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use common::{Estimate, data, render_text, shape};
 
-/// A camera of the other hand: pbrt's has its own.
+/// A right-handed camera; pbrt's is left-handed.
 fn head(look_at: &str, fov: f32, size: [u32; 2], integrator: &str, samples: u32) -> String {
     let [width, height] = size;
     format!(
@@ -18,7 +18,7 @@ fn head(look_at: &str, fov: f32, size: [u32; 2], integrator: &str, samples: u32)
     )
 }
 
-/// The angle over the smaller side of a 4:3 or 3:2 picture, from that over the larger: both in
+/// The field of view of the shorter side of a 4:3 or 3:2 picture from that of the longer one, in
 /// degrees.
 fn smaller_fov(larger: f32, aspect: f32) -> f32 {
     2.0 * ((larger.to_radians() / 2.0).tan() / aspect).atan().to_degrees()

@@ -1,4 +1,4 @@
-//! Radiosity from without: against path tracing, pass by pass, stopped, and as a mesh.
+//! Radiosity: against path tracing, pass by pass, cancelled, and as a mesh.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -51,7 +51,7 @@ fn job(name: &str, overrides: &Overrides) -> Job {
 }
 
 #[test]
-fn a_gathered_picture_has_the_light_of_path_tracing() {
+fn a_gathered_picture_has_the_mean_of_path_tracing() {
     let settings = [("maxdepth", "5"), ("gather", "1"), ("tolerance", "0.004"), ("patchsize", "90")];
     let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 24, 96, &settings));
     let reference = overrides("path", 24, 2048, &[("maxdepth", "5"), ("sampler", "sobol")]);
@@ -62,7 +62,7 @@ fn a_gathered_picture_has_the_light_of_path_tracing() {
 
 #[test]
 #[ignore = "slow: a path-traced picture without visible noise"]
-fn a_gathered_picture_is_that_of_path_tracing() {
+fn a_gathered_picture_agrees_with_path_tracing() {
     let settings = [("maxdepth", "5"), ("gather", "1")];
     let found = render_scene(&scene("cornell-box.pbrt"), &overrides("radiosity", 64, 1024, &settings));
     let reference = overrides("path", 64, 8192, &[("maxdepth", "5"), ("sampler", "sobol")]);
@@ -74,7 +74,7 @@ fn a_gathered_picture_is_that_of_path_tracing() {
     }
 }
 
-/// The squared distance of two pictures.
+/// The squared difference of two pictures.
 fn distance(a: &Image, b: &Image) -> f64 {
     rgb_values(a).zip(rgb_values(b)).map(|(a, b)| (a - b).powi(2)).sum()
 }
@@ -104,8 +104,8 @@ fn every_pass_is_better_than_the_last() {
 }
 
 #[test]
-fn a_pass_can_be_stopped() {
-    // Light that takes minutes to be sent in a single pass.
+fn a_pass_can_be_cancelled() {
+    // Shooting takes minutes in a single pass.
     let settings = [("tolerance", "0.000001"), ("steps", "1"), ("patchsize", "20"), ("maxdepth", "50")];
     let mut job = job("cornell-box.pbrt", &overrides("radiosity", 16, 1, &settings));
     let control = Control::default();
@@ -121,11 +121,11 @@ fn a_pass_can_be_stopped() {
 }
 
 #[test]
-fn a_gather_of_endless_rays_can_be_stopped() {
+fn a_long_gather_can_be_cancelled() {
     let settings = [("gather", "2147483647"), ("steps", "1"), ("tolerance", "0.9"), ("patchsize", "3")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 4, 1, &settings));
     let control = Control::default();
-    // Once light was sent, the gather begins.
+    // After shooting, the gather starts.
     let mut brake = |_: &Session| {
         let cancel = Arc::clone(&control.cancel);
         std::thread::spawn(move || {
@@ -136,7 +136,7 @@ fn a_gather_of_endless_rays_can_be_stopped() {
     assert!(job.session.run(0..1, &Limits::default(), &control, &mut brake).is_err());
 }
 
-/// The part before a wall of a floor without end, which has no patches, below a lamp at a point.
+/// A wall on an infinite floor, which has no patches, below a point light.
 const FLOOR: &str = r#"LookAt 0 -3 4  0 0.5 0  0 0 1
     Camera "perspective" "float fov" 25
     Film "rgb" "integer xresolution" 24 "integer yresolution" 24 "bool savefp16" false
@@ -164,7 +164,7 @@ fn depth_counts_as_in_path_tracing() {
         let overrides = Overrides { integrator, settings, samples_per_pixel, ..Overrides::default() };
         means(&render_text(FLOOR, &overrides), 24).0
     };
-    // What the wall gets from the floor, and sends back to it, is scattered a third time.
+    // Light from the floor to the wall and back is scattered three times.
     for depth in 0..=2 {
         let expected = mean("path", depth, 0);
         for gather in [0, 1] {
@@ -177,7 +177,7 @@ fn depth_counts_as_in_path_tracing() {
     }
 }
 
-/// A pass that is rendered alone is what it is after all those before it.
+/// A pass on its own equals the pass after all earlier ones.
 #[test]
 fn a_pass_depends_on_its_number_alone() {
     let settings = [("tolerance", "0.5"), ("steps", "2"), ("patchsize", "3"), ("subdivision", "1")];
@@ -207,7 +207,7 @@ fn a_pass_depends_on_its_number_alone() {
 }
 
 #[test]
-fn the_light_is_saved_as_a_mesh() {
+fn the_solution_is_saved_as_a_mesh() {
     let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
     assert!(job.session.integrator().files().is_empty(), "nothing is known before the first pass");

@@ -1,9 +1,9 @@
 //! Scenes of Bitterli's collection against the pictures that came with them.
 //!
-//! Those were rendered with three numbers for a colour; ours are spectra, and light of the Cornell
-//! box that is reflected often is bluer or redder by some percent for that. So the box is rendered
-//! once for each channel with its reflectances and emission as greys, where both kinds of renderer
-//! must say the same; and once as it is, against a mean found by Mitsuba with spectra.
+//! Those were rendered in RGB, ours are spectral, which shifts the colour of multiply scattered
+//! light in the Cornell box by some percent. So the box is rendered once per channel with
+//! reflectances and emission as greys, where both must agree; and once as it is, against a mean by
+//! spectral Mitsuba.
 
 mod common;
 
@@ -35,7 +35,7 @@ fn grey(text: &str, channel: usize) -> String {
     grey
 }
 
-/// Settings for a picture whose pixels are independent of each other.
+/// Settings for a picture with independent pixels.
 fn settings(side: i32, samples: u32, seed: Option<i32>) -> Overrides {
     Overrides {
         resolution: Some([side, side]),
@@ -47,7 +47,7 @@ fn settings(side: i32, samples: u32, seed: Option<i32>) -> Overrides {
 }
 
 #[test]
-fn each_channel_of_the_cornell_box_as_a_grey() {
+fn cornell_box_in_grey_per_channel() {
     let Some((_, text, reference)) = cornell_box() else { return };
     let small = shrunk(&reference, 16);
     for channel in 0..3 {
@@ -56,7 +56,7 @@ fn each_channel_of_the_cornell_box_as_a_grey() {
         let expected = Image::from_fn(64, 64, ["R", "G", "B"], |x, y| [small.rgb(x, y)[channel]; 3]);
         let name = format!("channel {channel}");
         estimate.assert_mean([means(&expected)[0]; 3], 5e-4, 3, &name);
-        // Near the light's edge, squares of pixels differ by the filter that spreads it.
+        // Near the light's edge, squares of pixels differ by the pixel filter.
         estimate.assert_parts(&expected, 16, 1e-2, 3, &name);
     }
 }
@@ -65,7 +65,7 @@ fn each_channel_of_the_cornell_box_as_a_grey() {
 const SPECTRAL_MEAN: [f64; 3] = [0.19498, 0.12675, 0.03487];
 
 #[test]
-fn the_cornell_box_in_spectra() {
+fn cornell_box_with_spectra() {
     let Some((path, ..)) = cornell_box() else { return };
     let estimate = Estimate::new(4, |overrides| render_scene(&path, &settings(64, 16, overrides.seed)));
     estimate.assert_mean(SPECTRAL_MEAN, 2e-3, 1, "cornell box");
@@ -73,7 +73,7 @@ fn the_cornell_box_in_spectra() {
 
 #[test]
 #[ignore = "slow: 1024 samples for each of a million pixels, four times"]
-fn the_cornell_box_as_large_as_its_reference() {
+fn cornell_box_at_full_size() {
     let Some((path, text, reference)) = cornell_box() else { return };
     let overrides = Overrides { samples_per_pixel: Some(1024), ..Overrides::default() };
     let assert_close = |found: f64, expected: f64| {

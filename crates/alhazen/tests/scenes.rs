@@ -1,4 +1,4 @@
-//! Every scene in `scenes/` is without fault, and shows something.
+//! Every scene in `scenes/` renders without diagnostics.
 
 use std::path::{Path, PathBuf};
 
@@ -31,7 +31,7 @@ fn silent(name: &str, diagnostics: &[Diagnostic]) {
 }
 
 #[test]
-fn every_scene_is_without_fault_and_shows_something() {
+fn every_scene_renders_without_diagnostics() {
     let scenes = scenes();
     assert!(scenes.len() > 15, "only {} scenes in {}", scenes.len(), folder().display());
     let small = Overrides { resolution: Some([16, 16]), samples_per_pixel: Some(1), ..Overrides::default() };
@@ -64,7 +64,7 @@ fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
 }
 
 #[test]
-fn the_table_names_every_scene() {
+fn the_readme_lists_every_scene() {
     let table = std::fs::read_to_string(folder().join("README.md")).expect("the table of scenes");
     for (_, name) in scenes() {
         assert!(table.contains(&format!("| `{name}.pbrt` |")), "{name}.pbrt is not in scenes/README.md");

@@ -1,4 +1,4 @@
-//! The first look at a picture: like it, and without any part in it.
+//! Sketches: like the picture, without changing it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -24,12 +24,12 @@ fn job(integrator: &str, overrides: Overrides) -> Job {
     Job::compile(&desc).unwrap().job
 }
 
-/// A picture whose sides are no multiples of what the pixels of its sketch are wide.
+/// A picture whose sides are not multiples of the sketch's pixel size.
 fn whole() -> Overrides {
     of_depth("3", Overrides { resolution: Some([401, 299]), ..Overrides::default() })
 }
 
-/// A part that begins and ends between pixels of its sketch.
+/// A crop that starts and ends between pixels of its sketch.
 fn part() -> Overrides {
     let crop = Some([0.25, 0.87, 0.0053, 0.69]);
     of_depth("3", Overrides { resolution: Some([601, 451]), crop, ..Overrides::default() })
@@ -59,14 +59,14 @@ fn means(image: &Image) -> [f64; 9] {
 }
 
 #[test]
-fn a_sketch_shows_what_the_picture_will_show() {
+fn a_sketch_has_the_means_of_the_picture() {
     for overrides in [whole(), part()] {
         let mut path = job("path", overrides.clone());
         path.render(&Control::default()).unwrap();
         let picture = path.picture();
         let expected = means(&picture);
-        // Chains dwell, the photons of a pass have four wavelengths, and large patches blur
-        // shadows.
+        // Markov chains are correlated, the photons of a pass have four wavelengths, and large
+        // patches blur shadows.
         for (integrator, tolerance) in [
             ("path", 0.2),
             ("light-tracing", 0.2),
@@ -90,7 +90,7 @@ fn a_sketch_shows_what_the_picture_will_show() {
     }
 }
 
-/// Where the middle of all light is, in pixels.
+/// The centroid of the picture, in pixels.
 fn middle(image: &Image) -> [f64; 2] {
     let width = image.width() as usize;
     let mut sums = [0.0; 3];
@@ -102,9 +102,9 @@ fn middle(image: &Image) -> [f64; 2] {
 }
 
 #[test]
-fn a_sketch_shows_things_where_they_are() {
+fn a_sketch_has_the_positions_of_the_picture() {
     for overrides in [whole(), part()] {
-        // The lamp alone.
+        // Only the light.
         let mut job = job("path", of_depth("0", overrides));
         let sketch = sketch(&mut job).unwrap();
         job.render(&Control::default()).unwrap();
@@ -125,7 +125,7 @@ fn a_sketch_has_large_pixels() {
 }
 
 #[test]
-fn a_sketch_leaves_no_trace_in_the_picture() {
+fn a_sketch_does_not_change_the_picture() {
     for integrator in ["path", "light-tracing", "mlt"] {
         let rendered = |with_sketch: bool| {
             let mut job = job(integrator, whole());
@@ -140,7 +140,7 @@ fn a_sketch_leaves_no_trace_in_the_picture() {
 }
 
 #[test]
-fn there_is_no_sketch_of_a_small_picture_or_a_render_that_was_stopped() {
+fn small_pictures_and_cancelled_renders_have_no_sketch() {
     let small = Overrides { resolution: Some([256, 256]), ..Overrides::default() };
     assert!(sketch(&mut job("path", small)).is_none());
     let few = Overrides { resolution: Some([4000, 4000]), pixel: Some([3999, 7]), ..Overrides::default() };

@@ -1,4 +1,4 @@
-//! What every shape promises: samples have their density, densities integrate to one, hits lie on
+//! The contract of all shapes: samples have their density, densities integrate to one, hits are on
 //! the surface, and partial derivatives are those of the surface.
 
 mod common;
@@ -20,7 +20,7 @@ fn transforms() -> [Transform; 3] {
     ]
 }
 
-/// Points that see a shape: from outside, from close by, from within a sphere, from a surface.
+/// Reference points: outside, close by, inside a sphere, on a surface.
 fn references() -> Vec<(&'static str, ShapeSampleContext)> {
     let at = |p| ShapeSampleContext { p: Point3Error::exact(p), n: Vec3::ZERO, ns: Vec3::ZERO, time: 0.0 };
     let lit = |p: Vec3, ns: Vec3| ShapeSampleContext { n: ns.normalize(), ns: ns.normalize(), ..at(p) };
@@ -42,11 +42,10 @@ fn each(mut f: impl FnMut(String, &Shape, &ShapeSampleContext)) {
     }
 }
 
-/// Below this cosine a density by area turned into one by solid angle grows too steep for a
-/// midpoint rule.
+/// Below this cosine, an area density converted to solid angle is too steep for the midpoint rule.
 const EDGE_ON: f32 = 0.2;
 
-/// What is first met along `w`, unless it is seen edge-on.
+/// The first hit along `w`, unless it is seen edge-on.
 fn met(shape: &Shape, reference: &ShapeSampleContext, w: Vec3) -> Option<(ShapeHit, SurfacePoint)> {
     let ray = reference.spawn_ray(w);
     let hit = shape.intersect(&ray, f32::INFINITY)?;
@@ -54,16 +53,15 @@ fn met(shape: &Shape, reference: &ShapeSampleContext, w: Vec3) -> Option<(ShapeH
     (surface.n.dot(surface.wo).abs() > EDGE_ON).then_some((hit, surface))
 }
 
-/// The direction of a sampled point, unless something of the shape is before it, or it is seen
-/// edge-on.
+/// The direction of a sampled point, unless the shape occludes it, or it is seen edge-on.
 fn visible(shape: &Shape, reference: &ShapeSampleContext, sample: &ShapeSample) -> Option<Vec3> {
     let toward = sample.p.p - reference.p.p;
     let (_, surface) = met(shape, reference, toward)?;
     (surface.p.p.distance(sample.p.p) < 2e-3).then(|| toward.normalize())
 }
 
-/// Directions around a shape in equal cells (z, φ) of the cone in which its box is seen, and the
-/// density's integral over each, by a fine midpoint rule.
+/// Equal cells (z, φ) of the cone that bounds the shape's box, and the integral of the density over
+/// each, by a fine midpoint rule.
 struct Cells {
     frame: Frame,
     z_min: f32,
@@ -100,7 +98,7 @@ impl Cells {
     }
 }
 
-/// Holds visible samples to the density: how many there are, and where.
+/// Tests visible samples against the density: their number and their distribution.
 fn check(
     what: &str,
     shape: &Shape,
@@ -154,7 +152,7 @@ fn samples_by_area_have_their_density() {
 }
 
 #[test]
-fn a_bent_patch_knows_its_points_whatever_their_texture_coordinates() {
+fn patch_densities_do_not_depend_on_texture_coordinates() {
     let p = [[-1.0, -1.0, 0.0], [1.0, -0.8, 0.5], [-0.9, 1.0, 0.4], [1.1, 1.2, -0.3]].map(Vec3::from);
     let patch = BilinearPatch::new(p, None, Some([Vec2::splat(0.5); 4]), &Transform::IDENTITY, false);
     let (shape, rng) = (Shape::from(patch), &mut Rng::new(2, 0));
@@ -165,13 +163,13 @@ fn a_bent_patch_knows_its_points_whatever_their_texture_coordinates() {
 }
 
 #[test]
-fn an_image_guides_the_samples_of_a_patch() {
+fn patches_are_sampled_by_an_image() {
     let image = sampling::PiecewiseConstant2d::new(&[0.1, 2.0, 1.0, 0.0, 0.5, 3.0], 3, Bounds2::UNIT);
     let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.3, 1.2, 0.6)];
     let patch = BilinearPatch::new(p, None, None, &Transform::IDENTITY, false).with_image(image.into());
     let shape = Shape::from(patch);
     let sample = |u: [f32; 2]| Some(shape.sample(u.into())?.uv.to_array());
-    // Per area of the parameters: by the area element, whose inverse is in the density per area.
+    // Per parameter area: the density per area times the area element.
     let pdf = |uv: [f32; 2]| {
         let [u, v] = uv;
         let d_du = (p[1] - p[0]).lerp(p[3] - p[2], v);
@@ -184,7 +182,7 @@ fn an_image_guides_the_samples_of_a_patch() {
 }
 
 #[test]
-fn both_ways_to_the_density_agree_at_any_distance() {
+fn pdf_from_agrees_with_sample_from_at_any_distance() {
     let rng = &mut Rng::new(1, 0);
     for distance in [1.5, 10.0, 300.0, 1e4] {
         for (name, shape) in transforms().iter().flat_map(shapes) {
@@ -195,7 +193,7 @@ fn both_ways_to_the_density_agree_at_any_distance() {
                 let Some(sample) = shape.sample_from(&reference, uniform_2d(rng)) else { continue };
                 let Some(wi) = visible(&shape, &reference, &sample) else { continue };
                 let pdf = shape.pdf_from(&reference, wi);
-                // Rounding of the direction may miss what is seen at an angle below it.
+                // A rounded direction may miss a shape at grazing angles.
                 let tolerance = 0.01 + 1e-5 * distance;
                 let agrees = (pdf / sample.pdf - 1.0).abs() < tolerance || (pdf == 0.0 && distance > 100.0);
                 assert!(agrees, "{name} from {distance}: {pdf} and {}", sample.pdf);
@@ -205,7 +203,7 @@ fn both_ways_to_the_density_agree_at_any_distance() {
 }
 
 #[test]
-fn a_convex_shape_seen_whole_has_density_one() {
+fn the_density_of_a_convex_shape_integrates_to_one() {
     let reference = &references()[0].1;
     for (name, shape) in transforms()[..2].iter().flat_map(shapes) {
         if !matches!(name, "sphere" | "disk" | "ring" | "rectangle" | "triangle") {
@@ -217,9 +215,9 @@ fn a_convex_shape_seen_whole_has_density_one() {
     }
 }
 
-/// Rays at random points of the surface; those points, found again.
+/// Rays towards random points of the surface hit those points.
 #[test]
-fn hits_lie_on_the_surface_and_know_its_derivatives() {
+fn hits_are_on_the_surface_with_its_derivatives() {
     let rng = &mut Rng::new(2, 0);
     for (name, shape) in transforms().iter().flat_map(shapes) {
         let bounds = shape.bounds().expect("bounded");
@@ -249,7 +247,7 @@ fn hits_lie_on_the_surface_and_know_its_derivatives() {
     }
 }
 
-/// Moves along each tangent and looks how the position, the normal and (u, v) change.
+/// Finite differences of position, normal and (u, v) along each tangent.
 fn check_derivatives(name: &str, shape: &Shape, surface: &SurfacePoint) {
     let h = 1e-2;
     for (dp, dn, axis) in [(surface.dpdu, surface.dndu, Vec2::X), (surface.dpdv, surface.dndv, Vec2::Y)] {
@@ -335,7 +333,7 @@ fn areas() {
     close(Sphere::new(&m, false, 0.5, [0.0, 0.5], 180.0).into(), PI);
     close(Cylinder::new(&m, false, 0.5, [-1.0, 1.0], 360.0).into(), 8.0 * PI);
     close(Cone::new(&m, false, 1.5, 2.0, 90.0).into(), 4.0 * 0.25 * PI * 1.5 * 2.5);
-    // A bowl z = x² + y² with a rim at z = 2: (π/6)·(9^(3/2) − 1).
+    // A paraboloid z = x² + y² up to z = 2: (π/6)·(9^(3/2) − 1).
     close(Paraboloid::new(&m, false, 2f32.sqrt(), [0.0, 2.0], 360.0).into(), 4.0 * PI / 6.0 * 26.0);
     // x² + y² = 1 + z² for |z| < 1: 2π·(√3 + asinh(√2)/√2).
     let line = [Vec3::new(1.0, -1.0, -1.0), Vec3::ONE];
@@ -355,7 +353,7 @@ fn areas() {
 }
 
 #[test]
-fn orientation_turns_normals() {
+fn reverse_orientation_flips_normals() {
     let mirror = Transform::scale(Vec3::new(-1.0, 1.0, 1.0));
     let down = Ray::new(Vec3::new(0.2, 0.1, 5.0), -Vec3::Z, 0.0);
     for (m, reverse, up) in [
@@ -372,7 +370,7 @@ fn orientation_turns_normals() {
             let hit = shape.intersect(&down, 9.0).expect("hit");
             assert_eq!(shape.surface(&down, &hit).n.z > 0.0, up, "{shape:?}");
         }
-        // Vertices go through the mirror themselves, so that only the reversal is left.
+        // Vertices are transformed themselves, so that only the reversal is left.
         let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
         let mesh = TriangleMesh::new(
             corners.to_vec().into(),

@@ -1,4 +1,4 @@
-//! Worlds of every quality answer alike, and so do worlds whose geometries have moved.
+//! Worlds of every build quality find the same hits, and so do refitted worlds.
 
 mod common;
 
@@ -27,7 +27,7 @@ fn triangles(corners: Vec<[Vec3; 3]>) -> TriangleMesh {
     mesh(corners.concat(), indices, &Transform::IDENTITY)
 }
 
-/// Long thin triangles side by side, slanted to all axes: a few sheets of strips.
+/// Long thin triangles, oblique to all axes: a few sheets of strips.
 fn strips(rng: &mut Rng, n: usize) -> TriangleMesh {
     let frames: Vec<Frame> = (0..5).map(|_| Frame::from_z(direction(rng))).collect();
     let strip = |i: usize| {
@@ -61,7 +61,7 @@ fn assert_same_hits(world: &World, geometries: &[Geometry], rays: &[Ray], what: 
 }
 
 #[test]
-fn every_quality_equals_brute_force() {
+fn every_quality_finds_the_hits_of_brute_force() {
     let rng = &mut Rng::new(21, 0);
     let mut soup = |n: usize, spread: f32, size: &dyn Fn(&mut Rng) -> f32| {
         let triangle = |_| {
@@ -92,7 +92,7 @@ fn every_quality_equals_brute_force() {
     }
 }
 
-/// Rays at points of the triangles, where planes that split space have cut them.
+/// Rays towards points of triangles that spatial splits have divided.
 #[test]
 fn spatial_splits_lose_no_hit() {
     let rng = &mut Rng::new(31, 0);
@@ -127,7 +127,7 @@ fn spatial_splits_save_tests_of_thin_triangles() {
 }
 
 #[test]
-fn a_refitted_world_equals_a_new_one() {
+fn a_refitted_world_equals_a_rebuilt_one() {
     let rng = &mut Rng::new(51, 0);
     let bump = |bump: f32| ball(90, bump, &Transform::IDENTITY);
     let place = |x: f32| Shape::from(Sphere::whole(&Transform::translate(Vec3::X * x), false, 0.4));
@@ -169,7 +169,7 @@ fn a_refitted_world_equals_a_new_one() {
 }
 
 #[test]
-fn vertices_that_are_not_finite_are_left_out_until_they_are() {
+fn refit_skips_non_finite_vertices() {
     let mesh = cube(&Transform::IDENTITY);
     let positions: Vec<Vec3> = Bounds3::new(-Vec3::ONE, Vec3::ONE).corners().collect();
     let mut world = world([mesh.clone().into()]);
@@ -185,7 +185,7 @@ fn vertices_that_are_not_finite_are_left_out_until_they_are() {
 }
 
 #[test]
-fn other_primitives_are_refused() {
+fn refit_refuses_other_primitives() {
     let sphere = Geometry::from(Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0)));
     let plane = Geometry::from(Shape::from(Plane::new(&Transform::IDENTITY, false)));
     let cube = Geometry::from(cube(&Transform::IDENTITY));

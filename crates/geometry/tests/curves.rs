@@ -1,4 +1,4 @@
-//! Curves: against what fine sampling of their centre line says, in the tree, and for hostile
+//! Curves: against dense sampling of their centre line, in a BVH, and with degenerate control
 //! points.
 
 mod common;
@@ -32,9 +32,8 @@ fn random_segment(rng: &mut Rng) -> CurveSegment {
     CurveSegment { points, width: [between(rng, 0.01, 0.3), between(rng, 0.01, 0.3)] }
 }
 
-/// A curve that runs along x and is nowhere much thinner than elsewhere. Where a curve turns within
-/// its own width as the ray sees it, whether it is met is a matter of how it is cut; and it is cut
-/// by what its largest width asks for.
+/// A curve along x of nearly constant width. Where a curve turns within its own width as seen along
+/// the ray, hits depend on the subdivision, which is chosen for the largest width.
 fn gentle_segment(rng: &mut Rng) -> CurveSegment {
     let points = [-1.2, -0.4, 0.4, 1.2].map(|x| Vec3::X * x + point_in(rng, 0.3));
     let width = between(rng, 0.01, 0.3);
@@ -45,7 +44,7 @@ fn straight(width: [f32; 2]) -> CurveSegment {
     CurveSegment { points: [-1.5, -0.5, 0.5, 1.5].map(|x| Vec3::new(x, 0.0, 0.0)), width }
 }
 
-/// The nearest hit of all primitives, and which it was.
+/// The nearest hit of all primitives, and its primitive.
 fn nearest_part(curves: &Curves, ray: &Ray) -> Option<(u32, ShapeHit)> {
     let mut nearest: Option<(u32, ShapeHit)> = None;
     for i in 0..curves.len() as u32 {
@@ -60,7 +59,7 @@ fn at(p: &[Vec3; 4], u: f32) -> Vec3 {
     p[0] * (v * v * v) + p[1] * (3.0 * v * v * u) + p[2] * (3.0 * v * u * u) + p[3] * (u * u * u)
 }
 
-/// A ray to a point near a curve, in its own space; never quite along x.
+/// A ray to a point near a curve, in object space; never quite along x.
 fn ray_near(rng: &mut Rng, segment: &CurveSegment) -> Ray {
     let u = rng.uniform_f32();
     let target = at(&segment.points, u) + direction(rng) * between(rng, 0.0, 0.3);
@@ -69,8 +68,8 @@ fn ray_near(rng: &mut Rng, segment: &CurveSegment) -> Ray {
     Ray::new(o, (target - o) * between(rng, 0.3, 3.0), 0.0)
 }
 
-/// Of points along the centre line: u, by how much the line of a ray misses them in halves of the
-/// width (1 is the edge), and how far along the ray they are.
+/// For points of the centre line: u, their distance from the ray in half widths (1 is the edge),
+/// and their t along the ray.
 fn misses(segment: &CurveSegment, ribbon: bool, ray: &Ray) -> Vec<(f32, f32, f32)> {
     const STEPS: usize = 2000;
     let d = ray.d.normalize();
@@ -91,7 +90,7 @@ fn misses(segment: &CurveSegment, ribbon: bool, ray: &Ray) -> Vec<(f32, f32, f32
 }
 
 #[test]
-fn hits_are_where_the_centre_line_is_near() {
+fn hits_are_within_half_the_width_of_the_centre_line() {
     let rng = &mut Rng::new(1, 0);
     let (mut hits, mut disputed) = (0, 0);
     for i in 0..600 {
@@ -104,7 +103,7 @@ fn hits_are_where_the_centre_line_is_near() {
             let local = ray_near(rng, &segment);
             let ray = m.ray(&local);
             let misses = misses(&segment, ribbon, &local);
-            // Behind the origin nothing is met; near it, perhaps. The ends are cut across.
+            // There are no hits behind the origin; near it there may be. The ends are flat.
             let sure = misses.windows(3).any(|of| {
                 let (_, miss, t) = of[1];
                 miss < 0.85 && miss <= of[0].1 && miss <= of[2].1 && t > 0.01
@@ -133,7 +132,7 @@ fn hits_are_where_the_centre_line_is_near() {
 }
 
 #[test]
-fn a_ribbon_seen_across_is_a_rectangle() {
+fn a_ribbon_facing_the_ray_is_a_rectangle() {
     let rng = &mut Rng::new(2, 0);
     let m = &transforms()[1];
     let segment = straight([0.8, 0.4]);
@@ -167,7 +166,7 @@ fn a_ribbon_seen_across_is_a_rectangle() {
 }
 
 #[test]
-fn parts_change_nothing() {
+fn splitting_does_not_change_hits() {
     let rng = &mut Rng::new(3, 0);
     let (mut hits, mut differences) = (0, 0);
     for i in 0..300 {
@@ -187,12 +186,12 @@ fn parts_change_nothing() {
             }
         }
     }
-    // Silhouettes shift by a fraction of the width, since the parts of parts are straighter.
+    // Silhouettes shift by a fraction of the width, since segments of segments are straighter.
     assert!(hits > 1000 && differences < hits / 30, "{differences} of {hits}");
 }
 
 #[test]
-fn the_tree_finds_what_is_nearest() {
+fn the_bvh_finds_the_nearest_hit() {
     let rng = &mut Rng::new(4, 0);
     for (i, m) in transforms().iter().enumerate() {
         let segments: Vec<_> = (0..40).map(|_| random_segment(rng)).collect();
@@ -217,7 +216,7 @@ fn the_tree_finds_what_is_nearest() {
 }
 
 #[test]
-fn sides_and_tangents_are_those_of_the_format() {
+fn v_and_tangents_follow_the_format() {
     // A ray along −z at a curve along +x: v grows towards d × x = −y, and so does ∂p/∂v.
     let ray = Ray::new(Vec3::new(0.3, -0.1, 5.0), -Vec3::Z, 0.25);
     let m = &Transform::IDENTITY;
@@ -251,7 +250,7 @@ fn sides_and_tangents_are_those_of_the_format() {
 }
 
 #[test]
-fn rays_that_leave_a_straight_curve_do_not_meet_it() {
+fn spawned_rays_do_not_hit_a_straight_curve() {
     let rng = &mut Rng::new(5, 0);
     for (i, m) in transforms()[..2].iter().enumerate() {
         for profile in profiles(1).into_iter().take(2) {
@@ -265,7 +264,7 @@ fn rays_that_leave_a_straight_curve_do_not_meet_it() {
                     for _ in 0..10 {
                         let w = direction(rng);
                         let again = nearest_part(&curves, &surface.spawn_ray(w));
-                        // The far side of a tube's rim is within its width.
+                        // The far side of a cylinder's rim is within its width.
                         let grazes = surface.n.dot(surface.wo).abs() < 0.5
                             && surface.n.dot(w) * surface.n.dot(surface.wo) < 0.0;
                         assert!(again.is_none() || grazes, "{curves:?} {ray:?} {w} {again:?}");
@@ -320,6 +319,6 @@ fn hostile_curves_are_harmless() {
 }
 
 #[test]
-fn memory_grows_with_segments_alone() {
+fn memory_is_proportional_to_segments() {
     assert_eq!(size_of::<CurveSegment>(), 56);
 }

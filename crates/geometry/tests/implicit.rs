@@ -1,5 +1,5 @@
-//! Surfaces given by formulas: against closed forms, against dense sampling, and where roots are
-//! hard to tell.
+//! Implicit surfaces: against closed forms, against dense sampling, and where roots are
+//! ill-conditioned.
 
 mod common;
 
@@ -14,7 +14,8 @@ const STEINER: &str = "x^2*y^2 + y^2*z^2 + z^2*x^2 + x*y*z";
 const CAYLEY: &str = "4*(x^2 + y^2 + z^2) + 16*x*y*z - 1";
 const TORUS: &str = "(x^2 + y^2 + z^2 + 0.91)^2 - 4*(x^2 + y^2)";
 
-/// Of every kind: quadrics to high degrees, singular points, functions, kinks, edges of domains.
+/// Formulas of every kind: quadrics to high degrees, singular points, functions, kinks, domain
+/// boundaries.
 const FORMULAS: [&str; 16] = [
     "x^2 + 0.5*y^2 + 2*z^2 - 1",
     "x^2 + y^2 - z^2",
@@ -54,10 +55,9 @@ fn value(formula: &Formula, p: DVec3) -> f64 {
     formula.value(p.to_array())
 }
 
-/// The first hit is where the formula is zero, and at no sample before it has the formula another
-/// sign.
+/// The formula is zero at the first hit, and has the same sign at all samples before it.
 #[test]
-fn no_root_before_the_first_by_dense_sampling() {
+fn hits_are_the_first_roots_of_dense_sampling() {
     const STEPS: usize = 4000;
     let rng = &mut Rng::new(1, 0);
     let mut hits = 0;
@@ -70,7 +70,7 @@ fn no_root_before_the_first_by_dense_sampling() {
             let inside = |p: DVec3| p.abs().max_element() <= 1.6;
             let at = |i: usize| 2.0 * i as f64 / STEPS as f64;
             let point = |t: f64| o64 + d64 * t;
-            // Signs change by roots or by poles; at a pole the formula is large.
+            // Signs change at roots and at poles; near a pole the formula is large.
             let change = (0..STEPS).find(|&i| {
                 let (p, q) = (point(at(i)), point(at(i + 1)));
                 let (a, b) = (value(&f, p), value(&f, q));
@@ -84,8 +84,8 @@ fn no_root_before_the_first_by_dense_sampling() {
             }
             let Some(t) = hit else { continue };
             hits += 1;
-            // Around a float beside a root the formula has both signs, or comes near zero beside
-            // how it changes.
+            // Between the floats around a root the formula changes its sign, or is small compared
+            // with its change.
             let t = t as f64;
             let around = [-2e-6, -1e-6, 0.0, 1e-6, 2e-6].map(|h| value(&f, point(t + h)));
             let known: Vec<f64> = around.into_iter().filter(|value| value.is_finite()).collect();
@@ -100,7 +100,7 @@ fn no_root_before_the_first_by_dense_sampling() {
 }
 
 #[test]
-fn a_sphere_by_formula_is_the_sphere() {
+fn an_implicit_sphere_equals_the_sphere() {
     let rng = &mut Rng::new(2, 0);
     let turn = Transform::translate(Vec3::new(3.0, -2.0, 1.0))
         .after(&Transform::rotate(0.7, Vec3::new(0.3, 1.0, -0.2)));
@@ -136,12 +136,12 @@ fn a_sphere_by_formula_is_the_sphere() {
 
 /// The axis of the tube has radius 1, the tube 0.3.
 #[test]
-fn a_torus_along_its_planes_in_closed_form() {
+fn torus_hits_in_closed_form() {
     for text in [TORUS, "(sqrt(x^2 + y^2) - 1)^2 + z^2 - 0.09"] {
         let torus = surface(text, &Transform::IDENTITY);
         for i in 0..200 {
             let h = i as f32 / 200.0 * 0.299;
-            // Across the plane at height h, through the middle and beside it.
+            // In the plane at height h, through the centre and off-centre.
             let expected = 5.0 - 1.0 - (0.09 - h * h).sqrt();
             let t = first(&torus, Vec3::new(-5.0, 0.0, h), Vec3::X).expect("a hit");
             assert!((t - expected).abs() < 2e-6, "{t} {expected}");
@@ -150,7 +150,7 @@ fn a_torus_along_its_planes_in_closed_form() {
             let expected = 5.0 - (outer * outer - y * y).sqrt();
             let t = first(&torus, Vec3::new(-5.0, y, h), Vec3::X).expect("a hit");
             assert!((t - expected).abs() < 2e-6, "{t} {expected}");
-            // Down along the axis through the hole, and onto the crest.
+            // Along the axis through the hole, and onto the top.
             assert_eq!(first(&torus, Vec3::new(0.5 * y, 0.0, 4.0), -Vec3::Z), None);
         }
         let t = first(&torus, Vec3::new(0.0, 1.0, 4.0), -Vec3::Z).expect("the crest");
@@ -159,7 +159,7 @@ fn a_torus_along_its_planes_in_closed_form() {
 }
 
 #[test]
-fn rays_that_touch() {
+fn tangent_rays() {
     let at = |text: &str, o: Vec3, d: Vec3| first(&surface(text, &Transform::IDENTITY), o, d);
     let sphere = "x^2 + y^2 + z^2 - 1";
     let high = |x: f32| Vec3::new(x, 0.0, 5.0);
@@ -171,24 +171,24 @@ fn rays_that_touch() {
         (near - (5.0 - (1.0 - 0.999999f32 as f64 * 0.999999f32 as f64).sqrt() as f32)).abs() < 1e-6,
         "{near}"
     );
-    // The plane that touches a torus along a circle, met along that plane.
+    // A ray in the plane that is tangent to a torus along a circle.
     let crest = at(TORUS, Vec3::new(-3.0, 0.0, 0.3), Vec3::X);
     assert!(
         crest.is_none_or(|t| (t - 2.0).abs() < 1e-3),
         "{crest:?}: 0.3 is a little more than 0.3 in floats"
     );
     assert_eq!(at(TORUS, Vec3::new(-3.0, 0.0, 0.30001), Vec3::X), None);
-    // Planes that count twice and four times: they do not change the sign.
+    // Planes of multiplicity two and four, where the sign does not change.
     for text in ["z^2", "z^4", "z^2*(x^2 + 1)", "abs(z)", "(sin(z))^2"] {
         let t = at(text, Vec3::new(0.1, 0.2, 1.0), Vec3::new(0.1, 0.2, -1.0)).expect(text);
         assert!((t - 1.0).abs() < 3e-3, "{text}: {t}");
     }
-    // Everywhere zero: the box is full of it.
+    // Zero everywhere: the whole box is hit.
     assert!((at("x - x", Vec3::new(0.1, 0.2, 3.6), -Vec3::Z).expect("full") - 2.0).abs() < 1e-5);
 }
 
 #[test]
-fn thin_shells_are_not_passed_over() {
+fn thin_shells_are_hit() {
     let rng = &mut Rng::new(3, 0);
     for exponent in [4, 6, 8, 10, 12] {
         // Two spheres that are 10^(-exponent/2) apart.
@@ -209,7 +209,7 @@ fn thin_shells_are_not_passed_over() {
     }
 }
 
-/// Through apexes, nodes and double lines, from all sides.
+/// Rays through apexes, nodes and double lines, from all sides.
 #[test]
 fn singular_points() {
     let rng = &mut Rng::new(4, 0);
@@ -242,7 +242,7 @@ fn singular_points() {
 }
 
 #[test]
-fn far_origins_lose_nothing_but_their_own_rounding() {
+fn distant_origins_lose_only_their_own_rounding() {
     let rng = &mut Rng::new(5, 0);
     for distance in [1e2f32, 1e4, 1e6] {
         for text in ["x^2 + y^2 + z^2 - 1", "x^4 + y^4 + z^4 - 1", "sqrt(x^2 + y^2 + z^2) - 1"] {
@@ -259,10 +259,10 @@ fn far_origins_lose_nothing_but_their_own_rounding() {
     }
 }
 
-/// A box may be as large as it will: rays that start near the surface meet it as in a box of its
-/// own size, by directions of any length.
+/// Huge bounds do not matter: rays that start near the surface hit it as in tight bounds, with
+/// directions of any length.
 #[test]
-fn small_surfaces_in_huge_boxes() {
+fn small_surfaces_in_huge_bounds() {
     let bounded = ["x^2 + y^2 + z^2 - 1", FORMULAS[2], TORUS, FORMULAS[4], FORMULAS[9], FORMULAS[12]];
     let rng = &mut Rng::new(12, 0);
     for text in bounded {
@@ -289,7 +289,7 @@ fn small_surfaces_in_huge_boxes() {
 }
 
 #[test]
-fn poles_are_no_surfaces() {
+fn poles_are_not_hit() {
     let at =
         |text: &str, d: Vec3| first(&surface(text, &Transform::IDENTITY), Vec3::new(-1.5, 0.01, 0.02), d);
     assert_eq!(at("1/x", Vec3::X), None);
@@ -303,9 +303,10 @@ fn poles_are_no_surfaces() {
     assert!((edge - 2.0).abs() < 1e-6);
 }
 
-/// What varies faster than can be resolved ends in bounded time, and odd rays find nothing.
+/// Formulas that vary faster than can be resolved take bounded time, and degenerate rays hit
+/// nothing.
 #[test]
-fn hostile_formulas_and_rays_end() {
+fn hostile_formulas_and_rays_terminate() {
     let rng = &mut Rng::new(6, 0);
     for text in [
         "sin(1e9*x)",
@@ -343,9 +344,9 @@ fn hostile_formulas_and_rays_end() {
     }
 }
 
-/// Rays that leave a surface on a side where it bulges towards them never meet it again.
+/// Rays that leave the convex side of a surface never hit it again.
 #[test]
-fn spawned_rays_do_not_meet_their_own_surface() {
+fn spawned_rays_do_not_hit_their_own_surface() {
     let rng = &mut Rng::new(7, 0);
     for i in 0..24 {
         let size = [1.0f32, 1e-3, 1e4][i % 3];
@@ -389,7 +390,7 @@ fn spawned_rays_do_not_meet_their_own_surface() {
 }
 
 #[test]
-fn the_box_cuts_the_surface_off() {
+fn the_bounds_clip_the_surface() {
     let bounds = Bounds3 { min: Vec3::new(-1.0, -1.0, 0.0), max: Vec3::ONE };
     let dome =
         Shape::from(Implicit::new(&Transform::IDENTITY, false, formula("x^2 + y^2 + z^2 - 1"), &bounds));

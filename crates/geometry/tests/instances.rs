@@ -1,5 +1,5 @@
-//! Placed groups behave as if their members stood where they are placed, at rest or moving; and
-//! meshes keep the conventions of shading.
+//! Instances equal their transformed members, static or moving; and meshes follow the shading
+//! conventions.
 
 mod common;
 
@@ -25,7 +25,7 @@ fn everything(m: &Transform) -> Vec<Geometry> {
 }
 
 #[test]
-fn an_instance_equals_what_it_places() {
+fn an_instance_equals_the_transformed_group() {
     let rng = &mut Rng::new(1, 0);
     let m = Transform::translate(Vec3::new(3.0, -2.0, 1.0))
         .after(&Transform::rotate(1.0, Vec3::new(1.0, 2.0, 3.0)))
@@ -62,7 +62,7 @@ fn an_instance_equals_what_it_places() {
 }
 
 #[test]
-fn what_moves_is_met_where_it_is_at_the_time() {
+fn moving_instances_are_hit_at_their_position_in_time() {
     let end = DMat4::from_translation(DVec3::new(10.0, 0.0, 0.0));
     let motion = AnimatedTransform::new(DMat4::IDENTITY, end, [0.0, 1.0]).expect("invertible");
     let ball = Shape::from(Sphere::whole(&Transform::IDENTITY, false, 1.0));
@@ -86,7 +86,7 @@ fn what_moves_is_met_where_it_is_at_the_time() {
 }
 
 #[test]
-fn a_placed_plane_has_no_end() {
+fn an_instanced_plane_is_infinite() {
     let m = Transform::translate(Vec3::Z * -2.0);
     let world = placed([Shape::from(Plane::new(&Transform::IDENTITY, false)).into()], m.into());
     let hit = nearest(&world, &Ray::new(Vec3::new(1e6, -1e6, 1.0), -Vec3::Z, 0.0)).expect("hit");
@@ -94,9 +94,9 @@ fn a_placed_plane_has_no_end() {
     assert!(nearest(&world, &Ray::new(Vec3::ZERO, Vec3::X, 0.0)).is_none(), "along the plane");
 }
 
-/// Rays that leave flat things far away, through an instance, do not meet them again.
+/// Rays spawned from flat surfaces in a distant instance do not hit them again.
 #[test]
-fn spawned_rays_do_not_meet_a_placed_surface_again() {
+fn spawned_rays_do_not_hit_an_instanced_surface() {
     let rng = &mut Rng::new(3, 0);
     for i in 0..200 {
         let size = 10f32.powf(between(rng, -3.0, 4.0));
@@ -125,7 +125,7 @@ fn spawned_rays_do_not_meet_a_placed_surface_again() {
 }
 
 #[test]
-fn shading_normals_have_the_last_word() {
+fn shading_normals_determine_orientation() {
     let corners: Vec<Vec3> = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let ns = Vec3::new(0.3, 0.2, -1.0).normalize();
     let attributes = MeshAttributes { normals: Some(vec![ns; 3].into()), ..MeshAttributes::default() };
@@ -152,7 +152,7 @@ fn shading_normals_have_the_last_word() {
 }
 
 #[test]
-fn arrays_that_are_no_mesh_are_refused() {
+fn invalid_arrays_are_refused() {
     let corners: Vec<Vec3> = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let make = |index: u32, uvs: usize| {
         let attributes =
@@ -171,7 +171,7 @@ fn arrays_that_are_no_mesh_are_refused() {
 }
 
 #[test]
-fn shading_normals_weigh_by_their_lengths_wherever_they_stand() {
+fn shading_normals_are_weighted_by_their_lengths() {
     let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
     let normals = [Vec3::Z, Vec3::new(3.0, 0.0, 4.0), Vec3::new(0.0, -1.0, 2.0), Vec3::Z];
     let m = Transform::scale(Vec3::new(0.5, 2.0, 1.0));
@@ -183,7 +183,7 @@ fn shading_normals_weigh_by_their_lengths_wherever_they_stand() {
     let patch = |m: &Transform| -> Geometry {
         Shape::from(BilinearPatch::new(corners, Some(normals), None, m, false)).into()
     };
-    // At a quarter of the way along both sides; the transform acts on the sum.
+    // At a quarter of both edges; the transform is applied to the sum.
     let object = [normals[0] * 0.5 + (normals[1] + normals[2]) * 0.25, Vec3::new(9.0, -3.0, 28.0) / 16.0];
     for (make, n) in [(&mesh as &dyn Fn(&Transform) -> Geometry, object[0]), (&patch, object[1])] {
         let expected = m.normal(n).normalize();
@@ -195,7 +195,7 @@ fn shading_normals_weigh_by_their_lengths_wherever_they_stand() {
     }
 }
 
-/// A world whose ball is placed through several instances, and the same ball placed at once.
+/// A world with a sphere in nested instances, and one with the transformed sphere.
 fn nested(rng: &mut Rng, levels: usize) -> (World, World) {
     let mut builder = World::builder();
     let mut group = builder.add_group();
@@ -218,7 +218,7 @@ fn nested(rng: &mut Rng, levels: usize) -> (World, World) {
 }
 
 #[test]
-fn instances_of_instances_stand_where_all_their_transforms_place_them() {
+fn nested_instances_compose_their_transforms() {
     let rng = &mut Rng::new(8, 0);
     for levels in 1..=InstancePath::MAX_DEPTH {
         let (nested, once) = nested(rng, levels);
@@ -236,7 +236,7 @@ fn instances_of_instances_stand_where_all_their_transforms_place_them() {
             if a.primitive == b.primitive {
                 assert!(p.n.dot(q.n) > 0.9999 && p.dpdu.distance(q.dpdu) < 1e-3, "{p:?} and {q:?}");
             }
-            // What leaves to the outside of the ball's box does not meet the same triangle again.
+            // Rays spawned outwards do not hit the same triangle again.
             let away = nearest(&nested, &p.spawn_ray(face_forward(direction(rng), p.n)));
             assert!(away.is_none_or(|hit| hit.primitive != a.primitive), "{p:?}");
         }
@@ -245,7 +245,7 @@ fn instances_of_instances_stand_where_all_their_transforms_place_them() {
 }
 
 #[test]
-fn one_group_stands_in_many_places_of_many() {
+fn a_group_is_shared_by_many_nested_instances() {
     // A ball at x = 0, 1; those at y = 0, 3; and those again, with the first pair by itself, at z =
     // 0.
     let mut builder = World::builder();
@@ -279,6 +279,6 @@ fn one_group_stands_in_many_places_of_many() {
 
 #[test]
 #[should_panic(expected = "too deep")]
-fn instances_too_deep_in_each_other_are_refused() {
+fn too_deeply_nested_instances_are_refused() {
     nested(&mut Rng::new(9, 0), InstancePath::MAX_DEPTH + 1);
 }

@@ -1,4 +1,4 @@
-//! All sets of instructions find the same hits, bit for bit.
+//! All instruction sets find the same hits, bit for bit.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::*;
 use math::*;
 use sampling::Rng;
 
-/// A world, once for each set that this processor has.
+/// The same world for each instruction set of this processor.
 fn worlds(geometries: Vec<Geometry>) -> Vec<(InstructionSet, World)> {
     let world = world(geometries);
     let sets = InstructionSet::ALL.into_iter().filter(|set| set.is_available());
@@ -54,12 +54,12 @@ fn agree(geometries: Vec<Geometry>, rays: impl IntoIterator<Item = Ray>) {
 }
 
 #[test]
-fn on_a_closed_mesh() {
+fn closed_mesh() {
     let rng = &mut Rng::new(1, 0);
     let mesh = ball(60, 0.2, &Transform::IDENTITY);
     let rays = (0..30_000).map(|i| {
         let o = point_in(rng, [0.3, 2.0][i % 2]);
-        // Towards corners, middles of edges, and anywhere.
+        // Towards vertices, midpoints of edges, and random points.
         let triangle = ((rng.uniform_f32() * mesh.len() as f32) as usize).min(mesh.len() - 1);
         let [a, b, _] = mesh.corners(triangle);
         let d = match i % 5 {
@@ -74,7 +74,7 @@ fn on_a_closed_mesh() {
 }
 
 #[test]
-fn on_lattices_where_hits_coincide() {
+fn lattices_with_coincident_hits() {
     let rng = &mut Rng::new(2, 0);
     let step = |rng: &mut Rng| (rng.uniform_f32() * 5.0).floor();
     let lattice = |rng: &mut Rng| Vec3::new(step(rng), step(rng), step(rng));
@@ -92,7 +92,7 @@ fn on_lattices_where_hits_coincide() {
 }
 
 #[test]
-fn on_what_is_hostile() {
+fn hostile_geometry() {
     let bad = [f32::NAN, f32::INFINITY, -f32::INFINITY, 3e38, -3e38, 1e-42, 1e-30, 0.0, 1.0, -1.0, 0.5];
     let rng = &mut Rng::new(3, 0);
     let pick = |rng: &mut Rng| bad[((rng.uniform_f32() * bad.len() as f32) as usize).min(bad.len() - 1)];
@@ -105,10 +105,9 @@ fn on_what_is_hostile() {
     }
 }
 
-/// Rays from one point to neighbouring ones, which a batch takes through the tree together, and
-/// some that are not like their neighbours.
+/// Coherent rays from one point, which a batch traces as packets, and some incoherent ones.
 #[test]
-fn on_a_picture() {
+fn coherent_rays() {
     let rng = &mut Rng::new(4, 0);
     let soup = (0..600).flat_map(|_| {
         let center = point_in(rng, 1.0);
@@ -135,7 +134,7 @@ fn on_a_picture() {
 }
 
 #[test]
-fn filters_are_asked_in_batches_too() {
+fn batches_call_filters() {
     let plane = |z: f32| {
         mesh(
             vec![Vec3::new(-9.0, -9.0, z), Vec3::new(9.0, -9.0, z), Vec3::new(0.0, 9.0, z)],

@@ -1,4 +1,4 @@
-//! What moves is, at each moment, what stands still there.
+//! Moving geometry equals static geometry at each time.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::*;
 use math::*;
 use sampling::Rng;
 
-/// A bumpy ball in three poses.
+/// A bumpy sphere with three keyframes.
 fn poses() -> Vec<TriangleMesh> {
     [
         Transform::IDENTITY,
@@ -18,7 +18,7 @@ fn poses() -> Vec<TriangleMesh> {
     .into()
 }
 
-/// The pose of a moment between 0.2 and 0.8, vertex by vertex.
+/// The vertices at a time between 0.2 and 0.8.
 fn pose_at(poses: &[TriangleMesh], time: f32) -> TriangleMesh {
     let x = ((time - 0.2) / 0.6 * 2.0).clamp(0.0, 2.0);
     let (a, b) = if x < 1.0 { (0, 1) } else { (1, 2) };
@@ -37,7 +37,7 @@ fn moving_ball() -> Geometry {
     Geometry::Shapes(MovingMesh::new(poses(), [0.2, 0.8]).triangles().map(Shape::from).collect())
 }
 
-/// Holds the hits of one world to those of another at one moment.
+/// Asserts that two worlds have the same hits at a time.
 fn agree(what: &str, moving: &World, still: &World, time: f32, rng: &mut Rng) {
     let mut hits = 0;
     for _ in 0..400 {
@@ -61,7 +61,7 @@ fn agree(what: &str, moving: &World, still: &World, time: f32, rng: &mut Rng) {
 }
 
 #[test]
-fn vertices_that_move_are_at_each_moment_where_a_still_mesh_has_them() {
+fn moving_vertices_equal_a_static_mesh_at_each_time() {
     let rng = &mut Rng::new(1, 0);
     let (poses, moving) = (poses(), world([moving_ball()]));
     for frame in 0..40 {
@@ -71,7 +71,7 @@ fn vertices_that_move_are_at_each_moment_where_a_still_mesh_has_them() {
 }
 
 #[test]
-fn no_ray_slips_between_triangles_that_move() {
+fn moving_meshes_are_watertight() {
     let rng = &mut Rng::new(2, 0);
     let (poses, moving) = (poses(), world([moving_ball()]));
     for _ in 0..20_000 {
@@ -80,7 +80,7 @@ fn no_ray_slips_between_triangles_that_move() {
         let corners = pose.corners((rng.uniform_f32() * pose.len() as f32) as usize);
         let target =
             corners[0].lerp(corners[1], if rng.uniform_f32() < 0.5 { 0.0 } else { rng.uniform_f32() });
-        // From within to a vertex or an edge, and on.
+        // From the inside through a vertex or an edge.
         let center = pose.bounds().centroid();
         let ray = Ray::new(center, target - center, time);
         assert!(nearest(&moving, &ray).is_some(), "{ray:?}");
@@ -105,7 +105,7 @@ fn normals_move_with_their_vertices() {
     }
 }
 
-/// A transform that turns, moves and stretches over the shutter's time.
+/// A transform that rotates, translates and scales over the shutter interval.
 fn moving_transform(rng: &mut Rng) -> AnimatedTransform {
     let mut key = || {
         let m = Transform::translate(point_in(rng, 0.8))
@@ -117,11 +117,11 @@ fn moving_transform(rng: &mut Rng) -> AnimatedTransform {
 }
 
 #[test]
-fn what_is_placed_in_motion_is_at_each_moment_where_its_transforms_are() {
+fn moving_instances_equal_static_ones_at_each_time() {
     let rng = &mut Rng::new(3, 0);
     for levels in 1..=3 {
         let motions: Vec<AnimatedTransform> = (0..levels).map(|_| moving_transform(rng)).collect();
-        // The ball's own vertices move too.
+        // The vertices of the sphere move too.
         let build = |geometry: Geometry, place: &dyn Fn(&AnimatedTransform) -> AnimatedTransform| {
             let mut builder = World::builder();
             let mut group = builder.add_group();

@@ -1,4 +1,4 @@
-//! Solids: against the question whether points are inside, and that they are closed.
+//! Solids: against point membership, and that they are closed.
 
 mod common;
 
@@ -7,7 +7,7 @@ use common::*;
 use math::*;
 use sampling::Rng;
 
-/// A solid, and whether a point is inside of it.
+/// A solid, and the membership test of its points.
 struct Body {
     solid: Solid,
     contains: Box<dyn Fn(DVec3) -> bool>,
@@ -121,7 +121,7 @@ fn body(rng: &mut Rng, depth: usize) -> Body {
 }
 
 #[test]
-fn the_first_hit_is_the_first_change_of_being_inside() {
+fn the_first_hit_is_the_first_boundary() {
     const STEPS: usize = 2000;
     let rng = &mut Rng::new(1, 0);
     let (mut hits, mut edges) = (0, 0);
@@ -155,8 +155,7 @@ fn the_first_hit_is_the_first_change_of_being_inside() {
                 (surface.n.length() - 1.0).abs() < 1e-5 && surface.uv.is_finite(),
                 "solid {i}: {surface:?}"
             );
-            // Inside below the surface and outside above, but for points at edges and on thin
-            // walls.
+            // Inside below the surface and outside above it, except near edges and on thin walls.
             let h = 1e-5 * (1.0 + f64::from(hit.t));
             edges += i32::from(contains(p + n * h) || !contains(p - n * h));
         }
@@ -164,7 +163,7 @@ fn the_first_hit_is_the_first_change_of_being_inside() {
     assert!(hits > 16_000 && edges * 200 < hits, "{hits} hits, {edges} at edges");
 }
 
-/// Closed bodies, around the origin, which is inside.
+/// Closed solids that contain the origin.
 fn closed(m: &Transform) -> Vec<(&'static str, Solid)> {
     let at = |t: Transform| m.after(&t);
     let turned = |axis: Vec3| at(Transform::rotate(std::f32::consts::FRAC_PI_2, axis));
@@ -249,8 +248,7 @@ fn rays_inside_do_not_leak() {
             let mut ray = start(rng);
             for step in 0..20_000 {
                 let Some(hit) = nearest(&world, &ray) else {
-                    // Beside an edge sharper than a right angle, a step inside from one face may
-                    // end outside of the other.
+                    // Near an acute edge, a step inwards from one face may end outside the other.
                     let is_sharp =
                         !matches!(name, "a cylinder" | "a cut ball" | "a box of planes" | "a cross");
                     assert!(is_sharp, "{name} under transform {i} leaks at step {step}: {ray:?}");
@@ -271,7 +269,7 @@ fn rays_inside_do_not_leak() {
 }
 
 #[test]
-fn rays_that_leave_a_convex_solid_do_not_meet_it_again() {
+fn spawned_rays_do_not_hit_a_convex_solid() {
     let rng = &mut Rng::new(3, 0);
     for i in 0..12 {
         let m = placed(rng, i);
@@ -323,12 +321,12 @@ fn hits_in_closed_form() {
         Some((5.0, -Vec3::X))
     );
     assert_eq!(meet(Intersection, vec![ball(0.0, 1.0), ball(3.0, 1.0)], left, Vec3::X), None);
-    // The wall of what is taken away faces the hollow.
+    // The surface of the subtracted solid faces the cavity.
     let hollow = || vec![ball(0.0, 2.0), ball(0.0, 1.0)];
     assert_eq!(meet(Difference, hollow(), Vec3::ZERO, Vec3::X), Some((1.0, -Vec3::X)));
     assert_eq!(meet(Difference, hollow(), Vec3::X * 1.5, -Vec3::X), Some((0.5, -Vec3::X)));
     assert_eq!(meet(Difference, hollow(), Vec3::X * 1.5, Vec3::X), Some((0.5, Vec3::X)));
-    // Faces that coincide leave nothing between them.
+    // Coincident faces leave nothing between them.
     let tube = |low: f32, high: f32| Solid::cylinder(m, 1.0, [low, high]);
     assert_eq!(
         meet(Difference, vec![tube(0.0, 1.0), tube(0.0, 1.0)], Vec3::new(0.1, 0.2, 5.0), -Vec3::Z),
@@ -345,7 +343,7 @@ fn hits_in_closed_form() {
     );
     let joined = meet(Union, vec![tube(0.0, 1.0), tube(-1.0, 0.0)], Vec3::new(0.1, 0.2, 0.5), -Vec3::Z);
     assert_eq!(joined, Some((1.5, -Vec3::Z)), "no wall where two bodies meet");
-    // A formula is closed by its box.
+    // An implicit surface is closed by its bounds.
     let half = Solid::implicit(
         m,
         formula("x^2 + y^2 + z^2 - 1"),
@@ -358,7 +356,7 @@ fn hits_in_closed_form() {
 }
 
 #[test]
-fn odd_rays_end() {
+fn degenerate_rays_terminate() {
     for (name, solid) in closed(&Transform::IDENTITY) {
         let shape = Shape::from(solid);
         for (o, d) in [

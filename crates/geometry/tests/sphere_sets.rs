@@ -52,7 +52,7 @@ proptest! {
             let expected = brute_force(&set, &ray, t_max);
             let stats = &mut RayStats::default();
             let found = world.intersect(&ray, t_max, &keep_all, stats);
-            // A turned sphere's roots differ in the last bits of doubles.
+            // The roots of a rotated sphere differ in the last bits of double precision.
             let close = |a: f32, b: f32| (a - b).abs() <= a.abs() * 2.0 * f32::EPSILON;
             match (found, expected) {
                 (Some(hit), Some((t, i))) => {
@@ -90,7 +90,7 @@ proptest! {
     }
 }
 
-/// A closed world of spheres that touch, overlap and stand far from the origin of their own space.
+/// A closed world of spheres that touch, overlap, and are far from the origin of object space.
 fn crowds(rng: &mut Rng) -> Vec<SphereSet> {
     (0..12)
         .map(|i| {
@@ -104,7 +104,7 @@ fn crowds(rng: &mut Rng) -> Vec<SphereSet> {
 }
 
 #[test]
-fn rays_leave_a_surface_on_its_side() {
+fn spawned_rays_stay_on_their_side() {
     let rng = &mut Rng::new(3, 0);
     for set in crowds(rng) {
         for i in 0..set.len() {
@@ -124,7 +124,7 @@ fn rays_leave_a_surface_on_its_side() {
 }
 
 #[test]
-fn no_ray_leaves_a_sphere() {
+fn rays_inside_do_not_leak() {
     let rng = &mut Rng::new(4, 0);
     for set in crowds(rng) {
         let world = world([set.clone().into()]);
@@ -151,7 +151,7 @@ fn hits_in_closed_form() {
 }
 
 #[test]
-fn every_order_of_magnitude_and_what_is_not_finite() {
+fn all_magnitudes_and_non_finite_spheres() {
     let rng = &mut Rng::new(5, 0);
     let set = random_set(rng, 3000, [-30.0, 0.0], &Transform::IDENTITY);
     let world = world([set.clone().into()]);
@@ -176,7 +176,7 @@ fn every_order_of_magnitude_and_what_is_not_finite() {
 }
 
 #[test]
-fn arrays_that_are_no_set_are_refused() {
+fn invalid_arrays_are_refused() {
     let new = |centers: &[Vec3], radii: &[f32], m: &Transform| {
         SphereSet::new(centers.into(), radii.into(), m, false).map(|set| set.len())
     };
@@ -196,7 +196,7 @@ fn arrays_that_are_no_set_are_refused() {
 }
 
 #[test]
-fn sets_stand_in_instances_and_beside_others() {
+fn sets_can_be_instanced_and_mixed_with_other_shapes() {
     let mut builder = World::builder();
     let group = builder.add_group();
     let ball = builder.add_geometry(group, set(vec![Vec3::ZERO], vec![1.0], &Transform::IDENTITY));
@@ -214,7 +214,7 @@ fn sets_stand_in_instances_and_beside_others() {
 }
 
 #[test]
-fn sets_that_moved_are_hit_where_they_are() {
+fn refitted_sets_are_hit_at_their_new_positions() {
     let rng = &mut Rng::new(8, 0);
     let old = random_set(rng, 5000, [-3.0, -1.0], &Transform::IDENTITY);
     let mut world = world([old.into()]);
@@ -235,7 +235,7 @@ fn sets_that_moved_are_hit_where_they_are() {
 }
 
 #[test]
-fn any_number_of_threads_builds_the_same_tree() {
+fn the_tree_does_not_depend_on_the_number_of_threads() {
     let build = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| {
@@ -254,7 +254,7 @@ fn any_number_of_threads_builds_the_same_tree() {
 }
 
 #[test]
-fn every_instruction_set_finds_the_same() {
+fn instruction_sets_agree() {
     let rng = &mut Rng::new(7, 0);
     let mut world = world([random_set(rng, 20_000, [-3.0, -1.0], &Transform::IDENTITY).into()]);
     let rays: Vec<Ray> = (0..5000).map(|_| Ray::new(point_in(rng, 2.0), point_in(rng, 1.0), 0.0)).collect();

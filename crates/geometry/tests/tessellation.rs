@@ -1,4 +1,4 @@
-//! Subdivision surfaces and displaced meshes: what they keep, where they end, and hostile meshes.
+//! Subdivision surfaces and displaced meshes: invariants, limits, and invalid meshes.
 
 mod common;
 
@@ -12,8 +12,8 @@ const OCTAHEDRON: [[u32; 3]; 8] =
     [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
 const CORNERS: [Vec3; 6] = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
 
-/// A closed mesh whose vertices have three to seven neighbours: an octahedron with pyramids on some
-/// of its faces.
+/// A closed mesh with vertices of valence three to seven: an octahedron with pyramids on some of
+/// its faces.
 fn closed(rng: &mut Rng) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut positions: Vec<Vec3> = CORNERS.iter().map(|&p| p + point_in(rng, 0.1)).collect();
     let mut indices = OCTAHEDRON[3..].to_vec();
@@ -25,8 +25,8 @@ fn closed(rng: &mut Rng) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, indices)
 }
 
-/// A fan of `n` triangles around vertex 0, which lies on the border; its other vertices have two or
-/// three neighbours.
+/// A fan of `n` triangles around the boundary vertex 0; its other vertices have valence two or
+/// three.
 fn fan(n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let spoke = |i: u32| {
         let angle = i as f32 / n as f32 * 2.5;
@@ -36,7 +36,7 @@ fn fan(n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     (positions, (1..=n).map(|i| [0, i, i + 1]).collect())
 }
 
-/// How many triangles lie on each edge.
+/// The number of triangles at each edge.
 fn edges(indices: &[[u32; 3]]) -> HashMap<[u32; 2], u32> {
     let mut edges = HashMap::new();
     for &[a, b, c] in indices {
@@ -53,7 +53,7 @@ fn area(mesh: &MeshArrays) -> f32 {
 }
 
 #[test]
-fn the_limit_does_not_depend_on_the_levels() {
+fn the_limit_surface_does_not_depend_on_the_levels() {
     let (positions, indices) = closed(&mut Rng::new(1, 0));
     let coarse = loop_subdivision(&positions, &indices, 0).unwrap();
     for levels in 1..5 {
@@ -66,7 +66,7 @@ fn the_limit_does_not_depend_on_the_levels() {
     }
 }
 
-/// The outside is where triangles run clockwise.
+/// The outside is where triangles are clockwise.
 #[test]
 fn normals_are_those_of_the_surface() {
     let meshes = (1..8).map(fan).chain([closed(&mut Rng::new(2, 0))]);
@@ -89,7 +89,7 @@ fn normals_are_those_of_the_surface() {
 }
 
 #[test]
-fn what_is_flat_stays_flat() {
+fn flat_meshes_stay_flat() {
     let grid = |i: u32| Vec3::new((i % 5) as f32, (i / 5) as f32, 0.0);
     let positions: Vec<Vec3> = (0..25).map(grid).collect();
     let cell = |i: u32| [[i, i + 1, i + 6], [i, i + 6, i + 5]];
@@ -97,9 +97,9 @@ fn what_is_flat_stays_flat() {
     let fine = loop_subdivision(&positions, &indices, 3).unwrap();
     assert!(fine.positions.iter().all(|p| p.z == 0.0));
     assert!(fine.normals.iter().all(|n| n.z < 0.0 && n.x == 0.0 && n.y == 0.0));
-    // Regular vertices away from the border do not move.
+    // Regular interior vertices do not move.
     assert!(fine.positions[12].distance(positions[12]) < 1e-6);
-    // The border is a curve of its own: what lies within does not move it.
+    // The boundary is a curve that does not depend on interior vertices.
     let mut raised = positions.clone();
     for i in [6, 7, 8, 11, 12, 13, 16, 17, 18] {
         raised[i].z = 1.0;
@@ -115,7 +115,7 @@ fn what_is_flat_stays_flat() {
 }
 
 #[test]
-fn meshes_that_have_no_limit_are_errors() {
+fn invalid_meshes_are_errors() {
     let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE];
     let error = |indices: &[[u32; 3]], levels| loop_subdivision(&p, indices, levels).unwrap_err();
     assert_eq!(error(&[[0, 1, 2], [0, 9, 2]], 1), MeshError::Index { triangle: 1, vertex: 9 });
@@ -179,7 +179,7 @@ fn vertices_move_along_their_normals() {
         assert!((p.length() - 2.0).abs() < 1e-5 && (n.length() - 1.0).abs() < 1e-5);
         assert!(n.dot(*p) > 1.98, "{n} at {p}");
     }
-    // Without normals, those of the triangles: all corners move outwards.
+    // Without normals, those of the triangles are used: all vertices move outwards.
     let grown = displaced(octahedron(), &Transform::IDENTITY, 9.0, |_, _, uv| 0.5 + uv.x).unwrap();
     assert!(grown.positions[0].distance(Vec3::X * 2.5) < 1e-6);
     assert!(grown.positions[3].distance(Vec3::X * -0.5) < 1e-6);

@@ -1,5 +1,5 @@
-//! The trees find what testing every primitive finds, whatever they are given, and however many
-//! threads build them.
+//! BVHs find the hits of brute force for any input, and do not depend on the number of threads that
+//! build them.
 
 mod common;
 
@@ -91,7 +91,7 @@ fn an_empty_world_has_no_hits() {
 }
 
 #[test]
-fn what_is_not_finite_is_left_out() {
+fn non_finite_primitives_are_skipped() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, -3e38, 1e-42, 0.0];
     let rng = &mut Rng::new(3, 0);
     let mut pick = || bad[(rng.uniform_f32() * 7.0) as usize];
@@ -135,7 +135,7 @@ fn sizes_of_every_order_of_magnitude() {
 }
 
 #[test]
-fn any_number_of_threads_builds_the_same_tree() {
+fn the_tree_does_not_depend_on_the_number_of_threads() {
     let build = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         pool.install(|| world([soup(&mut Rng::new(5, 0), 200_000, |_| 0.01)]))
@@ -150,7 +150,7 @@ fn any_number_of_threads_builds_the_same_tree() {
 }
 
 #[test]
-fn extents_save_tests() {
+fn the_bvh_saves_tests() {
     let world = world([ball(300, 0.1, &Transform::IDENTITY).into()]);
     let mut stats = RayStats::default();
     for ray in rays(&mut Rng::new(6, 0), 1000) {
@@ -162,7 +162,7 @@ fn extents_save_tests() {
 }
 
 #[test]
-fn a_filter_sees_through() {
+fn rejected_candidates_are_passed_through() {
     let layers: Vec<Geometry> = (0..10)
         .map(|i| {
             let m = Transform::translate(Vec3::Z * i as f32);

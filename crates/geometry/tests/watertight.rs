@@ -1,4 +1,4 @@
-//! No ray leaves a closed surface, and none that leaves a surface meets it again at once.
+//! No ray passes through a closed surface, and no spawned ray hits the surface that it leaves.
 
 mod common;
 
@@ -8,7 +8,7 @@ use math::*;
 use sampling::Rng;
 
 const TRANSFORMS: usize = 12;
-/// Distances from the origin, in sizes of the object.
+/// Distances from the origin, in units of the object's size.
 const AWAY: [f32; 3] = [0.0, 3.0, 1e3];
 
 /// Transforms of all sizes, near the origin and far from it.
@@ -72,8 +72,8 @@ fn rays_through_vertices_and_edges_do_not_leak() {
 
 #[test]
 fn axis_parallel_rays_along_shared_edges_do_not_leak() {
-    // A wall of squares, every one cut in two, hit exactly where four corners meet and along its
-    // lines.
+    // A wall of squares of two triangles each, hit exactly at shared vertices and along shared
+    // edges.
     let n = 9u32;
     let positions = (0..n * n).map(|i| Vec3::new((i % n) as f32, (i / n) as f32, 1.0)).collect();
     let quads = (0..n - 1).flat_map(|y| (0..n - 1).map(move |x| x + n * y));
@@ -88,10 +88,9 @@ fn axis_parallel_rays_along_shared_edges_do_not_leak() {
     }
 }
 
-/// Walks inside of a closed surface from wall to wall: every ray spawned inwards hits, and outside
-/// none ever comes.
+/// Random walks inside a closed surface: every ray spawned inwards hits, and none leaves.
 #[test]
-fn walks_inside_do_not_leak() {
+fn random_walks_inside_do_not_leak() {
     let rng = &mut Rng::new(3, 0);
     // Far away, the rounding of a point near an edge may put it beyond the next wall.
     for i in (0..TRANSFORMS).filter(|i| AWAY[i % 3] < 10.0) {
@@ -112,9 +111,9 @@ fn walks_inside_do_not_leak() {
     }
 }
 
-/// Rays that leave a convex surface to its outside hit nothing.
+/// Rays spawned outwards from a convex surface hit nothing.
 #[test]
-fn spawned_rays_do_not_meet_their_own_convex_surface() {
+fn spawned_rays_do_not_hit_their_own_convex_surface() {
     let rng = &mut Rng::new(4, 0);
     for i in 0..60 {
         let m = transform(rng, i);
@@ -131,8 +130,8 @@ fn spawned_rays_do_not_meet_their_own_convex_surface() {
                 let ray = Ray::new(ray.o, (sample.p.p - ray.o) * between(rng, 0.01, 3.0), 0.0);
                 let Some(hit) = nearest(&world, &ray) else { continue };
                 let surface = world.surface(&ray, &hit);
-                // On curved shapes only the outside is free; `n` may point to the inside by
-                // orientation.
+                // Of curved shapes only the outside is convex; `n` may point inwards if the
+                // orientation is reversed.
                 let out = if is_flat {
                     surface.n
                 } else {
@@ -163,7 +162,7 @@ fn outward(shape: &Shape, p: Vec3) -> Vec3 {
     }
 }
 
-/// A ray that passes through a surface finds the far side, not the near one again.
+/// A transmitted ray hits the far side, not the near one again.
 #[test]
 fn transmitted_rays_reach_the_far_side() {
     let rng = &mut Rng::new(5, 0);
@@ -187,9 +186,9 @@ fn transmitted_rays_reach_the_far_side() {
     }
 }
 
-/// Coordinates that are exactly zero are where a relative error bound says nothing.
+/// For coordinates that are exactly zero, a relative error bound is zero.
 #[test]
-fn rays_do_not_meet_a_flat_surface_in_a_coordinate_plane_again() {
+fn spawned_rays_do_not_hit_a_surface_in_a_coordinate_plane() {
     let rng = &mut Rng::new(9, 0);
     let corners = [(-7.0, -6.0), (7.0, -7.0), (-6.5, 7.0), (7.0, 5.0)];
     for axis in 0..3 {

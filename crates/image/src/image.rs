@@ -9,7 +9,7 @@ use crate::{
     depth::SampleDepth,
     encoding::ColorEncoding,
     error::ImageError,
-    memory::collected,
+    memory::{collected, reserved},
     metadata::{ImageMetadata, Window},
     source::{Channel, PixelSource, alpha_channel, color_channels},
     wrap::WrapMode,
@@ -94,20 +94,30 @@ impl Image {
     /// number of channels.
     ///
     /// # Panics
-    /// If a side is zero or `channels` is empty.
+    /// If a side is zero, `channels` is empty, or there is no memory for the image.
     pub fn from_fn<const N: usize>(
         width: u32,
         height: u32,
         channels: [&str; N],
-        mut pixel: impl FnMut(u32, u32) -> [f32; N],
+        pixel: impl FnMut(u32, u32) -> [f32; N],
     ) -> Self {
-        let mut values = Vec::with_capacity(width as usize * height as usize * N);
+        Self::try_from_fn(width, height, channels, pixel).expect("the size is valid and fits memory")
+    }
+
+    /// [`Self::from_fn`], but refused where the size is not valid or there is no memory for it.
+    pub fn try_from_fn<const N: usize>(
+        width: u32,
+        height: u32,
+        channels: [&str; N],
+        mut pixel: impl FnMut(u32, u32) -> [f32; N],
+    ) -> Result<Self, ImageError> {
+        let mut values = reserved((width as usize).saturating_mul(height as usize).saturating_mul(N))?;
         for y in 0..height {
             for x in 0..width {
                 values.extend_from_slice(&pixel(x, y));
             }
         }
-        Self::new(width, height, channels, Pixels::F32(values)).expect("a valid size was asked for")
+        Self::new(width, height, channels, Pixels::F32(values))
     }
 
     /// Number of columns.
@@ -306,13 +316,6 @@ impl Image {
         self.with_pixels(Pixels::U8(self.codes(encoding).collect(), encoding))
     }
 
-    fn codes(&self, encoding: ColorEncoding) -> impl Iterator<Item = u8> + '_ {
-        let count = self.channels.len();
-        let encoding_of =
-            move |index| if self.alpha == Some(index % count) { ColorEncoding::Linear } else { encoding };
-        self.values().enumerate().map(move |(index, value)| encoding_of(index).quantize(value))
-    }
-
     /// The same image stored as `other` is; refused where there is no memory for it.
     pub(crate) fn stored_as(&self, other: &Pixels) -> Result<Self, ImageError> {
         let count = self.pixels.len();
@@ -321,6 +324,14 @@ impl Image {
             Pixels::F16(_) => Pixels::F16(collected(count, self.values().map(f16::from_f32))?),
             Pixels::F32(_) => Pixels::F32(collected(count, self.values())?),
         }))
+    }
+
+    /// All values as 8-bit codes.
+    fn codes(&self, encoding: ColorEncoding) -> impl Iterator<Item = u8> + '_ {
+        let count = self.channels.len();
+        let encoding_of =
+            move |index| if self.alpha == Some(index % count) { ColorEncoding::Linear } else { encoding };
+        self.values().enumerate().map(move |(index, value)| encoding_of(index).quantize(value))
     }
 
     /// All linear values, as stored: row by row, pixel by pixel, channel by channel.

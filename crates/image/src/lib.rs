@@ -30,6 +30,7 @@ pub use depth::SampleDepth;
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};
+pub use memory::require_memory;
 pub use metadata::{Attribute, Chromaticities, ImageMetadata, Window};
 pub use projection::Projection;
 pub use pyramid::{Pyramid, TextureFilter};

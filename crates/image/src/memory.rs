@@ -23,6 +23,11 @@ pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Res
     Ok(array)
 }
 
+/// Refuses work that takes so many bytes where there is no memory for them now.
+pub fn require_memory(bytes: usize) -> Result<(), ImageError> {
+    reserved::<u8>(bytes).map(drop)
+}
+
 fn no_memory(bytes: usize) -> ImageError {
     ImageError::Limits(format!("no memory for {bytes} bytes of pixels"))
 }
@@ -39,6 +44,7 @@ mod tests {
             filled(COUNT, 0.0_f32).map(drop),
             collected(COUNT, std::iter::repeat(0.0_f32)).map(drop),
             reserved::<f32>(usize::MAX).map(drop),
+            require_memory(COUNT),
         ] {
             assert!(matches!(refused, Err(ImageError::Limits(_))), "{refused:?}");
         }

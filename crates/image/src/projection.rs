@@ -115,7 +115,8 @@ impl Projection {
 
 impl Image {
     /// This image of the sphere in another projection, as wide as it is now (to an even number of
-    /// pixels). Refused if it has the shape of neither projection.
+    /// pixels). Refused if it has the shape of neither projection, and where there is no memory
+    /// for it.
     pub fn reproject(&self, to: Projection) -> Result<Self, ImageError> {
         let Some(from) = Projection::of_size(self.width(), self.height()) else {
             return Err(ImageError::Invalid(format!(
@@ -129,7 +130,7 @@ impl Image {
         }
         let width = self.width().next_multiple_of(2);
         let height = if to == Projection::EqualArea { width } else { width / 2 };
-        let source: Vec<f32> =
+        let source =
             collected(self.width() as usize * self.height() as usize * self.channel_count(), self.values())?;
         let source = Source { values: &source, size: [self.width(), self.height()], projection: from };
         let count = self.channel_count();

@@ -64,6 +64,7 @@ pub struct Pyramid {
 
 impl Pyramid {
     /// Builds all levels; an image whose sides are powers of two is shared, not copied.
+    /// Refused where there is no memory for them.
     pub fn new(image: impl Into<Arc<Image>>, wrap: WrapMode) -> Result<Self, ImageError> {
         let image: Arc<Image> = image.into();
         let (width, height) = (image.width().next_power_of_two(), image.height().next_power_of_two());

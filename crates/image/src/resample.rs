@@ -28,17 +28,18 @@ struct Taps {
 
 impl Image {
     /// The image at another size, stored as single floats; `wrap` tells what the filter sees beyond
-    /// the edges.
+    /// the edges. Refused where there is no memory for it.
     pub fn resize(&self, width: u32, height: u32, wrap: WrapMode) -> Result<Self, ImageError> {
         if width == 0 || height == 0 {
             return Err(ImageError::Invalid(format!("cannot resize to {width} × {height} pixels")));
         }
         let count = self.channel_count();
+        let new_row = width as usize * count;
+        let mut values = filled(new_row.saturating_mul(height as usize), 0.0)?;
         let (columns, rows) = (taps(self.width(), width), taps(self.height(), height));
         let (x0, x1) = extent(&columns);
         let (y0, y1) = extent(&rows);
 
-        let new_row = width as usize * count;
         let mut narrow = filled((y1 - y0) as usize * new_row, 0.0)?;
         narrow.par_chunks_mut(new_row).zip(y0..y1).for_each(|(target, y)| {
             let source: Vec<f32> =
@@ -49,7 +50,6 @@ impl Image {
             }
         });
 
-        let mut values = filled(height as usize * new_row, 0.0)?;
         values.par_chunks_mut(new_row).zip(&rows).for_each(|(target, taps)| {
             let near = narrow[(taps.first - y0) as usize * new_row..].chunks_exact(new_row);
             accumulate(target, near.zip(&taps.weights));
@@ -108,6 +108,13 @@ fn sinc(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_size_without_memory_is_refused() {
+        let image = Image::from_fn(1, 1, ["Y"], |_, _| [1.0]);
+        let result = image.resize(1 << 30, 1 << 30, WrapMode::Repeat);
+        assert!(matches!(result, Err(ImageError::Limits(_))));
+    }
 
     #[test]
     fn a_constant_stays_constant() {

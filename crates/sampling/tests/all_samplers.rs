@@ -1,5 +1,5 @@
-//! What every sampler promises: values in [0, 1), replay, right means, better than chance,
-//! independent dimensions.
+//! The contract of all samplers: values in [0, 1), replay, unbiased means, less variance than
+//! independent samples, independent dimensions.
 
 use alhazen_sampling::Sampler;
 use alhazen_sampling::sampler::*;
@@ -12,13 +12,13 @@ const SPP: u32 = 16;
 const RESOLUTION: [i32; 2] = [20, 13];
 const EACH_RANDOMIZE: [Randomize; 3] = [Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen];
 
-/// The one beside the independent sampler that arranges nothing.
+/// The sampler besides `independent` whose samples are independent.
 const PRIMARY: &str = "primary sample";
 
-/// Makes a sampler of a number of samples per pixel and a seed.
+/// Makes a sampler with a number of samples per pixel and a seed.
 type Make = Box<dyn Fn(u32, u32) -> Sampler>;
 
-/// Every sampler, in every arrangement in which it is random.
+/// Every sampler with every randomization.
 fn makers() -> Vec<(String, Make)> {
     let mut makers: Vec<(String, Make)> = vec![
         ("independent".into(), Box::new(|spp, seed| Sampler::Independent(Independent::new(spp, seed)))),
@@ -57,7 +57,7 @@ fn all_samplers(spp: u32, seed: u32) -> Vec<(String, Sampler)> {
     samplers
 }
 
-/// The coordinates that a path might ask for.
+/// The dimensions that a path might use.
 fn draw(sampler: &mut Sampler, pixel: [i32; 2], index: u32) -> Vec<f32> {
     sampler.start_pixel_sample(pixel, index, 0);
     let mut values = sampler.get_pixel_2d().to_array().to_vec();
@@ -139,7 +139,7 @@ fn positions_in_a_pixel_of_different_seeds_are_uncorrelated() {
 }
 
 #[test]
-fn counts_are_those_asked_for_or_rounded_up() {
+fn sample_counts_are_as_requested_or_rounded_up() {
     for (name, sampler) in random_samplers(12, 0) {
         let rounds_up = name.starts_with("sobol") || name.starts_with("zsobol");
         assert_eq!(sampler.samples_per_pixel(), if rounds_up { 16 } else { 12 }, "{name}");
@@ -185,7 +185,7 @@ fn means_are_right_within_and_beyond_the_count() {
 }
 
 #[test]
-fn arranged_samples_beat_independent_ones() {
+fn stratified_and_low_discrepancy_samples_have_less_variance() {
     let makers = makers();
     for spp in [16, 64] {
         let independent = estimates(&makers[0].1, spp, 0, spp).variance();
@@ -197,7 +197,7 @@ fn arranged_samples_beat_independent_ones() {
 }
 
 #[test]
-fn further_rounds_go_on_improving() {
+fn variance_decreases_beyond_the_planned_count() {
     for (name, make) in makers() {
         let one = estimates(&make, SPP, 0, SPP).variance();
         let eight = estimates(&make, SPP, 0, 8 * SPP).variance();
@@ -209,8 +209,7 @@ fn further_rounds_go_on_improving() {
 fn dimensions_are_independent() {
     let makers = makers();
     for (name, make) in &makers {
-        // Pairs across calls, each from another seed, so that the points are independent of one
-        // another.
+        // Pairs of dimensions of different calls, one pair per seed, so that they are independent.
         let mut pairs = Vec::new();
         for seed in 0..6000 {
             let mut sampler = make(SPP, seed);
@@ -245,7 +244,7 @@ fn points(sampler: &mut Sampler, indices: std::ops::Range<u32>, skipped: usize) 
 }
 
 #[test]
-fn two_dimensional_sobol_points_fill_elementary_intervals() {
+fn sobol_points_stratify_elementary_intervals() {
     for (name, mut sampler) in all_samplers(64, 9) {
         if name.starts_with("padded") || name.starts_with("zsobol") {
             for skipped in [0, 1, 4] {
@@ -263,7 +262,7 @@ fn two_dimensional_sobol_points_fill_elementary_intervals() {
 }
 
 #[test]
-fn sobol_pixel_samples_fill_elementary_intervals() {
+fn sobol_pixel_samples_stratify_elementary_intervals() {
     let mut sampler = Sampler::Sobol(Sobol::new(64, RESOLUTION, Randomize::None, 0));
     let points: Vec<Vec2> = (0..64)
         .map(|index| {
@@ -275,7 +274,7 @@ fn sobol_pixel_samples_fill_elementary_intervals() {
 }
 
 #[test]
-fn stratified_samples_take_every_cell_once() {
+fn stratified_samples_have_one_sample_per_cell() {
     for jitter in [true, false] {
         let mut sampler = Sampler::Stratified(Stratified::new([5, 3], jitter, 4));
         for round in 0..3 {

@@ -1,14 +1,14 @@
-//! Every warp has the density it says and gives back what it was given.
+//! Every warp has its density, and its inverse returns the input.
 
 use alhazen_sampling::warp::*;
 use math::{Point3, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Random};
 
-/// More than the number of tests in this file, among which the significance is shared.
+/// An upper bound of the number of tests in this file, for the Šidák correction.
 const CHI2: Chi2 = Chi2 { bins: [16, 32], samples: 100_000, min_expected: 5.0, tests: 40, seed: 17 };
 
-/// Holds `invert(sample(u))` to u for many u.
+/// Asserts that `invert(sample(u))` is u for many u.
 fn round_trip<T>(sample: impl Fn(Vec2) -> T, invert: impl Fn(T) -> Vec2, tolerance: f32) {
     let mut random = Random::new(1);
     for _ in 0..5000 {
@@ -179,13 +179,13 @@ fn spherical_triangle() {
 }
 
 #[test]
-fn an_octant_has_its_solid_angle() {
+fn solid_angle_of_an_octant() {
     let octant = SphericalTriangle::new(TRIANGLES[0], Vec3::ZERO).unwrap();
     assert!((octant.solid_angle() - 0.5 * PI).abs() < 1e-6);
 }
 
 #[test]
-fn a_tiny_spherical_triangle_is_covered_evenly() {
+fn tiny_spherical_triangles_are_sampled_uniformly() {
     let vertices = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, 1e-3, 0.0), Vec3::new(1.0, 0.0, 2e-3)];
     let triangle = SphericalTriangle::new(vertices, Vec3::ZERO).unwrap();
     assert!((triangle.solid_angle() / 1e-6 - 1.0).abs() < 1e-5);
@@ -198,7 +198,7 @@ fn a_tiny_spherical_triangle_is_covered_evenly() {
 }
 
 #[test]
-fn thin_and_near_triangles_are_met() {
+fn samples_of_thin_and_near_triangles_hit_them() {
     let mut random = Random::new(5);
     for _ in 0..50_000 {
         let squeeze = Vec3::new(1.0, 1.0, random.get_1d().powi(12));
@@ -214,7 +214,7 @@ fn thin_and_near_triangles_are_met() {
 }
 
 #[test]
-fn triangles_without_solid_angle_are_refused() {
+fn degenerate_triangles_are_refused() {
     let [a, b, _] = TRIANGLES[0];
     assert!(
         SphericalTriangle::new([a, b, 0.5 * (a + b)], Vec3::new(0.2, 0.7, -1.0))
@@ -254,7 +254,7 @@ fn spherical_rectangle() {
 }
 
 #[test]
-fn rectangles_without_solid_angle_are_refused() {
+fn degenerate_rectangles_are_refused() {
     let corner = Vec3::new(1.0, 1.0, 0.0);
     assert!(SphericalRectangle::new(Vec3::ZERO, corner, Vec3::X, Vec3::Y).is_none());
     assert!(SphericalRectangle::new(Vec3::Z, corner, Vec3::ZERO, Vec3::Y).is_none());

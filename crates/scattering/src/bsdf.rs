@@ -1,4 +1,4 @@
-//! A BxDF in the shading frame of a point: the local answers for directions of render space.
+//! A BxDF in the shading frame of a point, for directions in render space.
 
 use crate::{BsdfSample, Bxdf, BxdfFlags, Directions, Scatter, TransportMode};
 use math::{Frame, Normal3, Vec2, Vector3};
@@ -6,11 +6,11 @@ use spectrum::SampledSpectrum;
 
 /// All scattering at a point of a surface.
 ///
-/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) names the member once
-/// around a whole shading step, inside which `Bsdf { bxdf, frame }` is then dispatched no more.
+/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) dispatches once around
+/// a whole shading step, within which `Bsdf { bxdf, frame }` has a concrete type.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf<B = Bxdf> {
-    /// What scatters, in the local frame.
+    /// The BxDF, in the local frame.
     pub bxdf: B,
     /// The local frame in render space: z is the shading normal, x follows ∂p/∂u.
     pub frame: Frame,
@@ -23,7 +23,7 @@ impl<B: Scatter> Bsdf<B> {
         Self { bxdf, frame: Frame::from_z_and_x(ns, dpdus) }
     }
 
-    /// What kinds of scattering there are.
+    /// The flags of all lobes.
     #[inline]
     pub fn flags(&self) -> BxdfFlags {
         self.bxdf.flags()

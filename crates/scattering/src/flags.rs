@@ -1,4 +1,4 @@
-//! What kind of scattering a BxDF does, and what kind is asked of it.
+//! The kinds of scattering of a BxDF, and those requested of it.
 
 use std::ops::{BitAnd, BitOr, BitOrAssign, Not};
 
@@ -12,15 +12,15 @@ pub struct BxdfFlags(u8);
 impl BxdfFlags {
     /// No scattering at all.
     pub const NONE: Self = Self(0);
-    /// Light stays on its side of the surface.
+    /// Reflection: light stays on its side of the surface.
     pub const REFLECTION: Self = Self(1);
-    /// Light goes through the surface.
+    /// Transmission: light passes through the surface.
     pub const TRANSMISSION: Self = Self(1 << 1);
-    /// Light goes everywhere on a side.
+    /// Diffuse: all directions of a hemisphere.
     pub const DIFFUSE: Self = Self(1 << 2);
-    /// Light goes to a lobe of directions.
+    /// Glossy: a lobe of directions.
     pub const GLOSSY: Self = Self(1 << 3);
-    /// Light goes to one direction: a Dirac delta.
+    /// Specular: one direction, a Dirac delta.
     pub const SPECULAR: Self = Self(1 << 4);
 
     /// Whether every kind of `other` is in this set.
@@ -71,7 +71,7 @@ impl BxdfFlags {
         self.contains(Self::SPECULAR)
     }
 
-    /// Whether there is a lobe that `f` can be asked about: a diffuse or glossy one.
+    /// Whether there is a lobe for which `f` is not zero: a diffuse or glossy one.
     #[inline]
     pub const fn is_non_specular(self) -> bool {
         self.0 & (Self::DIFFUSE.0 | Self::GLOSSY.0) != 0
@@ -135,8 +135,8 @@ impl Directions {
         self.reflection() && flags.is_reflective() || self.transmission() && flags.is_transmissive()
     }
 
-    /// The probability of reflection where reflection weighs `r` and transmission `t`, and what is
-    /// not asked for weighs nothing; `None` if nothing is left to choose from.
+    /// The probability of reflection, where reflection has the weight `r` and transmission `t`, and
+    /// lobes that are not requested the weight 0; `None` if all weights are 0.
     #[inline]
     pub fn probability_of_reflection(self, r: f32, t: f32) -> Option<f32> {
         let r = if self.reflection() { r } else { 0.0 };
@@ -151,7 +151,7 @@ impl Directions {
 /// changes; importance is not. [Veach 1997 §5.2], [Pharr 2023 §9.5.2]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TransportMode {
-    /// The path starts at the camera and looks for radiance.
+    /// The path starts at the camera and transports radiance.
     #[default]
     Radiance,
     /// The path starts at a light and carries its power.
@@ -161,7 +161,7 @@ pub enum TransportMode {
 impl Not for TransportMode {
     type Output = Self;
 
-    /// What paths from the other end carry.
+    /// The mode of paths from the other end.
     #[inline]
     fn not(self) -> Self {
         match self {
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sets_of_kinds() {
+    fn flag_sets() {
         let glass = BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION | BxdfFlags::SPECULAR;
         assert!(glass.is_reflective() && glass.is_transmissive() && glass.is_specular());
         assert!(!glass.is_non_specular() && !glass.is_empty() && BxdfFlags::NONE.is_empty());
@@ -186,14 +186,14 @@ mod tests {
     }
 
     #[test]
-    fn directions_meet_what_scatters_to_them() {
+    fn directions_match_lobes() {
         let mirror = BxdfFlags::REFLECTION | BxdfFlags::SPECULAR;
         assert!(Directions::All.meet(mirror) && Directions::Reflection.meet(mirror));
         assert!(!Directions::Transmission.meet(mirror) && !Directions::All.meet(BxdfFlags::NONE));
     }
 
     #[test]
-    fn probabilities_leave_out_what_is_not_asked_for() {
+    fn lobe_probabilities_exclude_other_lobes() {
         assert_eq!(Directions::All.probability_of_reflection(1.0, 3.0), Some(0.25));
         assert_eq!(Directions::Reflection.probability_of_reflection(1.0, 3.0), Some(1.0));
         assert_eq!(Directions::Transmission.probability_of_reflection(1.0, 3.0), Some(0.0));

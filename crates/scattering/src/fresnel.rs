@@ -1,4 +1,4 @@
-//! Mirror and refracted directions, and the share of light that a smooth interface reflects.
+//! Reflected and refracted directions, and the Fresnel reflectance of smooth interfaces.
 //!
 //! With c = cos θ_i and s = sin θ_i, Snell's law η_i sin θ_i = η_t sin θ_t and the relative index η
 //! = η_t/η_i, unpolarised light is reflected by
@@ -28,7 +28,7 @@ pub fn reflect(wo: Vector3, n: Normal3) -> Vector3 {
 }
 
 /// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i
-/// that it met: `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is
+/// along it: `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is
 /// reflected inside.
 #[inline]
 pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
@@ -64,14 +64,14 @@ pub fn fr_dielectric(cos_theta_i: f32, eta: f32) -> f32 {
 #[inline]
 #[doc(alias = "FrComplex")]
 pub fn fr_complex(cos_theta_i: f32, eta: f32, k: f32) -> f32 {
-    // A cosine whose square is no float any more would leave 0/0 for an index of 1.
+    // A cosine whose square underflows would give 0/0 for an index of 1.
     let cos = cos_theta_i.clamp(1e-12, 1.0);
     let cos2 = sqr(cos);
     let sin2 = 1.0 - cos2;
     let real = (eta - 1.0) * (eta + 1.0) - sqr(k) + cos2;
     let imaginary = 2.0 * eta * k;
     let modulus = (sqr(real) + sqr(imaginary)).sqrt();
-    // The larger part of a root comes from the half-angle formula, the smaller from the larger: no
+    // The larger part of the root by the half-angle formula, the smaller from the larger, to avoid
     // cancellation.
     let larger = (0.5 * (modulus + real.abs())).sqrt();
     let a = if real >= 0.0 || larger == 0.0 { larger } else { 0.5 * imaginary / larger };
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn parallel_light_passes_at_the_angle_of_brewster() {
+    fn parallel_polarised_light_is_transmitted_at_brewsters_angle() {
         for eta in INDICES {
             let cos = (1.0 / (1.0 + eta * eta)).sqrt();
             let perpendicular = sqr((1.0 - eta * eta) / (1.0 + eta * eta));
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn no_angle_gives_not_a_number() {
+    fn no_angle_gives_nan() {
         for cos in [0.0, 1e-45, 1e-30, 1e-12, 1e-6, 0.5, 1.0, 1.0000002] {
             for eta in INDICES.into_iter().chain([1.0]) {
                 assert!(fr_dielectric(cos, eta).is_finite() && fr_dielectric(-cos, eta).is_finite());

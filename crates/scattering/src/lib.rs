@@ -1,7 +1,7 @@
-//! Light meeting matter in a local frame: BxDFs, Fresnel equations, microfacets.
+//! Scattering at surfaces: BxDFs, Fresnel equations, microfacets.
 //!
 //! A material at a point becomes a [`Bxdf`], by value; with the shading frame of the point it is a
-//! [`Bsdf`], which answers for directions of render space.
+//! [`Bsdf`], for directions in render space.
 //!
 //! Conventions, here and in every member: directions are unit vectors that point away from the
 //! surface; in the local frame the shading normal is +z, so that `w.z` is a cosine and its sign the

@@ -5,7 +5,7 @@
 //! D(m)        = 1 / (π α_x α_y (x²/α_x² + y²/α_y² + z²)²)                  m = (x, y, z)
 //! Λ(w)        = (√(1 + α² tan²θ) − 1)/2                    α² = α_x² cos²φ + α_y² sin²φ
 //! G₁(w)       = 1/(1 + Λ(w))          G(wo, wi) = 1/(1 + Λ(wo) + Λ(wi))    height-correlated
-//! D_w(m)      = G₁(w) |w·m| D(m) / |cos θ|                                 the normals that w sees
+//! D_w(m)      = G₁(w) |w·m| D(m) / |cos θ|                                 normals visible from w
 //! ```
 //!
 //! D_w is sampled exactly: stretched by α, the surface is a hemisphere, whose projection towards w
@@ -18,7 +18,7 @@ use math::{Vec2, Vec3, Vector3, lerp, safe_sqrt, sqr};
 use sampling::warp::sample_uniform_disk_polar;
 use std::f32::consts::PI;
 
-/// Normals of a rough surface, its slopes distributed after Trowbridge and Reitz.
+/// The Trowbridge–Reitz distribution of microfacet normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrowbridgeReitz {
     alpha_x: f32,
@@ -37,7 +37,7 @@ impl TrowbridgeReitz {
         Self { alpha_x: alpha_x.max(1e-4), alpha_y: alpha_y.max(1e-4) }
     }
 
-    /// The α of a roughness in [0, 1] that looks about evenly spaced: its square root.
+    /// The α of a perceptually uniform roughness in [0, 1]: its square root.
     #[inline]
     pub fn roughness_to_alpha(roughness: f32) -> f32 {
         roughness.sqrt()
@@ -56,20 +56,20 @@ impl TrowbridgeReitz {
         1.0 / (PI * self.alpha_x * self.alpha_y * sqr(stretch))
     }
 
-    /// Λ: microfacet area turned away from `w` or hidden from it, over the area that it sees.
+    /// Λ: microfacet area invisible from `w` (back-facing or masked) over the area visible.
     #[inline]
     pub fn lambda(&self, w: Vector3) -> f32 {
         let alpha2_tan2 = (sqr(w.x * self.alpha_x) + sqr(w.y * self.alpha_y)) / sqr(w.z);
         0.5 * ((1.0 + alpha2_tan2).sqrt() - 1.0)
     }
 
-    /// G₁: the share of the microfacets turned towards `w` that `w` sees.
+    /// G₁: the fraction of the microfacets facing `w` that are visible from it.
     #[inline]
     pub fn g1(&self, w: Vector3) -> f32 {
         1.0 / (1.0 + self.lambda(w))
     }
 
-    /// G: the share of microfacets that both directions see, where high ones are seen by both.
+    /// G: the fraction of microfacets visible from both directions, height-correlated.
     #[inline]
     pub fn g(&self, wo: Vector3, wi: Vector3) -> f32 {
         1.0 / (1.0 + self.lambda(wo) + self.lambda(wi))
@@ -103,8 +103,8 @@ impl TrowbridgeReitz {
         self.d_visible(w, wm)
     }
 
-    /// Makes a nearly smooth surface rougher, so that paths that only luck would find are found: α
-    /// below 0.3 is doubled, but to 0.1 at least and 0.3 at most.
+    /// Roughens a nearly smooth surface, so that paths with small probability are found: α below
+    /// 0.3 is doubled, clamped to [0.1, 0.3].
     #[inline]
     pub fn regularize(&mut self) {
         for alpha in [&mut self.alpha_x, &mut self.alpha_y] {

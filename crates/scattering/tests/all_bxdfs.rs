@@ -1,4 +1,4 @@
-//! What every BxDF owes its users, asked of every member.
+//! The contract of all BxDFs.
 
 use alhazen_scattering::{
     Bsdf, BsdfSample, Bxdf, BxdfFlags, Conductor, Dielectric, Diffuse, DiffuseTransmission, Directions,
@@ -32,7 +32,7 @@ fn conductor(alpha_x: f32, alpha_y: f32) -> Bxdf {
     Conductor { distribution: TrowbridgeReitz::new(alpha_x, alpha_y), eta, k }.into()
 }
 
-/// A metal of purely imaginary index, which absorbs nothing.
+/// A lossless metal, with a purely imaginary index of refraction.
 fn lossless_conductor(alpha: f32) -> Bxdf {
     let (eta, k) = (SampledSpectrum::ZERO, SampledSpectrum::splat(2.0));
     Conductor { distribution: TrowbridgeReitz::new(alpha, alpha), eta, k }.into()
@@ -46,7 +46,7 @@ fn thin_dielectric(eta: f32) -> Bxdf {
     ThinDielectric { eta }.into()
 }
 
-/// Every member, smooth and rough, even and brushed, from the air and from inside.
+/// Every BxDF: smooth and rough, isotropic and anisotropic, from outside and from inside.
 fn members() -> Vec<Bxdf> {
     let mut members = vec![
         diffuse(),
@@ -96,7 +96,7 @@ fn random_sample(
     bxdf.sample_f(wo, random.get_1d(), random.get_2d().into(), mode, directions)
 }
 
-/// What a path is multiplied by.
+/// The throughput weight of a sample.
 fn weight(sample: &BsdfSample) -> SampledSpectrum {
     sample.f * (sample.wi.z.abs() / sample.pdf)
 }
@@ -140,8 +140,9 @@ fn samples_have_their_density() {
     }
 }
 
-/// The sphere in three strips of θ, each one unit high: rough glass has an edge where its facets
-/// stand upright, and every surface one at the horizon; quadrature wants both between cells.
+/// The sphere in three strips of θ, each one unit high: rough glass has a discontinuity where its
+/// facets are vertical, and every surface one at the horizon; both have to be between cells of the
+/// quadrature.
 struct Strips([f32; 4]);
 
 impl Strips {
@@ -163,7 +164,7 @@ impl Strips {
     }
 }
 
-/// The relative index that light from `wo` meets where it is refracted.
+/// The relative index of refraction for light from `wo`.
 fn met(bxdf: &Bxdf, wo: Vector3) -> f32 {
     match bxdf {
         Bxdf::Dielectric(glass) if wo.z > 0.0 => glass.eta,
@@ -173,7 +174,7 @@ fn met(bxdf: &Bxdf, wo: Vector3) -> f32 {
 }
 
 #[test]
-fn a_sample_says_what_f_and_pdf_say() {
+fn samples_agree_with_f_and_pdf() {
     let mut random = Random::new(2);
     for bxdf in rough_members() {
         for wo in views() {
@@ -199,7 +200,7 @@ fn a_sample_says_what_f_and_pdf_say() {
 }
 
 #[test]
-fn a_sample_goes_where_its_flags_say() {
+fn sample_directions_match_their_flags() {
     let mut random = Random::new(3);
     for bxdf in members() {
         let flags = bxdf.flags();
@@ -229,7 +230,7 @@ fn a_sample_goes_where_its_flags_say() {
 }
 
 #[test]
-fn specular_lobes_are_invisible_to_f_and_pdf() {
+fn f_and_pdf_of_specular_lobes_are_zero() {
     for bxdf in members().into_iter().filter(|bxdf| bxdf.flags().is_specular()) {
         for wo in views() {
             for wi in [Vec3::new(-wo.x, -wo.y, wo.z), -wo] {
@@ -240,9 +241,10 @@ fn specular_lobes_are_invisible_to_f_and_pdf() {
     }
 }
 
-/// Near total reflection the last digits of an angle show in f; the tolerance is wide for that.
+/// Near total internal reflection f is sensitive to the last digits of an angle; hence the wide
+/// tolerance.
 #[test]
-fn light_and_importance_travel_alike_in_opposite_directions() {
+fn radiance_and_importance_are_reciprocal() {
     let mut random = Random::new(4);
     for bxdf in rough_members() {
         for _ in 0..3000 {
@@ -266,10 +268,9 @@ fn light_and_importance_travel_alike_in_opposite_directions() {
     }
 }
 
-/// Refracted radiance returns to where it came from with the same share, times η² for the solid
-/// angle.
+/// Refraction is reversible with the same transmittance, times η² for the solid angle.
 #[test]
-fn specular_refraction_reverses() {
+fn specular_refraction_is_reversible() {
     for bxdf in [dielectric(1.5, 0.0, 0.0), dielectric(1.0 / 1.5, 0.0, 0.0), thin_dielectric(1.5)] {
         for wo in views() {
             let transmit = |wo, mode| bxdf.sample_f(wo, 0.5, Vec2::ZERO, mode, Directions::Transmission);
@@ -300,7 +301,7 @@ fn no_sample_gains_energy() {
 }
 
 #[test]
-fn smooth_lossless_surfaces_keep_all_light() {
+fn smooth_lossless_surfaces_conserve_energy() {
     let mut random = Random::new(6);
     for bxdf in [
         dielectric(1.5, 0.0, 0.0),
@@ -320,7 +321,7 @@ fn smooth_lossless_surfaces_keep_all_light() {
 }
 
 #[test]
-fn slightly_rough_lossless_surfaces_lose_little() {
+fn slightly_rough_lossless_surfaces_lose_little_energy() {
     let mut random = Random::new(7);
     for bxdf in [dielectric(1.5, 0.05, 0.05), dielectric(1.0 / 1.5, 0.05, 0.05), lossless_conductor(0.05)] {
         for wo in [views()[0], views()[1], -views()[1]] {
@@ -333,7 +334,7 @@ fn slightly_rough_lossless_surfaces_lose_little() {
     }
 }
 
-/// The albedo by samples and by quadrature of f over all directions.
+/// The albedo by sampling and by quadrature of f over all directions.
 #[test]
 fn samples_integrate_f() {
     let mut random = Random::new(8);
@@ -363,7 +364,7 @@ fn samples_integrate_f() {
 }
 
 #[test]
-fn albedos_of_even_surfaces_are_their_reflectance() {
+fn albedos_of_diffuse_surfaces_are_their_reflectance() {
     let mut random = Random::new(9);
     let Bxdf::Diffuse(Diffuse { reflectance }) = diffuse() else { unreachable!() };
     let pairs = [(0.1, Vec2::new(0.3, 0.8)), (0.9, Vec2::new(0.6, 0.1))];
@@ -375,9 +376,9 @@ fn albedos_of_even_surfaces_are_their_reflectance() {
     assert!(diffuse().rho_hd(views()[1], []).is_black());
 }
 
-/// Barely rough members do what smooth ones do.
+/// BxDFs of very low roughness behave as smooth ones.
 #[test]
-fn roughness_tends_to_smoothness() {
+fn low_roughness_converges_to_specular() {
     let mut random = Random::new(10);
     for (rough, smooth) in [
         (conductor(0.0011, 0.0011), conductor(0.0, 0.0)),
@@ -404,7 +405,7 @@ fn roughness_tends_to_smoothness() {
 }
 
 #[test]
-fn regularization_widens_what_is_narrow() {
+fn regularization_roughens_narrow_lobes() {
     for mut bxdf in [conductor(0.0, 0.0), dielectric(1.5, 0.0, 0.0)] {
         assert!(bxdf.flags().is_specular());
         bxdf.regularize();
@@ -416,9 +417,9 @@ fn regularization_widens_what_is_narrow() {
     assert_eq!(glass.distribution, TrowbridgeReitz::new(0.3, 0.6));
 }
 
-/// The sum of the bounces inside a pane.
+/// The sum of the internal reflections of a pane.
 #[test]
-fn thin_glass_sums_its_inner_reflections() {
+fn thin_glass_sums_internal_reflections() {
     for theta in [0.0f32, 30.0, 75.0, 120.0] {
         let wo = from_degrees(theta, 10.0);
         let fresnel = alhazen_scattering::fr_dielectric(wo.z.abs(), 1.5);
@@ -430,7 +431,7 @@ fn thin_glass_sums_its_inner_reflections() {
     }
 }
 
-/// A sample on the way of a path: finite, not negative, and so for f and pdf.
+/// Samples, f and pdf are finite and not negative.
 fn check_sane(bxdf: Bxdf, wo: Vector3, uc: f32, u: Vec2) -> Result<(), String> {
     let bsdf = Bsdf { bxdf, frame: Frame { x: Vec3::X, y: Vec3::Y, z: Vec3::Z } };
     for mode in MODES {
@@ -454,7 +455,7 @@ fn check_sane(bxdf: Bxdf, wo: Vector3, uc: f32, u: Vec2) -> Result<(), String> {
 }
 
 #[test]
-fn degenerate_input_gives_no_nonsense() {
+fn degenerate_input_gives_finite_values() {
     let mut views = views().to_vec();
     views.extend([Vec3::Z, -Vec3::Z]);
     for z in [0.0f32, 1e-42, 1.2e-38, 1e-30, 1e-20, 1e-12, 1e-7, 1e-4] {
@@ -481,7 +482,7 @@ fn degenerate_input_gives_no_nonsense() {
 }
 
 #[test]
-fn horizons_and_broken_directions_scatter_nothing() {
+fn horizon_and_invalid_directions_scatter_nothing() {
     for bxdf in members() {
         let bsdf = Bsdf::new(Vec3::Z, Vec3::X, bxdf);
         for wo in [Vec3::X, Vec3::new(0.0, -1.0, -0.0), Vec3::splat(f32::NAN)] {
@@ -494,7 +495,7 @@ fn horizons_and_broken_directions_scatter_nothing() {
 }
 
 #[test]
-fn a_bsdf_is_its_bxdf_turned_into_the_shading_frame() {
+fn a_bsdf_is_its_bxdf_in_the_shading_frame() {
     let mut random = Random::new(11);
     let ns = Vec3::new(0.3, -0.5, 0.7).normalize();
     for bxdf in members() {

@@ -1,5 +1,4 @@
-//! The distribution of microfacet normals: what its integrals must be, and that its samples have
-//! its density.
+//! The distribution of microfacet normals: its integrals, and the density of its samples.
 
 use alhazen_scattering::TrowbridgeReitz;
 use math::{Vector3, spherical_direction};
@@ -24,7 +23,7 @@ fn over_normals(f: impl Fn(Vector3) -> f32) -> f64 {
 }
 
 #[test]
-fn microfacets_project_to_the_surface() {
+fn projected_microfacet_area_is_that_of_the_surface() {
     for (x, y) in ROUGHNESSES {
         let distribution = TrowbridgeReitz::new(x, y);
         let area = over_normals(|wm| distribution.d(wm) * wm.z);
@@ -33,7 +32,7 @@ fn microfacets_project_to_the_surface() {
 }
 
 #[test]
-fn visible_microfacets_fill_the_projection() {
+fn visible_microfacet_area_is_the_projected_area() {
     for (x, y) in ROUGHNESSES {
         let distribution = TrowbridgeReitz::new(x, y);
         for w in views().into_iter().filter(|w| w.z > 0.0) {
@@ -62,7 +61,7 @@ fn visible_normals_have_their_density() {
 }
 
 #[test]
-fn more_is_seen_by_both_than_by_each_alone() {
+fn joint_masking_is_at_least_the_product() {
     let distribution = TrowbridgeReitz::new(0.4, 0.7);
     for wo in views() {
         for wi in views() {

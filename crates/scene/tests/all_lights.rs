@@ -1,4 +1,4 @@
-//! What every light must do, on one list of configured lights: samples, densities and radiance
+//! The contract of all lights, on one list of configurations: samples, densities and radiance
 //! agree.
 
 mod common;
@@ -13,9 +13,9 @@ use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Moments, Random, welch_test};
 
-/// Holds samples against a density with edges, which is measured by the midpoint rule on cells of
-/// equal solid angle. Cells that are mostly dark count as one with the samples that fail, as their
-/// share is not measured well.
+/// Tests samples against a discontinuous density, integrated by the midpoint rule on cells of equal
+/// solid angle. Cells that are mostly dark are pooled with failed samples, as their integral is
+/// inaccurate.
 fn check_directions(
     sample: impl Fn([f32; 2]) -> Option<[f32; 3]>,
     density: impl Fn([f32; 3]) -> f64,
@@ -59,13 +59,13 @@ fn check_directions(
 }
 
 #[test]
-fn samples_have_the_density_that_is_claimed() {
+fn samples_have_their_density() {
     let (cases, references) = (area_lights(), references());
     let tests = cases.len() * references.len();
     for case in &cases {
         let light = case.light();
         for (i, from) in references.iter().enumerate() {
-            // Directions from which nothing comes are no samples.
+            // Directions without radiance are not samples.
             let density = |w: [f32; 3]| {
                 let w = Vec3::from(w).normalize();
                 let pdf = light.pdf_li(from, w, false) as f64;
@@ -84,7 +84,7 @@ fn samples_have_the_density_that_is_claimed() {
 }
 
 #[test]
-fn samples_of_skies_have_the_density_that_is_claimed() {
+fn samples_of_environments_have_their_density() {
     let from = references()[0];
     let light_from_render = Transform::from_f64(placement()).unwrap().inverse();
     let cases = infinite_lights();
@@ -118,7 +118,7 @@ fn samples_of_skies_have_the_density_that_is_claimed() {
 }
 
 #[test]
-fn samples_say_their_density_and_radiance() {
+fn samples_agree_with_pdf_and_radiance() {
     let mut random = Random::new(1);
     for case in hittable_lights() {
         let light = case.light();
@@ -132,11 +132,11 @@ fn samples_say_their_density_and_radiance() {
                     assert!((sample.wi.length() - 1.0).abs() < 1e-5, "{}", case.name);
                     let pdf = light.pdf_li(&from, sample.wi, incomplete);
                     let arriving = arriving(&case.scene, &from, sample.wi);
-                    // At an edge, rounding decides on which side the direction lies.
+                    // At an edge, rounding decides whether the direction hits.
                     if pdf == 0.0 || arriving == 0.0 {
                         continue;
                     }
-                    // A density is the less certain the more obliquely it looks at the light.
+                    // The error of a density grows at grazing angles.
                     let cos = if light.is_infinite() { 1.0 } else { sample.n.dot(sample.wi).abs() as f64 };
                     let same = |a: f64, b: f64| (a - b).abs() <= 5e-4 / cos * a.max(b);
                     assert!(same(pdf as f64, sample.pdf as f64), "{}: {pdf} {sample:?}", case.name);
@@ -148,7 +148,7 @@ fn samples_say_their_density_and_radiance() {
 }
 
 #[test]
-fn only_delta_lights_cannot_be_met() {
+fn only_delta_lights_cannot_be_hit() {
     for case in hittable_lights() {
         assert!(!case.light().is_delta(), "{}", case.name);
     }
@@ -169,7 +169,7 @@ fn by_light(case: &Case, from: &LightSampleContext, n: Normal3, count: u32, rand
 }
 
 #[test]
-fn irradiance_is_the_same_by_light_and_by_direction() {
+fn irradiance_by_light_and_direction_sampling_agree() {
     let cases = hittable_lights();
     let normals = [Vec3::new(-0.2, 0.1, -1.0).normalize(), Vec3::new(0.1, 0.3, 1.0).normalize()];
     let tests = cases.len() * references().len() * normals.len();
@@ -195,8 +195,8 @@ fn irradiance_is_the_same_by_light_and_by_direction() {
 }
 
 #[test]
-fn a_panorama_and_the_square_made_of_it_give_the_same_light() {
-    // A brightness that tells directions apart, also mirrored and with axes exchanged.
+fn latitude_longitude_and_octahedral_maps_agree() {
+    // A brightness that distinguishes directions, also when mirrored or with swapped axes.
     let brightness = |w: Vec3| 2.0 + w.x + 0.5 * w.y + 0.2 * w.z;
     let size = [128, 64];
     let panorama = rgb_image(size[0], size[1], |x, y| {
@@ -230,7 +230,7 @@ fn a_panorama_and_the_square_made_of_it_give_the_same_light() {
 }
 
 #[test]
-fn incomplete_samples_and_directions_make_a_whole() {
+fn mis_compensated_sampling_is_unbiased() {
     let cases = infinite_lights();
     let (n, from) = (Vec3::new(0.1, 0.3, 1.0).normalize(), references()[0]);
     let mut random = Random::new(3);
@@ -253,7 +253,7 @@ fn incomplete_samples_and_directions_make_a_whole() {
 }
 
 #[test]
-fn an_image_lies_upright_on_its_surface() {
+fn emission_images_are_upright() {
     // Red at the lower left (u, v) = (0, 0), which is the first pixel of the last row.
     let mut desc = area(rectangle([0.0, 0.0], [1.0, 1.0]), one_side);
     let red = |x, y| if (x, y) == (0, 1) { [1.0, 0.0, 0.0] } else { [0.0; 3] };
@@ -271,13 +271,13 @@ fn an_image_lies_upright_on_its_surface() {
 }
 
 #[test]
-fn a_light_that_is_cut_out_shines_by_its_alpha() {
+fn emission_is_scaled_by_alpha() {
     let alpha = |value: f32| area(disk(0.0, 1.0), move |_, shape| shape.alpha = Some(value.into()));
     let from = context(Vec3::new(0.1, 0.2, 1.5), Vec3::ZERO);
     let mut random = Random::new(8);
     let mut irradiance = |desc: &SceneDesc, count| {
         let case = Case { name: "alpha", scene: scene(desc) };
-        // Not through the light's own surface: it would hide some of its own samples.
+        // Without the light's own surface, which would occlude some of its samples.
         (0..count)
             .map(|_| {
                 let u = random.get_2d();
@@ -289,7 +289,7 @@ fn a_light_that_is_cut_out_shines_by_its_alpha() {
     let whole = irradiance(&alpha(1.0), 10_000);
     let part: Moments = irradiance(&alpha(0.3), 10_000);
     assert!((part.mean / whole.mean - 0.3).abs() < 0.03, "{} {}", part.mean, whole.mean);
-    // Entirely cut out, it is invisible, but shines.
+    // With alpha 0 it is invisible, but still emits.
     let invisible = scene(&alpha(0.0));
     assert!(invisible.light(LightId(0)).is_delta());
     assert!(hit(&invisible, &ray(from.p.p, -Vec3::Z)).is_none());
@@ -297,8 +297,8 @@ fn a_light_that_is_cut_out_shines_by_its_alpha() {
 }
 
 #[test]
-fn lights_far_away_are_hidden_by_what_is_far_away() {
-    // A floor and a ceiling without end, and a small ball: the sun comes through neither.
+fn infinite_planes_occlude_infinite_lights() {
+    // An infinite floor and ceiling, and a small sphere: both planes occlude the sun.
     for ceiling in [false, true] {
         let mut desc = free(distant(None));
         desc.shapes.push(ShapeDesc {

@@ -1,5 +1,4 @@
-//! What every light must do as a source of rays: densities, power, and the same light as a point
-//! finds that looks for it.
+//! The contract of emission from all lights: densities, power, and agreement with light sampling.
 
 mod common;
 
@@ -24,11 +23,11 @@ fn emit(case: &Case, random: &mut Random) -> Option<LightLeSample> {
 }
 
 #[test]
-fn rays_carry_the_power() {
+fn emitted_rays_carry_the_power() {
     let cases = all_lights();
     let mut random = Random::new(1);
     for case in &cases {
-        // An image is taken as spread evenly over the surface, which on a disk it is not.
+        // The power of an image assumes uniform (u, v), which a disk has not.
         if case.name == "disk, image" {
             continue;
         }
@@ -47,7 +46,7 @@ fn rays_carry_the_power() {
 }
 
 #[test]
-fn a_ray_has_the_densities_that_are_claimed_for_it() {
+fn emitted_rays_have_their_densities() {
     let mut random = Random::new(2);
     let same = |a: f32, b: f32| (a - b).abs() <= 1e-4 * a.max(b);
     for case in all_lights() {
@@ -57,7 +56,7 @@ fn a_ray_has_the_densities_that_are_claimed_for_it() {
             assert!((sample.ray.d.length() - 1.0).abs() < 1e-5 && sample.ray.time == TIME, "{}", case.name);
             assert!(sample.pdf_position > 0.0 && sample.pdf_direction > 0.0, "{}", case.name);
             assert_eq!(light.is_distant(), sample.p.is_none(), "{}", case.name);
-            // A ray that comes from where the light goes.
+            // The ray in the opposite direction.
             let back = Ray::new(sample.ray.at(10.0), -sample.ray.d, TIME);
             let far = light.pdf_le_infinite(&back);
             let Some(p) = sample.p else {
@@ -75,7 +74,7 @@ fn a_ray_has_the_densities_that_are_claimed_for_it() {
             let near = light.pdf_le(p.p, sample.n, sample.ray.d, TIME);
             let position = if light.is_delta() { 0.0 } else { sample.pdf_position };
             assert!(same(near.0, position), "{}: {near:?} {sample:?}", case.name);
-            // Rounding may not leave much of a cosine near 0.
+            // A cosine near 0 has a large relative error.
             let same_direction = (near.1 - sample.pdf_direction).abs() < 1e-4 * near.1 + 1e-6;
             assert!(same_direction, "{}: {near:?} {sample:?}", case.name);
         }
@@ -83,7 +82,7 @@ fn a_ray_has_the_densities_that_are_claimed_for_it() {
 }
 
 #[test]
-fn directions_have_their_density() {
+fn emitted_directions_have_their_density() {
     let cases = area_lights();
     for (i, case) in cases.iter().enumerate() {
         let light = case.light();
@@ -120,11 +119,11 @@ fn directions_of_spots_have_their_density() {
     }
 }
 
-/// Seen in parallel along some direction, a density per area p is p/|cos θ| per area of the view,
-/// summed over all that lies one behind the other. Where that grows without bound, at the outline
-/// of what is round, cells are not held against it one by one.
+/// In parallel projection along some direction, a density p per area becomes p/|cos θ| per
+/// projected area, summed over all layers. At the silhouettes of curved surfaces, where it is
+/// unbounded, cells are not tested one by one.
 #[test]
-fn positions_have_their_density() {
+fn emitted_positions_have_their_density() {
     let cases = area_lights();
     let view = Frame::from_z(Vec3::new(0.8, -0.5, 0.7).normalize());
     let (side, fine, size, count) = (12, 40, 4.0, 5_000);
@@ -167,7 +166,7 @@ fn positions_have_their_density() {
 }
 
 #[test]
-fn light_from_far_away_falls_evenly_on_the_disk_around_the_scene() {
+fn distant_light_is_uniform_over_the_scene_disk() {
     let mut cases = infinite_lights();
     cases.push(delta_lights().remove(3));
     for (i, case) in cases.iter().enumerate() {
@@ -192,7 +191,7 @@ fn light_from_far_away_falls_evenly_on_the_disk_around_the_scene() {
 }
 
 #[test]
-fn rays_start_clear_of_the_surface_that_they_leave() {
+fn emitted_rays_do_not_hit_their_own_surface() {
     let mut random = Random::new(5);
     for case in area_lights() {
         for _ in 0..2_000 {
@@ -201,7 +200,7 @@ fn rays_start_clear_of_the_surface_that_they_leave() {
             let met = hit(&case.scene, &sample.ray).map(|surface| surface.p().distance(sample.ray.o));
             match case.name {
                 "bent patch" => {}
-                // Across the ball, by the chord.
+                // Across the sphere, by the chord.
                 "sphere, both sides" if !is_outside => {
                     let chord = -1.6 * sample.n.dot(sample.ray.d);
                     assert!((met.unwrap() - chord).abs() < 1e-4, "{met:?} {chord}");
@@ -213,9 +212,9 @@ fn rays_start_clear_of_the_surface_that_they_leave() {
     }
 }
 
-/// The light that falls on a disk is that of the rays that hit it, and that which its points find.
+/// The flux onto a disk by emitted rays equals that by light sampling from its points.
 #[test]
-fn a_disk_finds_the_light_that_finds_it() {
+fn emitted_and_sampled_irradiance_agree() {
     let cases = all_lights();
     for (i, case) in cases.iter().enumerate() {
         let (light, sphere) = (case.light(), case.scene.sphere());
@@ -254,7 +253,7 @@ fn a_disk_finds_the_light_that_finds_it() {
 }
 
 #[test]
-fn a_light_that_is_cut_out_sends_by_its_alpha() {
+fn emission_is_scaled_by_alpha() {
     let mut random = Random::new(6);
     let mut power = |alpha: f32| -> Moments {
         let desc = area(disk(0.0, 1.0), |_, shape| shape.alpha = Some(alpha.into()));
@@ -268,7 +267,7 @@ fn a_light_that_is_cut_out_sends_by_its_alpha() {
 }
 
 #[test]
-fn lights_without_power_and_no_lights_are_safe() {
+fn dark_and_empty_light_tables_emit_nothing() {
     let none = PowerLightSampler::default();
     assert!(none.sample(0.5).is_none());
     let dark = scene(&area(disk(0.0, 1.0), |light, _| light.scale = 0.0));

@@ -1,4 +1,4 @@
-//! Where instances of objects and the shapes in them are, also while they move.
+//! Positions of instances and of the shapes in them, also in motion.
 
 mod common;
 
@@ -8,7 +8,7 @@ use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, TransformDesc}
 use math::{DMat4, DVec3, Ray, Vec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// A scene of one object in one place. The camera stands at `eye`.
+/// A scene of one instance. The camera is at `eye`.
 fn placed(shape: ShapeDesc, world_from_object: TransformDesc, eye: DVec3) -> Scene {
     let mut desc = SceneDesc::default();
     desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_translation(-eye));
@@ -19,7 +19,7 @@ fn placed(shape: ShapeDesc, world_from_object: TransformDesc, eye: DVec3) -> Sce
     scene(&desc)
 }
 
-/// Whether a ray along −z at a moment meets something above the point (x, y) of render space.
+/// Whether a ray along −z at a time hits something above the point (x, y) of render space.
 fn there(scene: &Scene, x: f32, y: f32, time: f32) -> bool {
     let ray = Ray::new(Vec3::new(x, y, 50.0), -Vec3::Z, time);
     scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).is_some()
@@ -34,7 +34,7 @@ fn ball(world_from_object: TransformDesc) -> ShapeDesc {
 }
 
 #[test]
-fn a_shape_that_moves_in_an_object_moves_in_its_instances() {
+fn moving_shapes_move_in_instances() {
     let shape = ball(moving(DMat4::IDENTITY, DMat4::from_translation(DVec3::X * 2.0)));
     let scene = placed(shape, TransformDesc::translation(0.0, 3.0, 0.0), DVec3::ZERO);
     for (time, x) in [(0.0, 0.0), (0.5, 1.0), (1.0, 2.0)] {
@@ -44,7 +44,7 @@ fn a_shape_that_moves_in_an_object_moves_in_its_instances() {
 }
 
 #[test]
-fn an_instance_turns_about_the_origin_of_render_space() {
+fn instances_rotate_about_the_origin_of_render_space() {
     // A quarter turn about z, of which the half is about the camera: the translations that belong
     // to the keys, (0, 0) and (−4, 4) for the second eye, meet in the middle.
     let shape = ball(TransformDesc::translation(1.0, 0.0, 0.0));
@@ -59,7 +59,7 @@ fn an_instance_turns_about_the_origin_of_render_space() {
 }
 
 #[test]
-fn objects_within_objects_stand_and_move_where_all_transforms_say() {
+fn nested_instances_compose_their_transforms() {
     // A ball at x = 1 of its object, which stands at y = 2 of another, which moves along x; the
     // camera is elsewhere.
     let mut desc = SceneDesc::default();

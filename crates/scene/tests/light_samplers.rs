@@ -1,4 +1,4 @@
-//! What every way of choosing among lights must do.
+//! The contract of all light samplers.
 
 mod common;
 
@@ -36,7 +36,7 @@ fn add_area(desc: &mut SceneDesc, shape: ShapeKind, p: Vec3, turn: f64, two_side
     });
 }
 
-/// Lights of every bounded kind, some of them dark.
+/// Bounded lights of every kind, some of them black.
 fn mixed() -> SceneDesc {
     let mut desc = SceneDesc::default();
     let mut random = Random::new(11);
@@ -119,7 +119,7 @@ fn pmfs(sampler: &LightSampler, scene: &Scene, from: &LightSampleContext) -> Vec
 }
 
 #[test]
-fn choices_have_the_probability_that_is_claimed() {
+fn choices_have_their_probability() {
     let (cases, references) = (cases(), references());
     let tests = cases.len() * references.len() * KINDS.len();
     for (name, scene) in &cases {
@@ -154,14 +154,14 @@ fn choices_have_the_probability_that_is_claimed() {
     }
 }
 
-/// What a light sends to a surface, at the first wavelength, without a look at what stands between.
+/// The unoccluded contribution of a light to a surface, at the first wavelength.
 fn sent(scene: &Scene, light: LightId, from: &LightSampleContext, u: [f32; 2]) -> f64 {
     let sample = scene.sample_light(light, from, u.into(), &lambda(), false);
     sample.map_or(0.0, |s| f64::from(s.l[0] * s.wi.dot(from.ns).abs() / s.pdf))
 }
 
 #[test]
-fn no_light_that_contributes_is_left_out() {
+fn every_contributing_light_can_be_chosen() {
     let mut random = Random::new(14);
     for (name, scene) in cases() {
         for kind in KINDS {
@@ -178,7 +178,7 @@ fn no_light_that_contributes_is_left_out() {
 }
 
 #[test]
-fn estimates_by_a_choice_agree_with_the_sum_over_all_lights() {
+fn one_light_estimates_agree_with_the_sum_over_lights() {
     let (cases, references) = (cases(), references());
     let tests = cases.len() * references.len() * KINDS.len();
     let mut random = Random::new(15);
@@ -209,7 +209,7 @@ fn estimates_by_a_choice_agree_with_the_sum_over_all_lights() {
 }
 
 #[test]
-fn lights_in_one_place_are_told_apart() {
+fn coincident_lights_are_distinguished() {
     let mut desc = SceneDesc::default();
     desc.shapes.push(sphere(0.1).into());
     for _ in 0..10_000 {
@@ -241,9 +241,9 @@ fn lights_in_one_place_are_told_apart() {
 }
 
 #[test]
-fn the_tree_prefers_what_is_near_and_faces_the_point() {
+fn the_light_bvh_prefers_near_and_facing_lights() {
     let mut desc = SceneDesc::default();
-    // One faces the origin, one looks away, one is far.
+    // One faces the origin, one faces away, one is far.
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -1.0), 0.0, false, 1.0);
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, 1.0), 0.0, false, 1.0);
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -4.0), 0.0, false, 1.0);
@@ -254,7 +254,7 @@ fn the_tree_prefers_what_is_near_and_faces_the_point() {
 }
 
 #[test]
-fn nothing_is_chosen_where_there_is_no_light() {
+fn scenes_without_lights_choose_none() {
     let mut desc = SceneDesc::default();
     desc.shapes.push(sphere(1.0).into());
     let scene = scene(&desc);

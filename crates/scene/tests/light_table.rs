@@ -22,7 +22,7 @@ fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
 }
 
 #[test]
-fn hits_of_instances_find_the_light_that_was_sampled() {
+fn hits_of_instances_map_to_the_sampled_light() {
     // An object of two triangles and a ball that emit, twice within another, which has a light of
     // its own and is shown twice, one of them moving; and a light before them all.
     let desc = with(|desc| {
@@ -69,7 +69,7 @@ fn hits_of_instances_find_the_light_that_was_sampled() {
 }
 
 #[test]
-fn scenes_without_light_say_so() {
+fn scenes_without_light_give_a_warning() {
     let codes = |desc: &SceneDesc| diagnostics(desc).iter().map(|d| d.code).collect::<Vec<_>>();
     assert_eq!(codes(&SceneDesc::default()), ["empty-scene"]);
     assert_eq!(codes(&with(|desc| desc.shapes.push(sphere(1.0).into()))), ["no-light"]);
@@ -78,7 +78,7 @@ fn scenes_without_light_say_so() {
 }
 
 #[test]
-fn brightness_that_makes_no_sense_is_refused() {
+fn invalid_emission_is_an_error() {
     let span = Span::new(FileId(0), 7, 8);
     let light = |scale, power| {
         with(|desc| {

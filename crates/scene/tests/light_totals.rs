@@ -1,5 +1,4 @@
-//! How much light there is: power, irradiance in closed form, falloff, and the totals that an
-//! author asks for.
+//! Power, irradiance in closed form, falloff, and requested power and illuminance.
 
 mod common;
 
@@ -14,15 +13,15 @@ use std::f32::consts::PI;
 use testkit::{Moments, Random, t_test};
 
 #[test]
-fn power_is_what_leaves() {
+fn power_is_the_emitted_flux() {
     let (areas, lambda) = (area_lights(), lambda());
     let mut random = Random::new(4);
     for case in &areas {
-        // An image is taken as spread evenly over the surface, which on a disk it is not.
+        // The power of an image assumes uniform (u, v), which a disk has not.
         if case.name == "disk, image" {
             continue;
         }
-        // Emitted rays test what is seen through instances, and what moves by itself.
+        // For instanced and moving lights, emitted rays are the test.
         let geometry = case.scene.world().geometry(GeometryId(0));
         if !case.scene.instances().is_empty() || geometry.is_moving() {
             continue;
@@ -53,7 +52,7 @@ fn power_is_what_leaves() {
 }
 
 #[test]
-fn power_of_lights_at_a_point_is_what_passes_a_sphere_around_them() {
+fn power_of_point_lights_is_the_flux_through_a_sphere() {
     let lambda = lambda();
     let mut random = Random::new(5);
     for case in delta_lights().iter().filter(|case| case.name != "distant") {
@@ -79,7 +78,7 @@ fn power_of_lights_at_a_point_is_what_passes_a_sphere_around_them() {
 }
 
 #[test]
-fn power_of_lights_far_away_is_what_falls_on_the_scene() {
+fn power_of_infinite_lights_is_the_flux_onto_the_scene() {
     let lambda = lambda();
     let mut random = Random::new(6);
     let cases = infinite_lights();
@@ -105,8 +104,8 @@ fn power_of_lights_far_away_is_what_falls_on_the_scene() {
 }
 
 #[test]
-fn irradiance_has_its_closed_forms() {
-    // Lights above the origin, which faces up; they shine down.
+fn irradiance_in_closed_form() {
+    // Lights above the origin that face down; the receiver faces up.
     let above = |shape: ShapeKind, height: f64| {
         area(shape, |light, shape| {
             light.two_sided = true;
@@ -138,7 +137,7 @@ fn irradiance_has_its_closed_forms() {
         let scene = scene(desc);
         let radiance = 100.0 / spectrum::Spectrum::Constant(100.0).to_photometric();
         for from in [from, from_space] {
-            // One sample of every light makes one estimate of the whole.
+            // One sample of every light is one estimate of the sum.
             let estimates: Moments = (0..20_000)
                 .map(|_| {
                     let one = |light| match seen_sample(&scene, light, &from, random.get_2d(), false) {
@@ -159,7 +158,7 @@ fn irradiance_has_its_closed_forms() {
 }
 
 #[test]
-fn point_lights_fall_off_by_the_square_of_the_distance() {
+fn point_lights_fall_off_with_squared_distance() {
     for case in delta_lights().iter().filter(|case| case.name != "distant") {
         let (p, axis) = match case.light().row() {
             Light::Point(light) => (light.p, Vec3::Z),
@@ -173,7 +172,7 @@ fn point_lights_fall_off_by_the_square_of_the_distance() {
         for distance in [0.3, 2.0, 70.0] {
             assert!((at(distance) / at(1.0) - 1.0).abs() < 1e-5, "{}", case.name);
         }
-        // Nothing, rather than infinity, arrives in the light itself.
+        // At the position of the light the radiance is zero rather than infinite.
         let inside = context(p, Vec3::ZERO);
         assert!(seen_sample(&case.scene, case.light(), &inside, [0.0; 2], false).is_none());
     }
@@ -236,7 +235,7 @@ fn a_scale_of_one_is_a_luminance_of_one() {
 }
 
 #[test]
-fn power_and_illuminance_are_met() {
+fn requested_power_and_illuminance_are_met() {
     let power = |desc: &SceneDesc| {
         let scene = scene(desc);
         photometric(|lambda| scene.light(LightId(0)).phi(lambda))
@@ -277,7 +276,7 @@ fn power_and_illuminance_are_met() {
 }
 
 #[test]
-fn what_cannot_shine_has_no_power_rather_than_an_infinite_one() {
+fn degenerate_lights_have_zero_power() {
     let degenerate = triangles(&[[0.0; 3], [1.0; 3], [0.0, 1.0, 0.0]], &[[0, 1, 1], [0, 1, 2]]);
     let scene = scene(&area(degenerate, |light, _| light.power = Some(10.0)));
     let [flat, whole] = [0, 1].map(|i| scene.light(LightId(i)).phi(&lambda())[0]);

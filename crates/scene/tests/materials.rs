@@ -1,4 +1,4 @@
-//! What every material becomes at a point, and how large a pixel is there.
+//! The BSDF of every material, and the footprint of a pixel.
 
 mod common;
 
@@ -51,7 +51,7 @@ fn named(name: &str) -> SpectrumDesc {
 }
 
 #[test]
-fn diffuse_reflects_its_reflectance() {
+fn diffuse_has_its_reflectance() {
     let (Some(Bxdf::Diffuse(diffuse)), false) = bxdf(MaterialKind::Diffuse { reflectance: 0.4.into() })
     else {
         panic!()
@@ -71,7 +71,7 @@ fn diffuse_transmission_scales_both_parts() {
 }
 
 #[test]
-fn conductors_are_given_by_index_or_colour() {
+fn conductors_by_index_or_reflectance() {
     let roughness = RoughnessDesc { u: 0.25.into(), v: 0.09.into(), remap: true };
     let copper = ConductorDesc { roughness: roughness.clone(), ..ConductorDesc::default() };
     let (Some(Bxdf::Conductor(bxdf_of_copper)), false) = bxdf(MaterialKind::Conductor(copper)) else {
@@ -92,7 +92,7 @@ fn conductors_are_given_by_index_or_colour() {
 }
 
 #[test]
-fn dispersion_ends_all_wavelengths_but_the_first() {
+fn dispersion_terminates_secondary_wavelengths() {
     let glass = |eta: SpectrumDesc| MaterialKind::Dielectric { eta, roughness: RoughnessDesc::default() };
     let (Some(Bxdf::Dielectric(plain)), false) = bxdf(glass(1.5.into())) else { panic!() };
     assert!(plain.eta == 1.5 && plain.distribution.effectively_smooth());
@@ -106,7 +106,7 @@ fn dispersion_ends_all_wavelengths_but_the_first() {
     let (Some(Bxdf::ThinDielectric(dispersive)), true) = bxdf(pane(named("glass-BK7"))) else { panic!() };
     assert_eq!(dispersive.eta, first);
 
-    // Where a table says nothing there is no glass.
+    // Outside the range of its table the index is invalid.
     let blue_only = SpectrumDesc::Samples([(360.0, 1.5), (361.0, 1.5)].into());
     let (Some(Bxdf::Dielectric(nothing)), true) = bxdf(glass(blue_only)) else { panic!() };
     assert_eq!(nothing.eta, 1.0);
@@ -123,7 +123,7 @@ fn an_interface_scatters_nothing_and_stops_shadow_rays_only_if_asked() {
 }
 
 #[test]
-fn a_mix_has_its_proportions() {
+fn mixes_have_their_proportions() {
     let black =
         |desc: &mut SceneDesc| desc.materials.push(MaterialKind::Diffuse { reflectance: 0.0.into() }.into());
     let white =
@@ -151,7 +151,7 @@ fn a_mix_has_its_proportions() {
 }
 
 #[test]
-fn a_mix_with_an_interface_is_one_for_its_part_of_all_rays() {
+fn a_mix_with_an_interface_is_one_for_its_fraction_of_rays() {
     let scene = scene(&floor(|desc| {
         let materials = [MaterialKind::Diffuse { reflectance: 0.5.into() }, MaterialKind::Interface];
         let materials = materials.map(|kind| desc.materials.push(kind.into()));
@@ -174,7 +174,7 @@ fn a_mix_with_an_interface_is_one_for_its_part_of_all_rays() {
 }
 
 #[test]
-fn a_surface_is_there_by_its_alpha() {
+fn alpha_is_the_probability_of_a_hit() {
     let mut random = Random::new(2);
     for alpha in [0.0, 0.3, 0.9, 1.0, 2.0] {
         let mut desc = floor(|_| MaterialDesc::default());
@@ -195,7 +195,7 @@ fn a_surface_is_there_by_its_alpha() {
 }
 
 #[test]
-fn an_alpha_texture_cuts_out() {
+fn alpha_textures_cut_out() {
     let mut desc = SceneDesc::default();
     let mapping = description::MappingDesc::Uv { scale: [2.0, 2.0], delta: [0.0; 2] };
     let textures = [1.0.into(), 0.0.into()];
@@ -228,7 +228,7 @@ fn a_flat_normal_map_changes_nothing() {
 }
 
 #[test]
-fn a_normal_map_bends_towards_its_tangents() {
+fn normal_maps_tilt_towards_their_tangents() {
     // Red leans along ∂p/∂u, green along z × ∂p/∂u, both by 45°.
     for (rgb, local) in [([1.0, 0.5, 1.0], Vec3::X), ([0.5, 1.0, 1.0], Vec3::Y), ([0.0, 0.5, 1.0], -Vec3::X)]
     {
@@ -284,7 +284,7 @@ fn assert_near(a: Vector3, b: Vector3, tolerance: f32) {
 }
 
 #[test]
-fn footprints_are_the_distances_of_neighbouring_hits() {
+fn footprints_equal_distances_of_neighbouring_hits() {
     for shape in [placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.7), placed(sphere(1.0), 4.0, 0.3)] {
         let observed = observed([shape]);
         for [x, y] in FILM {
@@ -303,12 +303,12 @@ fn footprints_are_the_distances_of_neighbouring_hits() {
 }
 
 #[test]
-fn footprints_without_differentials_are_the_cameras() {
+fn footprints_without_differentials_are_those_of_the_camera() {
     let observed = observed([placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.3)]);
     let with = through(&observed.1, 1000.0, 1000.0);
     let seen = met(&observed, &with).footprint;
     let guessed = met(&observed, &with.ray.into()).footprint;
-    // The least of the film: never more than in its middle, and not by much.
+    // The minimum over the film: at most that of the centre, and not much less.
     let ratio = guessed.dpdx.length() / seen.dpdx.length();
     assert!(ratio > 0.5 && ratio < 1.05, "{ratio}");
 }
@@ -374,7 +374,7 @@ fn differentials_follow_refractions() {
 }
 
 #[test]
-fn rough_scattering_loses_the_differentials() {
+fn rough_scattering_drops_differentials() {
     let observed = observed([placed(rectangle([-9.0, -9.0], [9.0, 9.0]), 5.0, 0.4)]);
     let ray = through(&observed.1, 1000.0, 1000.0);
     let mut surface = met(&observed, &ray);
@@ -386,7 +386,7 @@ fn rough_scattering_loses_the_differentials() {
 }
 
 #[test]
-fn everything_can_be_drawn_diffuse() {
+fn all_materials_can_be_forced_diffuse() {
     let mut desc = floor(|_| MaterialKind::Conductor(ConductorDesc::default()).into());
     desc.options.force_diffuse = true;
     let scene = scene(&desc);

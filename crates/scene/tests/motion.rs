@@ -1,4 +1,4 @@
-//! Where shapes and instances are while they move.
+//! Positions of moving shapes and instances.
 
 mod common;
 
@@ -25,7 +25,7 @@ fn distance_along(desc: &SceneDesc, o: Vec3, d: Vec3, time: f32) -> Option<f32> 
 }
 
 #[test]
-fn moving_shapes_are_where_they_should_be() {
+fn moving_shapes_are_interpolated() {
     let desc = with(|desc| {
         desc.shapes.push(ShapeDesc { world_from_object: moving(), ..sphere(0.5).into() });
     });
@@ -40,9 +40,9 @@ fn moving_shapes_are_where_they_should_be() {
 }
 
 #[test]
-fn instances_are_where_they_should_be() {
-    // A ball off the object's origin; an instance turned and scaled, one that moves, and a camera
-    // that is elsewhere.
+fn moving_instances_are_interpolated() {
+    // A sphere off the object's origin; a rotated and scaled instance, a moving one, and a camera
+    // that is not at the origin.
     let desc = with(|desc| {
         let mut object = ObjectDesc::default();
         let in_object = TransformDesc::translation(1.0, 0.0, 0.0);
@@ -55,7 +55,7 @@ fn instances_are_where_they_should_be() {
         desc.instances.push(InstanceDesc { object, world_from_object: moving() });
         desc.camera.camera_from_world = TransformDesc::translation(0.0, 0.0, 7.0);
     });
-    // The camera stands at z = −7 of the world, the origin of render space.
+    // The camera is at z = −7 in world space, the origin of render space.
     let camera = Vec3::new(0.0, 0.0, -7.0);
     let from = |x: f32, y: f32, time| distance_along(&desc, Vec3::new(x, y, 0.0) - camera, Vec3::Z, time);
     assert!((from(0.0, 2.0, 0.3).expect("the turned ball") - 9.0).abs() < 1e-4);

@@ -1,4 +1,4 @@
-//! Formulas and solids: what is drawn of them, and what is said of those that are wrong.
+//! Implicit surfaces and solids: hits, and diagnostics of invalid ones.
 
 mod common;
 
@@ -32,7 +32,7 @@ fn solid(operation: SolidOperation, operands: Vec<Spanned<Handle<ObjectDesc>>>) 
     ShapeKind::Solid { operation, operands }.into()
 }
 
-/// The one message about a shape.
+/// The only diagnostic of a shape.
 fn message(mut desc: SceneDesc, shape: ShapeDesc) -> Diagnostic {
     desc.shapes.push_stated(Stated::new(shape, Origin::new(span(0, 10))));
     let mut all = match compile(&desc) {
@@ -44,7 +44,7 @@ fn message(mut desc: SceneDesc, shape: ShapeDesc) -> Diagnostic {
     all.remove(0)
 }
 
-/// How far along z a scene of one shape is met from below.
+/// The distance along z at which a scene of one shape is hit from below.
 fn met(mut desc: SceneDesc, shape: ShapeDesc) -> Option<f32> {
     desc.shapes.push(shape);
     let compiled = compile(&desc).expect("a scene");
@@ -55,7 +55,7 @@ fn met(mut desc: SceneDesc, shape: ShapeDesc) -> Option<f32> {
 }
 
 #[test]
-fn a_formula_and_a_solid_are_met() {
+fn implicit_surfaces_and_solids_are_hit() {
     assert_eq!(met(SceneDesc::default(), implicit("x^2 + y^2 + z^2 - 1").into()), Some(-1.0));
     let mut desc = SceneDesc::default();
     let ball = object(&mut desc, [sphere(1.0).into()]);
@@ -71,7 +71,7 @@ fn a_formula_and_a_solid_are_met() {
 }
 
 #[test]
-fn a_formula_that_is_none_is_shown_where_it_is_wrong() {
+fn errors_in_formulas_are_located() {
     let wrong = message(SceneDesc::default(), implicit("x^2 + siin(y)").into());
     assert_eq!((wrong.code, &wrong.message[..]), ("invalid-formula", "there is no `siin` in formulas"));
     assert_eq!(wrong.span(), span(107, 111));
@@ -84,7 +84,7 @@ fn a_formula_that_is_none_is_shown_where_it_is_wrong() {
 }
 
 #[test]
-fn a_formula_is_met_in_huge_bounds_or_they_are_an_error() {
+fn huge_bounds_work_or_are_an_error() {
     let within = |half: f32| {
         let text = "x^2 + y^2 + z^2 - 1".to_owned();
         let formula = Spanned { value: text, span: span(103, 124) };
@@ -99,7 +99,7 @@ fn a_formula_is_met_in_huge_bounds_or_they_are_an_error() {
 }
 
 #[test]
-fn what_is_no_body_is_no_part_of_a_solid() {
+fn open_shapes_are_not_operands_of_solids() {
     let disk = ShapeKind::Disk { height: 0.0, radius: 1.0, inner_radius: 0.0, phi_max: 360.0 };
     let half = ShapeKind::Sphere { radius: 1.0, z_min: -1.0, z_max: 1.0, phi_max: 180.0 };
     for (kind, what) in [(disk, "a disk"), (half, "a shape whose `phimax` is below 360")] {
@@ -116,7 +116,7 @@ fn what_is_no_body_is_no_part_of_a_solid() {
 }
 
 #[test]
-fn size_and_depth_of_solids_are_bounded() {
+fn size_and_depth_of_solids_are_limited() {
     // Twice as many bodies with every object; one more level with every object.
     for (copies, text) in [(2, "1024 bodies"), (1, "32 deep")] {
         let mut desc = SceneDesc::default();
@@ -135,7 +135,7 @@ fn size_and_depth_of_solids_are_bounded() {
 }
 
 #[test]
-fn they_do_not_emit() {
+fn implicit_surfaces_and_solids_do_not_emit() {
     let mut desc = SceneDesc::default();
     let area_light = Some(desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::Constant(1.0))));
     let dark = message(desc, ShapeDesc { area_light, ..implicit("x").into() });

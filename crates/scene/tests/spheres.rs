@@ -1,5 +1,4 @@
-//! Sets of spheres in a scene: each sphere can emit, and under any transform each stands where it
-//! would stand alone.
+//! Sphere sets in a scene: each sphere can emit, and equals a single sphere under any transform.
 
 mod common;
 
@@ -21,7 +20,7 @@ fn desc(shapes: impl IntoIterator<Item = ShapeDesc>) -> SceneDesc {
 }
 
 #[test]
-fn spheres_stand_where_each_would_stand_alone() {
+fn spheres_of_a_set_equal_single_spheres() {
     let centers = [Vec3::ZERO, Vec3::new(2.0, 0.5, 0.0), Vec3::new(-2.0, 0.0, 1.0)];
     let radii = [0.5, 0.8, 0.3];
     let turned = DMat4::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, 0.7);
@@ -53,7 +52,7 @@ fn spheres_stand_where_each_would_stand_alone() {
 }
 
 #[test]
-fn each_sphere_is_a_light() {
+fn each_emissive_sphere_is_a_light() {
     let centers = [Vec3::ZERO, Vec3::X * 3.0];
     let mut desc = desc([]);
     let light = desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::rgb(1.0, 1.0, 1.0)));
@@ -68,7 +67,7 @@ fn each_sphere_is_a_light() {
 }
 
 #[test]
-fn arrays_that_are_no_spheres_are_errors() {
+fn invalid_sphere_arrays_are_errors() {
     for (centers, radii, message) in [
         (&[Vec3::ZERO; 2][..], &[1.0; 3][..], "3 radii for 2 spheres: give one, or one for each"),
         (&[Vec3::ZERO; 2], &[1.0, 0.0], "radius 1 is 0; it must be finite and above zero"),

@@ -28,7 +28,7 @@ fn seen(scene: &Scene, view: &View, film: Vec2) -> (f32, Vec3) {
 }
 
 #[test]
-fn a_second_camera_sees_the_scene_of_the_first_as_its_own() {
+fn a_second_camera_views_the_same_scene() {
     let (near, far) = (from_distance(4.0), from_distance(900.0));
     let scene_of_far = scene(&far);
     let visitor = View::compile(&near, scene_of_far.world_from_render()).expect("a view").view;
@@ -42,7 +42,7 @@ fn a_second_camera_sees_the_scene_of_the_first_as_its_own() {
 }
 
 #[test]
-fn coarser_pixels_show_the_same_at_other_positions() {
+fn coarser_pixels_view_the_same_scene() {
     let desc = from_distance(4.0);
     let (scene, view) = (scene(&desc), view(&desc));
     let film = Vec2::new(60.0, 45.0);

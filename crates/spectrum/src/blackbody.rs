@@ -1,4 +1,4 @@
-//! The radiance of a body that absorbs all light, by Planck's law.
+//! The radiance of a blackbody, by Planck's law.
 //!
 //! L(λ, T) = 2hc² / (λ⁵ (e^{hc / (λ k T)} − 1)), in W / (m² sr m) with λ in metres
 //! [Pharr 2023 §4.4.1].
@@ -13,7 +13,7 @@ const K_B: f64 = 1.380_648_8e-23;
 const WIEN: f64 = 2.897_772_1e-3;
 
 /// Radiance of a blackbody of `temperature` kelvin at `lambda` nanometres, per metre of wavelength;
-/// zero for no temperature.
+/// zero at 0 K.
 pub fn blackbody(lambda: f32, temperature: f32) -> f32 {
     if temperature <= 0.0 {
         return 0.0;
@@ -34,7 +34,7 @@ pub struct Blackbody {
 }
 
 impl Blackbody {
-    /// The normalized spectrum of a body of `temperature` kelvin; black for no temperature.
+    /// The normalized spectrum of a body of `temperature` kelvin; black at 0 K.
     pub fn new(temperature: f32) -> Self {
         let temperature = f64::from(temperature);
         let normalization =
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn the_peak_lies_where_wien_says_and_is_one() {
+    fn the_peak_is_one_at_wiens_wavelength() {
         for temperature in [4000.0_f32, 5000.0, 6500.0] {
             let spectrum = Blackbody::new(temperature);
             let peak = (WIEN * 1e9) as f32 / temperature;
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn no_temperature_is_black() {
+    fn zero_temperature_is_black() {
         assert_eq!(Blackbody::new(0.0).at(500.0), 0.0);
         assert_eq!(Blackbody::new(-3.0).max_value(), 0.0);
     }

@@ -1,4 +1,4 @@
-//! The CIE 1931 standard observer: from light to what an eye sees of it.
+//! The CIE 1931 standard observer: from spectra to tristimulus values.
 //!
 //! X = ∫ L(λ) x̄(λ) dλ / ∫ ȳ(λ) dλ, likewise Y and Z, with the integral taken as the sum over whole
 //! nanometres from 360 to 830. For light known at sampled wavelengths the same is estimated by 1/N
@@ -17,7 +17,7 @@ pub const CIE_Y_INTEGRAL: f32 = 106.856_895;
 pub struct MatchingFunctions {
     /// x̄(λ).
     pub x: DenselySampled,
-    /// ȳ(λ), the eye's sensitivity in daylight.
+    /// ȳ(λ), the photopic luminous efficiency.
     pub y: DenselySampled,
     /// z̄(λ).
     pub z: DenselySampled,

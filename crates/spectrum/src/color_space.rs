@@ -1,4 +1,4 @@
-//! RGB colour spaces: three primaries and a white, and what follows from them.
+//! RGB colour spaces, given by three primaries and a white point.
 //!
 //! The matrix that takes RGB to XYZ has the primaries as columns, each scaled so that RGB (1, 1, 1)
 //! is the white: the colour of the space's illuminant at unit luminance [Pharr 2023 §4.6.3]. A
@@ -49,7 +49,7 @@ color_space! {
 }
 
 color_space! {
-    /// P3 as displays have it, with D65.
+    /// P3 of displays, with D65.
     dci_p3, "dci-p3", "stdillum-D65", [0.68, 0.32], [0.265, 0.69], [0.15, 0.06], "rgb_dci_p3.bin"
 }
 
@@ -129,7 +129,7 @@ impl RgbColorSpace {
         self.white
     }
 
-    /// The light that is white in this space, shared.
+    /// The illuminant of this space, with unit luminance, shared.
     pub(crate) fn shared_illuminant(&self) -> Arc<DenselySampled> {
         Arc::clone(&self.illuminant)
     }
@@ -166,7 +166,7 @@ impl RgbColorSpace {
         if self == target { Matrix3::IDENTITY } else { target.rgb_from_xyz * self.xyz_from_rgb }
     }
 
-    /// The smooth reflectance that looks like `rgb` under this space's illuminant; components
+    /// The smooth reflectance with the colour `rgb` under this space's illuminant; components
     /// outside [0, 1] are clamped.
     pub fn to_rgb_coeffs(&self, rgb: Rgb) -> RgbSigmoidPolynomial {
         self.table.get_or_init(|| RgbToSpectrumTable::decode(self.table_data)).polynomial(rgb)
@@ -185,11 +185,11 @@ impl fmt::Debug for RgbColorSpace {
     }
 }
 
-/// Bradford's matrix from XYZ to responses of the eye's cones.
+/// Bradford's matrix from XYZ to cone responses (LMS).
 const LMS_FROM_XYZ: Matrix3 =
     Matrix3([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]]);
 
-/// The matrix on XYZ that makes a white of chromaticity `source` a white of chromaticity `target`.
+/// The chromatic adaptation matrix on XYZ from a white of chromaticity `source` to one of `target`.
 pub fn white_balance(source: [f32; 2], target: [f32; 2]) -> Matrix3 {
     let lms = |xy| LMS_FROM_XYZ.apply(Xyz::from_xy(xy, 1.0).to_array().map(f64::from));
     let (from, to) = (lms(source), lms(target));
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn conversion_there_and_back_changes_nothing() {
+    fn conversions_round_trip() {
         let colour = [0.2, 0.7, 0.4];
         for from in RgbColorSpace::all() {
             for to in RgbColorSpace::all() {

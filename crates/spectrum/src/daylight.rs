@@ -11,8 +11,8 @@ use crate::spectrum::Spectrum;
 
 /// Daylight of `temperature` kelvin, with about 1 at 560 nm.
 ///
-/// The temperature is that of the scale of 1968 (D65 is 6500 K), corrected by 1.4388 / 1.4380.
-/// Below 4000 K, where there is no daylight, it is a blackbody of unit luminance.
+/// The temperature is on the scale of 1968 (D65 is 6500 K), corrected by 1.4388 / 1.4380. Below
+/// 4000 K, where daylight is undefined, it is a blackbody of unit luminance.
 pub fn daylight(temperature: f32) -> Spectrum {
     let cct = temperature * 1.4388 / 1.4380;
     if cct < 4000.0 {

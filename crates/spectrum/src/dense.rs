@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_nearest_nanometre_counts() {
+    fn values_are_those_of_the_nearest_nanometre() {
         let spectrum = DenselySampled::from_fn(|lambda| lambda);
         for (lambda, value) in [
             (360.0, 360.0),

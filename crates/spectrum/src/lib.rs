@@ -1,5 +1,4 @@
-//! Light over wavelength: spectra, sampled wavelengths, colour spaces, RGB uplifting, measured
-//! data.
+//! Spectra, sampled wavelengths, colour spaces, RGB uplifting, measured data.
 //!
 //! Wavelengths are in nanometres, from [`LAMBDA_MIN`] to [`LAMBDA_MAX`]. A path carries [`N`] of
 //! them ([`SampledWavelengths`]) and its quantities are [`SampledSpectrum`]s at them; a scene's

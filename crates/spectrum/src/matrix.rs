@@ -2,7 +2,7 @@
 
 use std::ops::Mul;
 
-/// A matrix that maps colours to colours; rows of columns.
+/// A matrix that maps colours to colours, stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix3(pub [[f64; 3]; 3]);
 

@@ -1,8 +1,8 @@
 //! Measured spectra by name: metals, glasses and illuminants, under pbrt-v4's names.
 //!
 //! `metal-X-eta` and `metal-X-k` are the real and imaginary part of an index of refraction,
-//! `glass-X` a real one, `stdillum-X` and `illum-X` light of unit luminance. Where the numbers come
-//! from is said in the files of `data/`.
+//! `glass-X` a real one, `stdillum-X` and `illum-X` light of unit luminance. Their sources are in
+//! the files of `data/`.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};

@@ -1,14 +1,14 @@
 //! Spectra given by values at some wavelengths, linear between them and zero outside, and the text
 //! form of them.
 //!
-//! Text: numbers divided by white space, wavelength and value in turn, wavelengths in nanometres
-//! and strictly increasing; `#` begins a comment that ends with the line.
+//! Text: numbers separated by white space, alternately wavelength and value, wavelengths in
+//! nanometres and strictly increasing; `#` starts a comment to the end of the line.
 
 use std::fmt;
 
 use crate::dense::DenselySampled;
 
-/// Why pairs of wavelength and value are no spectrum.
+/// Why pairs of wavelength and value are not a spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectrumError {
     /// There are no values at all.
@@ -27,7 +27,7 @@ pub enum SpectrumError {
     NotIncreasing {
         /// The wavelength before.
         previous: f32,
-        /// The wavelength at fault.
+        /// The wavelength that is not larger.
         lambda: f32,
     },
 }
@@ -47,7 +47,7 @@ impl fmt::Display for SpectrumError {
 
 impl std::error::Error for SpectrumError {}
 
-/// A [`SpectrumError`] and where in a text it is.
+/// A [`SpectrumError`] and its position in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParseError {
     /// Line, from 1.
@@ -194,13 +194,13 @@ mod tests {
     }
 
     #[test]
-    fn text_with_comments_is_read() {
+    fn text_with_comments_is_parsed() {
         let spectrum = PiecewiseLinear::parse("# a lamp\n400 1.5 # first\n\n 410\t2e0\r\n420 -1").unwrap();
         assert_eq!(spectrum.pairs().collect::<Vec<_>>(), [(400.0, 1.5), (410.0, 2.0), (420.0, -1.0)]);
     }
 
     #[test]
-    fn bad_text_is_refused_with_its_place() {
+    fn errors_in_text_are_located() {
         for (text, message) in [
             ("", "1:1: there are no values"),
             ("# nothing", "1:1: there are no values"),
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_pairs_are_refused() {
+    fn invalid_pairs_are_refused() {
         assert_eq!(PiecewiseLinear::from_pairs(&[]), Err(SpectrumError::Empty));
         assert_eq!(
             PiecewiseLinear::from_interleaved(&[400.0, 1.0, 500.0]),
@@ -230,12 +230,12 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn any_text_is_read_or_refused(text in "([0-9a-z.#,é+-]{0,6}[ \n\t\r]{0,2}){0,12}") {
+        fn arbitrary_text_does_not_panic(text in "([0-9a-z.#,é+-]{0,6}[ \n\t\r]{0,2}){0,12}") {
             let _ = PiecewiseLinear::parse(&text);
         }
 
         #[test]
-        fn written_spectra_are_read_again(steps in proptest::collection::vec((0.01_f32..50.0, -10.0_f32..10.0), 1..20)) {
+        fn written_spectra_are_parsed_again(steps in proptest::collection::vec((0.01_f32..50.0, -10.0_f32..10.0), 1..20)) {
             let mut lambda = 300.0;
             let pairs: Vec<(f32, f32)> = steps.iter().map(|&(step, value)| { lambda += step; (lambda, value) }).collect();
             let text: String = pairs.iter().map(|(lambda, value)| format!("{lambda} {value} # …\n")).collect();

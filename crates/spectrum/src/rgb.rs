@@ -1,5 +1,5 @@
-//! Colours of three numbers: [`Xyz`] tristimulus values and [`Rgb`] values of some colour space,
-//! both linear.
+//! Colours as three linear values: [`Xyz`] tristimulus values and [`Rgb`] values of some colour
+//! space.
 
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -176,7 +176,7 @@ macro_rules! triple {
 }
 
 triple! {
-    /// Linear red, green and blue of a colour space that the context names.
+    /// Linear red, green and blue of a colour space given by the context.
     Rgb { r g b }
 }
 
@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn chromaticity_and_luminance_make_the_colour_again() {
+    fn chromaticity_and_luminance_round_trip() {
         let colour = Xyz::new(0.3, 0.4, 0.7);
         let again = Xyz::from_xy(colour.xy(), colour.y);
         assert!((again - colour).map(f32::abs).max_component() < 1e-6);

@@ -35,7 +35,7 @@ impl RgbAlbedoSpectrum {
     }
 }
 
-/// A quantity without upper bound that is no light, such as a coefficient of absorption.
+/// An unbounded quantity other than light, such as an absorption coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RgbUnboundedSpectrum {
     scale: f32,
@@ -82,12 +82,12 @@ impl RgbIlluminantSpectrum {
         self.factor.at(lambda) * self.illuminant.at(lambda)
     }
 
-    /// A bound on the values: the largest factor times the illuminant's largest value.
+    /// An upper bound of the values: the largest factor times the illuminant's maximum.
     pub fn max_value(&self) -> f32 {
         self.factor.max_value() * self.illuminant.max_value()
     }
 
-    /// The light that the RGB values were multiplied with.
+    /// The illuminant that the RGB values are multiplied by.
     pub fn illuminant(&self) -> &Arc<DenselySampled> {
         &self.illuminant
     }

@@ -1,9 +1,10 @@
-//! Values of light at the few wavelengths that a path carries, and the choice of those wavelengths.
+//! Spectral values at the few wavelengths that a path carries, and the sampling of these
+//! wavelengths.
 //!
 //! A path carries [`N`] wavelengths λ₁…λ_N with densities p(λᵢ) per nanometre. An integral over
-//! wavelength, ∫ f(λ) dλ, is estimated by 1/N Σ f(λᵢ)/p(λᵢ). Each wavelength alone has the density
-//! p; the N of them are one uniform number rotated by 1/N ("hero wavelengths"), so that they always
-//! spread over the range.
+//! wavelength, ∫ f(λ) dλ, is estimated by 1/N Σ f(λᵢ)/p(λᵢ). Each wavelength has the density p; the
+//! N of them are one uniform number rotated by multiples of 1/N ("hero wavelengths"), so that they
+//! are stratified over the range.
 //!
 //! Sources: [Wilkie 2014], [Pharr 2023 §4.5.4]; the density proportional to sech² that follows the
 //! eye's response is from [Radziszewski 2009].
@@ -21,8 +22,7 @@ pub const LAMBDA_MAX: f32 = 830.0;
 
 /// A function of wavelength known at the [`N`] wavelengths of a [`SampledWavelengths`].
 ///
-/// Arithmetic is per wavelength. The values mean nothing without the wavelengths that they were
-/// taken at.
+/// Arithmetic is per wavelength. The values are meaningless without their wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SampledSpectrum(pub [f32; N]);
 
@@ -93,7 +93,7 @@ impl SampledSpectrum {
         self.0.iter().all(|&v| v == 0.0)
     }
 
-    /// Whether no value is infinite or not a number.
+    /// Whether all values are finite.
     #[inline]
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|v| v.is_finite())
@@ -111,7 +111,7 @@ impl SampledSpectrum {
         self.map(f32::exp)
     }
 
-    /// Each value to a whole power.
+    /// Each value to an integer power.
     #[inline]
     pub fn powi(self, exponent: i32) -> Self {
         self.map(|v| v.powi(exponent))
@@ -244,8 +244,7 @@ operator!(Sub sub SubAssign sub_assign -);
 operator!(Mul mul MulAssign mul_assign *);
 operator!(Div div DivAssign div_assign /);
 
-/// The wavelengths of a path, in nanometres, and the density that each was chosen with, per
-/// nanometre.
+/// The wavelengths of a path, in nanometres, and their sampling densities, per nanometre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampledWavelengths {
     lambda: [f32; N],
@@ -253,18 +252,18 @@ pub struct SampledWavelengths {
 }
 
 impl SampledWavelengths {
-    /// Wavelengths of equal density over the range from `u` in [0, 1).
+    /// Wavelengths sampled uniformly over the range, from `u` in [0, 1).
     pub fn sample_uniform(u: f32) -> Self {
         Self::sample_uniform_in(u, LAMBDA_MIN, LAMBDA_MAX)
     }
 
-    /// Wavelengths of equal density over `min..max` from `u` in [0, 1).
+    /// Wavelengths sampled uniformly over `min..max`, from `u` in [0, 1).
     pub fn sample_uniform_in(u: f32, min: f32, max: f32) -> Self {
         let lambda = rotations(u).map(|u| min + u * (max - min));
         Self { lambda, pdf: [1.0 / (max - min); N] }
     }
 
-    /// Wavelengths chosen about in proportion to the eye's response, from `u` in [0, 1).
+    /// Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
     pub fn sample_visible(u: f32) -> Self {
         let lambda = rotations(u).map(sample_visible_wavelength);
         Self { lambda, pdf: lambda.map(visible_wavelength_pdf) }
@@ -283,8 +282,7 @@ impl SampledWavelengths {
         SampledSpectrum(self.pdf)
     }
 
-    /// Keeps the first wavelength alone, as dispersion demands; its density accounts for the
-    /// others' share.
+    /// Keeps only the first wavelength, for dispersion, and divides its density by N.
     pub fn terminate_secondary(&mut self) {
         if !self.secondary_terminated() {
             let hero = self.pdf[0] / N as f32;
@@ -293,7 +291,7 @@ impl SampledWavelengths {
         }
     }
 
-    /// Whether the first wavelength alone is alive.
+    /// Whether the secondary wavelengths are terminated.
     #[inline]
     pub fn secondary_terminated(&self) -> bool {
         self.pdf[1..].iter().all(|&p| p == 0.0)
@@ -340,7 +338,7 @@ mod tests {
     use testkit::Chi2;
 
     #[test]
-    fn the_visible_density_ends_with_the_range() {
+    fn the_visible_density_is_zero_outside_the_range() {
         assert_eq!(visible_wavelength_pdf(359.9), 0.0);
         assert_eq!(visible_wavelength_pdf(830.1), 0.0);
         assert_eq!(SampledWavelengths::sample_visible(0.0)[0].round(), LAMBDA_MIN);
@@ -362,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn wavelengths_are_one_number_rotated() {
+    fn wavelengths_are_rotations_of_the_hero() {
         let lambda = SampledWavelengths::sample_uniform(0.9);
         for (ours, expected) in lambda.lambda().iter().zip([783.0, 430.5, 548.0, 665.5]) {
             assert!((ours - expected).abs() < 1e-2);
@@ -375,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn termination_happens_once_and_leaves_a_quarter_of_the_density() {
+    fn termination_divides_the_density_once() {
         let mut lambda = SampledWavelengths::sample_uniform(0.3);
         assert!(!lambda.secondary_terminated());
         let before = lambda.pdf()[0];

@@ -1,4 +1,4 @@
-//! Any function of wavelength that a scene may name: [`Spectrum`].
+//! Functions of wavelength in scenes: [`Spectrum`].
 
 use std::sync::Arc;
 
@@ -17,11 +17,11 @@ use crate::sampled::{SampledSpectrum, SampledWavelengths};
 pub enum Spectrum {
     /// The same at all wavelengths.
     Constant(f32),
-    /// Linear between given wavelengths.
+    /// Piecewise linear between given wavelengths.
     PiecewiseLinear(Arc<PiecewiseLinear>),
     /// A value each nanometre.
     DenselySampled(Arc<DenselySampled>),
-    /// Light of a hot body, at most 1.
+    /// A blackbody, normalized to the maximum 1.
     Blackbody(Blackbody),
     /// A reflectance from RGB.
     RgbAlbedo(RgbAlbedoSpectrum),
@@ -89,7 +89,7 @@ impl Spectrum {
         }
     }
 
-    /// A bound on the values, attained by most kinds.
+    /// An upper bound of the values, tight for most kinds.
     pub fn max_value(&self) -> f32 {
         match self {
             Self::Constant(value) => *value,
@@ -112,8 +112,8 @@ impl Spectrum {
         cie::integrate_xyz(|lambda| self.at(lambda))
     }
 
-    /// ∫ f(λ) ȳ(λ) dλ, what scales lights whose power or illuminance is given. Of light from RGB
-    /// the illuminant alone counts, so that its RGB values remain factors.
+    /// ∫ f(λ) ȳ(λ) dλ, by which lights of given power or illuminance are scaled. For light from RGB
+    /// it is that of the illuminant, so that the RGB values remain factors.
     pub fn to_photometric(&self) -> f32 {
         let y_bar = &cie::matching_functions().y;
         match self {
@@ -122,7 +122,7 @@ impl Spectrum {
         }
     }
 
-    /// The values at whole nanometres, for fast repeated use.
+    /// The values at integer nanometres, for fast evaluation.
     pub fn to_dense(&self) -> Self {
         match self {
             Self::Constant(_) | Self::DenselySampled(_) => self.clone(),
@@ -175,14 +175,14 @@ mod tests {
     }
 
     #[test]
-    fn photometry_of_light_from_rgb_sees_its_illuminant_alone() {
+    fn photometry_of_rgb_light_is_that_of_the_illuminant() {
         let space = RgbColorSpace::srgb();
         let light = Spectrum::rgb_illuminant(space, Rgb::new(7.0, 0.5, 0.1));
         assert!((light.to_photometric() - CIE_Y_INTEGRAL).abs() < 1e-3);
     }
 
     #[test]
-    fn dense_values_are_those_at_whole_nanometres() {
+    fn dense_values_are_at_integer_nanometres() {
         let spectrum = Spectrum::blackbody(3000.0);
         let dense = spectrum.to_dense();
         for lambda in [360.0, 500.0, 830.0] {

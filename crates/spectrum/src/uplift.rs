@@ -84,8 +84,8 @@ fn ratio_position(ratio: f32) -> f32 {
     ((0.36 + 1.6 * ratio).sqrt() - 0.6) / 0.8
 }
 
-/// What coefficients are about linear in over the largest component z: (z − ½) / √(z (1 − z)), kept
-/// finite at z = 1.
+/// The variable in which coefficients are about linear over the largest component z: (z − ½) / √(z
+/// (1 − z)), kept finite at z = 1.
 fn value_coordinate(z: f32) -> f32 {
     (z - 0.5) / (z * (1.05 - z)).sqrt()
 }
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_value_is_found_inside_and_at_the_ends() {
+    fn the_maximum_is_found_inside_and_at_the_ends() {
         for coefficients in
             [[-1.0, 0.5, 0.2], [1.0, 0.5, -0.2], [-0.1, 3.0, 0.0], [0.0, -1.0, 0.5], [0.0, 0.0, 0.3]]
         {
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_keeps_the_polynomial() {
+    fn encoding_preserves_the_polynomial() {
         let mut nodes = vec![[0.0; 3]; NODES];
         nodes[5] = [-1.5, 0.25, 3.0];
         nodes[6] = [40.0, -7.0, -90.0];

@@ -1,8 +1,9 @@
-//! RGB values made into spectra and seen by the standard observer are the RGB values again.
+//! RGB values uplifted to spectra and integrated with the standard observer are the same RGB
+//! values.
 
 use alhazen_spectrum::{Rgb, RgbColorSpace, SampledWavelengths, Spectrum, xyz_from};
 
-/// The RGB values that a reflectance shows under the colour space's illuminant.
+/// The RGB values of a reflectance under the colour space's illuminant.
 fn seen(space: &RgbColorSpace, reflectance: &Spectrum) -> Rgb {
     let light = space.illuminant();
     let pairs: Vec<(f32, f32)> = (360..=830)
@@ -25,7 +26,7 @@ fn grid(steps: u32) -> impl Iterator<Item = Rgb> {
 }
 
 #[test]
-fn all_of_srgb_comes_back() {
+fn srgb_round_trips() {
     let space = RgbColorSpace::srgb();
     for rgb in grid(9).chain(grid(9).map(|rgb| rgb * rgb * rgb)) {
         let again = seen(space, &Spectrum::rgb_albedo(space, rgb));
@@ -35,10 +36,10 @@ fn all_of_srgb_comes_back() {
 }
 
 #[test]
-fn moderate_colours_of_every_space_come_back() {
+fn moderate_colours_of_every_space_round_trip() {
     for space in RgbColorSpace::all() {
         for rgb in grid(6) {
-            // Half way to grey: every space has such a reflectance.
+            // Half way to grey: such colours have a reflectance in every space.
             let rgb = rgb.lerp(Rgb::splat(rgb.average()), 0.6) * 0.9;
             let again = seen(space, &Spectrum::rgb_albedo(space, rgb));
             assert!(largest_difference(again, rgb) < 2e-3, "{space:?}: {rgb:?} became {again:?}");
@@ -47,7 +48,7 @@ fn moderate_colours_of_every_space_come_back() {
 }
 
 #[test]
-fn saturated_colours_of_wide_spaces_come_back() {
+fn saturated_colours_of_wide_spaces_round_trip() {
     for (space, rgb) in [
         (RgbColorSpace::dci_p3(), Rgb::new(0.5, 0.05, 0.025)),
         (RgbColorSpace::dci_p3(), Rgb::new(0.06, 0.5, 0.12)),
@@ -83,7 +84,7 @@ fn dark_colours_keep_their_hue() {
 }
 
 #[test]
-fn light_and_unbounded_values_come_back_beyond_one() {
+fn values_above_one_round_trip() {
     for space in RgbColorSpace::all() {
         let rgb = Rgb::new(17.0, 12.0, 4.0);
         let light = space.to_rgb(Spectrum::rgb_illuminant(space, rgb).to_xyz());
@@ -95,7 +96,7 @@ fn light_and_unbounded_values_come_back_beyond_one() {
 }
 
 #[test]
-fn light_seen_through_sampled_wavelengths_has_its_colour() {
+fn sampled_wavelengths_preserve_colour() {
     const STEPS: u32 = 4096;
     let space = RgbColorSpace::srgb();
     let rgb = Rgb::new(0.8, 0.5, 0.2);

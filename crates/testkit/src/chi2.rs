@@ -1,10 +1,10 @@
 //! Pearson's χ² test of a sampling routine against its density.
 //!
-//! The domain is cut into cells. For each, the density's integral times the number of samples, E,
-//! is held against the number O that fell in: χ² = Σ (O − E)² / E. Cells with E below
-//! [`Chi2::min_expected`] are pooled. A routine that gives no sample (`None`) falls in a cell of
-//! its own, which expects what the density lacks to one. The idea is that of [Jakob 2010] (Nori)
-//! and [Pharr 2023 §9.8].
+//! The domain is divided into cells. For each, the density's integral times the number of samples,
+//! E, is compared with the observed count O: χ² = Σ (O − E)² / E. Cells with E below
+//! [`Chi2::min_expected`] are pooled. Failed samples (`None`) are counted in a cell of their own,
+//! which expects one minus the integral of the density. The idea is that of [Jakob 2010] (Nori) and
+//! [Pharr 2023 §9.8].
 
 use crate::quadrature::{integrate, search};
 use crate::{Random, SIGNIFICANCE, chi2_cdf, sidak};
@@ -27,13 +27,13 @@ use std::fmt::Write;
 pub struct Chi2 {
     /// Cells along the first and second coordinate (θ and φ on the sphere).
     pub bins: [usize; 2],
-    /// How many samples are drawn.
+    /// Number of samples.
     pub samples: usize,
     /// The expectation below which cells are pooled.
     pub min_expected: f64,
-    /// How many tests share [`SIGNIFICANCE`].
+    /// Number of tests that share [`SIGNIFICANCE`].
     pub tests: usize,
-    /// Seed of the uniform numbers that the routine is fed.
+    /// Seed of the uniform numbers for the routine.
     pub seed: u64,
 }
 
@@ -43,7 +43,7 @@ impl Default for Chi2 {
     }
 }
 
-/// What a histogram cell is called, expects and has got.
+/// A histogram cell: its name, expected and observed counts.
 struct Cell {
     place: [[f64; 2]; 2],
     expected: f64,
@@ -51,7 +51,7 @@ struct Cell {
 }
 
 impl Chi2 {
-    /// Directions: `sample` makes a unit vector (or none) of a point of the unit square; `pdf` is
+    /// Directions: `sample` maps a point of the unit square to a unit vector, or to none; `pdf` is
     /// per solid angle.
     pub fn sphere(
         &self,
@@ -80,7 +80,7 @@ impl Chi2 {
         }
     }
 
-    /// Points of a rectangle `[[x0, x1], [y0, y1]]`; `pdf` is per area.
+    /// Points in a rectangle `[[x0, x1], [y0, y1]]`; `pdf` is per area.
     pub fn rectangle(
         &self,
         bounds: [[f32; 2]; 2],
@@ -91,7 +91,7 @@ impl Chi2 {
         self.run(bounds, |u| sample(u).map(|p| p.map(f64::from)), |x, y| pdf([x as f32, y as f32]))
     }
 
-    /// Numbers of an interval `[x0, x1]`, in `bins[0] · bins[1]` cells; `pdf` is per length.
+    /// Numbers in an interval `[x0, x1]`, in `bins[0] · bins[1]` cells; `pdf` is per length.
     pub fn interval(
         &self,
         range: [f32; 2],
@@ -103,8 +103,7 @@ impl Chi2 {
         line.run(bounds, |u| sample(u[0]).map(|x| [x as f64, 0.5]), |x, _| pdf(x as f32))
     }
 
-    /// Counts that were made elsewhere against the counts expected. `bins`, `samples` and `seed`
-    /// play no part.
+    /// Tests given counts against expected ones. `bins`, `samples` and `seed` are not used.
     pub fn counts(&self, observed: &[u64], expected: &[f64]) -> Result<(), String> {
         assert_eq!(observed.len(), expected.len(), "each cell has a count and an expectation");
         let cells = observed.iter().zip(expected).enumerate().map(|(i, (&observed, &expected))| Cell {
@@ -153,8 +152,8 @@ impl Chi2 {
         for (i, observed) in observed.into_iter().enumerate() {
             let (column, row) = (i / rows, i % rows);
             let place = [[edge(0, column), edge(0, column + 1)], [edge(1, row), edge(1, row + 1)]];
-            // A hair inside, so that an edge of the density along the cell's border is not looked
-            // at from both sides.
+            // Slightly inside, so that a discontinuity along the cell's boundary is not evaluated
+            // on both sides.
             let inside = place.map(|[low, high]| {
                 let hair = 1e-5 * (high - low);
                 [low + hair, high - hair]
@@ -179,10 +178,10 @@ impl Chi2 {
         self.judge(cells).map_err(|table| format!("{table}the density integrates to {total:.6}\n"))
     }
 
-    /// Pools the cells that expect little, then compares χ² with its distribution.
+    /// Pools cells with small expected counts, then compares χ² with its distribution.
     fn judge(&self, mut cells: Vec<Cell>) -> Result<(), String> {
         let count: u64 = cells.iter().map(|cell| cell.observed).sum();
-        // Rounding may carry a few samples over a cell's edge, not more.
+        // Rounding may move a few samples across a cell's edge, not more.
         let strays = 2.max(count / 100_000);
         if let Some(cell) = cells.iter().find(|cell| cell.expected == 0.0 && cell.observed > strays) {
             return Err(format!(
@@ -207,7 +206,8 @@ impl Chi2 {
         if groups == 0 {
             return Err("no cell has any density\n".into());
         }
-        // A single group has no freedom: its count must be what it expects up to the quadrature.
+        // A single group has no degree of freedom: its count must be as expected, up to the
+        // quadrature error.
         let degrees = (groups - 1).max(1) as f64;
         let p = 1.0 - chi2_cdf(statistic, degrees);
         let alpha = sidak(SIGNIFICANCE, self.tests);
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_right_density_is_accepted() {
+    fn the_right_density_is_accepted() {
         for seed in 0..8 {
             let test = Chi2 { tests: 8, seed, ..Chi2::default() };
             test.sphere(uniform_sphere, |_| 1.0 / (4.0 * PI)).unwrap();
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_density_is_refused() {
+    fn a_wrong_density_is_rejected() {
         let test = Chi2 { tests: 50, ..Chi2::default() };
         test.sphere(uniform_sphere, |w| (1.0 + 0.06 * w[0] as f64) / (4.0 * PI)).unwrap_err();
         test.sphere(uniform_sphere, |_| 1.05 / (4.0 * PI)).unwrap_err();
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_sample_is_refused() {
+    fn wrong_samples_are_rejected() {
         let test = Chi2 { tests: 50, ..Chi2::default() };
         test.sphere(|u| uniform_sphere(u).map(|w| w.map(|x| 2.0 * x)), |_| 1.0 / (4.0 * PI)).unwrap_err();
         test.sphere(|_| Some([f32::NAN; 3]), |_| 1.0 / (4.0 * PI)).unwrap_err();
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_samples_are_what_the_density_lacks() {
+    fn missing_samples_match_the_missing_density() {
         let upper = |u: [f32; 2]| uniform_sphere(u).filter(|w| w[2] > 0.0);
         let density = |w: [f32; 3]| if w[2] > 0.0 { 0.25 / PI } else { 0.0 };
         Chi2::default().sphere(upper, density).unwrap();
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn the_refusal_names_the_worst_cell() {
+    fn rejections_name_the_worst_cell() {
         let message = Chi2::default().interval([0.0, 1.0], |_| Some(0.25), |_| 1.0).unwrap_err();
         assert!(message.contains("[0.2500, 0.2520]"), "{message}");
     }

@@ -1,13 +1,11 @@
 //! Statistical tests on plain numbers: χ², t and z.
 //!
-//! A sampling routine and its density are two claims about one distribution; [`Chi2`] holds them
-//! against each other. An estimator and an exact value are held together by [`t_test`] or
-//! [`z_test`], two estimators by [`welch_test`]. Everything here speaks `[f32; 2]`, `[f32; 3]` and
-//! `f64`, so that each crate can use it.
+//! [`Chi2`] tests a sampling routine against its density, [`t_test`] and [`z_test`] an estimator
+//! against an exact value, [`welch_test`] two estimators against each other. All take `[f32; 2]`,
+//! `[f32; 3]` and `f64`, so that every crate can use them.
 //!
-//! Every test draws from a generator with a fixed seed ([`Random`]) and divides its significance
-//! among the number of tests that run side by side (Šidák's correction), so it gives the same
-//! answer in every run.
+//! Every test has a generator with a fixed seed ([`Random`]), so that its result is reproducible,
+//! and corrects its significance for the number of tests (Šidák's correction).
 
 mod chi2;
 mod means;
@@ -21,5 +19,6 @@ pub use quadrature::integrate;
 pub use random::Random;
 pub use special::{chi2_cdf, ln_gamma, normal_cdf, regularized_beta, regularized_gamma, sidak, student_cdf};
 
-/// The chance that a whole family of right tests is refused: shared among its members by [`sidak`].
+/// The probability that any test of a family rejects a true hypothesis; [`sidak`] gives that of one
+/// test.
 pub const SIGNIFICANCE: f64 = 0.01;

@@ -5,7 +5,7 @@ use crate::{SIGNIFICANCE, normal_cdf, sidak, student_cdf};
 /// Count, mean and variance of a stream of numbers, by Welford's update.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Moments {
-    /// How many numbers came.
+    /// Number of values.
     pub count: usize,
     /// Their mean.
     pub mean: f64,
@@ -13,7 +13,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Adds one number.
+    /// Adds a value.
     pub fn push(&mut self, x: f64) {
         self.count += 1;
         let delta = x - self.mean;
@@ -21,7 +21,7 @@ impl Moments {
         self.squares += delta * (x - self.mean);
     }
 
-    /// The unbiased estimate of the variance of one number; 0 for fewer than two.
+    /// The unbiased estimate of the variance of a value; 0 for fewer than two.
     pub fn variance(&self) -> f64 {
         if self.count < 2 { 0.0 } else { self.squares / (self.count - 1) as f64 }
     }
@@ -53,7 +53,7 @@ pub fn z_test(mean: f64, standard_error: f64, expected: f64, tests: usize) -> Re
     verdict(mean, expected, standard_error * standard_error, tests, normal_cdf)
 }
 
-/// Whether two samples have one mean, whatever their variances (Welch's test), as one of `tests`
+/// Whether two samples have equal means, with any variances (Welch's test), as one of `tests`
 /// tests.
 pub fn welch_test(a: &Moments, b: &Moments, tests: usize) -> Result<(), String> {
     let (va, vb) = (a.variance_of_mean(), b.variance_of_mean());
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_right_mean_is_accepted() {
+    fn the_right_mean_is_accepted() {
         for seed in 0..20 {
             t_test(&squares(2000, seed, 0.0), 1.0 / 3.0, 20).unwrap();
             welch_test(&squares(2000, seed, 0.0), &squares(900, seed + 100, 0.0), 20).unwrap();
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_mean_is_refused() {
+    fn a_wrong_mean_is_rejected() {
         let sample = squares(20_000, 1, 0.02);
         t_test(&sample, 1.0 / 3.0, 20).unwrap_err();
         z_test(sample.mean, sample.variance_of_mean().sqrt(), 1.0 / 3.0, 20).unwrap_err();
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mean_without_variance_needs_no_luck() {
+    fn means_without_variance_are_compared_exactly() {
         t_test(&Moments::from_iter([0.5; 10]), 0.5, 1).unwrap();
     }
 }

@@ -1,15 +1,15 @@
 //! Adaptive quadrature over a rectangle.
 //!
-//! A cell is measured by Simpson's rule, once whole and once in quarters; where the two disagree by
-//! more than the tolerance, each quarter is treated alike. As the rule looks at the border of each
-//! cell, no straight edge of the density slips between its points unseen; edges are so followed to
-//! a fine width.
+//! A cell is integrated by Simpson's rule, once whole and once in quarters; where these differ by
+//! more than the tolerance, the quarters are refined recursively. The rule has nodes on the
+//! boundary of each cell, so that no straight discontinuity lies between them unnoticed;
+//! discontinuities are resolved to a fine width.
 
-/// How often a cell is quartered at least and at most.
+/// The least and greatest number of subdivisions.
 const MIN_DEPTH: u32 = 2;
 const MAX_DEPTH: u32 = 9;
-/// How often it is quartered at least where all points of the usual grid have missed what the
-/// density has there.
+/// The least number of subdivisions where all nodes of the usual grid have missed the support of
+/// the density.
 const SEARCH_DEPTH: u32 = 6;
 
 /// ∬ `f` over `[x0, x1] × [y0, y1]`, given as `[[x0, x1], [y0, y1]]`, to about `tolerance`.
@@ -17,7 +17,7 @@ pub fn integrate(f: &impl Fn(f64, f64) -> f64, cell: [[f64; 2]; 2], tolerance: f
     refine(f, cell, simpson(f, cell), 0.1 * tolerance, [MIN_DEPTH, MAX_DEPTH])
 }
 
-/// As [`integrate`], for a cell of which it is known that `f` is not 0 everywhere.
+/// As [`integrate`], for a cell where `f` is known not to be 0 everywhere.
 pub(crate) fn search(f: &impl Fn(f64, f64) -> f64, cell: [[f64; 2]; 2], tolerance: f64) -> f64 {
     refine(f, cell, simpson(f, cell), 0.1 * tolerance, [SEARCH_DEPTH, MAX_DEPTH])
 }
@@ -63,34 +63,34 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn smooth_functions_are_precise() {
+    fn smooth_functions_are_integrated_precisely() {
         let value = integrate(&|x, y| x.powi(3) * y.powi(4), [[0.0, 1.0], [0.0, 2.0]], 1e-9);
         assert!((value - 32.0 / 20.0).abs() < 1e-7);
     }
 
     #[test]
-    fn an_edge_is_followed() {
+    fn edges_are_resolved() {
         let disk = |x: f64, y: f64| if x * x + y * y < 1.0 { 1.0 } else { 0.0 };
         let value = integrate(&disk, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
         assert!((value - PI / 4.0).abs() < 1e-3, "{value}");
     }
 
     #[test]
-    fn a_corner_between_the_points_is_found() {
+    fn corners_between_nodes_are_found() {
         let corner = |x: f64, y: f64| if x + y < 0.03 { 1.0 } else { 0.0 };
         let value = search(&corner, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
         assert!((value / 0.00045 - 1.0).abs() < 0.01, "{value}");
     }
 
     #[test]
-    fn an_edge_along_an_axis_is_followed() {
+    fn axis_aligned_edges_are_resolved() {
         let half = |x: f64, _: f64| if x < 0.337 { 1.0 } else { 0.0 };
         let value = integrate(&half, [[0.0, 1.0], [0.0, 1.0]], 1e-7);
         assert!((value - 0.337).abs() < 3e-4, "{value}");
     }
 
     #[test]
-    fn a_peak_is_found() {
+    fn peaks_are_found() {
         let peak =
             |x: f64, y: f64| (-((x - 0.3).powi(2) + (y - 0.6).powi(2)) / (2.0 * 0.02f64.powi(2))).exp();
         let value = integrate(&peak, [[0.0, 1.0], [0.0, 1.0]], 1e-9);

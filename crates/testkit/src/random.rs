@@ -1,6 +1,6 @@
 //! A small generator of uniform numbers, independent of the ones under test.
 //!
-//! SplitMix64 [Steele 2014]: a counter with an odd increment, sent through a bijective mixer.
+//! SplitMix64 [Steele 2014]: a counter with an odd increment, followed by a bijective mixer.
 
 /// A deterministic stream of uniform numbers.
 #[derive(Clone, Debug)]
@@ -9,7 +9,7 @@ pub struct Random {
 }
 
 impl Random {
-    /// The stream that belongs to `seed`.
+    /// The stream of `seed`.
     pub fn new(seed: u64) -> Random {
         Random { state: seed }
     }

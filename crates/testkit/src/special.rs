@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-/// Terms after which a series or fraction has converged for every argument that a test meets.
+/// Number of terms after which a series or fraction has converged for all arguments in tests.
 const MAX_TERMS: usize = 100_000;
 const EPSILON: f64 = 1e-16;
 /// Keeps the denominators of a continued fraction away from zero.
@@ -109,25 +109,25 @@ fn away_from_zero(x: f64) -> f64 {
     if x.abs() < TINY { TINY } else { x }
 }
 
-/// The chance that a standard normal variable is at most `z`.
+/// The probability that a standard normal variable is at most `z`.
 pub fn normal_cdf(z: f64) -> f64 {
     let half_erf = 0.5 * regularized_gamma(0.5, 0.5 * z * z);
     if z < 0.0 { 0.5 - half_erf } else { 0.5 + half_erf }
 }
 
-/// The chance that a χ² variable with `degrees` degrees of freedom is at most `x`.
+/// The probability that a χ² variable with `degrees` degrees of freedom is at most `x`.
 pub fn chi2_cdf(x: f64, degrees: f64) -> f64 {
     regularized_gamma(0.5 * degrees, 0.5 * x)
 }
 
-/// The chance that Student's t with `degrees` degrees of freedom is at most `t`.
+/// The probability that Student's t with `degrees` degrees of freedom is at most `t`.
 pub fn student_cdf(t: f64, degrees: f64) -> f64 {
     let tail = 0.5 * regularized_beta(0.5 * degrees, 0.5, degrees / (degrees + t * t));
     if t < 0.0 { tail } else { 1.0 - tail }
 }
 
-/// The significance of one test such that `tests` of them together refuse a right hypothesis with
-/// chance `significance` [Šidák 1967].
+/// The significance of one test such that `tests` of them together reject a true hypothesis with
+/// probability `significance` [Šidák 1967].
 pub fn sidak(significance: f64, tests: usize) -> f64 {
     1.0 - (1.0 - significance).powf(1.0 / tests.max(1) as f64)
 }
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn sidak_shares_the_significance() {
+    fn sidak_correction() {
         near(sidak(0.01, 1), 0.01);
         near(1.0 - (1.0 - sidak(0.01, 50)).powi(50), 0.01);
     }

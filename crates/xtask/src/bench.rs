@@ -18,7 +18,7 @@ const PACKAGE: &str = "embreex==4.4.*";
 pub fn rays(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let library = embree(root);
     if let Err(error) = &library {
-        eprintln!("warning: Embree is not to be had, so that nothing is measured beside it: {error}");
+        eprintln!("warning: Embree is not available, so only alhazen is measured: {error}");
     }
     let mut command = cargo(root);
     command.args(["run", "--release", "--quiet", "--package", "alhazen-bench", "--bin", "rays", "--"]);

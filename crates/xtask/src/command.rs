@@ -1,4 +1,4 @@
-//! Other programs.
+//! Running other programs.
 
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +10,7 @@ pub fn cargo(root: &Path) -> Command {
     command
 }
 
-/// Runs a command to its end.
+/// Runs a command and waits for it.
 pub fn succeed(command: &mut Command) -> Result<(), String> {
     match command.status() {
         Ok(status) if status.success() => Ok(()),

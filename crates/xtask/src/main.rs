@@ -1,4 +1,4 @@
-//! Chores of the project.
+//! Development tasks of the project.
 
 mod bench;
 mod command;
@@ -13,7 +13,7 @@ const USAGE: &str = "\
 usage: cargo xtask CHORE
 
   test       everything that must hold: format, house rules, lints, tests, documentation
-  tidy       the house rules alone, in a second
+  tidy       the source rules alone, in a second
   bench rays [--help | OPTIONS]
              the ray engine beside Embree, on a million triangles
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";

@@ -1,11 +1,11 @@
 //! `cargo xtask rgb-table`: fits the tables that turn RGB into spectra and writes them to
 //! `crates/spectrum/data`.
 //!
-//! For each node of a table the coefficients c of the sigmoid polynomial s are sought for which the
+//! For each node of a table the coefficients c of the sigmoid polynomial s are sought whose
 //! reflectance s(c, λ) under the colour space's illuminant has the node's colour: least squares of
 //! the CIELAB difference by Gauss–Newton steps with Levenberg's damping, in double precision. Each
 //! column of nodes is fitted outwards from its middle, every fit starting from its neighbour's
-//! result. Colours that no reflectance can have get the nearest one.
+//! result. Colours outside the gamut of reflectances get the nearest one.
 //!
 //! Source: [Jakob 2019].
 
@@ -18,7 +18,7 @@ use spectrum::{CIE_Y_INTEGRAL, LAMBDA_MIN, Matrix3, Rgb, RgbColorSpace, cie};
 /// Coefficients of t², t and 1.
 type Coefficients = [f64; 3];
 
-/// Fits, writes and judges the tables of all colour spaces.
+/// Fits, writes and evaluates the tables of all colour spaces.
 pub fn run() -> io::Result<()> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spectrum/data");
     for space in RgbColorSpace::all() {
@@ -31,9 +31,9 @@ pub fn run() -> io::Result<()> {
     Ok(())
 }
 
-/// A colour space's illuminant seen by the standard observer.
+/// The standard observer with a colour space's illuminant.
 struct Observer {
-    /// Position t of each wavelength and what a reflectance of one there adds to XYZ.
+    /// The parameter t of each wavelength, and the contribution of unit reflectance there to XYZ.
     weights: Vec<(f64, [f64; 3])>,
     white: [f64; 3],
     xyz_from_rgb: Matrix3,
@@ -106,9 +106,9 @@ impl Observer {
     /// The coefficients c that make the squared difference from `rgb` plus R²·max(rgb)·|c|² least,
     /// sought from `start`.
     ///
-    /// The second term changes nothing to speak of where a reflectance has the colour, and keeps
-    /// the coefficients bounded, and so the table smooth, where none has; dark colours need
-    /// coefficients as 1/√max(rgb).
+    /// The second term is negligible where a reflectance has the colour; where none has, it keeps
+    /// the coefficients bounded and so the table smooth. Dark colours need coefficients as
+    /// 1/√max(rgb).
     fn fit(&self, rgb: [f64; 3], start: Coefficients) -> Coefficients {
         const R: f64 = 4e-3;
         const STEPS: usize = 100;
@@ -150,7 +150,7 @@ impl Observer {
         best
     }
 
-    /// How well RGB values come back through the table, in words.
+    /// The round-trip error of RGB values through the table, as text.
     fn judge(&self, table: &RgbToSpectrumTable) -> String {
         const STEPS: usize = 37;
         let mut errors = Vec::new();

@@ -1,5 +1,4 @@
-//! Everything that must hold before a change lands, cheapest first; the first step that fails ends
-//! the run.
+//! All checks and tests, cheapest first; the first failure ends the run.
 
 use std::path::Path;
 use std::process::Command;

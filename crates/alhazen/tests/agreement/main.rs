@@ -1,5 +1,5 @@
-//! Algorithms that claim the same light, against each other: pictures of small scenes, part by part
-//! and as a whole.
+//! Integrators with the same expected value, against each other: pictures of small scenes, as a
+//! whole and by squares.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -87,7 +87,7 @@ static REFERENCES: LazyLock<Vec<Pictures>> = LazyLock::new(|| {
     SCENES.iter().map(reference).collect()
 });
 
-/// Holds an algorithm to path tracing on every scene that it can see all of.
+/// Tests an integrator against path tracing on every scene that it can render completely.
 fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can: impl Fn(&Scene) -> bool) {
     let scenes: Vec<_> = SCENES.iter().zip(&*REFERENCES).filter(|(scene, _)| can(scene)).collect();
     let mut failures = Vec::new();
@@ -100,29 +100,29 @@ fn assert_agrees(integrator: &str, settings: &[(&str, &str)], samples: u32, can:
 }
 
 #[test]
-fn bidirectional_paths_find_what_path_tracing_finds() {
+fn bdpt_agrees_with_path_tracing() {
     assert_agrees("bdpt", &[], 8, |_| true);
 }
 
 #[test]
-fn light_finds_what_path_tracing_finds() {
+fn light_tracing_agrees_with_path_tracing() {
     assert_agrees("light-tracing", &[], 16, |scene| !scene.is_hidden_from_light);
 }
 
 #[test]
-fn connecting_and_merging_find_what_path_tracing_finds() {
+fn vcm_agrees_with_path_tracing() {
     assert_agrees("vcm", &[("radius", "0.03")], 8, |_| true);
 }
 
 #[test]
-fn photons_find_what_path_tracing_finds() {
-    // Light of one side of a wall without thickness is found on the other, within the radius.
+fn sppm_agrees_with_path_tracing() {
+    // Photons on one side of a wall without thickness leak to the other, within the radius.
     let can = |scene: &Scene| !["a door that is almost closed", "a plane without end"].contains(&scene.name);
     assert_agrees("sppm", &[("radius", "0.03"), ("photons", "4000")], 8, can);
 }
 
 #[test]
-fn light_that_path_tracing_never_meets_is_the_same_for_all_others() {
+fn light_paths_agree_on_caustics_of_delta_lights() {
     let scene = &POINT_LIGHT_IN_GLASS;
     let reference = Pictures::new(scene, "light-tracing", &[], 32, 1000);
     let photons = [("radius", "0.03"), ("photons", "4000")];
@@ -139,8 +139,8 @@ fn light_that_path_tracing_never_meets_is_the_same_for_all_others() {
 const BLUR: f64 = 0.02;
 
 #[test]
-fn photon_maps_hold_nearly_what_path_tracing_finds() {
-    // Under a door photons seep.
+fn photon_mapping_nearly_agrees_with_path_tracing() {
+    // Photons leak under the door.
     let can = |scene: &Scene| !["a door that is almost closed", "a plane without end"].contains(&scene.name);
     let scenes = SCENES.iter().zip(&*REFERENCES).filter(|(scene, _)| can(scene));
     let settings = [("photons", "2000"), ("causticphotons", "2000"), ("nearest", "20"), ("radius", "0.1")];
@@ -159,7 +159,7 @@ fn photon_maps_hold_nearly_what_path_tracing_finds() {
 }
 
 #[test]
-fn chains_of_paths_find_what_path_tracing_finds() {
+fn mlt_agrees_with_path_tracing() {
     // Where few paths carry light, the squares of so few chains are too far from normally
     // distributed.
     assert_agrees("mlt", &[], 32, |scene| scene.name != "a door that is almost closed");

@@ -1,5 +1,5 @@
-//! Means of whole pictures, each known to a part in a thousand: the same for all algorithms to
-//! three.
+//! Means of whole pictures, with a standard error of one per mille, which agree within three for
+//! all integrators.
 //!
 //! Pictures with one seed after another are made until the mean of each channel is known well
 //! enough. The mean does not mind how many pixels there are, so each algorithm has as many as make
@@ -11,7 +11,7 @@ use testkit::{Moments, welch_test};
 use crate::common::{means, render_text};
 use crate::scenes::{SCENES, Scene};
 
-/// How far means may differ.
+/// The tolerated difference of means.
 const THREE_IN_A_THOUSAND: f64 = 3e-3;
 
 /// In the pool, path tracing knows the mean to a part in a thousand after many minutes. In the
@@ -165,7 +165,7 @@ fn error(moments: &Moments) -> f64 {
 
 #[test]
 #[ignore = "slow: half an hour of one core; cargo test -p alhazen --profile checked --test agreement -- --ignored --nocapture"]
-fn means_agree_to_three_in_a_thousand() {
+fn means_agree_within_three_per_mille() {
     let scenes = SCENES.iter().zip(0..).filter(|(scene, _)| !NOT_COMPARED.contains(&scene.name));
     let tests = 3 * (MEMBERS.len() - 1) * SCENES.len();
     let mut failures = Vec::new();

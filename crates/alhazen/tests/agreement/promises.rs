@@ -1,4 +1,4 @@
-//! What every algorithm promises, whatever it is.
+//! The contract of all integrators.
 
 use std::f64::consts::PI;
 
@@ -93,7 +93,7 @@ impl Member {
         Self { integrator, settings, lost: [0.0; 2] }
     }
 
-    /// All that follow light.
+    /// All integrators of global illumination.
     ///
     /// A final gather looks for photons where its rays fall, on the other walls: nowhere more than
     /// 2.5 times as often as in the mean. Connecting loses nothing, so vcm loses less than merging
@@ -140,7 +140,7 @@ impl Member {
 }
 
 #[test]
-fn a_closed_furnace_shows_all_paths_up_to_a_depth_once() {
+fn a_closed_furnace_has_every_path_up_to_a_depth_once() {
     let members = Member::all();
     // These do not follow light from surface to surface.
     let others = ["ray-casting", "whitted", "ambient-occlusion"];
@@ -166,7 +166,7 @@ fn a_closed_furnace_shows_all_paths_up_to_a_depth_once() {
     }
 }
 
-/// Small mirrors, on which a lamp behind the camera glints.
+/// Small mirrors that reflect a light behind the camera.
 const MIRRORS: &str = r#"Camera "perspective" "float fov" 40
     Film "rgb" "integer xresolution" 4 "integer yresolution" 4 "bool savefp16" false
     PixelFilter "mitchell"
@@ -179,7 +179,7 @@ const MIRRORS: &str = r#"Camera "perspective" "float fov" 40
     Material "diffuse" Translate 0 0 4 Shape "disk""#;
 
 #[test]
-fn glints_beside_the_edges_of_mirrors_are_what_path_tracing_finds_with_more_noise() {
+fn vcm_finds_glints_at_mirror_edges_with_less_noise() {
     let found = |integrator: &str, first_seed: i32| -> Moments {
         let depth = vec![("maxdepth".into(), "1".into())];
         let mean = |seed| {

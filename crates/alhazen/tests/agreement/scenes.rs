@@ -300,7 +300,7 @@ pub const SCENES: [Scene; 17] = [
     },
 ];
 
-/// A scene that only light itself finds its way through.
+/// A scene whose light only light paths find.
 pub const POINT_LIGHT_IN_GLASS: Scene = Scene {
     name: "a point light in glass",
     max_depth: 5,

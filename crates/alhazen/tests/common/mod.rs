@@ -1,5 +1,5 @@
-//! What the tests on third-party data share: where the data lie, scenes written as text, and
-//! pictures with their noise.
+//! Helpers of the tests on third-party data: its location, scenes as text, and pictures with their
+//! standard errors.
 #![allow(dead_code, reason = "each test uses a part")]
 #![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
@@ -130,7 +130,8 @@ impl Estimate {
         (sum / f64::from(count), variance.sqrt() / f64::from(count))
     }
 
-    /// Holds the whole picture's mean to `expected`, whose own relative error is `uncertainty`.
+    /// Asserts that the mean of the whole picture is `expected`, which has the relative error
+    /// `uncertainty`.
     pub fn assert_mean(&self, expected: [f64; 3], uncertainty: f64, tests: usize, name: &str) {
         for (channel, &expected) in expected.iter().enumerate() {
             let (mean, error) = self.mean(&[0..self.width, 0..self.height], channel);
@@ -139,8 +140,8 @@ impl Estimate {
         }
     }
 
-    /// Holds the means of square parts of the picture to those of a reference of the same size,
-    /// whose own error is at most `uncertainty` times its value there.
+    /// Asserts that means over squares of the picture are those of a reference of the same size,
+    /// which has the relative error `uncertainty` at most.
     pub fn assert_parts(&self, reference: &Image, side: usize, uncertainty: f64, tests: usize, name: &str) {
         assert_eq!(
             [reference.width() as usize, reference.height() as usize],

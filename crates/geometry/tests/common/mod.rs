@@ -1,4 +1,4 @@
-//! Meshes and random things for the tests.
+//! Meshes and random values for the tests.
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use alhazen_geometry::*;
@@ -40,8 +40,7 @@ pub fn cube(transform: &Transform) -> TriangleMesh {
     mesh(positions, indices, transform)
 }
 
-/// A closed, bumpy ball of 2·n·(n − 1) triangles or so: every radius is between 1 − bump and 1 +
-/// bump.
+/// A closed, bumpy sphere of about 2·n·(n − 1) triangles, with radii between 1 − bump and 1 + bump.
 pub fn ball(n: u32, bump: f32, transform: &Transform) -> TriangleMesh {
     let mut positions = vec![Vec3::Z, -Vec3::Z];
     for i in 1..n {
@@ -87,7 +86,7 @@ pub fn nearest(world: &World, ray: &Ray) -> Option<Hit> {
     world.intersect(ray, f32::INFINITY, &keep_all, &mut RayStats::default())
 }
 
-/// Some of every kind of shape under one transform.
+/// Shapes of every kind with one transform.
 pub fn shapes(m: &Transform) -> Vec<(&'static str, Shape)> {
     let rectangle = [
         Vec3::new(-1.0, -0.5, 0.2),

@@ -29,11 +29,16 @@ use crate::{
     encoding::at_most,
     error::ImageError,
     image::{Image, Pixels},
+    memory::require_memory,
     metrics::check_same_size,
 };
 
 /// Pixels per degree of a screen 0.7 m wide with 3840 pixels across, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f32 = 67.020_645;
+
+/// Bytes per pixel that a comparison takes at most: the colours of both pictures, as read and
+/// tone mapped, the impressions of both, and the planes of which the second is made.
+const BYTES_PER_PIXEL: usize = 160;
 
 /// The most exposures that [`hdr_flip`] looks at.
 const MAX_EXPOSURES: f32 = 32.0;
@@ -51,6 +56,7 @@ pub struct Flip {
 /// usually [`PIXELS_PER_DEGREE`].
 pub fn ldr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Result<Flip, ImageError> {
     check_same_size(reference, test)?;
+    require_memory(BYTES_PER_PIXEL * reference.width() as usize * reference.height() as usize)?;
     let shown = |c: f32| at_most(c, 1.0);
     let map =
         difference(&colors(reference, shown), &colors(test, shown), reference.width(), pixels_per_degree)?;
@@ -60,6 +66,7 @@ pub fn ldr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Resu
 /// FLIP of linear sRGB pictures of any range; negative values and NaN count as black.
 pub fn hdr_flip(reference: &Image, test: &Image, pixels_per_degree: f32) -> Result<Flip, ImageError> {
     check_same_size(reference, test)?;
+    require_memory(BYTES_PER_PIXEL * reference.width() as usize * reference.height() as usize)?;
     // The bound keeps squares in the tone curve finite.
     let finite = |c: f32| at_most(c, 1e15);
     let (reference_colors, test_colors) = (colors(reference, finite), colors(test, finite));

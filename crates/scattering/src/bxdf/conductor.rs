@@ -1,13 +1,12 @@
-//! Metal: all light that is not absorbed is reflected, by a mirror or by microfacets that are
-//! mirrors.
+//! Conductors: specular reflection, by a smooth surface or by microfacets.
 //!
 //! ```text
 //! f = D(wm) G(wo, wi) F(wo·wm) / (4 cos θ_i cos θ_o)        wm = (wo + wi)/|wo + wi|
 //! p = D_wo(wm) / (4 |wo·wm|)
 //! ```
 //!
-//! A smooth one has f = F(cos θ_o) δ(wi − mirrored wo)/|cos θ_i|. Light that bounces between
-//! microfacets is lost: rough metals come out a little dark. Sources: [Torrance 1967],
+//! A smooth one has f = F(cos θ_o) δ(wi − mirrored wo)/|cos θ_i|. Multiple scattering between
+//! microfacets is ignored, so that rough metals are slightly too dark. Sources: [Torrance 1967],
 //! [Walter 2007], [Pharr 2023 §9.4, §9.7].
 
 use super::{BsdfSample, Scatter};

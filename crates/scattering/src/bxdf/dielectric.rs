@@ -14,7 +14,7 @@
 //! ```
 //!
 //! and transmitted radiance is divided by η'². An index of 1 is no interface at all, whatever the
-//! roughness. Light that bounces between microfacets is lost. Sources: [Walter 2007],
+//! roughness. Multiple scattering between microfacets is ignored. Sources: [Walter 2007],
 //! [Pharr 2023 §9.5, §9.7].
 
 use super::{BsdfSample, Scatter};

@@ -1,6 +1,6 @@
 //! Lambertian reflection: f = R/π on the side of `wo`, whichever side that is.
 //!
-//! Sampled by the cosine of `wi`, p = |cos θ_i|/π, so that every sample weighs R. Source:
+//! Sampled by the cosine of `wi`, p = |cos θ_i|/π, so that every sample has the weight R. Source:
 //! [Pharr 2023 §9.2].
 
 use super::{BsdfSample, Scatter};
@@ -10,7 +10,7 @@ use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
 
-/// Reflects the share `reflectance` of light evenly.
+/// Lambertian reflection.
 #[derive(Clone, Copy, Debug)]
 pub struct Diffuse {
     /// Share of light that is reflected, in [0, 1].

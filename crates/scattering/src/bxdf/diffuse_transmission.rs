@@ -11,8 +11,7 @@ use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::FRAC_1_PI;
 
-/// Reflects and transmits light evenly. Energy is conserved where the sum of both shares is at most
-/// 1.
+/// Lambertian reflection and transmission. Energy is conserved if the sum of both is at most 1.
 #[derive(Clone, Copy, Debug)]
 pub struct DiffuseTransmission {
     /// Share of light that is reflected, in [0, 1].

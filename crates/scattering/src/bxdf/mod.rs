@@ -1,4 +1,4 @@
-//! The BxDFs: what each does with light in the local frame, and the choice among them.
+//! The BxDFs: their contract in the local frame, and the enum of all.
 //!
 //! Every member is [`Scatter`]; the conventions are those at the head of the crate. A member that
 //! is added gets a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
@@ -27,7 +27,7 @@ use std::f32::consts::{PI, TAU};
 pub struct BsdfSample {
     /// The value of the BSDF; of a specular lobe, the coefficient of its Dirac delta.
     pub f: SampledSpectrum,
-    /// Where light comes from, in the frame that was asked in.
+    /// The sampled direction, in the frame of `wo`.
     pub wi: Vector3,
     /// Density per solid angle; of a specular lobe, the coefficient of the Dirac delta that cancels
     /// that of `f`.

@@ -7,7 +7,7 @@ use crate::light::{
     UniformInfiniteLight,
 };
 use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
-use image::Projection;
+use image::{Projection, require_memory};
 use math::{DMat4, Point3, Transform, Vec3, Vector3};
 use std::f32::consts::PI;
 
@@ -131,6 +131,11 @@ impl Compiler<'_> {
                 return None;
             }
             scale *= target / illuminance;
+        }
+        let bytes = ImageInfiniteLight::BYTES_PER_PIXEL * width as usize * height as usize;
+        if let Err(error) = require_memory(bytes) {
+            self.error("image-file", error.to_string(), span);
+            return None;
         }
         let light =
             ImageInfiniteLight::new(*placement, (image.image, projection), image.color_space, scale, scene);

@@ -32,6 +32,10 @@ pub struct ImageInfiniteLight {
 }
 
 impl ImageInfiniteLight {
+    /// Bytes that [`Self::new`] takes for each pixel: the density, and two distributions of values,
+    /// cumulative values and guides.
+    pub const BYTES_PER_PIXEL: usize = 28;
+
     /// From an image of the sphere in `projection`, with red, green and blue in `color_space`.
     pub fn new(
         render_from_light: Transform,

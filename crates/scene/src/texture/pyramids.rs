@@ -70,32 +70,33 @@ impl Numbers {
     /// An image of the one channel that stands for `image`.
     fn of(self, image: Arc<Image>) -> Result<Arc<Image>, ImageError> {
         let single = |value: &dyn Fn(u32, u32) -> f32| {
-            Arc::new(Image::from_fn(image.width(), image.height(), ["Y"], |x, y| [value(x, y)]))
+            Image::try_from_fn(image.width(), image.height(), ["Y"], |x, y| [value(x, y)]).map(Arc::new)
         };
         let color = |c: usize| single(&|x, y| image.rgb(x, y)[c]);
-        Ok(match (self, image.alpha_index()) {
+        match (self, image.alpha_index()) {
             (Self::Channel(ImageChannel::Alpha), Some(alpha)) => single(&|x, y| image.channel(x, y, alpha)),
             (Self::Channel(ImageChannel::Alpha), None) => {
-                return Err(ImageError::Invalid("there is no channel of opacity".into()));
+                Err(ImageError::Invalid("there is no channel of opacity".into()))
             }
-            _ if image.channel_count() == 1 => image,
+            _ if image.channel_count() == 1 => Ok(image),
             (Self::First | Self::Channel(ImageChannel::Red), _) => color(0),
             (Self::Channel(ImageChannel::Green), _) => color(1),
             (Self::Channel(ImageChannel::Blue), _) => color(2),
             (Self::OpacityOrMean, alpha) => {
                 // The opacity of a grey image does not count.
                 let alpha = alpha.filter(|_| image.is_color());
-                let opacity =
-                    alpha.map(|alpha| single(&|x, y| decoded_opacity(&image, image.channel(x, y, alpha))));
+                let opacity = alpha
+                    .map(|alpha| single(&|x, y| decoded_opacity(&image, image.channel(x, y, alpha))))
+                    .transpose()?;
                 match opacity.filter(|opacity| opacity.values().any(|value| value != 1.0)) {
-                    Some(opacity) => opacity,
+                    Some(opacity) => Ok(opacity),
                     None => single(&|x, y| {
                         let [r, g, b] = image.rgb(x, y);
                         (r + g + b) / 3.0
                     }),
                 }
             }
-        })
+        }
     }
 }
 

@@ -25,7 +25,7 @@ pub fn white() -> SpectrumDesc {
     SpectrumDesc::Constant(100.0)
 }
 
-/// An emitting shape, turned and moved so that nothing is special about its axes.
+/// An emissive shape, rotated and translated into general position.
 pub fn area(shape: ShapeKind, change: impl Fn(&mut AreaLightDesc, &mut ShapeDesc)) -> SceneDesc {
     let mut light = AreaLightDesc::new(white());
     let mut shape = ShapeDesc::from(shape);
@@ -49,7 +49,7 @@ pub fn colours(x: u32, y: u32) -> [f32; 3] {
     [0.2 + x as f32, 0.4 + (x * y % 5) as f32, 1.0 + 0.5 * y as f32]
 }
 
-/// An emitting shape with an image over its (u, v).
+/// An emissive shape with an image over (u, v).
 pub fn with_image(shape: ShapeKind) -> SceneDesc {
     let mut desc = area(shape, both_sides);
     let image = desc.images.push(rgb_image(6, 4, colours));
@@ -67,7 +67,7 @@ pub fn placement() -> DMat4 {
     DMat4::from_translation(DVec3::new(0.1, 0.2, 0.3)) * DMat4::from_rotation_x(0.8)
 }
 
-/// A light without a surface, and a ball far away that gives the scene an extent.
+/// A light without a surface, and a distant sphere that gives the scene its bounds.
 pub fn free(kind: LightKind) -> SceneDesc {
     let mut desc = SceneDesc::default();
     let far_away = TransformDesc::translation(0.0, 0.0, -1e3);
@@ -156,7 +156,7 @@ pub fn area_lights() -> Vec<Case> {
         .collect()
 }
 
-/// Emitting shapes that are seen through instances, and that move.
+/// Instanced and moving emissive shapes.
 fn placed_area_lights() -> Vec<(&'static str, SceneDesc)> {
     let stretch = DMat4::from_rotation_z(0.4) * DMat4::from_scale(DVec3::new(-0.8, 1.3, 1.1));
     let turn = DMat4::from_translation(DVec3::new(0.2, -0.1, 0.1)) * DMat4::from_rotation_y(0.5);
@@ -180,8 +180,8 @@ fn placed_area_lights() -> Vec<(&'static str, SceneDesc)> {
     ]
 }
 
-/// Makes the shapes of a scene an object, placed by the last transform within that by the one
-/// before.
+/// Turns the shapes of a scene into an object in nested instances with these transforms, the last
+/// innermost.
 fn instanced(mut desc: SceneDesc, transforms: &[TransformDesc]) -> SceneDesc {
     let shapes = std::mem::take(&mut desc.shapes);
     let mut object = ObjectDesc { shapes, ..ObjectDesc::default() };
@@ -218,7 +218,7 @@ pub fn hittable_lights() -> Vec<Case> {
     lights
 }
 
-/// Points before, behind, beside and near the lights; on surfaces and in space.
+/// Reference points in front of, behind, beside and near the lights; on surfaces and in space.
 pub fn references() -> Vec<LightSampleContext> {
     vec![
         context(Vec3::new(0.3, 0.2, 2.0), Vec3::ZERO),

@@ -1,4 +1,4 @@
-//! What tests of whole scenes share: small scenes, built by hand.
+//! Small scenes, built by hand, for the tests of this crate.
 
 #![allow(dead_code, reason = "each test uses its own part")]
 
@@ -13,8 +13,7 @@ use spectrum::SampledWavelengths;
 use std::sync::Arc;
 use testkit::Random;
 
-/// Compiles a scene in which nothing is wrong. World space is render space, as the camera stands at
-/// the origin.
+/// Compiles a valid scene. World space is render space, as the camera is at the origin.
 pub fn scene(desc: &SceneDesc) -> Scene {
     let compiled = alhazen_scene::compile(desc).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
     // Many scenes of tests need no light.
@@ -23,7 +22,7 @@ pub fn scene(desc: &SceneDesc) -> Scene {
     compiled.scene
 }
 
-/// The view of a description in which nothing is wrong.
+/// The view of a valid description.
 pub fn view(desc: &SceneDesc) -> View {
     View::compile(desc, world_from_render(desc)).unwrap_or_else(|errors| panic!("{errors:?}")).view
 }
@@ -32,7 +31,7 @@ pub fn lambda() -> SampledWavelengths {
     SampledWavelengths::sample_visible(0.3)
 }
 
-/// The shutter time of rays and points, while what moves is on its way.
+/// The shutter time of rays and points, in the middle of motion.
 pub const TIME: f32 = 0.25;
 
 pub fn ray(o: Point3, d: Vector3) -> Ray {
@@ -44,12 +43,12 @@ pub fn hit(scene: &Scene, ray: &Ray) -> Option<SurfaceInteraction> {
     scene.intersect(ray, f32::INFINITY, &mut RayStats::default()).map(|(surface, _)| surface)
 }
 
-/// A point that light may reach; without a surface if `n` is zero.
+/// A reference point for light sampling; not on a surface if `n` is zero.
 pub fn context(p: Point3, n: Normal3) -> LightSampleContext {
     LightSampleContext { p: Point3Error::exact(p), n, ns: n, time: TIME }
 }
 
-/// The radiance that arrives from `w`, whatever it comes from, at the first wavelength.
+/// The incident radiance from `w`, of all lights, at the first wavelength.
 pub fn arriving(scene: &Scene, from: &LightSampleContext, w: Vector3) -> f64 {
     let (ray, lambda) = (from.spawn_ray(w), lambda());
     let radiance = match hit(scene, &ray) {
@@ -59,7 +58,7 @@ pub fn arriving(scene: &Scene, from: &LightSampleContext, w: Vector3) -> f64 {
     radiance[0] as f64
 }
 
-/// A sample of a light, unless something stands before it.
+/// An unoccluded sample of a light.
 pub fn seen_sample(
     scene: &Scene,
     light: LightRef,

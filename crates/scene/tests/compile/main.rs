@@ -1,4 +1,4 @@
-//! What compiling a scene makes of it: places, times, ids, and messages.
+//! Compilation of scenes: transforms, times, ids, and diagnostics.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -49,7 +49,7 @@ fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     all
 }
 
-/// The one message about a scene.
+/// The only diagnostic of a scene.
 fn check(desc: &SceneDesc, severity: Severity, code: &str, message: &str, start: u32) {
     let all = diagnostics(desc);
     let [only] = &all[..] else { panic!("expected only `{message}`: {all:?}") };
@@ -112,7 +112,7 @@ fn transforms_without_an_inverse_are_errors() {
 }
 
 #[test]
-fn objects_within_themselves_or_too_deep_in_each_other_are_errors() {
+fn recursive_or_too_deeply_nested_objects_are_errors() {
     let place = |object| InstanceDesc { object, world_from_object: TransformDesc::default() };
     let endless = with(|desc| {
         let mut a = ObjectDesc { name: "a".into(), ..ObjectDesc::default() };
@@ -154,7 +154,7 @@ fn objects_within_themselves_or_too_deep_in_each_other_are_errors() {
 }
 
 #[test]
-fn images_that_serve_for_nothing_are_errors() {
+fn unusable_images_are_errors() {
     let error = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 5);
     error(&image_sky(gray_image(), None), "image-channels", "the image of a light needs red, green and blue");
     error(
@@ -191,7 +191,7 @@ fn images_that_serve_for_nothing_are_errors() {
 }
 
 #[test]
-fn lights_without_sense_are_errors() {
+fn invalid_lights_are_errors() {
     let plane = with(|desc| {
         let area_light = Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
         desc.shapes.push_stated(stated(ShapeDesc { area_light, ..ShapeKind::Plane.into() }, 8));
@@ -214,7 +214,7 @@ fn lights_without_sense_are_errors() {
 }
 
 #[test]
-fn meshes_that_hang_together_badly_are_errors() {
+fn inconsistent_meshes_are_errors() {
     let shape = |kind: ShapeKind| with(|desc| desc.shapes.push_stated(stated(kind.into(), 3)));
     let message = "a patch names a vertex that does not exist";
     let patches = |indices, normals: usize| {
@@ -233,7 +233,7 @@ fn meshes_that_hang_together_badly_are_errors() {
 }
 
 #[test]
-fn all_mistakes_come_in_one_run() {
+fn all_errors_are_reported_at_once() {
     let desc = with(|desc| {
         desc.shapes.push_stated(stated(ShapeDesc { world_from_object: flat(), ..sphere(1.0).into() }, 1));
         let eta = SpectrumDesc::Named("no-glass".into());
@@ -280,7 +280,7 @@ fn curves_are_checked() {
 }
 
 #[test]
-fn curves_stand_where_they_are_put() {
+fn curves_are_at_their_control_points() {
     let desc = with(|desc| {
         let curve = CurveDesc {
             control_points: [-3.0, -1.0, 1.0, 3.0].map(|x| Vec3::new(x, 0.0, 0.0)).into(),
@@ -304,7 +304,7 @@ fn curves_stand_where_they_are_put() {
 }
 
 #[test]
-fn strands_become_one_geometry() {
+fn successive_curves_become_one_geometry() {
     let shape = |curve: CurveDesc| ShapeDesc::from(ShapeKind::Curve(curve));
     let ribbon = || CurveDesc { profile: CurveProfile::Ribbon, normals: [Vec3::Z; 2].into(), ..curve() };
     let desc = with(|desc| {
@@ -403,7 +403,7 @@ fn moving() -> TransformDesc {
 }
 
 #[test]
-fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
+fn unsupported_lights_are_replaced_with_a_warning() {
     let light = |light: LightDesc| with(|desc| desc.lights.push_stated(stated(light, 4)));
     let image = |desc: &mut SceneDesc| desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
     let moving_sky = with(|desc| {
@@ -426,7 +426,7 @@ fn lights_that_are_not_drawn_yet_say_what_is_drawn() {
 }
 
 #[test]
-fn emitting_primitives_know_their_lights() {
+fn emissive_primitives_map_to_their_lights() {
     let desc = with(|desc| {
         let light = |desc: &mut SceneDesc| Some(desc.area_lights.push(AreaLightDesc::new(1.0.into())));
         // Dark, two triangles, dark, one ball, then lights that are no surfaces.

@@ -1,4 +1,4 @@
-//! What compiling makes of materials.
+//! Compilation of materials: errors and warnings.
 
 use super::{check, stated, warns, with, with_parameter};
 use crate::common::*;
@@ -20,7 +20,7 @@ fn a_mix_of_itself_is_an_error() {
 }
 
 #[test]
-fn materials_without_sense_are_errors() {
+fn invalid_materials_are_errors() {
     let material = |kind: MaterialKind, name| {
         with(|desc| {
             desc.materials.push_stated(with_parameter(kind.into(), name, 4));
@@ -73,7 +73,7 @@ fn an_interface_does_not_emit() {
 }
 
 #[test]
-fn materials_that_are_not_drawn_yet_say_what_is_drawn() {
+fn unsupported_materials_are_replaced_with_a_warning() {
     let coated = CoatedConductorDesc {
         conductor: ConductorDesc::default(),
         eta: 1.5.into(),

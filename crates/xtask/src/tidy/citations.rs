@@ -1,9 +1,9 @@
-//! Sources: every `[Key year]` in code and documents stands in `docs/references.md`, and all that
-//! stands there is cited.
+//! Citations: every `[Key year]` in code and documents has an entry in `docs/references.md`, and
+//! every entry is cited.
 //!
-//! A citation is `[Surname year]`, with other authors (`& Duff`, `et al.`) and a place (`§9.7`,
-//! `ch. 12`) if wanted; several are parted by semicolons. Its key is the first author's surname and
-//! the year. An entry begins `- **Surname year**`.
+//! A citation is `[Surname year]`, optionally with other authors (`& Duff`, `et al.`) and a section
+//! (`§9.7`, `ch. 12`); several are separated by semicolons. Its key is the first author's surname
+//! and the year. An entry begins `- **Surname year**`.
 
 use std::collections::BTreeSet;
 
@@ -53,7 +53,7 @@ fn citing_texts(tree: &Tree) -> impl Iterator<Item = (&str, String)> {
     )
 }
 
-/// Lines and keys of the citations in a text. A citation may go over the end of a line.
+/// Lines and keys of the citations in a text. A citation may span lines.
 fn citations(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     let all: Vec<&str> = text.lines().collect();
@@ -81,7 +81,7 @@ fn key(citation: &str) -> Option<String> {
     Some(format!("{} {}", surname.join(" "), words[year_at].trim_end_matches(',')))
 }
 
-/// Four digits, and a letter where an author wrote more than one thing in that year.
+/// Four digits, and a letter to distinguish works of one year.
 fn is_year(word: &str) -> bool {
     let digits = word.trim_end_matches(|c: char| c.is_ascii_lowercase());
     digits.len() == 4 && word.len() <= 5 && digits.bytes().all(|digit| digit.is_ascii_digit())

@@ -1,16 +1,16 @@
-//! Rules of Rust code: libraries neither print nor exit, only those that must touch files do,
-//! unsafe code stays where it pays, and nothing is unfinished or global and mutable.
+//! Rules of Rust code: libraries neither print nor exit, only listed files access the file system,
+//! unsafe code is in listed files, and nothing is unfinished or global and mutable.
 
 use super::tree::Tree;
 use super::{Finding, rust};
 
-/// Crates that are programs: they may print, exit and touch files.
+/// Crates that are programs: they may print, exit and access files.
 const PROGRAMS: [&str; 3] = ["crates/bench/", "crates/cli/", "crates/xtask/"];
 
-/// Where a library may touch files: codecs and the importer's `AssetSource`.
+/// Where a library may access files: codecs and the importer's `AssetSource`.
 const FILE_READERS: [&str; 2] = ["crates/image/", "crates/import/src/assets.rs"];
 
-/// What no code has, tests neither, and why.
+/// Words that are forbidden in all code, also in tests, and why.
 const NOWHERE: [(&str, &str); 5] = [
     ("todo!", "finish it"),
     ("unimplemented!", "finish it"),
@@ -19,8 +19,7 @@ const NOWHERE: [(&str, &str); 5] = [
     ("static mut ", "there is no mutable global state"),
 ];
 
-/// Where unsafe code may stand: vectors and what rays do with them, and what loads another library
-/// to compare with.
+/// Where unsafe code is allowed: SIMD, ray traversal, and loading of Embree.
 const UNSAFE: [&str; 5] = [
     "crates/lanes/",
     "crates/geometry/src/bvh/",
@@ -29,7 +28,7 @@ const UNSAFE: [&str; 5] = [
     "crates/bench/src/embree.rs",
 ];
 
-/// What no library has outside its tests, and what to do instead.
+/// Words that are forbidden in libraries outside tests, and what to do instead.
 const NOT_IN_LIBRARIES: [(&str, &str); 6] = [
     ("print!", "libraries return values, and programs print them"),
     ("println!", "libraries return values, and programs print them"),
@@ -39,7 +38,7 @@ const NOT_IN_LIBRARIES: [(&str, &str); 6] = [
     ("process::abort", "libraries return errors, and programs exit"),
 ];
 
-/// Ways to the file system.
+/// File system access.
 const FILES: [&str; 5] = ["std::fs", "fs::read", "File::open", "File::create", "OpenOptions"];
 
 /// What makes a static mutable.
@@ -90,13 +89,13 @@ fn each_word(code: &str, table: &[(&str, &str)], mut found: impl FnMut(usize, &s
     }
 }
 
-/// Whether a line has the word, not as the end of a longer one.
+/// Whether a line has the word, not as the suffix of a longer one.
 fn finds(line: &str, word: &str) -> bool {
     line.match_indices(word)
         .any(|(at, _)| !line[..at].chars().next_back().is_some_and(|c| c.is_alphanumeric() || c == '_'))
 }
 
-/// Whether an item begins so, whatever its visibility.
+/// Whether an item starts with these words, after its visibility.
 fn words_start(line: &str, word: &str) -> bool {
     line.trim_start().trim_start_matches("pub ").trim_start_matches("pub(crate) ").starts_with(word)
 }

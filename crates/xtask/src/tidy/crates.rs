@@ -1,10 +1,10 @@
-//! Rules of crates: who may use whom, and what every manifest says.
+//! Rules of crates: allowed dependencies, and required lines of manifests.
 
 use super::Finding;
 use super::tree::Tree;
 
-/// Every crate and the crates it may use, lower layers first: a crate uses only what stands above
-/// it here. Tests may use any crate of an earlier line.
+/// Every crate and its allowed dependencies, lower layers first: a crate depends only on earlier
+/// ones. Tests may use any crate of an earlier line.
 const EDGES: [(&str, &[&str]); 17] = [
     ("math", &[]),
     ("lanes", &[]),

@@ -1,5 +1,5 @@
-//! Rules of documents: their links lead somewhere, the licences are there, and README tells every
-//! option that the program has and no others.
+//! Rules of documents: links have targets, the licences exist, and README lists exactly the options
+//! of the program.
 
 use std::collections::BTreeSet;
 
@@ -73,7 +73,7 @@ fn resolve(document: &str, target: &str) -> String {
     folders.join("/")
 }
 
-/// The long options that clap is told of: the fields under `#[arg(… long …)]`, or the names in
+/// The long options that clap parses: the fields under `#[arg(… long …)]`, or the names in
 /// `long = "…"`.
 fn defined_options(source: &str) -> BTreeSet<String> {
     let mut options = BTreeSet::new();
@@ -87,7 +87,7 @@ fn defined_options(source: &str) -> BTreeSet<String> {
     options
 }
 
-/// The options that a document names, but for those on lines that run cargo.
+/// The options in a document, except on lines that run cargo.
 fn told_options(text: &str) -> BTreeSet<String> {
     let mut options = BTreeSet::new();
     for line in text.lines().filter(|line| !line.contains("cargo ")) {

@@ -1,5 +1,5 @@
-//! The house rules that no compiler knows. Each check reads the texts of the tree and returns what
-//! it found, with file and line; `cargo xtask tidy` prints all of it at once.
+//! Source rules beyond the compiler's. Each check reads the files of the tree and returns findings
+//! with file and line; `cargo xtask tidy` prints all of them.
 
 mod citations;
 mod code;
@@ -15,7 +15,7 @@ use std::path::Path;
 
 use tree::Tree;
 
-/// A rule that is broken, and where.
+/// A violation of a rule, and its location.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Finding {
     /// The file, from the root of the workspace.
@@ -45,7 +45,7 @@ impl fmt::Display for Finding {
 const CHECKS: [fn(&Tree) -> Vec<Finding>; 6] =
     [text::check, code::check, crates::check, cycles::check, citations::check, documents::check];
 
-/// Holds the workspace at `root` to the house rules; what is broken goes to standard error.
+/// Checks the workspace at `root`; findings go to standard error.
 pub fn run(root: &Path) -> Result<(), String> {
     let tree = Tree::read(root).map_err(|error| format!("{}: {error}", root.display()))?;
     let mut findings: Vec<Finding> = CHECKS.iter().flat_map(|check| check(&tree)).collect();
@@ -55,7 +55,7 @@ pub fn run(root: &Path) -> Result<(), String> {
     }
     match findings.len() {
         0 => {
-            println!("tidy: {} files hold to the house rules", tree.len());
+            println!("tidy: {} files checked", tree.len());
             Ok(())
         }
         count => Err(format!("{count} broken house rules")),

@@ -1,8 +1,7 @@
-//! Rust source taken apart just so far that a check can tell code from words: comments and the
-//! insides of strings are blanked out of the code, and everything but comments out of the words.
-//! Lines and columns stay where they were.
+//! A scanner that separates code from comments: comments and the contents of strings are blanked in
+//! the code, everything but comments in the comments. Lines and columns are kept.
 
-/// A source in two layers of the same shape.
+/// A source as code and comments, with the same lines and columns.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Layers {
     /// Code, without comments and the contents of literals.
@@ -11,7 +10,7 @@ pub struct Layers {
     pub comments: String,
 }
 
-/// What the scanner stands in.
+/// The state of the scanner.
 #[derive(Clone, Copy)]
 enum State {
     Code,
@@ -96,7 +95,7 @@ pub fn without_tests(code: &str) -> String {
     kept
 }
 
-/// How far an item reaches: to its closing brace, or to the semicolon that ends it.
+/// The length of an item: to its closing brace, or to the semicolon that ends it.
 fn item_length(item: &str) -> usize {
     let mut depth = 0;
     for (at, c) in item.char_indices() {

@@ -1,5 +1,5 @@
-//! Rules of all texts: their whitespace, the length of source files, nothing left unfinished,
-//! nothing of one machine.
+//! Rules of all texts: whitespace, length of source files and comment lines, no unfinished work, no
+//! paths of one machine.
 
 use super::tree::Tree;
 use super::{Finding, rust};
@@ -10,10 +10,10 @@ const MAX_LINES: usize = 600;
 /// Most characters of a comment's line, its indentation included; rows of tables cannot be broken.
 const MAX_COMMENT_WIDTH: usize = 100;
 
-/// Words that mark what somebody meant to do later.
+/// Words that mark unfinished work.
 const MARKERS: [&str; 4] = ["TODO", "FIXME", "XXX", "HACK"];
 
-/// Folders that are somebody's own.
+/// Folders of a single machine.
 const MACHINE_FOLDERS: [&str; 4] = ["work", "root", "home", "Users"];
 
 pub fn check(tree: &Tree) -> Vec<Finding> {

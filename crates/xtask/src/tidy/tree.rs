@@ -1,11 +1,11 @@
-//! The files of the workspace that people write.
+//! The files of the workspace that are written by hand.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// What stands at the root; anything else there (build output, pictures, data) is nobody's text.
+/// The entries at the root that are checked; all others (build output, pictures, data) are not.
 const ROOTS: [&str; 12] = [
     ".cargo",
     ".ci",
@@ -29,7 +29,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Reads what stands under the workspace's root.
+    /// Reads the files under the workspace's root.
     pub fn read(root: &Path) -> io::Result<Self> {
         let mut tree = Self::default();
         for name in ROOTS {
@@ -53,7 +53,7 @@ impl Tree {
         Ok(())
     }
 
-    /// How many files there are.
+    /// Number of files.
     pub fn len(&self) -> usize {
         self.files.len()
     }
@@ -76,7 +76,7 @@ impl Tree {
         self.files.iter().filter_map(|(path, text)| Some((path.as_str(), text.as_deref()?)))
     }
 
-    /// Those whose path ends so.
+    /// Paths and texts of the files whose path ends with `end`.
     pub fn ending(&self, end: &str) -> impl Iterator<Item = (&str, &str)> {
         self.texts().filter(move |(path, _)| path.ends_with(end))
     }
