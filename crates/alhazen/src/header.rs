@@ -2,19 +2,30 @@
 
 use description::schema::Settings;
 use description::{CameraKind, SceneDesc};
-use film::{Development, Film};
+use film::{Development, Film, Layer};
 use image::{Attribute, Image, ImageMetadata};
 use integrators::SessionState;
 use math::Mat4;
+use scene::Scene;
 use serde_json::{Map, Value, json};
 
-/// The header of a picture: the camera and settings of the scene.
+/// How many bytes the names of a table may take; further names are left out.
+const MAX_NAME_BYTES: usize = 4 << 20;
+
+/// The header of a picture: the camera and settings of the scene, and the names of identifiers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Header(Vec<(String, Attribute)>);
+pub struct Header {
+    attributes: Vec<(String, Attribute)>,
+    /// The names of objects and of materials, where the film has their identifiers.
+    names: [Vec<String>; 2],
+}
+
+/// The layers of identifiers that [`Header::names`] are for, and their keys in JSON.
+const ID_LAYERS: [(Layer, &str); 2] = [(Layer::ObjectId, "objects"), (Layer::MaterialId, "materials")];
 
 impl Header {
     /// The header of pictures of a scene.
-    pub(crate) fn of(desc: &SceneDesc) -> Self {
+    pub(crate) fn of(desc: &SceneDesc, scene: &Scene, film: &Film) -> Self {
         let camera = match &desc.camera.kind {
             CameraKind::Perspective { fov, .. } => format!("perspective, {fov} degrees"),
             CameraKind::Orthographic { .. } => "orthographic".into(),
@@ -30,7 +41,18 @@ impl Header {
             ("sampler", Attribute::Text(desc.sampler.name().into())),
             ("seed", Attribute::Integer(desc.sampler.seed.unwrap_or(desc.options.seed))),
         ];
-        Self(attributes.map(|(name, value)| (name.to_owned(), value)).to_vec())
+        let names = scene.names();
+        let listed = |layer, names: &mut dyn Iterator<Item = String>| match film.layers().has(layer) {
+            true => limited(names),
+            false => Vec::new(),
+        };
+        Self {
+            attributes: attributes.map(|(name, value)| (name.to_owned(), value)).to_vec(),
+            names: [
+                listed(Layer::ObjectId, &mut names.objects()),
+                listed(Layer::MaterialId, &mut names.materials().map(str::to_owned)),
+            ],
+        }
     }
 
     /// The picture of a render so far, with this header and the number of passes.
@@ -44,6 +66,9 @@ impl Header {
         state.with_film(|film| {
             let mut development = film.development();
             self.set(&mut development.metadata, state.done.count());
+            for ((layer, _), names) in ID_LAYERS.into_iter().zip(&self.names) {
+                development.set_names(layer, names);
+            }
             look(&development)
         })
     }
@@ -56,7 +81,7 @@ impl Header {
     }
 
     fn set(&self, metadata: &mut ImageMetadata, samples_per_pixel: u32) {
-        for (name, value) in &self.0 {
+        for (name, value) in &self.attributes {
             metadata.set(name, value.clone());
         }
         metadata.set("samplesPerPixel", Attribute::Integer(samples_per_pixel as i32));
@@ -70,7 +95,12 @@ impl Header {
             Attribute::Matrix(matrix) => json!(matrix.to_cols_array()),
             Attribute::TextList(_) | Attribute::Float(_) | Attribute::Vector(_) => Value::Null,
         };
-        self.0.iter().map(|(name, attribute)| (name.clone(), value(attribute))).collect::<Map<_, _>>().into()
+        let attributes = self.attributes.iter().map(|(name, attribute)| (name.clone(), value(attribute)));
+        let mut json = json!({ "attributes": attributes.collect::<Map<_, _>>() });
+        for ((_, key), names) in ID_LAYERS.into_iter().zip(&self.names) {
+            json[key] = json!(names);
+        }
+        json
     }
 
     /// Parses the JSON of [`to_json`](Self::to_json).
@@ -86,7 +116,23 @@ impl Header {
             }
             _ => None,
         };
-        let attributes = json.as_object()?.iter();
-        attributes.map(|(name, json)| Some((name.clone(), value(json)?))).collect::<Option<_>>().map(Self)
+        let attributes = json["attributes"].as_object()?.iter();
+        let attributes = attributes.map(|(name, json)| Some((name.clone(), value(json)?)));
+        let list = |(_, key): (Layer, &str)| {
+            let names = json[key].as_array()?.iter();
+            names.map(|name| Some(name.as_str()?.to_owned())).collect::<Option<Vec<_>>>()
+        };
+        let [objects, materials] = ID_LAYERS.map(list);
+        Some(Self { attributes: attributes.collect::<Option<_>>()?, names: [objects?, materials?] })
     }
+}
+
+/// As many of these names as a header has room for.
+fn limited(names: &mut dyn Iterator<Item = String>) -> Vec<String> {
+    let mut bytes = 0;
+    let fits = |name: &String| {
+        bytes += name.len();
+        bytes <= MAX_NAME_BYTES
+    };
+    names.take_while(fits).collect()
 }

@@ -49,13 +49,18 @@ impl Job {
             return Err(diagnostics.concat());
         };
         let mut warnings = [scene.warnings, view.warnings, film.warnings, built.warnings].concat();
-        let (scene, view, film) = (Arc::new(scene.scene), view.view, film.film);
+        let (scene, view, mut film) = (Arc::new(scene.scene), view.view, film.film);
         let has_background = scene.geometries().is_empty() || !scene.infinite_lights().is_empty();
         if !has_background && !scene.has_surface_in(&view, film.full_resolution()) {
             let message = "no surface seems to be in view: none of 4096 camera rays hits one";
             warnings.push(Diagnostic::warning("nothing-in-view", message, desc.camera.origin.span));
         }
-        let header = Header::of(desc);
+        if built.integrator.splats() {
+            film.reserve_splats().map_err(|error| {
+                vec![Diagnostic::error("invalid-film", error.to_string(), desc.film.origin.span)]
+            })?;
+        }
+        let header = Header::of(desc, &scene, &film);
         let sketch = Sketch::new(desc, &film);
         let planned = built.integrator.passes();
         let is_arranged = is_arranged(desc, scene.needs_footprints(&view));

@@ -56,7 +56,7 @@ impl Sketch {
         Some(Self { n: n as u32, desc: small })
     }
 
-    /// Renders it, of what `session` renders; `None` if it was cancelled.
+    /// Renders it, of what `session` renders; `None` if it was cancelled, or memory is short.
     pub fn draw(&self, session: &Session, header: &Header, control: &Control) -> Option<Image> {
         let integrator = integrators::build(&self.desc).ok()?.integrator;
         let film = film::compile(&self.desc).ok()?.film;
@@ -65,7 +65,7 @@ impl Sketch {
         let mut sketch = Session::new(Arc::clone(session.scene()), view, integrator, state);
         sketch.run(0..1, &Limits::default(), control, &mut |_| ()).ok()?;
         let samples = session.integrator().passes();
-        Some(enlarged(&header.picture_of(&sketch.state().film, samples), self.n, &session.state().film))
+        enlarged(&header.picture_of(&sketch.state().film, samples), self.n, &session.state().film)
     }
 }
 
@@ -107,15 +107,35 @@ fn lighten(integrator: &mut IntegratorDesc, n: i32) {
     }
 }
 
-/// The sketch enlarged to the pixels of `film`, each of its pixels to a square of `n` × `n`.
-fn enlarged(sketch: &Image, n: u32, film: &Film) -> Image {
-    let (bounds, [x0, y0]) = (film.pixel_bounds(), film.pixel_bounds().min.map(|x| x as u32));
-    let size = [bounds.width() as u32, bounds.height() as u32];
-    let at = |x: u32, first: u32| (first + x) / n - first / n;
-    let picture = Image::from_fn(size[0], size[1], ["R", "G", "B"], |x, y| sketch.rgb(at(x, x0), at(y, y0)));
-    let mut picture = if matches!(sketch.pixels(), Pixels::F16(_)) { picture.to_f16() } else { picture };
+/// The picture of `film`'s size in which each pixel of the sketch covers `n` × `n` pixels; `None`
+/// if there is no memory for it.
+fn enlarged(sketch: &Image, n: u32, film: &Film) -> Option<Image> {
+    let bounds = film.pixel_bounds();
+    let [width, height] = [bounds.width() as u32, bounds.height() as u32];
+    let pixels = match sketch.pixels() {
+        Pixels::F16(values) => Pixels::F16(repeated(values, sketch.width(), n, &bounds)?),
+        Pixels::F32(values) => Pixels::F32(repeated(values, sketch.width(), n, &bounds)?),
+        Pixels::U8(..) => return None,
+    };
+    let mut picture = Image::new(width, height, sketch.channels().iter().map(String::as_str), pixels).ok()?;
     picture.metadata = sketch.metadata.clone();
     picture.metadata.data_window = Some(Window { min: bounds.min, max: bounds.max });
     picture.metadata.display_window = Some(Window { min: [0, 0], max: film.full_resolution() });
-    picture
+    Some(picture)
+}
+
+/// The values of the pixels within `bounds`, of RGB values of pixels `n` times as large.
+fn repeated<T: Copy>(values: &[T], width: u32, n: u32, bounds: &Bounds2i) -> Option<Vec<T>> {
+    let mut repeated = Vec::new();
+    repeated.try_reserve_exact(3 * bounds.area()).ok()?;
+    // Which row or column of large pixels a coordinate is in, from that of the first.
+    let large = |x: i32, first: i32| (x as u32 / n - first as u32 / n) as usize;
+    for y in bounds.min[1]..bounds.max[1] {
+        let row = large(y, bounds.min[1]) * width as usize;
+        for x in bounds.min[0]..bounds.max[0] {
+            let first = 3 * (row + large(x, bounds.min[0]));
+            repeated.extend_from_slice(&values[first..first + 3]);
+        }
+    }
+    Some(repeated)
 }

@@ -25,6 +25,69 @@ fn pictures_are_written_in_every_format_asked_for() {
     }
 }
 
+/// A named ball in front of a wall that fills the picture.
+const LAYERED: &str = r#"
+LookAt 0 0 -5  0 0 0  0 1 0
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+Sampler "independent" "integer pixelsamples" 4
+WorldBegin
+LightSource "infinite" "rgb L" [ 1 1 1 ]
+MakeNamedMaterial "chalk" "string type" "diffuse" "rgb reflectance" [ 0.5 0.5 0.5 ]
+Shape "bilinearmesh" "point3 P" [ -9 -9 2  9 -9 2  -9 9 2  9 9 2 ]
+ObjectBegin "ball"
+NamedMaterial "chalk"
+Shape "sphere" "float radius" 1
+ObjectEnd
+ObjectInstance "ball"
+"#;
+
+#[test]
+fn layers_are_written_beside_the_colors() {
+    let folder = Folder::new("layers");
+    folder.write("scene.pbrt", LAYERED);
+    let layers = ["--aov", "depth,normal,camera-normal,object-id", "--aov", "material-id,samples"];
+    folder.alhazen(&[&["render", "scene.pbrt", "-o", "a.exr"], &layers[..]].concat()).expect(0);
+    let image = folder.image("a.exr");
+    let at = |[x, y]: [u32; 2], channel: &str| {
+        let index = image.channel_index(channel);
+        image.channel(x, y, index.unwrap_or_else(|| panic!("{channel} of {:?}", image.channels())))
+    };
+    let (ball, wall) = ([12, 8], [1, 1]);
+    assert!((4.0..4.1).contains(&at(ball, "Z")), "{}", at(ball, "Z"));
+    assert!((at(wall, "Z") - 7.0).abs() < 1e-5, "{}", at(wall, "Z"));
+    for axis in ["N.Z", "Ncam.Z"] {
+        assert!((at(wall, axis) + 1.0).abs() < 1e-6 && at(ball, axis) < -0.9);
+    }
+    assert_eq!(at(ball, "samples"), 4.0);
+    let id = |pixel, layer: &str| at(pixel, &format!("{layer}00.r")).to_bits();
+    let manifest = |layer: &str| {
+        let is_manifest = |name: &str| name.starts_with("cryptomatte/") && name.ends_with("/manifest");
+        let name = |key: &str| image.metadata.get(&key.replace("manifest", "name")).cloned();
+        let found = image
+            .metadata
+            .attributes
+            .iter()
+            .find(|(key, _)| is_manifest(key) && name(key) == Some(Attribute::Text(layer.to_owned())));
+        let Some((_, Attribute::Text(json))) = found else { panic!("no manifest of {layer}") };
+        serde_json::from_str::<serde_json::Value>(json).expect("JSON")
+    };
+    let named = |pixel, layer| format!("{:08x}", id(pixel, layer));
+    let objects = manifest("CryptoObject");
+    assert_eq!(objects["ball/0"], named(ball, "CryptoObject"));
+    assert_eq!(objects["shape-0"], named(wall, "CryptoObject"));
+    let materials = manifest("CryptoMaterial");
+    assert_eq!(materials["chalk"], named(ball, "CryptoMaterial"));
+    assert_eq!(materials["default"], named(wall, "CryptoMaterial"));
+}
+
+#[test]
+fn an_unknown_layer_is_refused_with_a_suggestion() {
+    let folder = Folder::with_scene("unknown-layer");
+    let refused = folder.alhazen(&["render", "scene.pbrt", "--aov", "dept", "-o", "a.exr"]).expect(2);
+    assert!(refused.err.contains("no layer is called `dept`; did you mean `depth`?"), "{refused:?}");
+}
+
 #[test]
 fn a_sketch_is_there_before_the_first_pass_is_done() {
     let folder = Folder::with_scene("sketch");

@@ -9,9 +9,9 @@ use crate::{Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
 /// The range of white balance temperatures in kelvin.
 const WHITE_BALANCE: std::ops::RangeInclusive<f32> = 500.0..=100_000.0;
 
-/// The layers of the format's film `gbuffer`, as far as there are any for them.
-const GBUFFER_LAYERS: [Layer; 6] =
-    [Layer::Depth, Layer::Normal, Layer::Albedo, Layer::Position, Layer::Uv, Layer::Variance];
+/// The layers of the format's film `gbuffer`, as far as there are any for them, apart from
+/// positions and normals.
+const GBUFFER_LAYERS: [Layer; 4] = [Layer::Depth, Layer::Albedo, Layer::Uv, Layer::Variance];
 
 /// What [`compile`] gives.
 #[derive(Debug)]
@@ -45,11 +45,11 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
     match film.kind {
         FilmKind::Rgb => {}
         FilmKind::GBuffer { space } => {
-            layers = GBUFFER_LAYERS.into_iter().fold(layers, LayerSet::with);
-            if space == GBufferSpace::Camera {
-                let message = "positions and normals of film `gbuffer` are written in world space";
-                diagnostics.push(Diagnostic::warning("not-drawn", message, film.origin.span));
-            }
+            let geometry = match space {
+                GBufferSpace::Camera => [Layer::CameraPosition, Layer::CameraNormal],
+                GBufferSpace::World => [Layer::Position, Layer::Normal],
+            };
+            layers = GBUFFER_LAYERS.into_iter().chain(geometry).fold(layers, LayerSet::with);
         }
         FilmKind::Spectral { .. } => {
             let message = "film `spectral` is not drawn yet; drawn as `rgb`";

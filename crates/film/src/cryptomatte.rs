@@ -1,8 +1,11 @@
 //! Layers of identifiers in the form of Cryptomatte: the identifiers of a pixel that cover most of
 //! it, in pairs of channels of identifier and coverage [Friedman 2015].
 //!
-//! An identifier is a hash of a name whose bits make a finite single float. The list of names that
-//! files may have (the manifest) is not written.
+//! An identifier is a hash of a name whose bits make a finite single float. The manifest in the
+//! header of a picture lists the names of its identifiers.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
 
 use image::{Attribute, ImageMetadata};
 
@@ -62,6 +65,39 @@ pub(crate) fn ranks(covered: impl Iterator<Item = (u32, f64)>, whole: f64) -> im
         .flat_map(move |(id, weight)| [f32::from_bits(id), (weight / divisor) as f32])
 }
 
+/// Writes a layer's manifest to a picture's header: of these names, those whose identifiers are in
+/// the picture, as a JSON object of identifiers by name.
+pub(crate) fn set_manifest<S: AsRef<str>>(
+    layer: Layer,
+    names: impl IntoIterator<Item = S>,
+    present: &BTreeSet<u32>,
+    metadata: &mut ImageMetadata,
+) {
+    let names = names.into_iter().map(|name| {
+        let id = id_of_name(name.as_ref());
+        (id, name)
+    });
+    let names: BTreeMap<String, u32> =
+        names.filter(|(id, _)| present.contains(id)).map(|(id, name)| (quoted(name.as_ref()), id)).collect();
+    let entries: Vec<_> = names.iter().map(|(name, id)| format!("{name}:\"{id:08x}\"")).collect();
+    let manifest = format!("{{{}}}", entries.join(","));
+    metadata.set(&attribute(layer, "manifest"), Attribute::Text(manifest));
+}
+
+/// A JSON string.
+fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            // Writing to a string never fails.
+            c if c.is_control() => drop(write!(quoted, "\\u{:04x}", u32::from(c))),
+            c => quoted.push(c),
+        }
+    }
+    quoted + "\""
+}
+
 /// Says in a picture's header that a layer is Cryptomatte's.
 pub(crate) fn describe(layer: Layer, metadata: &mut ImageMetadata) {
     let mut set = |key, value: &str| metadata.set(&attribute(layer, key), Attribute::Text(value.to_owned()));
@@ -100,6 +136,11 @@ mod tests {
             let id = f32::from_bits(id_of_name(&format!("object-{i}")));
             assert!(id.is_normal(), "{i}");
         }
+    }
+
+    #[test]
+    fn names_are_json_strings() {
+        assert_eq!(quoted("a\"b\\c\n\u{85}é"), r#""a\"b\\c\u000a\u0085é""#);
     }
 
     #[test]

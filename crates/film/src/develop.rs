@@ -1,5 +1,6 @@
 //! From a film's sums to a picture.
 
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 
 use half::f16;
@@ -54,6 +55,16 @@ pub struct Development<'film> {
 }
 
 impl<'film> Development<'film> {
+    /// Writes the names of a layer's identifiers to the header, if the film has the layer: of these
+    /// names, those that are in the picture.
+    pub fn set_names<S: AsRef<str>>(&mut self, layer: Layer, names: impl IntoIterator<Item = S>) {
+        if layer.is_id() && self.layers.has(layer) {
+            let ids = self.film.ids[usize::from(layer == ID_LAYERS[1])].iter();
+            let present: BTreeSet<u32> = ids.flat_map(|ids| ids.keys().map(|&(_, id)| id)).collect();
+            cryptomatte::set_manifest(layer, names, &present, &mut self.metadata);
+        }
+    }
+
     fn new(film: &'film Film, layers: LayerSet) -> Self {
         let color_space = film.color_space();
         let [red, green, blue] = color_space.primaries();

@@ -30,13 +30,18 @@ pub enum Layer {
     MaterialId,
     /// Number of samples.
     Samples,
-    /// Estimated variance of the pixel's luminance, as far as it comes from samples.
+    /// Estimated variance of the pixel's luminance, as far as it comes from samples: that of splats
+    /// is not known.
     Variance,
+    /// Position in camera space at the time of the sample: x to the right, y up, z forward.
+    CameraPosition,
+    /// Shading normal in camera space, towards the camera.
+    CameraNormal,
 }
 
 impl Layer {
     /// Every layer.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Alpha,
         Self::Depth,
         Self::Normal,
@@ -48,6 +53,8 @@ impl Layer {
         Self::MaterialId,
         Self::Samples,
         Self::Variance,
+        Self::CameraPosition,
+        Self::CameraNormal,
     ];
 
     /// Its name, as the command line and film files have it.
@@ -64,6 +71,8 @@ impl Layer {
             Self::MaterialId => "material-id",
             Self::Samples => "samples",
             Self::Variance => "variance",
+            Self::CameraPosition => "camera-position",
+            Self::CameraNormal => "camera-normal",
         }
     }
 
@@ -84,6 +93,8 @@ impl Layer {
             Self::Motion => &["motion.X", "motion.Y"],
             Self::Samples => &["samples"],
             Self::Variance => &["variance"],
+            Self::CameraPosition => &["Pcam.X", "Pcam.Y", "Pcam.Z"],
+            Self::CameraNormal => &["Ncam.X", "Ncam.Y", "Ncam.Z"],
             Self::ObjectId | Self::MaterialId => &[],
         }
     }
@@ -101,7 +112,16 @@ impl Layer {
 
     /// Whether it is a mean over the samples that hit something.
     pub(crate) fn is_mean_of_hits(self) -> bool {
-        matches!(self, Self::Depth | Self::Normal | Self::Position | Self::Uv | Self::Motion)
+        matches!(
+            self,
+            Self::Depth
+                | Self::Normal
+                | Self::Position
+                | Self::Uv
+                | Self::Motion
+                | Self::CameraPosition
+                | Self::CameraNormal
+        )
     }
 
     /// Whether it counts identifiers.

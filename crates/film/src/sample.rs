@@ -35,6 +35,10 @@ pub struct FirstHit {
     pub position: [f32; 3],
     /// Shading normal in world space, of unit length.
     pub normal: [f32; 3],
+    /// Position in camera space.
+    pub camera_position: [f32; 3],
+    /// Shading normal in camera space, of unit length.
+    pub camera_normal: [f32; 3],
     /// Reflectance at the sample's first group of wavelengths.
     pub albedo: SampledSpectrum,
     /// Surface parameters.

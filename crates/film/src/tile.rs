@@ -102,6 +102,8 @@ impl TileData<'_> {
             add(Layer::Depth, positive, &[hit.depth]);
             add(Layer::Normal, positive, &hit.normal);
             add(Layer::Position, positive, &hit.position);
+            add(Layer::CameraPosition, positive, &hit.camera_position);
+            add(Layer::CameraNormal, positive, &hit.camera_normal);
             add(Layer::Uv, positive, &hit.uv);
             add(Layer::Motion, positive, &hit.motion);
         }

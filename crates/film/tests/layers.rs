@@ -29,6 +29,8 @@ fn hit(depth: f32, object: &str) -> FirstHit {
         depth,
         position: [depth, 2.0, -3.0],
         normal: [0.0, 0.6, 0.8],
+        camera_position: [5.0, -6.0, depth],
+        camera_normal: [0.0, 0.8, -0.6],
         albedo: SampledSpectrum::splat(0.5),
         uv: [0.25, 0.75],
         motion: [-2.0, 4.0],
@@ -70,6 +72,8 @@ fn means_of_first_hits_are_over_the_samples_that_hit() {
     assert_eq!(at("Z"), 3.5, "a negative weight does not count");
     assert_eq!(["P.X", "P.Y", "P.Z"].map(at), [3.5, 2.0, -3.0]);
     assert_eq!(["N.X", "N.Y", "N.Z"].map(at), [0.0, 0.6, 0.8]);
+    assert_eq!(["Pcam.X", "Pcam.Y", "Pcam.Z"].map(at), [5.0, -6.0, 3.5]);
+    assert_eq!(["Ncam.X", "Ncam.Y", "Ncam.Z"].map(at), [0.0, 0.8, -0.6]);
     assert_eq!(["uv.U", "uv.V"].map(at), [0.25, 0.75]);
     assert_eq!(["motion.X", "motion.Y"].map(at), [-2.0, 4.0]);
     assert_eq!(at("samples"), 4.0);
@@ -130,6 +134,25 @@ fn identifiers_are_listed_by_coverage_as_cryptomatte_has_them() {
         let attribute = image.metadata.get(&format!("{key}{name}"));
         assert_eq!(attribute, Some(&Attribute::Text(value.into())));
     }
+}
+
+#[test]
+fn the_manifest_names_the_identifiers_of_the_picture() {
+    let mut film = film([Layer::ObjectId]);
+    for object in ["cube", "the \"ball\""] {
+        add(&mut film, [4, 3], 1.0, Some(hit(1.0, object)));
+    }
+    let mut development = film.development();
+    development.set_names(Layer::ObjectId, ["the \"ball\"", "elsewhere", "cube"]);
+    development.set_names(Layer::MaterialId, ["gold"]);
+    let manifest = |layer: &str| {
+        let key = format!("cryptomatte/{}/manifest", &format!("{:08x}", id_of_name(layer))[..7]);
+        development.metadata.get(&key).cloned()
+    };
+    let [cube, ball] = ["cube", "the \"ball\""].map(id_of_name);
+    let expected = format!(r#"{{"cube":"{cube:08x}","the \"ball\"":"{ball:08x}"}}"#);
+    assert_eq!(manifest("CryptoObject"), Some(Attribute::Text(expected)));
+    assert_eq!(manifest("CryptoMaterial"), None);
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{
-    CameraKind, ColorSpaceDesc, FilmKind, Handle, ImageChannel, IntegratorDesc, LightKind, MaterialKind,
-    MediumKind, Parameter, PathDesc, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc, TextureKind,
-    TransformDesc,
+    CameraKind, ColorSpaceDesc, FilmKind, GBufferSpace, Handle, ImageChannel, IntegratorDesc, LightKind,
+    MaterialKind, MediumKind, Parameter, PathDesc, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc,
+    TextureKind, TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -60,6 +60,18 @@ fn settings_before_the_world() {
     assert!(
         matches!(&desc.camera.kind, CameraKind::Orthographic { screen, .. } if screen.window == Some([-2.0, 2.0, -1.0, 1.0]))
     );
+}
+
+#[test]
+fn layers_of_the_film() {
+    let film = |text: &str| read(&format!("{text} WorldBegin")).film.value;
+    let rgb = film(r#"Film "rgb" "string layers" [ "depth" "object-id" ]"#);
+    assert_eq!(rgb.kind, FilmKind::Rgb);
+    assert_eq!(rgb.layers.iter().map(|name| &*name.value).collect::<Vec<_>>(), ["depth", "object-id"]);
+    let gbuffer = film(r#"Film "gbuffer""#);
+    assert_eq!(gbuffer.kind, FilmKind::GBuffer { space: GBufferSpace::Camera });
+    let gbuffer = film(r#"Film "gbuffer" "string coordinatesystem" "world""#);
+    assert_eq!(gbuffer.kind, FilmKind::GBuffer { space: GBufferSpace::World });
 }
 
 #[test]

@@ -24,6 +24,11 @@ pub trait Integrator: Send {
         0
     }
 
+    /// Whether passes splat light to the film, for which it needs [memory](Film::reserve_splats).
+    fn splats(&self) -> bool {
+        false
+    }
+
     /// Builds what depends on the scene and the view; called once, before the first pass. `Err` if
     /// it was cancelled: then it has to be called again before a pass.
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled>;

@@ -8,6 +8,7 @@ use crate::light::{
 };
 use crate::light_sampler::{LightSampler, LightSamplerKind};
 use crate::material::{Material, MaterialId, Materials};
+use crate::names::Names;
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use crate::view::View;
 use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
@@ -69,6 +70,7 @@ pub struct Scene {
     pub(crate) instances: Vec<InstanceEntry>,
     pub(crate) lights: LightTable,
     pub(crate) has_filtered_textures: bool,
+    pub(crate) names: Names,
 }
 
 impl Scene {
@@ -92,6 +94,11 @@ impl Scene {
     /// What belongs to the instances of the world, by [`InstanceId`](geometry::InstanceId).
     pub fn instances(&self) -> &[InstanceEntry] {
         &self.instances
+    }
+
+    /// The names of its objects and materials.
+    pub fn names(&self) -> &Names {
+        &self.names
     }
 
     /// What area lights emit, by [`EmissionId`](crate::light::EmissionId).

@@ -86,3 +86,46 @@ fn nested_instances_compose_their_transforms() {
         assert!(!there(0.0, 2.0) && !there(1.0, 2.5), "elsewhere at {time}");
     }
 }
+
+#[test]
+fn the_name_of_an_instance_stands_for_everything_in_it() {
+    // From left to right: a shape, one that moves, two instances of `tree`, and between them one of
+    // `leaf`, which `tree` contains as well.
+    let mut desc = SceneDesc::default();
+    let at = |x| TransformDesc::translation(x, 0.0, 0.0);
+    let mut leaf = ObjectDesc { name: "leaf".into(), ..ObjectDesc::default() };
+    leaf.shapes.push(ball(at(0.0)));
+    let leaf = desc.objects.push(leaf);
+    let mut tree = ObjectDesc { name: "tree".into(), ..ObjectDesc::default() };
+    tree.shapes.push(ball(at(0.0)));
+    let end = DMat4::from_translation(DVec3::X * 0.31);
+    tree.shapes.push(ball(moving(at(0.3).start, end)));
+    tree.instances.push(InstanceDesc { object: leaf, world_from_object: at(0.6) });
+    let tree = desc.objects.push(tree);
+    desc.shapes.push(ball(at(0.0)));
+    let start = DMat4::from_translation(DVec3::X);
+    desc.shapes.push(ball(moving(start, DMat4::from_translation(DVec3::X * 1.01))));
+    for (object, x) in [(tree, 2.0), (leaf, 3.0), (tree, 4.0)] {
+        desc.instances.push(InstanceDesc { object, world_from_object: at(x) });
+    }
+    let scene = scene(&desc);
+    let name = |x: f32| {
+        let ray = Ray::new(Vec3::new(x, 0.0, 50.0), -Vec3::Z, 0.0);
+        scene.hit(&ray, f32::INFINITY, &mut RayStats::default()).map(|hit| scene.names().object(&hit))
+    };
+    for (x, expected) in [
+        (0.0, "shape-0"),
+        (1.0, "shape-1"),
+        (2.0, "tree/0"),
+        (2.3, "tree/0"),
+        (2.6, "tree/0"),
+        (3.0, "leaf/0"),
+        (4.0, "tree/1"),
+        (4.6, "tree/1"),
+    ] {
+        assert_eq!(name(x).as_deref(), Some(expected), "at {x}");
+    }
+    let names: Vec<String> = scene.names().objects().collect();
+    assert_eq!(names, ["shape-0", "shape-1", "tree/0", "leaf/0", "tree/1"]);
+    assert_eq!(scene.names().materials().collect::<Vec<_>>(), ["default"]);
+}

@@ -101,6 +101,10 @@ impl Integrator for Mlt {
         self.settings.mutations_per_pixel
     }
 
+    fn splats(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         match &mut self.technique {
             Technique::Path(path) => path.prepare(scene, view, control)?,

@@ -105,6 +105,10 @@ impl Integrator for Vcm {
         self.sampler.samples_per_pixel()
     }
 
+    fn splats(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
         self.specular_paths.prepare(scene);

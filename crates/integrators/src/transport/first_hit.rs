@@ -39,7 +39,8 @@ pub(crate) fn first_hit(
         });
         let albedo: SampledSpectrum = bsdf.rho(wo, samples);
         let world_from_render = tracer.scene.world_from_render();
-        let in_camera = tracer.view.camera.transform().render_from_camera(time).inverse().point(p);
+        let camera_from_render = tracer.view.camera.transform().render_from_camera(time).inverse();
+        let in_camera = camera_from_render.point(p);
         let depth = match tracer.view.camera.projection() {
             Projection::Spherical(_) => in_camera.length(),
             _ => in_camera.z,
@@ -47,8 +48,7 @@ pub(crate) fn first_hit(
         // Towards the camera, as compositing expects it.
         let normal = surface.surface.shading.n;
         let normal = if normal.dot(wo) < 0.0 { -normal } else { normal };
-        let instances = hit.instance.ids().iter().map(|id| format!("instance-{}/", id.0));
-        let object = format!("{}object-{}", instances.collect::<String>(), hit.geometry.0);
+        let names = tracer.scene.names();
         return Some(FirstHit {
             depth,
             position: world_from_render.transform_point3(p.as_dvec3()).as_vec3().to_array(),
@@ -57,11 +57,13 @@ pub(crate) fn first_hit(
                 .as_vec3()
                 .normalize_or_zero()
                 .to_array(),
+            camera_position: in_camera.to_array(),
+            camera_normal: camera_from_render.normal(normal).normalize_or_zero().to_array(),
             albedo,
             uv: surface.surface.uv.to_array(),
             motion: motion(tracer, &hit, p).to_array(),
-            object: id_of_name(&object),
-            material: id_of_name(&format!("material-{}", surface.material.0)),
+            object: id_of_name(&names.object(&hit)),
+            material: id_of_name(names.material(surface.material)),
         });
     }
     None

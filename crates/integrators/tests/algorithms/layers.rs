@@ -68,13 +68,15 @@ fn every_algorithm_fills_the_layers_and_keeps_its_colours() {
         // The centre of pixel 12 of 24 is 1/24 to the right of the middle, at distance 1.
         near("P.X", 4.0 / 24.0, 0.2);
         near("P.Z", 4.0, 1e-5);
+        near("Pcam.Z", 4.0, 1e-5);
+        near("Ncam.Z", -1.0, 1e-6);
         assert!((0.0..=1.0).contains(&at("uv.U")) && (0.0..=1.0).contains(&at("uv.V")), "{name}");
         // 24 pixels see 8 units.
         near("motion.X", 1.5, 1e-3);
         near("motion.Y", 0.0, 1e-3);
         assert!(at("samples") >= 1.0, "{name}");
-        // What moves is an instance.
-        assert_eq!(at("CryptoObject00.r").to_bits(), id_of_name("instance-0/object-0"), "{name}");
+        assert_eq!(at("CryptoObject00.r").to_bits(), id_of_name("shape-0"), "{name}");
+        assert_eq!(at("CryptoMaterial00.r").to_bits(), id_of_name("material-0"), "{name}");
         near("CryptoObject00.g", 1.0, 0.0);
         near("CryptoObject00.a", 0.0, 0.0);
         // The mean over all pixels; a pixel alone has the noise of its wavelengths.

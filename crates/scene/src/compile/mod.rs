@@ -16,6 +16,7 @@ mod tessellation;
 
 use crate::light::{AreaEmission, LightTable, SceneSphere};
 use crate::material::{MaterialEntry, Materials};
+use crate::names::Names;
 use crate::scene::{GeometryEntry, InstanceEntry, Scene};
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
 use crate::view::world_from_render;
@@ -56,6 +57,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
             })
             .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
+        names: Names::new(desc),
         instances: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),
@@ -70,7 +72,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     if !compiler.diagnostics.iter().any(Diagnostic::is_error) {
         compiler.warn_of_darkness(&lights);
     }
-    let Compiler { diagnostics, textures, entries, instances, materials, .. } = compiler;
+    let Compiler { diagnostics, textures, entries, names, instances, materials, .. } = compiler;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
@@ -86,6 +88,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         textures,
         lights,
         has_filtered_textures,
+        names,
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }
@@ -98,6 +101,7 @@ struct Compiler<'a> {
     textures: TextureCompiler,
     world: WorldBuilder,
     entries: Vec<GeometryEntry>,
+    names: Names,
     materials: Vec<MaterialEntry>,
     instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,

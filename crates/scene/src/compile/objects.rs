@@ -31,11 +31,12 @@ impl Compiler<'_> {
     pub(super) fn instances(&mut self) {
         let desc = self.desc;
         let mut objects = Objects::default();
-        for (_, instance) in desc.instances.iter() {
-            let span = instance.origin.span;
-            if let Some((instance, _)) = self.instance(instance, &mut objects) {
+        for (_, desc) in desc.instances.iter() {
+            let span = desc.origin.span;
+            if let Some((instance, _)) = self.instance(desc, &mut objects) {
                 self.add_instance(GroupId::TOP, instance, span);
             }
+            self.names.add_instance(desc, self.entries.len(), self.instances.len());
         }
     }
 

@@ -23,8 +23,11 @@ impl Compiler<'_> {
     pub(super) fn shapes(&mut self) {
         let desc = self.desc;
         let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape).collect();
+        let mut index = 0;
         for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
             self.shape(run);
+            self.names.add_shape(index, self.entries.len(), self.instances.len());
+            index += run.len();
         }
         self.instances();
     }

@@ -63,6 +63,10 @@ impl Integrator for Bdpt {
         self.sampler.samples_per_pixel()
     }
 
+    fn splats(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
         control.check()

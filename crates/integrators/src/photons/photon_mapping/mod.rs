@@ -154,6 +154,10 @@ impl Integrator for PhotonMapping {
         self.sampler.samples_per_pixel()
     }
 
+    fn splats(&self) -> bool {
+        true
+    }
+
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
         self.direct = DirectLighting::new(scene, LightSamplerKind::Bvh, Interfaces::Stop);
