@@ -1,4 +1,4 @@
-//! Scene and mesh files read into a [`SceneDesc`].
+//! Scene and mesh files read into a [`SceneDesc`](description::SceneDesc).
 //!
 //! [`import`] always gives a description: the scene as far as it could be understood, the texts
 //! that were read, and all errors and warnings about them. Files are read through an
