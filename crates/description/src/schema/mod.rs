@@ -1,4 +1,4 @@
-//! The schema of settings. A setting is declared once, by [`settings!`](declare), with its field,
+//! The schema of settings. A setting is declared once, by `settings!`, with its field,
 //! type, default, names, range, unit and help. Whoever reads, checks, lists or changes settings
 //! does so through [`Settings::visit`], and knows no setting by itself.
 

@@ -21,7 +21,8 @@ pub struct ShapeSample {
     pub n: Normal3,
     /// Texture coordinates.
     pub uv: Vec2,
-    /// Density: per area from [`Shape::sample`], per solid angle from [`Shape::sample_from`].
+    /// Density: per area from [`sample`](crate::shape::Shape::sample), per solid angle from
+    /// [`sample_from`](crate::shape::Shape::sample_from).
     pub pdf: f32,
 }
 
