@@ -194,11 +194,6 @@ impl Film {
         self.layout.layers()
     }
 
-    /// Wavelengths for a path, from `u` in [0, 1).
-    pub fn sample_wavelengths(&self, u: f32) -> SampledWavelengths {
-        SampledWavelengths::sample_visible(u)
-    }
-
     /// Adds a sample to a pixel.
     ///
     /// # Panics

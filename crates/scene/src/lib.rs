@@ -20,4 +20,4 @@ pub use geometry::RayStats;
 pub use interaction::{Footprint, SurfaceInteraction};
 pub use names::Names;
 pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
-pub use view::{CompiledView, View, ViewOptions, samples_per_pixel, world_from_render};
+pub use view::{CompiledView, View, ViewOptions, world_from_render};

@@ -215,22 +215,19 @@ impl Scene {
         self.world.occluded(ray, t_max, &stops, stats)
     }
 
-    /// Whether the light sample can be seen from a surface.
+    /// Whether the point or direction of a light sample is visible from a surface.
     pub fn unoccluded(
         &self,
-        from: &SurfaceInteraction,
+        from: &SurfacePoint,
         sample: &LightLiSample,
         interfaces: Interfaces,
         stats: &mut RayStats,
     ) -> bool {
-        let s = &from.surface;
-        match sample.p {
-            Some(p) => {
-                let ray = Ray::between(s.p, s.n, p, sample.n, s.time);
-                !self.occluded(&ray, Ray::SHADOW_END, interfaces, stats)
-            }
-            None => !self.occluded(&from.spawn_ray(sample.wi), f32::INFINITY, interfaces, stats),
-        }
+        let (ray, t_max) = match sample.p {
+            Some(p) => (Ray::between(from.p, from.n, p, sample.n, from.time), Ray::SHADOW_END),
+            None => (from.spawn_ray(sample.wi), f32::INFINITY),
+        };
+        !self.occluded(&ray, t_max, interfaces, stats)
     }
 
     /// Whether a surface is there, where its alpha makes it come and go: it is with the probability

@@ -74,7 +74,7 @@ pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
 
 /// How many samples a description gives a pixel: of Metropolis, mutations; else those of the
 /// sampler, of which Sobol' sequences over the whole image round up to a power of two.
-pub fn samples_per_pixel(desc: &SceneDesc) -> u32 {
+fn samples_per_pixel(desc: &SceneDesc) -> u32 {
     if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
         return mlt.mutations_per_pixel.max(1);
     }

@@ -316,7 +316,7 @@ fn infinite_planes_occlude_infinite_lights() {
         let light = alhazen_scene::light::LightId(0);
         let sample = scene.sample_light(light, &floor.light_context(), Vec2::ZERO, &lambda(), false).unwrap();
         assert_eq!(
-            scene.unoccluded(&floor, &sample, Interfaces::Stop, &mut Default::default()),
+            scene.unoccluded(&floor.surface, &sample, Interfaces::Stop, &mut Default::default()),
             !ceiling && sample.wi.z > 0.0
         );
     }

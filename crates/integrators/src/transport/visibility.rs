@@ -26,10 +26,6 @@ impl Tracer<'_> {
         sample: &LightLiSample,
         interfaces: Interfaces,
     ) -> bool {
-        let (ray, t_max) = match sample.p {
-            Some(p) => (Ray::between(from.p, from.n, p, sample.n, from.time), Ray::SHADOW_END),
-            None => (from.spawn_ray(sample.wi), f32::INFINITY),
-        };
-        !self.occluded(&ray, t_max, interfaces)
+        self.goes_on() && self.scene.unoccluded(from, sample, interfaces, self.stats)
     }
 }
