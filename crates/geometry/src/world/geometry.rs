@@ -79,7 +79,8 @@ impl Geometry {
         matches!(self, Self::Shapes(shapes) if matches!(shapes.first(), Some(Shape::MovingTriangle(_))))
     }
 
-    /// One primitive as a shape, as lights sample it; `None` for curves, which do not emit.
+    /// One primitive as a shape; `None` for curves.
+    #[inline]
     pub fn shape(&self, primitive: u32) -> Option<Cow<'_, Shape>> {
         match self {
             Self::Mesh(mesh) => Some(Cow::Owned(mesh.triangle(primitive as usize).into())),

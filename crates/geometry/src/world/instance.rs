@@ -66,6 +66,12 @@ impl InstancePath {
     /// No instance: the top group itself.
     pub const TOP: Self = Self([Self::NONE; Self::MAX_DEPTH]);
 
+    /// Whether there is no instance.
+    #[inline]
+    pub fn is_top(&self) -> bool {
+        self.0[0] == Self::NONE
+    }
+
     /// The instances, the outermost first.
     pub fn ids(&self) -> &[InstanceId] {
         let len = self.0.iter().position(|&id| id == Self::NONE).unwrap_or(Self::MAX_DEPTH);

@@ -45,17 +45,41 @@ fn matrix(line: &str) -> [u32; COLUMNS] {
 /// The coordinate of point `index` in a dimension below [`SOBOL_DIMENSIONS`], as a binary fraction
 /// of 32 bits.
 #[inline]
-pub fn sobol_bits(mut index: u64, dimension: usize) -> u32 {
-    if dimension == 0 {
-        return (index as u32).reverse_bits();
+pub fn sobol_bits(index: u64, dimension: usize) -> u32 {
+    match dimension {
+        0 => (index as u32).reverse_bits(),
+        1 => pascal(index),
+        _ => product(&MATRICES[dimension], index),
     }
-    let matrix = &MATRICES[dimension];
+}
+
+/// The exclusive or of the columns that the bits of `index` select.
+#[inline]
+fn product(matrix: &[u32; COLUMNS], mut index: u64) -> u32 {
     let mut bits = 0;
     while index != 0 {
         bits ^= matrix[index.trailing_zeros() as usize];
         index &= index - 1;
     }
     bits
+}
+
+/// The coordinate in dimension 1. Its matrix is Pascal's triangle modulo 2: bit r of the result,
+/// counted from the highest, is the sum of C(k, r)·bit k of the index. That is the Kronecker power
+/// of ((1, 1), (0, 1)), applied level by level without branches.
+#[inline]
+fn pascal(index: u64) -> u32 {
+    const EVEN: [u64; 6] = [
+        0x5555_5555_5555_5555,
+        0x3333_3333_3333_3333,
+        0x0f0f_0f0f_0f0f_0f0f,
+        0x00ff_00ff_00ff_00ff,
+        0x0000_ffff_0000_ffff,
+        0x0000_0000_ffff_ffff,
+    ];
+    let levels = EVEN.iter().enumerate();
+    let bits = levels.fold(index, |bits, (level, even)| bits ^ ((bits >> (1 << level)) & even));
+    (bits as u32).reverse_bits()
 }
 
 /// Owen scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above
@@ -104,6 +128,13 @@ mod tests {
         assert_eq!(point(1), [0.5; 5]);
         assert_eq!(point(2), [0.25, 0.75, 0.75, 0.75, 0.25]);
         assert_eq!(point(3), [0.75, 0.25, 0.25, 0.25, 0.75]);
+    }
+
+    #[test]
+    fn the_second_dimension_is_pascals_triangle() {
+        for index in (0..10_000).chain((0..10_000).map(mix_bits)) {
+            assert_eq!(pascal(index), product(&MATRICES[1], index), "index {index:#x}");
+        }
     }
 
     #[test]

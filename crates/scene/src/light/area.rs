@@ -39,9 +39,17 @@ pub struct AreaLight {
 }
 
 impl AreaLight {
-    fn emitter<'a>(&self, world: &'a World, primitive: u32, time: f32) -> Option<Emitter<'a>> {
+    /// The answer of a primitive as it is at `time`; `None` where there is none to give.
+    #[inline]
+    fn ask<T>(
+        &self,
+        world: &World,
+        primitive: u32,
+        time: f32,
+        question: impl FnOnce(&Emitter) -> Option<T>,
+    ) -> Option<T> {
         let shape = world.geometry(self.geometry).shape(primitive)?;
-        Some(Emitter::new(shape, world, &self.instance, time))
+        Emitter::ask(&shape, world, &self.instance, time, question)
     }
 
     fn scale(&self, part: &LightPart) -> f32 {
@@ -58,7 +66,7 @@ impl AreaLight {
 
     /// The area of a primitive; of what moves, the mean of the first and the last.
     pub(crate) fn area(&self, world: &World, primitive: u32) -> f32 {
-        let at = |time| self.emitter(world, primitive, time).map_or(0.0, |emitter| emitter.area());
+        let at = |time| self.ask(world, primitive, time, |emitter| Some(emitter.area())).unwrap_or(0.0);
         if self.is_moving(world) { 0.5 * (at(f32::MIN) + at(f32::MAX)) } else { at(0.0) }
     }
 
@@ -125,7 +133,8 @@ impl LightModel for AreaLight {
         lambda: &SampledWavelengths,
         _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let s = self.emitter(part.world(), part.primitive, context.time)?.sample_from(context, u)?;
+        let s =
+            self.ask(part.world(), part.primitive, context.time, |emitter| emitter.sample_from(context, u))?;
         let to_light = s.p.p - context.p.p;
         if s.pdf == 0.0 || to_light.length_squared() == 0.0 || !self.is_there(part, &s) {
             return None;
@@ -142,8 +151,8 @@ impl LightModel for AreaLight {
         wi: Vector3,
         _allow_incomplete: bool,
     ) -> f32 {
-        self.emitter(part.world(), part.primitive, context.time)
-            .map_or(0.0, |emitter| emitter.pdf_from(context, wi))
+        self.ask(part.world(), part.primitive, context.time, |emitter| Some(emitter.pdf_from(context, wi)))
+            .unwrap_or(0.0)
     }
 
     /// By area, and by the cosine on the sides that emit.
@@ -155,7 +164,7 @@ impl LightModel for AreaLight {
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
-        let s = self.emitter(part.world(), part.primitive, time)?.sample(u_position)?;
+        let s = self.ask(part.world(), part.primitive, time, |emitter| emitter.sample(u_position))?;
         if !self.is_there(part, &s) {
             return None;
         }
@@ -183,8 +192,9 @@ impl LightModel for AreaLight {
     }
 
     fn pdf_le(&self, part: &LightPart, p: Point3, n: Normal3, w: Vector3, time: f32) -> (f32, f32) {
-        let position =
-            self.emitter(part.world(), part.primitive, time).map_or(0.0, |emitter| emitter.pdf_area(p, n));
+        let position = self
+            .ask(part.world(), part.primitive, time, |emitter| Some(emitter.pdf_area(p, n)))
+            .unwrap_or(0.0);
         (position, part.emission(self.emission).pdf_direction(n, w))
     }
 
@@ -202,7 +212,7 @@ impl LightModel for AreaLight {
         let normals = if self.is_moving(part.world()) {
             DirectionCone::ENTIRE_SPHERE
         } else {
-            self.emitter(part.world(), part.primitive, 0.0)?.normal_bounds()
+            self.ask(part.world(), part.primitive, 0.0, |emitter| Some(emitter.normal_bounds()))?
         };
         let shape = part.world().geometry(self.geometry).shape(part.primitive)?;
         let area = self.area(part.world(), part.primitive);

@@ -10,7 +10,6 @@ use geometry::{InstancePath, Shape, ShapeSample, World};
 use math::{
     Bounds3, DirectionCone, MACHINE_EPSILON, Normal3, Point3, Point3Error, Transform, Vec2, Vec3, Vector3,
 };
-use std::borrow::Cow;
 
 use super::LightSampleContext;
 
@@ -20,34 +19,56 @@ const AREA_STRATA: u32 = 8;
 
 /// An emitting primitive at one shutter time.
 pub(super) struct Emitter<'a> {
-    shape: Cow<'a, Shape>,
-    /// To render space from that of the shape; `None` where they are the same.
-    render_from_shape: Option<Transform>,
+    /// The shape in its own space; of a moving one, as it is at that time.
+    shape: &'a Shape,
+    world: &'a World,
+    instance: &'a InstancePath,
+    time: f32,
 }
 
 impl<'a> Emitter<'a> {
-    /// `shape` through `instance` at `time`.
-    pub fn new(shape: Cow<'a, Shape>, world: &World, instance: &InstancePath, time: f32) -> Self {
-        let shape = match &*shape {
-            Shape::MovingTriangle(triangle) => Cow::Owned(triangle.at(time).into()),
-            _ => shape,
-        };
-        let transforms = instance.ids().iter().map(|&id| world.render_from_instance(id).at(time));
-        Self { shape, render_from_shape: transforms.reduce(|outer, inner| outer.after(&inner)) }
+    /// Asks for the emitter that is `shape` through `instance` at `time`.
+    #[inline]
+    pub fn ask<T>(
+        shape: &Shape,
+        world: &World,
+        instance: &InstancePath,
+        time: f32,
+        question: impl FnOnce(&Emitter) -> T,
+    ) -> T {
+        match shape {
+            Shape::MovingTriangle(triangle) => {
+                question(&Emitter { shape: &triangle.at(time).into(), world, instance, time })
+            }
+            _ => question(&Emitter { shape, world, instance, time }),
+        }
+    }
+
+    /// To render space from that of the shape; `None` where they are the same, as for most emitters.
+    #[inline]
+    fn render_from_shape(&self) -> Option<Transform> {
+        if self.instance.is_top() { None } else { self.render_from_instances() }
+    }
+
+    #[inline(never)]
+    fn render_from_instances(&self) -> Option<Transform> {
+        let transforms =
+            self.instance.ids().iter().map(|&id| self.world.render_from_instance(id).at(self.time));
+        transforms.reduce(|outer, inner| outer.after(&inner))
     }
 
     /// Its area.
     pub fn area(&self) -> f32 {
         let area = self.shape.area();
-        let Some(transform) = &self.render_from_shape else { return area };
+        let Some(transform) = self.render_from_shape() else { return area };
         let is_flat = self.shape.normal_bounds().cos_theta == 1.0;
-        let n = if is_flat || is_similarity(transform) { 1 } else { AREA_STRATA };
+        let n = if is_flat || is_similarity(&transform) { 1 } else { AREA_STRATA };
         let center = |i: u32| (i as f32 + 0.5) / n as f32;
         let factors = (0..n * n).filter_map(|i| {
             let sample = self.shape.sample(Vec2::new(center(i % n), center(i / n)))?;
             // Weighted by 1/pdf where the shape does not choose its points evenly.
             let weight = f64::from(sample.pdf).recip();
-            Some((f64::from(area_factor(transform, sample.n)) * weight, weight))
+            Some((f64::from(area_factor(&transform, sample.n)) * weight, weight))
         });
         let (sum, weights) = factors.fold((0.0, 0.0), |(s, w), (factor, weight)| (s + factor, w + weight));
         if weights > 0.0 { area * (sum / weights) as f32 } else { 0.0 }
@@ -56,28 +77,40 @@ impl<'a> Emitter<'a> {
     /// A point with its density per area of render space.
     pub fn sample(&self, u: Vec2) -> Option<ShapeSample> {
         let sample = self.shape.sample(u)?;
-        let Some(transform) = &self.render_from_shape else { return Some(sample) };
-        let pdf = sample.pdf / area_factor(transform, sample.n);
-        pdf.is_finite().then(|| placed(transform, &sample, pdf))
+        let Some(transform) = self.render_from_shape() else { return Some(sample) };
+        let pdf = sample.pdf / area_factor(&transform, sample.n);
+        pdf.is_finite().then(|| placed(&transform, &sample, pdf))
     }
 
     /// The density per area with which [`sample`](Self::sample) chooses its point `p`, where its
     /// unit normal is `n`.
     pub fn pdf_area(&self, p: Point3, n: Normal3) -> f32 {
-        let pdf = match &self.render_from_shape {
+        let pdf = match self.render_from_shape() {
             None => self.shape.pdf_area(p, n),
             Some(transform) => {
                 let inverse = transform.inverse();
                 let n = inverse.normal(n).normalize_or_zero();
-                self.shape.pdf_area(inverse.point(p), n) / area_factor(transform, n)
+                self.shape.pdf_area(inverse.point(p), n) / area_factor(&transform, n)
             }
         };
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
     /// A point with its density per solid angle around `context`.
+    #[inline]
     pub fn sample_from(&self, context: &LightSampleContext, u: Vec2) -> Option<ShapeSample> {
-        let Some(transform) = &self.render_from_shape else { return self.shape.sample_from(context, u) };
+        match self.render_from_shape() {
+            None => self.shape.sample_from(context, u),
+            Some(transform) => self.sample_from_inside(&transform, context, u),
+        }
+    }
+
+    fn sample_from_inside(
+        &self,
+        transform: &Transform,
+        context: &LightSampleContext,
+        u: Vec2,
+    ) -> Option<ShapeSample> {
         let inverse = transform.inverse();
         let sample = self.shape.sample_from(&inward(&inverse, context), u)?;
         let outside = placed(transform, &sample, 0.0);
@@ -89,7 +122,7 @@ impl<'a> Emitter<'a> {
     /// The density per solid angle with which [`sample_from`](Self::sample_from) chooses what is
     /// first met along the unit direction `wi`.
     pub fn pdf_from(&self, context: &LightSampleContext, wi: Vector3) -> f32 {
-        let Some(transform) = &self.render_from_shape else { return self.shape.pdf_from(context, wi) };
+        let Some(transform) = self.render_from_shape() else { return self.shape.pdf_from(context, wi) };
         let inverse = transform.inverse();
         let direction = inverse.vector(wi).normalize_or_zero();
         let pdf = self.shape.pdf_from(&inward(&inverse, context), direction);
@@ -100,8 +133,8 @@ impl<'a> Emitter<'a> {
     /// A cone of all its normals.
     pub fn normal_bounds(&self) -> DirectionCone {
         let cone = self.shape.normal_bounds();
-        match &self.render_from_shape {
-            Some(transform) if cone.cos_theta == 1.0 || is_similarity(transform) => {
+        match self.render_from_shape() {
+            Some(transform) if cone.cos_theta == 1.0 || is_similarity(&transform) => {
                 DirectionCone::new(transform.normal(cone.w).normalize_or(cone.w), cone.cos_theta)
             }
             Some(_) => DirectionCone::ENTIRE_SPHERE,
@@ -188,8 +221,8 @@ mod tests {
     fn the_area_of_a_stretched_triangle_is_that_of_its_corners() {
         let corners = [Vec3::ZERO, Vec3::new(1.0, 0.2, 0.0), Vec3::new(0.1, 1.0, 0.5)];
         let (world, path, shape) = stretched(Triangle::new(corners).into());
-        let emitter = Emitter::new(Cow::Borrowed(&shape), &world, &path, 0.0);
-        let transform = emitter.render_from_shape.as_ref().expect("an instance");
+        let emitter = Emitter { shape: &shape, world: &world, instance: &path, time: 0.0 };
+        let transform = emitter.render_from_shape().expect("an instance");
         let expected = Shape::from(Triangle::new(corners.map(|p| transform.point(p)))).area();
         assert!((emitter.area() / expected - 1.0).abs() < 1e-5);
     }
@@ -197,7 +230,7 @@ mod tests {
     #[test]
     fn the_area_of_an_ellipsoid_is_near_that_of_thomsens_formula() {
         let (world, path, shape) = stretched(Sphere::whole(&Transform::IDENTITY, false, 1.0).into());
-        let area = Emitter::new(Cow::Borrowed(&shape), &world, &path, 0.0).area();
+        let area = Emitter { shape: &shape, world: &world, instance: &path, time: 0.0 }.area();
         // Thomsen's formula holds within 1.1 %.
         let power = |x: f32, y: f32| (x * y).powf(1.6075);
         let mean = (power(2.0, 0.5) + power(2.0, 1.5) + power(0.5, 1.5)) / 3.0;

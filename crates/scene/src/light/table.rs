@@ -165,6 +165,7 @@ impl<'a> LightRef<'a> {
     }
 
     /// See [`LightModel::sample_li`].
+    #[inline]
     pub fn sample_li(
         &self,
         context: &LightSampleContext,

@@ -170,6 +170,10 @@ impl Textures {
         ctx: &TextureContext,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
+        // Most are constant.
+        if let [Operation { code: Code::Spectrum(index), .. }] = self.program(id.0) {
+            return self.spectra[*index as usize].sample(lambda);
+        }
         let spectral = |code| match code {
             Code::Spectrum(index) => self.spectra[index as usize].sample(lambda),
             Code::SpectrumImage(index) => {
