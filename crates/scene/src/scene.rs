@@ -273,6 +273,7 @@ impl Scene {
     }
 
     /// [`LightRef::sample_li`] of one of this scene's lights.
+    #[inline]
     pub fn sample_light(
         &self,
         light: LightId,

@@ -36,12 +36,15 @@ impl<'a> Emitter<'a> {
         time: f32,
         question: impl FnOnce(&Emitter) -> T,
     ) -> T {
-        match shape {
+        let moved;
+        let shape = match shape {
             Shape::MovingTriangle(triangle) => {
-                question(&Emitter { shape: &triangle.at(time).into(), world, instance, time })
+                moved = triangle.at(time).into();
+                &moved
             }
-            _ => question(&Emitter { shape, world, instance, time }),
-        }
+            _ => shape,
+        };
+        question(&Emitter { shape, world, instance, time })
     }
 
     /// To render space from that of the shape; `None` where they are the same, as for most emitters.
