@@ -45,9 +45,9 @@ pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
 /// [`radical_inverse`] with each digit, leading zeros too, permuted by its position and `hash`.
 ///
 /// A digit d becomes (m d + s) mod b with a random m in 1..b and a random s in 0..b for each
-/// position [Matoušek 1998]. As b is prime, two different digits become each such pair with the same
-/// probability, as by random permutations, and so integrals have the same variance. The s are the
-/// digits of one random number, what is left of which stands for all leading zeros.
+/// position [Matoušek 1998]. As b is prime, two different digits become each such pair with the
+/// same probability, as by random permutations, so that integrals have the same variance. The s are
+/// the digits of one random number; what is left of it stands for all leading zeros.
 #[inline]
 pub fn permuted_radical_inverse(prime_index: usize, mut a: u32, hash: u64) -> f32 {
     let base = prime(prime_index);

@@ -1,10 +1,10 @@
 //! The Halton sequence: dimension d is the radical inverse in the base of prime number d
 //! [Pharr 2023 §8.6].
 //!
-//! All pixels take the first points of the sequence, each with digits permuted in its own way; with
+//! All pixels take the first points of the sequence, each with digits permuted in its own way. With
 //! [`Randomize::None`], each begins at a point of its own, chosen at random [Wang 2000]. The points
-//! of a pixel have the low discrepancy of the sequence, and the errors of pixels are independent. No
-//! number of samples is preferred, and beyond it the sequence continues.
+//! of a pixel have the low discrepancy of the sequence, and the errors of pixels are independent.
+//! No number of samples is preferred, and beyond it the sequence continues.
 
 use super::randomize::Randomize;
 use crate::low_discrepancy::{
@@ -25,8 +25,8 @@ pub struct Halton {
 }
 
 impl Halton {
-    /// A sampler. [`Randomize::FastOwen`] is treated as [`Randomize::Owen`], as the fast hash is for
-    /// base 2.
+    /// A sampler. [`Randomize::FastOwen`] is treated as [`Randomize::Owen`], as the fast hash is
+    /// for base 2.
     pub fn new(samples_per_pixel: u32, randomize: Randomize, seed: u32) -> Halton {
         let samples_per_pixel = samples_per_pixel.max(1);
         Halton { samples_per_pixel, randomize, seed, pixel_hash: 0, index: 0, dimension: 0 }
