@@ -214,7 +214,7 @@ fn samples_of_thin_and_near_triangles_hit_them() {
 }
 
 #[test]
-fn degenerate_triangles_are_refused() {
+fn degenerate_triangles_are_rejected() {
     let [a, b, _] = TRIANGLES[0];
     assert!(
         SphericalTriangle::new([a, b, 0.5 * (a + b)], Vec3::new(0.2, 0.7, -1.0))
@@ -254,7 +254,7 @@ fn spherical_rectangle() {
 }
 
 #[test]
-fn degenerate_rectangles_are_refused() {
+fn degenerate_rectangles_are_rejected() {
     let corner = Vec3::new(1.0, 1.0, 0.0);
     assert!(SphericalRectangle::new(Vec3::ZERO, corner, Vec3::X, Vec3::Y).is_none());
     assert!(SphericalRectangle::new(Vec3::Z, corner, Vec3::ZERO, Vec3::Y).is_none());

@@ -25,7 +25,7 @@ fn diffuse_transmission(reflectance: f32, transmittance: f32) -> Bxdf {
     DiffuseTransmission { reflectance: spectrum(reflectance), transmittance: spectrum(transmittance) }.into()
 }
 
-/// Something like gold.
+/// Approximately gold.
 fn conductor(alpha_x: f32, alpha_y: f32) -> Bxdf {
     let eta = SampledSpectrum::new([1.5, 0.8, 0.3, 0.2]);
     let k = SampledSpectrum::new([1.9, 2.2, 3.0, 4.0]);
@@ -275,7 +275,7 @@ fn specular_refraction_is_reversible() {
         for wo in views() {
             let transmit = |wo, mode| bxdf.sample_f(wo, 0.5, Vec2::ZERO, mode, Directions::Transmission);
             let Some(there) = transmit(wo, TransportMode::Radiance) else { continue };
-            let back = transmit(there.wi, TransportMode::Importance).expect("light finds its way back");
+            let back = transmit(there.wi, TransportMode::Importance).expect("refraction is reversible");
             assert!((back.wi - wo).length() < 1e-3, "{bxdf:?} {wo}");
             let (there_share, back_share) = (weight(&there)[0], weight(&back)[0]);
             assert!(close(there_share * there.eta * there.eta, back_share, 1e-3), "{bxdf:?} {wo}");
@@ -511,7 +511,7 @@ fn a_bsdf_is_its_bxdf_in_the_shading_frame() {
                 assert!(local.is_none_or(|local| local.f.is_black()));
                 continue;
             };
-            let local = local.expect("a BSDF finds only what its BxDF finds");
+            let local = local.expect("the BxDF has each sample of the BSDF");
             assert!((bsdf.local_to_render(local.wi) - render.wi).length() < 1e-5);
             assert_eq!((local.pdf, local.f), (render.pdf, render.f));
         }
