@@ -41,7 +41,7 @@ const STEPS: [Step; 4] = [
 pub fn run(root: &Path) -> Result<(), String> {
     let start = Instant::now();
     install_components(root)?;
-    step("house rules", || tidy::run(root))?;
+    step("source rules", || tidy::run(root))?;
     for Step { name, arguments } in STEPS {
         step(name, || succeed(cargo(root).args(arguments).env("RUSTDOCFLAGS", "-D warnings")))?;
     }
