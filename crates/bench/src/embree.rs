@@ -1,7 +1,7 @@
 //! Embree 4, from a library that is found when the program runs; no headers are needed.
 //!
-//! Only what measuring takes: one mesh in one scene, single rays, the nearest hit and any hit. The
-//! numbers of enumerators and the layout of structures are those of the interface of Embree 4
+//! Only what the benchmarks need: one mesh in one scene, single rays, the nearest hit and any hit.
+//! The numbers of enumerators and the layout of structures are those of the interface of Embree 4
 //! ([Embree 2025]).
 #![allow(unsafe_code, reason = "a library written in C++ is called")]
 
@@ -109,16 +109,16 @@ type MemoryMonitor = unsafe extern "C" fn(*mut c_void, isize, bool) -> bool;
 /// # Safety
 /// `T` must be the type of the function that `name` names.
 unsafe fn find<T>(library: &'static Library, name: &str) -> Result<Symbol<'static, T>, libloading::Error> {
-    // SAFETY: the caller knows the type.
+    // SAFETY: the caller promises the type.
     unsafe { library.get(name) }
 }
 
 /// How a scene is built and traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneOptions {
-    /// How good a tree.
+    /// Build quality of the tree.
     pub quality: Quality,
-    /// Whether no ray may slip through an edge.
+    /// Whether traversal is watertight.
     pub robust: bool,
 }
 
@@ -141,14 +141,14 @@ pub struct Embree {
 impl Embree {
     /// Loads the library at a path.
     pub fn load(path: &OsStr) -> Result<Self, libloading::Error> {
-        // SAFETY: the path is the user's word that the library is Embree, whose initialisers have
-        // no demands.
+        // SAFETY: the user's path names Embree's library, whose initialisers have no
+        // preconditions.
         let library = unsafe { Library::new(path)? };
         // Its threads may outlive all devices, so that it is never unloaded.
         Ok(Self { functions: Functions::find(Box::leak(Box::new(library)))? })
     }
 
-    /// A device that builds with so many threads.
+    /// A device that builds with this number of threads.
     pub fn device(&self, threads: usize) -> Result<Device, &'static str> {
         let options = CString::new(format!("threads={threads}")).expect("invariant: no zero byte in it");
         // SAFETY: the string ends with a zero byte and outlives the call.
@@ -166,7 +166,7 @@ impl Embree {
 /// # Safety
 /// `counter` must point to a living `AtomicIsize`.
 unsafe extern "C" fn count_memory(counter: *mut c_void, bytes: isize, _post: bool) -> bool {
-    // SAFETY: the caller knows what it points to; only shared references are made of it.
+    // SAFETY: the caller promises what it points to; only shared references are made of it.
     let counter = unsafe { &*counter.cast::<AtomicIsize>().cast_const() };
     counter.fetch_add(bytes, Ordering::Relaxed);
     true
@@ -324,7 +324,7 @@ impl Drop for DenormalsAreZero {
 #[cfg(target_arch = "x86_64")]
 fn control() -> u32 {
     let mut control = 0u32;
-    // SAFETY: stores four bytes where four bytes are.
+    // SAFETY: stores four bytes into four bytes.
     unsafe { std::arch::asm!("stmxcsr [{}]", in(reg) &mut control, options(nostack)) };
     control
 }

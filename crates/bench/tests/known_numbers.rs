@@ -1,5 +1,4 @@
-//! Meshes and rays are the ones that figures were taken with elsewhere: counts, places and answers
-//! stay what they were.
+//! Meshes, rays and hits against recorded numbers, so that measurements stay comparable.
 
 use alhazen_bench::building;
 use alhazen_bench::embree::Embree;
@@ -38,10 +37,9 @@ fn meshes_are_those_of_their_formulas() {
     }
 }
 
-/// Embree's answers to rays that it made itself: points of origin differ from ours in their last
-/// bits.
+/// Embree's results for rays from its own hits, whose origins differ from ours in their last bits.
 #[test]
-fn rays_meet_what_they_met_elsewhere() {
+fn hits_are_those_of_embree() {
     let mesh = mesh("blob");
     let world = building::world(mesh.triangles().expect("a mesh"), BuildQuality::Balanced);
     let sets = ray_sets(&mesh, 1024, |ray| closest(&world, ray).map(|hit| (hit.t, hit.primitive as usize)));
@@ -69,7 +67,7 @@ fn the_room_is_seen_from_its_corner() {
 }
 
 #[test]
-fn answers_agree_but_for_rounding() {
+fn results_agree_up_to_rounding() {
     let answer = Answer { hits: 100_000, sum_t: 5e5 };
     assert!(answer.agrees(&Answer { hits: 100_001, sum_t: 5e5 + 3.0 }));
     assert!(!answer.agrees(&Answer { hits: 100_020, ..answer }));
@@ -79,7 +77,7 @@ fn answers_agree_but_for_rounding() {
 }
 
 #[test]
-fn ways_are_measured_in_turn() {
+fn candidates_are_measured_in_alternation() {
     let calls = RefCell::new(String::new());
     let ways = ["a", "b"].map(|way| {
         let calls = &calls;
@@ -98,6 +96,6 @@ fn tables_are_markdown() {
 }
 
 #[test]
-fn what_is_no_library_is_refused() {
+fn a_missing_library_is_an_error() {
     assert!(Embree::load("no such library".as_ref()).is_err());
 }

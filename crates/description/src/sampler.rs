@@ -18,7 +18,7 @@ choices! {
 }
 
 choices! {
-    /// How the Halton sequence is randomised.
+    /// How the digits of the Halton sequence are randomised.
     pub enum HaltonRandomization {
         /// Not at all.
         None = "none",
@@ -61,7 +61,7 @@ settings! {
         Halton = "halton" {
             /// Samples per pixel.
             pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
-            /// How the sequence is randomised.
+            /// How the digits are randomised.
             randomization: HaltonRandomization = HaltonRandomization::PermuteDigits => ["randomization"];
         },
         /// Two-dimensional Sobol' points, padded.

@@ -74,7 +74,7 @@ impl Builder<'_> {
                     HaltonRandomization::PermuteDigits => Randomize::PermuteDigits,
                     HaltonRandomization::Owen => Randomize::Owen,
                 };
-                Sampler::Halton(Halton::new(samples, resolution, randomization, seed))
+                Sampler::Halton(Halton::new(samples, randomization, seed))
             }
             SamplerKind::PaddedSobol { randomization, .. } => {
                 Sampler::PaddedSobol(PaddedSobol::new(samples, randomize(randomization), seed))

@@ -16,7 +16,8 @@ instruction_set! {
 /// See [`crate::Simd::permute`].
 #[inline(always)]
 pub fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {
-    // SAFETY: `from` is the proof of the instruction set; as many indices are read as there are.
+    // SAFETY: `from` is the proof of the instruction set; the array has as many indices as are
+    // read.
     unsafe {
         let indices = _mm_loadu_si128(indices.as_ptr().cast());
         let indices = _mm_srl_epi32(indices, _mm_cvtsi32_si128(8 * BYTE as i32));

@@ -1,4 +1,4 @@
-//! What needs no dispatch: instructions that every processor of an architecture has.
+//! Operations that need no dispatch: every processor of an architecture has their instructions.
 
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
@@ -20,7 +20,7 @@ pub fn prefetch<T>(address: *const T) {
 #[inline(always)]
 pub fn first_equal(keys: &[u32; 16], of: usize) -> usize {
     #[cfg(target_arch = "x86_64")]
-    // SAFETY: every x86-64 processor has SSE2; as many keys are read as there are.
+    // SAFETY: every x86-64 processor has SSE2; the array has as many keys as are read.
     unsafe {
         let key = _mm_set1_epi32(keys[of] as i32);
         let equal = |four: usize| _mm_cmpeq_epi32(_mm_loadu_si128(keys.as_ptr().add(4 * four).cast()), key);

@@ -23,7 +23,7 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// All there are, the best first.
+    /// All instruction sets, the best first.
     pub const ALL: [Self; 5] = [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Scalar];
 
     /// The best one that this processor has.

@@ -9,7 +9,7 @@
 //! Only what makes a vector is unsafe: a vector is the proof that the processor has the
 //! instructions that compute with it.
 
-// Vector intrinsics are unsafe; this crate is the only home of theirs.
+// Vector intrinsics are unsafe; only this crate calls them.
 #![allow(unsafe_code)]
 
 #[macro_use]

@@ -13,7 +13,7 @@ instruction_set! {
 #[inline(always)]
 unsafe fn bits(mask: uint32x4_t) -> u32 {
     const BITS: [u32; 4] = [1, 2, 4, 8];
-    // SAFETY: who has a mask has NEON; as many bits are read as there are.
+    // SAFETY: masks are made by NEON alone; the array has as many elements as are read.
     unsafe { vaddvq_u32(vandq_u32(mask, vld1q_u32(BITS.as_ptr()))) }
 }
 

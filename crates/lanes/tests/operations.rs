@@ -40,7 +40,7 @@ fn expected<const N: usize>([a, b, c]: [[f32; N]; 3]) -> (Vec<[f32; N]>, [u32; 2
     (vectors.to_vec(), [bits(f32::le), bits(f32::lt)])
 }
 
-/// Compares all operations on vectors of `N` floats; the bound of the unfused product apart.
+/// Compares all operations on vectors of `N` floats; the bound of the unfused product separately.
 unsafe fn check<const N: usize, V: Vector<N>>(numbers: &[f32; 48], set: &str) {
     let lanes = |from: usize| -> [f32; N] { std::array::from_fn(|i| numbers[from + i]) };
     let arrays = [lanes(0), lanes(16), lanes(32)];
@@ -59,7 +59,7 @@ unsafe fn check<const N: usize, V: Vector<N>>(numbers: &[f32; 48], set: &str) {
     for (lane, x) in relaxed.into_iter().enumerate() {
         let [a, b, c] = arrays.map(|array| array[lane]);
         let either = [a.mul_add(b, -c), a * b - c];
-        assert!(x.is_nan() || either.contains(&x), "{set}: {a}·{b} − {c} is no {x}");
+        assert!(x.is_nan() || either.contains(&x), "{set}: {a}·{b} − {c} is not {x}");
     }
     // SAFETY: the caller promises the instruction set.
     assert_eq!(unsafe { V::splat(numbers[0]) }.store().map(f32::to_bits), [numbers[0].to_bits(); N]);

@@ -124,7 +124,7 @@ fn decompose(m: DMat4) -> (DVec3, DQuat, DMat3) {
             break;
         }
     }
-    // A reflection is no rotation: it goes into the stretch.
+    // A reflection is no rotation, so it becomes part of the stretch.
     if rotation.determinant() < 0.0 {
         rotation *= -1.0;
     }
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_are_met() {
+    fn keys_are_reproduced() {
         let a = turning();
         let p = Vec3::new(0.3, 0.4, 0.5);
         assert!((a.at(-1.0).point(p) - (p + Vec3::X)).length() < 1e-6);
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn motion_bounds_hold_every_moment() {
+    fn motion_bounds_contain_all_times() {
         let a = turning();
         let b = Bounds3::new(Vec3::new(-1.0, -2.0, 0.5), Vec3::new(1.0, 1.0, 2.0));
         let all = a.motion_bounds(&b);
@@ -170,11 +170,11 @@ mod tests {
             let t = a.at(i as f32 / 500.0);
             assert!(b.corners().all(|p| all.contains(t.point(p))));
         }
-        assert!(all.surface_area() < 600.0, "not wildly loose: {all:?}");
+        assert!(all.surface_area() < 600.0, "loose bounds: {all:?}");
     }
 
     #[test]
-    fn a_mirror_decomposes() {
+    fn reflections_decompose() {
         let m = DMat4::from_scale(DVec3::new(-1.0, 2.0, 1.0)) * DMat4::from_rotation_x(0.4);
         let (_, r, s) = decompose(m);
         let back = DMat3::from_quat(r) * s;

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_union_holds_both() {
+    fn a_union_contains_both() {
         let a = DirectionCone::new(Vec3::X, 0.9);
         let b = DirectionCone::new(Vec3::new(0.0, 0.6, 0.8), 0.7);
         let u = a.union(b);

@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn weights_without_a_distribution_are_refused() {
+    fn weights_without_a_distribution_are_rejected() {
         for weights in [&[][..], &[0.0, 0.0], &[1.0, -1.0, 2.0], &[f32::NAN, 1.0], &[f32::INFINITY, 1.0]] {
             assert!(AliasTable::new(weights).is_none(), "{weights:?}");
         }

@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_drawn_from_nothing() {
+    fn zero_weights_have_no_sample() {
         assert_eq!(sample_discrete(&[], 0.5), None);
         assert_eq!(sample_discrete(&[0.0, 0.0], 0.5), None);
     }

@@ -12,7 +12,7 @@ pub fn mix_bits(v: u64) -> u64 {
     v ^ (v >> 33)
 }
 
-/// The hash of a sequence of words. Floats go in by their bits, 64-bit words as two halves, the
+/// The hash of a sequence of words. Floats enter as their bits, 64-bit words as two halves, the
 /// lower one first.
 #[inline]
 pub fn hash(words: &[u32]) -> u64 {

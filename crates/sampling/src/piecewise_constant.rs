@@ -29,7 +29,7 @@ impl PiecewiseConstant1d {
     /// # Panics
     /// If there is no value, or `min` is not below `max`.
     pub fn new(values: &[f32], [min, max]: [f32; 2]) -> PiecewiseConstant1d {
-        assert!(!values.is_empty() && min < max, "a density needs cells of some width");
+        assert!(!values.is_empty() && min < max, "a density needs at least one cell, and min < max");
         let mut values: Box<[f32]> =
             values.iter().map(|v| if v.is_finite() { v.abs() } else { 0.0 }).collect();
         let mut sum = 0.0f64;
@@ -137,7 +137,7 @@ impl PiecewiseConstant2d {
     /// # Panics
     /// If `values` are not whole rows, or none, or the domain has no area.
     pub fn new(values: &[f32], columns: usize, domain: Bounds2) -> PiecewiseConstant2d {
-        assert!(columns > 0 && values.len().is_multiple_of(columns), "values come in whole rows");
+        assert!(columns > 0 && values.len().is_multiple_of(columns), "values must be whole rows");
         let x_range = [domain.min.x, domain.max.x];
         let rows: Box<[_]> =
             values.chunks_exact(columns).map(|row| PiecewiseConstant1d::new(row, x_range)).collect();
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_but_zeros_is_sampled_uniformly() {
+    fn zeros_are_sampled_uniformly() {
         let density = PiecewiseConstant2d::new(&[0.0; 6], 3, Bounds2::UNIT);
         assert_eq!(density.integral(), 0.0);
         let (p, pdf, cell) = density.sample(Vec2::new(0.25, 0.75));

@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn advancing_is_skipping() {
+    fn advancing_skips_words() {
         let start = Rng::from_sequence(9);
         let mut stepped = start.clone();
         (0..1000).for_each(|_| {

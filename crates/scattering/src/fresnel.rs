@@ -101,7 +101,7 @@ mod tests {
         for eta in INDICES {
             let expected = sqr((eta - 1.0) / (eta + 1.0));
             assert!((fr_dielectric(1.0, eta) - expected).abs() < 1e-6);
-            assert!((fr_dielectric(-1.0, eta) - expected).abs() < 1e-6, "the same from below");
+            assert!((fr_dielectric(-1.0, eta) - expected).abs() < 1e-6, "{eta} from below");
             for k in [0.0, 0.5, 3.0, 10.0] {
                 let expected = (sqr(eta - 1.0) + k * k) / (sqr(eta + 1.0) + k * k);
                 assert!((fr_complex(1.0, eta, k) - expected).abs() < 1e-6, "{eta} + {k} i");
@@ -172,7 +172,7 @@ mod tests {
             prop_assert!(wt.z * wi.z <= 0.0);
             prop_assert!((wt.x * met + wi.x).abs() < 1e-5 && (wt.y * met + wi.y).abs() < 1e-5);
             if wt.z.abs() > 0.05 && wi.z.abs() > 0.05 {
-                let (back, _) = refract(wt, Vec3::Z, eta).expect("what came in goes out");
+                let (back, _) = refract(wt, Vec3::Z, eta).expect("refraction is reversible");
                 prop_assert!((back - wi).length() < 1e-4);
                 prop_assert!((fr_dielectric(wi.z, eta) - fr_dielectric(wt.z, eta)).abs() < 1e-4);
             }

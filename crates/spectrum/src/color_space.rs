@@ -49,7 +49,7 @@ color_space! {
 }
 
 color_space! {
-    /// P3 of displays, with D65.
+    /// Display P3: the primaries of DCI-P3 with D65.
     dci_p3, "dci-p3", "stdillum-D65", [0.68, 0.32], [0.265, 0.69], [0.15, 0.06], "rgb_dci_p3.bin"
 }
 
@@ -80,7 +80,7 @@ impl RgbColorSpace {
         let unscaled = Matrix3::from_columns(columns);
         let scale = unscaled
             .inverse()
-            .expect("invariant: primaries are apart")
+            .expect("invariant: the primaries are distinct")
             .apply(white_xyz.to_array().map(f64::from));
         let xyz_from_rgb = unscaled * Matrix3::diagonal(scale);
         Self {
@@ -89,7 +89,7 @@ impl RgbColorSpace {
             white: white_xyz.xy(),
             illuminant: Arc::new(DenselySampled::from_fn(|lambda| illuminant.at(lambda))),
             xyz_from_rgb,
-            rgb_from_xyz: xyz_from_rgb.inverse().expect("invariant: primaries are apart"),
+            rgb_from_xyz: xyz_from_rgb.inverse().expect("invariant: the primaries are distinct"),
             table_data,
             table: OnceLock::new(),
         }

@@ -7,7 +7,7 @@ use std::ops::Mul;
 pub struct Matrix3(pub [[f64; 3]; 3]);
 
 impl Matrix3 {
-    /// Leaves every colour as it is.
+    /// The identity.
     pub const IDENTITY: Self = Self::diagonal([1.0; 3]);
 
     /// Scales each component.

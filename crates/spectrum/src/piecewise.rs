@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_pairs_are_refused() {
+    fn invalid_pairs_are_rejected() {
         assert_eq!(PiecewiseLinear::from_pairs(&[]), Err(SpectrumError::Empty));
         assert_eq!(
             PiecewiseLinear::from_interleaved(&[400.0, 1.0, 500.0]),

@@ -5,7 +5,7 @@
 //! a table over the RGB cube, made by `cargo xtask rgb-table`: for each position i of the largest
 //! component, over its value z and the ratios x, y of the two next components to it. Between nodes
 //! the coefficients are trilinear in x, y and (z − ½) / √(z (1 − z)), in which those of grey are
-//! linear, so that dark and bright colours come out right.
+//! linear, so that dark and bright colours are accurate too.
 //!
 //! In the file a node is three 16-bit numbers, asinh of the polynomial at 440, 540 and 640 nm over
 //! ±10: what the eye sees of a spectrum depends on the polynomial there, and asinh makes the steps
@@ -117,7 +117,7 @@ impl RgbToSpectrumTable {
         }
     }
 
-    /// From what [`encode`](Self::encode) made.
+    /// Decodes the bytes of [`encode`](Self::encode).
     ///
     /// # Panics
     /// If `data` has another length than a table.

@@ -171,7 +171,7 @@ impl Chi2 {
         if total > 1.0 + 1e-3 {
             return Err(format!("the density integrates to {total:.5}, which is more than 1"));
         }
-        // The quadrature is not exact: a deficit this small is not one.
+        // The quadrature is not exact, so a small deficit counts as none.
         let deficit = if 1.0 - total < 1e-4 { 0.0 } else { 1.0 - total };
         let expected = deficit * self.samples as f64;
         cells.push(Cell { place: [[f64::NAN; 2]; 2], expected, observed: missing });

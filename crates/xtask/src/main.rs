@@ -10,9 +10,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 const USAGE: &str = "\
-usage: cargo xtask CHORE
+usage: cargo xtask TASK
 
-  test       everything that must hold: format, house rules, lints, tests, documentation
+  test       all checks: format, source rules, lints, documentation, tests
   tidy       the source rules alone, in a second
   bench rays [--help | OPTIONS]
              the ray engine beside Embree, on a million triangles

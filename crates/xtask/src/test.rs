@@ -13,8 +13,8 @@ struct Step {
     arguments: &'static [&'static str],
 }
 
-/// Lints and documentation share one check of the workspace; tests are built once, optimised and
-/// with assertions.
+/// All have the profile of tests, so that build scripts and procedural macros are built once. Lints
+/// and documentation share one check of the workspace.
 const STEPS: [Step; 4] = [
     Step { name: "format", arguments: &["fmt", "--all", "--check"] },
     Step {
@@ -23,6 +23,8 @@ const STEPS: [Step; 4] = [
             "clippy",
             "--quiet",
             "--workspace",
+            "--profile",
+            "checked",
             "--all-targets",
             "--keep-going",
             "--",
@@ -30,7 +32,10 @@ const STEPS: [Step; 4] = [
             "warnings",
         ],
     },
-    Step { name: "documentation", arguments: &["doc", "--quiet", "--workspace", "--no-deps", "--lib"] },
+    Step {
+        name: "documentation",
+        arguments: &["doc", "--quiet", "--workspace", "--profile", "checked", "--no-deps", "--lib"],
+    },
     Step {
         name: "tests",
         arguments: &["test", "--quiet", "--workspace", "--profile", "checked", "--no-fail-fast"],
@@ -41,7 +46,7 @@ const STEPS: [Step; 4] = [
 pub fn run(root: &Path) -> Result<(), String> {
     let start = Instant::now();
     install_components(root)?;
-    step("house rules", || tidy::run(root))?;
+    step("source rules", || tidy::run(root))?;
     for Step { name, arguments } in STEPS {
         step(name, || succeed(cargo(root).args(arguments).env("RUSTDOCFLAGS", "-D warnings")))?;
     }

@@ -4,7 +4,6 @@ mod radical_inverse;
 mod sobol;
 
 pub use radical_inverse::{
-    DigitPermutations, PRIME_COUNT, inverse_radical_inverse, owen_scrambled_radical_inverse, prime,
-    radical_inverse,
+    PRIME_COUNT, owen_scrambled_radical_inverse, permuted_radical_inverse, prime, radical_inverse,
 };
 pub use sobol::{SOBOL_DIMENSIONS, fast_owen_scramble, owen_scramble, sobol_bits};

@@ -1,11 +1,11 @@
 //! The radical inverse: the digits of an index mirrored at the radix point, Φ_b(Σ dᵢ bⁱ) = Σ dᵢ
 //! b^(−i−1), plain or with its digits permuted at random.
 //!
-//! Digits are permuted by their position alone ([`DigitPermutations`], [Faure 1982]), or depending
-//! on the digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]).
+//! Digits are permuted by their position alone ([`permuted_radical_inverse`]), or depending on the
+//! digits before them ([`owen_scrambled_radical_inverse`], [Owen 1995]).
 //! See [Pharr 2023 §8.6].
 
-use crate::{hash, mix_bits, permutation_element};
+use crate::{mix_bits, permutation_element};
 use math::ONE_MINUS_EPSILON;
 use std::sync::LazyLock;
 
@@ -42,55 +42,33 @@ pub fn radical_inverse(prime_index: usize, a: u64) -> f32 {
     mirror(base, a, |a, _| a > 0, |_, digit| digit)
 }
 
-/// The number below baseⁿ whose radical inverse in `base` has the integer `inverse` as its n
-/// digits.
+/// [`radical_inverse`] with each digit, leading zeros too, permuted by its position and `hash`.
+///
+/// A digit d becomes (m d + s) mod b with a random m in 1..b and a random s in 0..b for each
+/// position [Matoušek 1998]. As b is prime, two different digits become each such pair with the
+/// same probability, as by random permutations, so that integrals have the same variance. The s are
+/// the digits of one random number; what is left of it stands for all leading zeros.
 #[inline]
-pub fn inverse_radical_inverse(mut inverse: u64, base: u64, digits: u32) -> u64 {
-    let mut index = 0;
-    for _ in 0..digits {
-        index = index * base + inverse % base;
-        inverse /= base;
+pub fn permuted_radical_inverse(prime_index: usize, mut a: u32, hash: u64) -> f32 {
+    let base = prime(prime_index);
+    let inverse_base = 1.0 / base as f64;
+    // Binary fractions, whose digits in a base are the integer parts of repeated products.
+    let (mut shifts, mut multipliers) = (mix_bits(hash), mix_bits(!hash));
+    let next_digit = |fraction: &mut u64, base: u32| {
+        let product = *fraction as u128 * base as u128;
+        *fraction = product as u64;
+        (product >> 64) as u32
+    };
+    let (mut mirrored, mut scale) = (0u64, 1.0);
+    while a > 0 {
+        let next = a / base;
+        let multiplier = 1 + next_digit(&mut multipliers, base - 1);
+        let shift = next_digit(&mut shifts, base);
+        mirrored = mirrored * base as u64 + ((multiplier * (a - next * base) + shift) % base) as u64;
+        scale *= inverse_base;
+        a = next;
     }
-    index
-}
-
-/// Random permutations of the digits of one base, one for each digit position that matters in
-/// single precision.
-#[derive(Clone, Debug)]
-pub struct DigitPermutations {
-    base: u32,
-    /// A row of `base` digits for each position.
-    rows: Box<[u16]>,
-}
-
-impl DigitPermutations {
-    /// The permutations for the base of prime number `prime_index` that belong to `seed`.
-    pub fn new(prime_index: usize, seed: u32) -> DigitPermutations {
-        let base = prime(prime_index);
-        let scales = std::iter::successors(Some(1.0), |scale| Some(scale / base as f64));
-        let places = scales.take_while(|scale| (base - 1) as f64 * scale > VISIBLE).count() as u32;
-        let row = |place| {
-            let seed = hash(&[base, place, seed]) as u32;
-            (0..base).map(move |digit| permutation_element(digit, base, seed) as u16)
-        };
-        DigitPermutations { base, rows: (0..places).flat_map(row).collect() }
-    }
-
-    /// [`radical_inverse`] with each digit permuted by its position; leading zeros are permuted
-    /// too.
-    #[inline]
-    pub fn radical_inverse(&self, mut a: u64) -> f32 {
-        let base = self.base as u64;
-        let inverse_base = 1.0 / base as f64;
-        let (mut mirrored, mut scale) = (0, 1.0);
-        for row in self.rows.chunks_exact(self.base as usize) {
-            let next = a / base;
-            mirrored = mirrored * base + row[(a - next * base) as usize] as u64;
-            scale *= inverse_base;
-            a = next;
-        }
-        to_unit(mirrored as f64 * scale)
-    }
+    to_unit((mirrored as f64 + shifts as f64 * 0.5f64.powi(64)) * scale)
 }
 
 /// [`radical_inverse`] with Owen scrambling: each digit permuted by those before it and
@@ -133,6 +111,7 @@ fn to_unit(x: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use testkit::Chi2;
 
     #[test]
     fn the_bases_are_the_first_thousand_primes() {
@@ -144,11 +123,18 @@ mod tests {
     fn digits_are_mirrored() {
         assert_eq!(radical_inverse(0, 0b1101), 0.6875);
         assert!((radical_inverse(1, 5) - (2.0 / 3.0 + 1.0 / 9.0)).abs() < 1e-7);
-        for a in 0..81 {
-            let digits = (radical_inverse(1, a) as f64 * 81.0).round() as u64;
-            assert_eq!(inverse_radical_inverse(digits, 3, 4), a);
-        }
         assert!((0..PRIME_COUNT).all(|i| radical_inverse(i, u64::MAX) < 1.0));
+    }
+
+    #[test]
+    fn two_digits_become_any_two() {
+        let mut counts = [0; 25];
+        for hash in 0..20_000 {
+            let [x, y] = [1, 3].map(|a| (permuted_radical_inverse(2, a, mix_bits(hash)) * 5.0) as usize);
+            counts[5 * x + y] += 1;
+        }
+        let expected: [f64; 25] = std::array::from_fn(|i| if i / 5 == i % 5 { 0.0 } else { 1000.0 });
+        Chi2::default().counts(&counts, &expected).unwrap();
     }
 
     #[test]
@@ -156,8 +142,8 @@ mod tests {
         for prime_index in [0, 1, 3] {
             let base = prime(prime_index) as usize;
             for seed in 0..10 {
-                let permutations = DigitPermutations::new(prime_index, seed);
-                let permuted = |a| permutations.radical_inverse(a);
+                let permuted =
+                    |a: u64| permuted_radical_inverse(prime_index, a as u32, mix_bits(1 + seed as u64));
                 let owen = |a| owen_scrambled_radical_inverse(prime_index, a, seed);
                 for scrambled in [&permuted as &dyn Fn(u64) -> f32, &owen] {
                     let count = base * base;

@@ -117,7 +117,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn the_table_is_whole() {
+    fn the_table_has_every_dimension() {
         assert_eq!(MATRICES.len(), SOBOL_DIMENSIONS);
     }
 

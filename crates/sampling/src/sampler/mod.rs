@@ -37,7 +37,7 @@ pub enum Sampler {
     Independent(Independent),
     /// One sample in each cell of a grid.
     Stratified(Stratified),
-    /// Radical inverses in prime bases, one sequence over the picture.
+    /// Radical inverses in prime bases, randomised for each pixel.
     Halton(Halton),
     /// Two-dimensional Sobol' points, randomised for each pair of dimensions of each pixel.
     PaddedSobol(PaddedSobol),

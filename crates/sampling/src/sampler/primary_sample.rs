@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_accepted_leaves_no_trace() {
+    fn rejected_proposals_change_nothing() {
         let mut sample = started(1e-4, 2);
         let from = draw(&mut sample, 3);
         sample.accept();
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn coordinates_that_were_not_asked_for_take_part_in_small_steps_alone() {
+    fn unused_coordinates_take_small_steps_but_no_large_ones() {
         for large in [false, true] {
             let mut sample = started(1e-4, 3);
             let from = draw(&mut sample, 4);
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ends_of_the_interval_meet() {
+    fn small_steps_wrap_around() {
         assert_eq!(wrap(1.25), 0.25);
         assert_eq!(wrap(-0.25), 0.75);
         assert_eq!(wrap(1.0), 0.0);

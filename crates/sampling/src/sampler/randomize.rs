@@ -8,7 +8,7 @@ use crate::low_discrepancy::{fast_owen_scramble, owen_scramble, sobol_bits};
 pub enum Randomize {
     /// Not at all.
     None,
-    /// Each digit is permuted, the same way in all points.
+    /// Each digit is permuted depending on its position alone.
     PermuteDigits,
     /// Owen scrambling by a hash: each digit is permuted depending on the digits before it.
     #[default]

@@ -1,6 +1,5 @@
 //! A grid of cells over each pixel, with one sample in each; for other dimensions the cells are
-//! shuffled [Pharr 2023 §8.5]. Beyond the number of cells, another grid
-//! begins.
+//! shuffled [Pharr 2023 §8.5]. Beyond the number of cells, another grid begins.
 
 use super::independent::pixel_rng;
 use super::randomize::{pixel_hash, shuffled};

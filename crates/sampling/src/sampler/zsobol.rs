@@ -2,8 +2,8 @@
 //! digits of the Morton index randomly permuted: neighbouring pixels take complementary points, and
 //! the error is blue noise [Ahmed 2020], [Pharr 2023 §8.7.3].
 //!
-//! Another seed permutes digits and scrambles points otherwise: with scrambles alone, which all
-//! pixels share, the errors of two seeds would have much in common. A number of samples that is no
+//! The seed selects both the permutations and the scrambles: all pixels share the scrambles, so
+//! that by them alone the errors of two seeds would be correlated. A number of samples that is no
 //! power of two is rounded up to one. Beyond it, each further round has scrambles and permutations
 //! of its own.
 
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_different_seeds_have_nothing_in_common() {
+    fn seeds_are_uncorrelated() {
         // Which half of [0, 1) a pixel's only sample lies in, as a sign.
         let signs = |seed: u32| -> Vec<f64> {
             let mut sampler = ZSobol::new(1, [64, 64], Randomize::FastOwen, seed);

@@ -44,7 +44,8 @@ impl Dielectric {
         self.eta == 1.0 || self.distribution.effectively_smooth()
     }
 
-    /// The facets that turn `wo` into `wi`, if there are any and both see their front.
+    /// The facets that turn `wo` into `wi`, if there are any and both directions are on their front
+    /// side.
     #[inline]
     fn facet(&self, wo: Vector3, wi: Vector3) -> Option<Facet> {
         if wo.z == 0.0 || wi.z == 0.0 {

@@ -1,7 +1,7 @@
 //! The BxDFs: their contract in the local frame, and the enum of all.
 //!
-//! Every member is [`Scatter`]; the conventions are those at the head of the crate. A member that
-//! is added gets a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
+//! Every member is [`Scatter`]; the conventions are those at the head of the crate. A new
+//! member needs a file, a variant and a line of [`each_bxdf!`](crate::each_bxdf).
 
 mod conductor;
 mod dielectric;
@@ -59,7 +59,7 @@ pub trait Scatter {
     fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum;
 
     /// A direction `wi`, distributed about as f·|cos|. `uc` chooses a lobe, `u` a direction within
-    /// it. `None` where no light is scattered or the sample goes astray; such a sample counts as
+    /// it. `None` where no light is scattered or the sample is invalid; such a sample counts as
     /// zero.
     #[doc(alias = "Sample_f")]
     fn sample_f(
@@ -78,8 +78,8 @@ pub trait Scatter {
     /// Widens narrow lobes, so that light they carry is found at the price of some bias.
     fn regularize(&mut self) {}
 
-    /// The hemispherical-directional reflectance: the share of even light from everywhere that
-    /// leaves to `wo`, estimated by one term for each (uc, u).
+    /// The hemispherical-directional reflectance: the share of uniform incident light that
+    /// is scattered to `wo`, estimated by one term for each (uc, u).
     fn rho_hd(&self, wo: Vector3, samples: impl IntoIterator<Item = (f32, Vec2)>) -> SampledSpectrum {
         if wo.z == 0.0 {
             return SampledSpectrum::ZERO;
@@ -87,7 +87,7 @@ pub trait Scatter {
         mean(samples.into_iter().map(|(uc, u)| scattered(self, wo, uc, u)))
     }
 
-    /// The hemispherical-hemispherical reflectance: the share of even light from everywhere that is
+    /// The hemispherical-hemispherical reflectance: the share of uniform incident light that is
     /// scattered at all, estimated by one term for each (u for wo, uc, u for wi).
     fn rho_hh(&self, samples: impl IntoIterator<Item = (Vec2, f32, Vec2)>) -> SampledSpectrum {
         mean(samples.into_iter().map(|(uo, uc, ui)| {
@@ -97,7 +97,7 @@ pub trait Scatter {
     }
 }
 
-/// One estimate of the even light scattered to `wo`.
+/// One estimate of the uniform incident light scattered to `wo`.
 fn scattered(bxdf: &(impl Scatter + ?Sized), wo: Vector3, uc: f32, u: Vec2) -> SampledSpectrum {
     match bxdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All) {
         Some(sample) if sample.pdf > 0.0 => sample.f * (sample.wi.z.abs() / sample.pdf),
@@ -111,12 +111,12 @@ fn mean(estimates: impl Iterator<Item = SampledSpectrum>) -> SampledSpectrum {
     sum / count.max(1) as f32
 }
 
-/// Any BxDF, by value: born at each hit, never allocated.
+/// Any BxDF, by value: made at each hit, without allocation.
 #[derive(Clone, Copy, Debug)]
 pub enum Bxdf {
-    /// Reflects evenly.
+    /// Lambertian reflection.
     Diffuse(Diffuse),
-    /// Reflects and transmits evenly.
+    /// Lambertian reflection and transmission.
     DiffuseTransmission(DiffuseTransmission),
     /// Metal, smooth or rough.
     Conductor(Conductor),

@@ -1,5 +1,5 @@
-//! A smooth pane of glass, so thin that light leaves where it came in: it is mirrored or goes
-//! straight on.
+//! A smooth pane of glass, so thin that light leaves where it enters: it is reflected, or
+//! transmitted without deflection.
 //!
 //! Light that bounces n times inside adds (1 − F)² F^(2n−1); with all bounces the pane reflects R =
 //! F + (1 − F)² F/(1 − F²) = 2F/(1 + F), and transmits 1 − R. Source: [Pharr 2023 §9.5.3],

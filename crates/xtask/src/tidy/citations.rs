@@ -29,13 +29,13 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
             citations.iter().any(|(_, cited)| cited == key) || text.contains(&opening)
         });
         if !cited {
-            findings.push(Finding::new(REFERENCES, number + 1, format!("`{key}` is cited nowhere")));
+            findings.push(Finding::new(REFERENCES, number + 1, format!("`{key}` is never cited")));
         }
     }
     for (path, citations, _) in &texts {
         for (line, key) in citations {
             if !entries.contains(key.as_str()) {
-                findings.push(Finding::new(path, *line, format!("[{key}] does not stand in {REFERENCES}")));
+                findings.push(Finding::new(path, *line, format!("[{key}] has no entry in {REFERENCES}")));
             }
         }
     }
@@ -118,8 +118,8 @@ mod tests {
             findings,
             [
                 "docs/references.md:3: a second entry for `Veach 1997`",
-                "docs/references.md:4: `Kajiya 1986` is cited nowhere",
-                "crates/a/src/b.rs:1: [Faure 1982] does not stand in docs/references.md",
+                "docs/references.md:4: `Kajiya 1986` is never cited",
+                "crates/a/src/b.rs:1: [Faure 1982] has no entry in docs/references.md",
             ]
         );
     }

@@ -138,7 +138,7 @@ mod tests {
         for (place, (name, uses)) in EDGES.iter().enumerate() {
             for used in *uses {
                 let lower = EDGES[..place].iter().any(|(known, _)| known == used);
-                assert!(lower, "{name} uses {used}, which does not stand above it");
+                assert!(lower, "{name} uses {used}, which is not in a lower layer");
             }
         }
     }

@@ -33,10 +33,10 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     let defined = defined_options(tree.text(ARGUMENTS).unwrap_or_default());
     let told = told_options(readme);
     for option in told.difference(&defined).filter(|option| !CLAPS_OWN.contains(&option.as_str())) {
-        findings.push(Finding::new(README, 0, format!("`--{option}` is no option of alhazen")));
+        findings.push(Finding::new(README, 0, format!("`--{option}` is not an option of alhazen")));
     }
     for option in defined.difference(&told) {
-        findings.push(Finding::new(README, 0, format!("the option `--{option}` is not told")));
+        findings.push(Finding::new(README, 0, format!("the option `--{option}` is missing")));
     }
     if defined.is_empty() {
         findings.push(Finding::new(ARGUMENTS, 0, "tells nothing to hold README to; see tidy's documents.rs"));

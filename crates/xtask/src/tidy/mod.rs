@@ -58,6 +58,6 @@ pub fn run(root: &Path) -> Result<(), String> {
             println!("tidy: {} files checked", tree.len());
             Ok(())
         }
-        count => Err(format!("{count} broken house rules")),
+        count => Err(format!("{count} violations of the source rules")),
     }
 }

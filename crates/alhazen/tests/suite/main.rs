@@ -1,0 +1,16 @@
+//! Renders against closed forms, each other and the pictures of other programs.
+
+mod agreement;
+mod common;
+mod compare;
+mod documents;
+mod furnaces;
+mod malformed;
+mod minray;
+mod mitsuba;
+mod moving_lights;
+mod nori;
+mod radiosity;
+mod references;
+mod scenes;
+mod sketch;

@@ -1,0 +1,16 @@
+//! Shapes, trees and rays against closed forms and against each other.
+
+mod all_shapes;
+mod build;
+mod common;
+mod curves;
+mod extents;
+mod implicit;
+mod instances;
+mod instruction_sets;
+mod motion;
+mod solids;
+mod sphere_sets;
+mod tessellation;
+mod tree;
+mod watertight;

@@ -1,0 +1,4 @@
+//! The contracts of warps and samplers.
+
+mod all_samplers;
+mod all_warps;

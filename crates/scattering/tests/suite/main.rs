@@ -1,0 +1,4 @@
+//! The contracts of BxDFs and microfacet distributions.
+
+mod all_bxdfs;
+mod microfacets;

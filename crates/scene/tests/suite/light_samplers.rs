@@ -1,0 +1,262 @@
+//! The contract of all light samplers.
+
+use crate::common::*;
+use alhazen_scene::Scene;
+use alhazen_scene::light::{LightId, LightSampleContext};
+use alhazen_scene::light_sampler::{LightSampler, LightSamplerKind};
+use description::{
+    AreaLightDesc, InfiniteRadiance, LightKind, SceneDesc, ShapeDesc, ShapeKind, TransformDesc,
+};
+use math::{DMat4, DVec3, Vec3};
+use testkit::{Chi2, Moments, Random, welch_test};
+
+const KINDS: [LightSamplerKind; 3] =
+    [LightSamplerKind::Uniform, LightSamplerKind::Power, LightSamplerKind::Bvh];
+
+fn point(p: Vec3, intensity: f32) -> LightKind {
+    LightKind::Point { intensity: intensity.into(), power: None, from: p }
+}
+
+fn sky() -> LightKind {
+    let radiance = InfiniteRadiance::Constant(0.1.into());
+    LightKind::Infinite { radiance, illuminance: None, portal: None }
+}
+
+fn add_area(desc: &mut SceneDesc, shape: ShapeKind, p: Vec3, turn: f64, two_sided: bool, scale: f32) {
+    let light = AreaLightDesc { two_sided, scale, ..AreaLightDesc::new(1.0.into()) };
+    let area_light = Some(desc.area_lights.push(light));
+    let placed = DMat4::from_translation(p.as_dvec3())
+        * DMat4::from_axis_angle(DVec3::new(1.0, 1.0, 0.3).normalize(), turn);
+    desc.shapes.push(ShapeDesc {
+        area_light,
+        world_from_object: TransformDesc::fixed(placed),
+        ..shape.into()
+    });
+}
+
+/// Bounded lights of every kind, some of them black.
+fn mixed() -> SceneDesc {
+    let mut desc = SceneDesc::default();
+    let mut random = Random::new(11);
+    for i in 0..12 {
+        let p = point_in_cube(&mut random, 3.0);
+        let turn = 6.0 * random.get_1d() as f64;
+        let scale = if i == 4 { 0.0 } else { 1.0 + i as f32 };
+        let shape = match i % 4 {
+            0 => disk(0.0, 0.3),
+            1 => sphere(0.2),
+            2 => rectangle([0.0, 0.0], [0.5, 0.3]),
+            _ => triangles(
+                &[[0.0; 3], [0.6, 0.0, 0.0], [0.0, 0.5, 0.1], [0.7, 0.4, 0.0]],
+                &[[0, 1, 2], [1, 3, 2]],
+            ),
+        };
+        add_area(&mut desc, shape, p, turn, i % 3 == 0, scale);
+        desc.lights.push(point(point_in_cube(&mut random, 3.0), if i == 2 { 0.0 } else { 0.3 }).into());
+        let from = point_in_cube(&mut random, 3.0);
+        desc.lights.push(
+            LightKind::Spot {
+                intensity: 1.0.into(),
+                power: None,
+                from,
+                to: from + uniform_direction(&mut random),
+                cone_angle: 20.0 + 5.0 * i as f32,
+                cone_delta_angle: if i % 2 == 0 { 0.0 } else { 10.0 },
+            }
+            .into(),
+        );
+    }
+    desc
+}
+
+fn with_infinite(mut desc: SceneDesc) -> SceneDesc {
+    desc.lights.push(sky().into());
+    desc.lights.push(
+        LightKind::Distant { radiance: 0.2.into(), illuminance: None, from: Vec3::ONE, to: Vec3::ZERO }
+            .into(),
+    );
+    desc
+}
+
+fn cases() -> Vec<(&'static str, Scene)> {
+    let one = |light: LightKind| {
+        let mut desc = SceneDesc::default();
+        desc.shapes.push(sphere(0.1).into());
+        desc.lights.push(light.into());
+        desc
+    };
+    let mut lone_disk = SceneDesc::default();
+    add_area(&mut lone_disk, disk(0.0, 0.5), Vec3::ZERO, 0.0, false, 1.0);
+    let mut in_a_row = SceneDesc::default();
+    for i in 0..50 {
+        in_a_row.lights.push(point(Vec3::new(i as f32 * 0.2 - 5.0, 0.0, 1.0), 1.0).into());
+    }
+    [
+        ("mixed", mixed()),
+        ("mixed with infinite", with_infinite(mixed())),
+        ("only infinite", with_infinite(one(sky()))),
+        ("one point", one(point(Vec3::Z, 1.0))),
+        ("one dark point", one(point(Vec3::Z, 0.0))),
+        ("one disk", lone_disk),
+        ("in a row", in_a_row),
+    ]
+    .map(|(name, desc)| (name, scene(&desc)))
+    .into()
+}
+
+fn references() -> Vec<LightSampleContext> {
+    let mut random = Random::new(12);
+    let mut references: Vec<_> =
+        (0..5).map(|_| context(point_in_cube(&mut random, 3.5), uniform_direction(&mut random))).collect();
+    references.push(context(Vec3::new(0.2, 0.1, -2.0), Vec3::ZERO));
+    references
+}
+
+fn pmfs(sampler: &LightSampler, scene: &Scene, from: &LightSampleContext) -> Vec<f64> {
+    (0..scene.lights().len() as u32).map(|i| sampler.pmf(from, LightId(i)) as f64).collect()
+}
+
+#[test]
+fn choices_have_their_probability() {
+    let (cases, references) = (cases(), references());
+    let tests = cases.len() * references.len() * KINDS.len();
+    for (name, scene) in &cases {
+        for kind in KINDS {
+            let sampler = scene.light_sampler(kind);
+            for from in &references {
+                let pmfs = pmfs(&sampler, scene, from);
+                let total: f64 = pmfs.iter().sum();
+                assert!(total < 1.0 + 1e-5, "{name}, {kind:?}: {total}");
+                if kind != LightSamplerKind::Bvh {
+                    assert!(total > 1.0 - 1e-5, "{name}, {kind:?}: {total}");
+                }
+                let count = 10_000;
+                let mut observed = vec![0; pmfs.len() + 1];
+                let mut random = Random::new(13);
+                for _ in 0..count {
+                    let Some((light, pmf)) = sampler.sample(from, random.get_1d()) else {
+                        observed[pmfs.len()] += 1;
+                        continue;
+                    };
+                    let claimed = pmfs[light.0 as usize];
+                    assert!(pmf > 0.0 && (pmf as f64 / claimed - 1.0).abs() < 1e-4, "{name}, {kind:?}");
+                    observed[light.0 as usize] += 1;
+                }
+                let none = if total > 1.0 - 1e-5 { 0.0 } else { 1.0 - total };
+                let expected: Vec<f64> = pmfs.iter().chain([&none]).map(|p| p * count as f64).collect();
+                Chi2 { tests, ..Chi2::default() }
+                    .counts(&observed, &expected)
+                    .unwrap_or_else(|e| panic!("{name}, {kind:?}: {e}"));
+            }
+        }
+    }
+}
+
+/// The unoccluded contribution of a light to a surface, at the first wavelength.
+fn sent(scene: &Scene, light: LightId, from: &LightSampleContext, u: [f32; 2]) -> f64 {
+    let sample = scene.sample_light(light, from, u.into(), &lambda(), false);
+    sample.map_or(0.0, |s| f64::from(s.l[0] * s.wi.dot(from.ns).abs() / s.pdf))
+}
+
+#[test]
+fn every_contributing_light_can_be_chosen() {
+    let mut random = Random::new(14);
+    for (name, scene) in cases() {
+        for kind in KINDS {
+            let sampler = scene.light_sampler(kind);
+            for _ in 0..100 {
+                let from = context(point_in_cube(&mut random, 4.0), uniform_direction(&mut random));
+                for i in 0..scene.lights().len() as u32 {
+                    let sends = (0..8).any(|_| sent(&scene, LightId(i), &from, random.get_2d()) > 0.0);
+                    assert!(!sends || sampler.pmf(&from, LightId(i)) > 0.0, "{name}, {kind:?}, light {i}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn one_light_estimates_agree_with_the_sum_over_lights() {
+    let (cases, references) = (cases(), references());
+    let tests = cases.len() * references.len() * KINDS.len();
+    let mut random = Random::new(15);
+    for (name, scene) in &cases {
+        for from in references.iter().filter(|from| from.ns != Vec3::ZERO) {
+            let sum: Moments = (0..3000)
+                .map(|_| {
+                    (0..scene.lights().len() as u32)
+                        .map(|i| sent(scene, LightId(i), from, random.get_2d()))
+                        .sum()
+                })
+                .collect();
+            for kind in KINDS {
+                let sampler = scene.light_sampler(kind);
+                let chosen: Moments = (0..20_000)
+                    .map(|_| match sampler.sample(from, random.get_1d()) {
+                        Some((light, pmf)) => sent(scene, light, from, random.get_2d()) / pmf as f64,
+                        None => 0.0,
+                    })
+                    .collect();
+                if (chosen.mean - sum.mean).abs() < 1e-5 * sum.mean {
+                    continue;
+                }
+                welch_test(&chosen, &sum, tests).unwrap_or_else(|e| panic!("{name}, {kind:?}: {e}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn coincident_lights_are_distinguished() {
+    let mut desc = SceneDesc::default();
+    desc.shapes.push(sphere(0.1).into());
+    for _ in 0..10_000 {
+        desc.lights.push(point(Vec3::new(0.3, 0.2, 1.0), 1.0).into());
+    }
+    let scene = scene(&desc);
+    let from = context(Vec3::ZERO, Vec3::Z);
+    let mut random = Random::new(16);
+    for kind in KINDS {
+        let sampler = scene.light_sampler(kind);
+        let pmfs = pmfs(&sampler, &scene, &from);
+        assert!(pmfs.iter().all(|&pmf| pmf > 0.3e-4 && pmf < 3e-4), "{kind:?}");
+        assert!((pmfs.iter().sum::<f64>() - 1.0).abs() < 1e-4, "{kind:?}");
+        let mut reached = vec![false; pmfs.len()];
+        for _ in 0..200_000 {
+            let (light, pmf) = sampler.sample(&from, random.get_1d()).unwrap();
+            assert!((pmf as f64 / pmfs[light.0 as usize] - 1.0).abs() < 1e-4, "{kind:?}");
+            reached[light.0 as usize] = true;
+        }
+        assert!(reached.iter().all(|&reached| reached), "{kind:?}");
+    }
+    // On top of them all, other lights are still found.
+    desc.lights.push(point(Vec3::ZERO, 1.0).into());
+    let scene = crate::common::scene(&desc);
+    let sampler = scene.light_sampler(LightSamplerKind::Bvh);
+    let inside = context(Vec3::new(0.3, 0.2, 1.0), Vec3::ZERO);
+    assert!(pmfs(&sampler, &scene, &inside).iter().all(|pmf| pmf.is_finite()));
+    assert!(sampler.sample(&inside, 0.5).is_some());
+}
+
+#[test]
+fn the_light_bvh_prefers_near_and_facing_lights() {
+    let mut desc = SceneDesc::default();
+    // One faces the origin, one faces away, one is far.
+    add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -1.0), 0.0, false, 1.0);
+    add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, 1.0), 0.0, false, 1.0);
+    add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -4.0), 0.0, false, 1.0);
+    let scene = scene(&desc);
+    let pmfs = pmfs(&scene.light_sampler(LightSamplerKind::Bvh), &scene, &context(Vec3::ZERO, Vec3::Z));
+    assert!(pmfs[0] > 4.0 * pmfs[2] && pmfs[2] > 0.0, "{pmfs:?}");
+    assert_eq!(pmfs[1], 0.0);
+}
+
+#[test]
+fn scenes_without_lights_choose_none() {
+    let mut desc = SceneDesc::default();
+    desc.shapes.push(sphere(1.0).into());
+    let scene = scene(&desc);
+    for kind in KINDS {
+        assert!(scene.light_sampler(kind).sample(&context(Vec3::ZERO, Vec3::Z), 0.5).is_none());
+    }
+}

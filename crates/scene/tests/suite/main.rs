@@ -1,0 +1,15 @@
+//! Compiled scenes: lights, materials, motion and views.
+
+mod all_lights;
+mod common;
+mod compile;
+mod emission;
+mod instances;
+mod light_samplers;
+mod light_table;
+mod light_totals;
+mod materials;
+mod motion;
+mod solids;
+mod spheres;
+mod views;
