@@ -16,7 +16,7 @@ const COLUMNS: usize = 64;
 
 static MATRICES: LazyLock<Box<[[u32; COLUMNS]]>> = LazyLock::new(|| {
     let table = include_str!("../../data/sobol-joe-kuo.txt");
-    let van_der_corput = std::array::from_fn(|k| if k < 32 { 1 << (31 - k) } else { 0 });
+    let van_der_corput = std::array::from_fn(|k| if k < 32 { 1 << k } else { 0 });
     let lines = table.lines().filter(|line| !line.starts_with('#'));
     std::iter::once(van_der_corput).chain(lines.map(matrix)).collect()
 });
@@ -39,15 +39,15 @@ fn matrix(line: &str) -> [u32; COLUMNS] {
             }
         }
     }
-    v.map(|v| (v >> 32) as u32)
+    v.map(|v| ((v >> 32) as u32).reverse_bits())
 }
 
-/// The coordinate of point `index` in a dimension below [`SOBOL_DIMENSIONS`], as a binary fraction
-/// of 32 bits.
+/// The 32 binary digits of the coordinate of point `index` in a dimension below
+/// [`SOBOL_DIMENSIONS`]; the first digit after the point is the lowest bit.
 #[inline]
-pub fn sobol_bits(index: u64, dimension: usize) -> u32 {
+pub fn sobol_digits(index: u64, dimension: usize) -> u32 {
     match dimension {
-        0 => (index as u32).reverse_bits(),
+        0 => index as u32,
         1 => pascal(index),
         _ => product(&MATRICES[dimension], index),
     }
@@ -56,17 +56,17 @@ pub fn sobol_bits(index: u64, dimension: usize) -> u32 {
 /// The exclusive or of the columns that the bits of `index` select.
 #[inline]
 fn product(matrix: &[u32; COLUMNS], mut index: u64) -> u32 {
-    let mut bits = 0;
+    let mut digits = 0;
     while index != 0 {
-        bits ^= matrix[index.trailing_zeros() as usize];
+        digits ^= matrix[index.trailing_zeros() as usize];
         index &= index - 1;
     }
-    bits
+    digits
 }
 
-/// The coordinate in dimension 1. Its matrix is Pascal's triangle modulo 2: bit r of the result,
-/// counted from the highest, is the sum of C(k, r)·bit k of the index. That is the Kronecker power
-/// of ((1, 1), (0, 1)), applied level by level without branches.
+/// The coordinate in dimension 1. Its matrix is Pascal's triangle modulo 2: digit r is the sum over
+/// k of C(k, r)·bit k of the index. That is the Kronecker power of ((1, 1), (0, 1)), applied level
+/// by level without branches.
 #[inline]
 fn pascal(index: u64) -> u32 {
     const EVEN: [u64; 6] = [
@@ -78,14 +78,14 @@ fn pascal(index: u64) -> u32 {
         0x0000_0000_ffff_ffff,
     ];
     let levels = EVEN.iter().enumerate();
-    let bits = levels.fold(index, |bits, (level, even)| bits ^ ((bits >> (1 << level)) & even));
-    (bits as u32).reverse_bits()
+    levels.fold(index, |digits, (level, even)| digits ^ ((digits >> (1 << level)) & even)) as u32
 }
 
-/// Owen scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above
-/// it and `seed`.
+/// Owen scrambling of binary digits, the first of which is the lowest bit: each is flipped or not by
+/// a hash of the digits before it and `seed`.
 #[inline]
-pub fn owen_scramble(mut v: u32, seed: u32) -> u32 {
+pub fn owen_scramble(digits: u32, seed: u32) -> u32 {
+    let mut v = digits.reverse_bits();
     if seed & 1 == 1 {
         v ^= 1 << 31;
     }
@@ -95,20 +95,19 @@ pub fn owen_scramble(mut v: u32, seed: u32) -> u32 {
             v ^= 1 << (31 - b);
         }
     }
-    v
+    v.reverse_bits()
 }
 
-/// A scrambling of the same form as [`owen_scramble`], by a hash in which bits act only on lower
+/// A scrambling of the same form as [`owen_scramble`], by a hash in which bits act only on higher
 /// ones.
 #[inline]
-pub fn fast_owen_scramble(v: u32, seed: u32) -> u32 {
-    let mut v = v.reverse_bits();
+pub fn fast_owen_scramble(digits: u32, seed: u32) -> u32 {
+    let mut v = digits;
     v ^= v.wrapping_mul(0x3d20_adea);
     v = v.wrapping_add(seed);
     v = v.wrapping_mul((seed >> 16) | 1);
     v ^= v.wrapping_mul(0x0552_6c56);
-    v ^= v.wrapping_mul(0x53a2_2864);
-    v.reverse_bits()
+    v ^ v.wrapping_mul(0x53a2_2864)
 }
 
 #[cfg(test)]
@@ -124,7 +123,7 @@ mod tests {
     #[test]
     fn first_points_of_the_published_sequence() {
         // The order is that of the index, not of Gray's code.
-        let point = |i| [0, 1, 2, 3, 4].map(|d| sobol_bits(i, d) as f64 / 4294967296.0);
+        let point = |i| [0, 1, 2, 3, 4].map(|d| sobol_digits(i, d).reverse_bits() as f64 / 4294967296.0);
         assert_eq!(point(1), [0.5; 5]);
         assert_eq!(point(2), [0.25, 0.75, 0.75, 0.75, 0.25]);
         assert_eq!(point(3), [0.75, 0.25, 0.25, 0.25, 0.75]);
@@ -140,7 +139,7 @@ mod tests {
     #[test]
     fn each_dimension_is_stratified() {
         for dimension in 0..SOBOL_DIMENSIONS {
-            let cells: HashSet<u32> = (0..256).map(|i| sobol_bits(i, dimension) >> 24).collect();
+            let cells: HashSet<u32> = (0..256).map(|i| sobol_digits(i, dimension) & 0xff).collect();
             assert_eq!(cells.len(), 256, "dimension {dimension}");
         }
     }
@@ -150,12 +149,13 @@ mod tests {
         for scramble in [owen_scramble, fast_owen_scramble] {
             for seed in [0, 1, 0x1234_5678, u32::MAX] {
                 for level in [1, 4, 9] {
-                    let strata: HashSet<u32> =
-                        (0..1 << level).map(|i| scramble(sobol_bits(i, 0), seed) >> (32 - level)).collect();
+                    let strata: HashSet<u32> = (0..1 << level)
+                        .map(|i| scramble(sobol_digits(i, 0), seed) & ((1 << level) - 1))
+                        .collect();
                     assert_eq!(strata.len(), 1 << level);
                 }
                 // What lies in one stratum stays together.
-                assert_eq!(scramble(0x8000_0000, seed) >> 24, scramble(0x80ff_ffff, seed) >> 24);
+                assert_eq!(scramble(0x0000_0001, seed) & 0xff, scramble(0xffff_ff01, seed) & 0xff);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Randomisation that samplers share: scrambled Sobol' coordinates, and shuffled sets of samples.
 
 use crate::hash::{hash, permutation_element, unit_interval};
-use crate::low_discrepancy::{fast_owen_scramble, owen_scramble, sobol_bits};
+use crate::low_discrepancy::{fast_owen_scramble, owen_scramble, sobol_digits};
 
 /// How a low-discrepancy sequence is randomised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -21,18 +21,20 @@ impl Randomize {
     /// A Sobol' coordinate, randomised by `seed`.
     #[inline]
     pub(super) fn sobol(self, index: u64, dimension: usize, seed: u32) -> f32 {
-        self.bits(sobol_bits(index, dimension), seed)
+        self.digits(sobol_digits(index, dimension), seed)
     }
 
-    /// A binary fraction of 32 bits, randomised by `seed`.
+    /// The number with these 32 binary digits, the first of which is the lowest bit, randomised by
+    /// `seed`.
     #[inline]
-    pub(super) fn bits(self, bits: u32, seed: u32) -> f32 {
-        unit_interval(match self {
-            Randomize::None => bits,
-            Randomize::PermuteDigits => bits ^ seed,
-            Randomize::FastOwen => fast_owen_scramble(bits, seed),
-            Randomize::Owen => owen_scramble(bits, seed),
-        })
+    pub(super) fn digits(self, digits: u32, seed: u32) -> f32 {
+        let digits = match self {
+            Randomize::None => digits,
+            Randomize::PermuteDigits => digits ^ seed.reverse_bits(),
+            Randomize::FastOwen => fast_owen_scramble(digits, seed),
+            Randomize::Owen => owen_scramble(digits, seed),
+        };
+        unit_interval(digits.reverse_bits())
     }
 }
 

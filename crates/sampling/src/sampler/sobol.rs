@@ -8,7 +8,7 @@
 
 use super::randomize::Randomize;
 use crate::hash::hash;
-use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_bits};
+use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_digits};
 use math::Vec2;
 use std::sync::Arc;
 
@@ -18,7 +18,8 @@ use std::sync::Arc;
 pub struct Sobol {
     samples_per_pixel: u32,
     randomize: Randomize,
-    seed: u32,
+    /// A hash for each dimension.
+    seeds: Arc<[u32]>,
     /// The side of the square of pixels is 2^log2_side.
     log2_side: u32,
     /// For each bit of the pixel (y's below x's), the low bits of the index that make it.
@@ -36,7 +37,7 @@ impl Sobol {
         Sobol {
             samples_per_pixel: samples_per_pixel.clamp(1, 1 << 31).next_power_of_two(),
             randomize,
-            seed,
+            seeds: (0..SOBOL_DIMENSIONS as u32).map(|dimension| hash(&[dimension, seed]) as u32).collect(),
             log2_side,
             index_from_pixel: index_from_pixel(log2_side),
             index: 0,
@@ -72,11 +73,11 @@ impl Sobol {
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
-        // The upper bits are the pixel; the rest, which is the position in it, is randomised like
+        // The first digits are the pixel; the rest, which is the position in it, is randomised like
         // any dimension, or pictures of different seeds would have samples in common.
         let position = |dimension| {
-            let bits = sobol_bits(self.index, dimension) << self.log2_side;
-            self.randomize.bits(bits, self.seed_of(dimension))
+            let digits = sobol_digits(self.index, dimension) >> self.log2_side;
+            self.randomize.digits(digits, self.seeds[dimension])
         };
         Vec2::new(position(0), position(1))
     }
@@ -92,17 +93,13 @@ impl Sobol {
     }
 
     fn coordinate(&self, dimension: usize) -> f32 {
-        self.randomize.bits(sobol_bits(self.index, dimension), self.seed_of(dimension))
-    }
-
-    fn seed_of(&self, dimension: usize) -> u32 {
-        hash(&[dimension as u32, self.seed]) as u32
+        self.randomize.sobol(self.index, dimension, self.seeds[dimension])
     }
 }
 
 /// The pixel of point `index` on a square of side 2^m: m bits of x above m bits of y.
 fn pixel_of(index: u64, m: u32) -> u64 {
-    let [x, y] = [0, 1].map(|dimension| (sobol_bits(index, dimension) as u64) << m >> 32);
+    let [x, y] = [0, 1].map(|dimension| (sobol_digits(index, dimension).reverse_bits() as u64) << m >> 32);
     x << m | y
 }
 
