@@ -26,7 +26,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use description::LightTracingDesc;
+use description::{Diagnostic, LightTracingDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -34,6 +34,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
+use crate::light_paths::endless;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -67,9 +68,13 @@ impl Integrator for LightTracing {
         true
     }
 
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        endless::warnings(scene, "light-tracing")
+    }
+
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene);
-        control.check()
+        self.lights = Lights::of(scene, control)?;
+        Ok(())
     }
 
     fn pass(

@@ -48,13 +48,13 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use description::RadiosityDesc;
+use description::{Diagnostic, LightSamplerDesc, RadiosityDesc};
 use film::{Film, FilmTile, Sample};
 use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::camera::CameraRayDifferential;
-use scene::light_sampler::{LightSampler, LightSamplerKind};
+use scene::light_sampler::LightSampler;
 use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
@@ -62,7 +62,6 @@ use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, OutputFile};
 use bands::Bands;
-pub(crate) use described::warnings;
 use shooting::Solution;
 use show::{Interpolation, SolutionRadiance};
 
@@ -98,7 +97,7 @@ impl State {
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let solution = Solution::new(scene, view, settings, control)?;
-        let lights = scene.light_sampler(LightSamplerKind::Bvh);
+        let lights = scene.light_sampler(LightSamplerDesc::Bvh, &control.cancel).ok_or(Cancelled)?;
         let interpolation = Interpolation::new(scene, &solution, &lights, 0);
         Ok(Self { solution, lights, sent: 0, interpolation, shown: None, mesh: Vec::new() })
     }
@@ -148,6 +147,10 @@ impl Integrator for Radiosity {
 
     fn drafts(&self) -> u32 {
         self.settings.steps
+    }
+
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        described::warnings(scene)
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {

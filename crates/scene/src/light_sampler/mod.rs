@@ -14,6 +14,7 @@ pub use uniform::UniformLightSampler;
 
 use crate::light::{LightId, LightSampleContext, Lights};
 use description::LightSamplerDesc;
+use std::sync::atomic::AtomicBool;
 
 /// A way of choosing.
 #[derive(Clone, Debug)]
@@ -26,29 +27,6 @@ pub enum LightSampler {
     Bvh(BvhLightSampler),
 }
 
-/// The names of the ways of choosing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LightSamplerKind {
-    /// All alike.
-    Uniform,
-    /// By power.
-    Power,
-    /// By position, orientation and power.
-    #[default]
-    Bvh,
-}
-
-impl From<LightSamplerDesc> for LightSamplerKind {
-    /// The tree stands in for sampling every light, which is not drawn.
-    fn from(desc: LightSamplerDesc) -> Self {
-        match desc {
-            LightSamplerDesc::Uniform => Self::Uniform,
-            LightSamplerDesc::Power => Self::Power,
-            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => Self::Bvh,
-        }
-    }
-}
-
 impl Default for LightSampler {
     /// A choice among no lights.
     fn default() -> Self {
@@ -57,13 +35,16 @@ impl Default for LightSampler {
 }
 
 impl LightSampler {
-    /// A sampler of the given kind for these lights.
-    pub fn new(kind: LightSamplerKind, lights: Lights) -> Self {
-        match kind {
-            LightSamplerKind::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
-            LightSamplerKind::Power => Self::Power(PowerLightSampler::new(lights)),
-            LightSamplerKind::Bvh => Self::Bvh(BvhLightSampler::new(lights)),
-        }
+    /// A sampler for these lights, as described; `None` if `cancel` is set while a tree is built.
+    /// The tree stands in for sampling every light, which is not drawn.
+    pub fn new(desc: LightSamplerDesc, lights: Lights, cancel: &AtomicBool) -> Option<Self> {
+        Some(match desc {
+            LightSamplerDesc::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
+            LightSamplerDesc::Power => Self::Power(PowerLightSampler::new(lights)),
+            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => {
+                Self::Bvh(BvhLightSampler::new(lights, cancel)?)
+            }
+        })
     }
 
     /// A light for the point `context`, with the probability of its choice (> 0).

@@ -36,15 +36,15 @@ mod gather;
 
 use std::ops::AddAssign;
 
-use description::{PhotonMappingDesc, PhotonMappingShow};
+use description::{Diagnostic, LightSamplerDesc, PhotonMappingDesc, PhotonMappingShow};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
-use scene::light_sampler::LightSamplerKind;
 use scene::{Interfaces, Scene, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
+use crate::light_paths::endless;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
 use crate::transport::Tracer;
@@ -158,12 +158,16 @@ impl Integrator for PhotonMapping {
         true
     }
 
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        endless::warnings(scene, "photon-mapping")
+    }
+
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene);
-        self.direct = DirectLighting::new(scene, LightSamplerKind::Bvh, Interfaces::Stop);
+        self.lights = Lights::of(scene, control)?;
+        self.direct = DirectLighting::new(scene, LightSamplerDesc::Bvh, Interfaces::Stop, control)?;
         self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
         self.mean_radius = MeanRadius::new(self.radius);
-        control.check()
+        Ok(())
     }
 
     fn pass(
