@@ -3,7 +3,7 @@
 
 #[allow(dead_code)]
 #[path = "../../examples/minray.rs"]
-mod minray;
+mod example;
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ fn the_picture_is_that_of_the_original_program() {
     };
     let expected = numbers(&text);
     assert_eq!(expected[..3], [32, 32, 255]);
-    let ours = minray::picture(32);
+    let ours = example::picture(32);
     let differences: Vec<_> = ours
         .as_flattened()
         .iter()
@@ -37,7 +37,7 @@ fn the_picture_is_that_of_the_original_program() {
 
 #[test]
 fn pixels_on_every_sphere_and_on_the_background() {
-    let picture = minray::picture(32);
+    let picture = example::picture(32);
     for ([x, y], expected) in [
         ([0, 0], [5, 5, 5]),
         ([1, 17], [150, 76, 34]),
@@ -60,7 +60,7 @@ fn pixels_on_every_sphere_and_on_the_background() {
 
 #[test]
 fn another_resolution_shows_the_same_scene() {
-    let (small, large) = (minray::picture(32), minray::picture(64));
+    let (small, large) = (example::picture(32), example::picture(64));
     assert_eq!(large.len(), 64 * 64);
     let same = (0..32 * 32).filter(|i| small[*i] == large[64 * 2 * (i / 32) + 2 * (i % 32)]).count();
     assert!(same > 1000, "only {same} of 1024 pixels are seen along the same rays");
