@@ -1,6 +1,5 @@
 //! The laboratory: its figures against direct computation, the bias of unbiased and biased
 //! integrators, and its page.
-#![allow(clippy::unwrap_used, reason = "test helpers may, as tests do")]
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,5 +1,7 @@
 //! Renders against closed forms, each other and the pictures of other programs.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 mod agreement;
 mod common;
 mod compare;

@@ -1,8 +1,6 @@
 //! Lights in objects and in motion, from the text of a scene to the mean of its picture: the same
 //! as the scene written out, and the mean of pictures at fixed times.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use crate::common::{means, render_text};
 use alhazen::Overrides;
 use testkit::{Moments, welch_test};

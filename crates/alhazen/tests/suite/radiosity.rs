@@ -1,7 +1,5 @@
 //! Radiosity: against path tracing, pass by pass, cancelled, and as a mesh.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;

@@ -1,7 +1,5 @@
 //! Sketches: like the picture, without changing it.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 use std::path::Path;
 use std::sync::atomic::Ordering;
 

@@ -1,5 +1,4 @@
 //! `alhazen compare` from outside.
-#![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
 use crate::common::{Folder, SCENE};
 use serde_json::Value;

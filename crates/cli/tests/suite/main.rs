@@ -1,5 +1,7 @@
 //! The program, run as its users run it.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 mod common;
 mod compare;
 mod console;

@@ -1,7 +1,5 @@
 //! Layers beside the colour: means, identifiers, variance, and how they are written.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
-
 use alhazen_film::{
     Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstHit, Layer, LayerSet, PIXEL_BYTES, PassSet,
     ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,

@@ -1,8 +1,6 @@
 //! FLIP against the values that the authors' evaluator (`flip-evaluator`) gives for the same
 //! formulas.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
-
 use alhazen_image::{
     Image,
     flip::{PIXELS_PER_DEGREE, hdr_flip, ldr_flip},

@@ -1,8 +1,6 @@
 //! Decoders fed with what is damaged, odd or made to hurt: an image or an error comes, soon and
 //! within bounds.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
-
 use std::time::{Duration, Instant};
 
 use alhazen_image::{Format, Image, ImageError, Pixels, ReadOptions, WriteOptions, encode, read};

@@ -1,7 +1,5 @@
 //! What is told of a file without decoding its pixels is what was written.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
-
 use alhazen_image::{
     Attribute, Format, Image, Pixels, Sample, SampleDepth, Window, WriteOptions, encode, info,
 };

@@ -1,7 +1,5 @@
 //! What is written is read back.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
-
 use std::{fs, path::PathBuf};
 
 use alhazen_image::{

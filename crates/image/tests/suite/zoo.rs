@@ -1,7 +1,5 @@
 //! Pictures of other programs, and what OpenEXR's own library makes of some of them.
 
-#![allow(clippy::unwrap_used)] // Helpers of tests may, as tests do.
-
 use alhazen_image::{Format, Image, ImageError, Pixels, ReadOptions, Window, read};
 
 #[test]

@@ -164,7 +164,7 @@ fn error(moments: &Moments) -> f64 {
 }
 
 #[test]
-#[ignore = "slow: half an hour of one core; cargo test -p alhazen --profile checked --test agreement -- --ignored --nocapture"]
+#[ignore = "slow: half an hour of one core; cargo test -p alhazen --profile checked --test suite means_agree -- --ignored --nocapture"]
 fn means_agree_within_three_per_mille() {
     let scenes = SCENES.iter().zip(0..).filter(|(scene, _)| !NOT_COMPARED.contains(&scene.name));
     let tests = 3 * (MEMBERS.len() - 1) * SCENES.len();

@@ -1,8 +1,6 @@
 //! Integrators with the same expected value, against each other: pictures of small scenes, as a
 //! whole and by squares.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-
 mod means;
 mod promises;
 mod scenes;

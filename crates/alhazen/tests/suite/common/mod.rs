@@ -1,6 +1,5 @@
 //! Helpers of the tests on third-party data: its location, scenes as text, and pictures with their
 //! standard errors.
-#![allow(clippy::unwrap_used, reason = "helpers of tests may, as tests do")]
 
 use std::fmt::Write as _;
 use std::io;
