@@ -81,8 +81,8 @@ fn pascal(index: u64) -> u32 {
     levels.fold(index, |digits, (level, even)| digits ^ ((digits >> (1 << level)) & even)) as u32
 }
 
-/// Owen scrambling of binary digits, the first of which is the lowest bit: each is flipped or not by
-/// a hash of the digits before it and `seed`.
+/// Owen scrambling of binary digits, the first of which is the lowest bit: each is flipped or not
+/// by a hash of the digits before it and `seed`.
 #[inline]
 pub fn owen_scramble(digits: u32, seed: u32) -> u32 {
     let mut v = digits.reverse_bits();

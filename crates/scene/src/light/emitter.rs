@@ -47,7 +47,7 @@ impl<'a> Emitter<'a> {
         question(&Emitter { shape, world, instance, time })
     }
 
-    /// To render space from that of the shape; `None` where they are the same, as for most emitters.
+    /// To render space from that of the shape; `None` where they are the same, as they mostly are.
     #[inline]
     fn render_from_shape(&self) -> Option<Transform> {
         if self.instance.is_top() { None } else { self.render_from_instances() }

@@ -128,7 +128,7 @@ fn choices_have_their_probability() {
     let tests = cases.len() * references.len() * KINDS.len();
     for (name, scene) in &cases {
         for kind in KINDS {
-            let sampler = sampler(&scene, kind);
+            let sampler = sampler(scene, kind);
             for from in &references {
                 let pmfs = pmfs(&sampler, scene, from);
                 let total: f64 = pmfs.iter().sum();
@@ -196,7 +196,7 @@ fn one_light_estimates_agree_with_the_sum_over_lights() {
                 })
                 .collect();
             for kind in KINDS {
-                let sampler = sampler(&scene, kind);
+                let sampler = sampler(scene, kind);
                 let chosen: Moments = (0..20_000)
                     .map(|_| match sampler.sample(from, random.get_1d()) {
                         Some((light, pmf)) => sent(scene, light, from, random.get_2d()) / pmf as f64,
