@@ -38,6 +38,10 @@ impl Job {
     pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
         let view = View::compile(desc, scene::world_from_render(desc));
         let parts = (scene::compile(desc), view, film::compile(desc), integrators::build(desc));
+        let of_algorithm = match &parts {
+            (Ok(scene), _, _, Ok(built)) => built.integrator.warnings(&scene.scene),
+            _ => Vec::new(),
+        };
         let (Ok(scene), Ok(view), Ok(film), Ok(built)) = parts else {
             let (scene, view, film, built) = parts;
             let diagnostics = [
@@ -45,10 +49,12 @@ impl Job {
                 view.map_or_else(|errors| errors, |view| view.warnings),
                 film.map_or_else(|errors| errors, |film| film.warnings),
                 built.map_or_else(|errors| errors, |built| built.warnings),
+                of_algorithm,
             ];
             return Err(diagnostics.concat());
         };
-        let mut warnings = [scene.warnings, view.warnings, film.warnings, built.warnings].concat();
+        let mut warnings =
+            [scene.warnings, view.warnings, film.warnings, built.warnings, of_algorithm].concat();
         let (scene, view, mut film) = (Arc::new(scene.scene), view.view, film.film);
         let has_background = scene.geometries().is_empty() || !scene.infinite_lights().is_empty();
         if !has_background && !scene.has_surface_in(&view, film.full_resolution()) {

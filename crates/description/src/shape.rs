@@ -179,8 +179,6 @@ names! {
 /// What renderers need to know of a kind of shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShapeTraits {
-    /// It has no end, whatever its parameters.
-    pub is_unbounded: bool,
     /// It may be an area light.
     pub can_emit: bool,
     /// It can be cut into patches, over which radiosity is computed.
@@ -190,10 +188,9 @@ pub struct ShapeTraits {
 impl ShapeKind {
     /// What holds for all shapes of its kind.
     pub fn traits(&self) -> ShapeTraits {
-        let (is_unbounded, can_emit, has_patches) = match self {
-            Self::Plane => (true, true, false),
-            Self::Implicit { .. } | Self::Solid { .. } => (false, false, false),
-            Self::Curve(_) => (false, true, false),
+        let (can_emit, has_patches) = match self {
+            Self::Implicit { .. } | Self::Solid { .. } => (false, false),
+            Self::Plane | Self::Curve(_) => (true, false),
             Self::Sphere { .. }
             | Self::Cylinder { .. }
             | Self::Cone { .. }
@@ -204,9 +201,9 @@ impl ShapeKind {
             | Self::Triangles(_)
             | Self::Patches(_)
             | Self::PlyMesh { .. }
-            | Self::LoopSubdivision { .. } => (false, true, true),
+            | Self::LoopSubdivision { .. } => (true, true),
         };
-        ShapeTraits { is_unbounded, can_emit, has_patches }
+        ShapeTraits { can_emit, has_patches }
     }
 }
 

@@ -11,8 +11,6 @@ use scene::Interfaces;
 use scene::texture::color_space;
 
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
-use crate::light_paths::endless;
-use crate::radiosity;
 use crate::{
     AmbientOcclusion, Bdpt, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping, PixelLoop,
     Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, Whitted,
@@ -22,7 +20,7 @@ use crate::{
 pub struct Built {
     /// The algorithm with its sampler.
     pub integrator: Box<dyn Integrator>,
-    /// What is drawn otherwise than described.
+    /// What its settings and sampler do otherwise than described, in any scene.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -32,7 +30,6 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     let mut wrong = desc.sampler.check(&desc.sampler.origin);
     wrong.extend(desc.integrator.check(&desc.integrator.origin));
     let mut builder = Builder { desc, diagnostics: wrong };
-    builder.media();
     if builder.diagnostics.iter().any(Diagnostic::is_error) {
         return Err(builder.diagnostics);
     }
@@ -51,14 +48,6 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Warns of each medium.
-    fn media(&mut self) {
-        for (_, medium) in self.desc.media.iter() {
-            let message = "participating media are not drawn yet; left out";
-            self.diagnostics.push(Diagnostic::warning("not-drawn", message, medium.origin.span));
-        }
-    }
-
     fn sampler(&mut self) -> Sampler {
         let desc = &self.desc.sampler;
         let seed = desc.seed.unwrap_or(self.desc.options.seed) as u32;
@@ -123,7 +112,6 @@ impl Builder<'_> {
             IntegratorDesc::VolPath(desc) => self.path(desc, Interfaces::Pass, sampler),
             IntegratorDesc::SimpleVolPath(desc) => self.instead(desc.max_depth, sampler),
             IntegratorDesc::LightTracing(desc) => {
-                self.diagnostics.extend(endless::warnings(self.desc, "light-tracing"));
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(LightTracing::new(desc, sampler, light_sampler))
             }
@@ -138,7 +126,6 @@ impl Builder<'_> {
                 Box::new(Mlt::new(desc, sampler, seed))
             }
             IntegratorDesc::PhotonMapping(desc) => {
-                self.diagnostics.extend(endless::warnings(self.desc, "photon-mapping"));
                 Box::new(PhotonMapping::new(desc, sampler, self.photon_seed(None)))
             }
             IntegratorDesc::Vcm(desc) => {
@@ -146,14 +133,8 @@ impl Builder<'_> {
                 let seed = self.photon_seed(None);
                 Box::new(Vcm::new(desc, [sampler, light_sampler], seed, MAX_PHOTON_PATHS))
             }
-            IntegratorDesc::Sppm(desc) => {
-                self.diagnostics.extend(endless::warnings(self.desc, "sppm"));
-                Box::new(Sppm::new(desc, sampler, self.photon_seed(desc.seed)))
-            }
-            IntegratorDesc::Radiosity(desc) => {
-                self.diagnostics.extend(radiosity::warnings(self.desc));
-                Box::new(Radiosity::new(desc, sampler, color_space))
-            }
+            IntegratorDesc::Sppm(desc) => Box::new(Sppm::new(desc, sampler, self.photon_seed(desc.seed))),
+            IntegratorDesc::Radiosity(desc) => Box::new(Radiosity::new(desc, sampler, color_space)),
             IntegratorDesc::Function(_) => self.instead(PathDesc::default().max_depth, sampler),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use description::Diagnostic;
 use film::Film;
 use geometry::RayStats;
 use scene::{Scene, View};
@@ -27,6 +28,11 @@ pub trait Integrator: Send {
     /// Whether passes splat light to the film, for which it needs [memory](Film::reserve_splats).
     fn splats(&self) -> bool {
         false
+    }
+
+    /// What of the scene it draws otherwise than described.
+    fn warnings(&self, _scene: &Scene) -> Vec<Diagnostic> {
+        Vec::new()
     }
 
     /// Builds what depends on the scene and the view; called once, before the first pass. `Err` if

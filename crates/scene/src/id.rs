@@ -1,6 +1,6 @@
 //! Indices into the tables of a scene, by which everything refers to everything else.
 
-/// Index of a material in its scene.
+/// Index of a material in [`Scene::materials`](crate::Scene::materials).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
@@ -9,6 +9,6 @@ pub struct MaterialId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LightId(pub u32);
 
-/// Index of an emission in its scene.
+/// Index of an emission in [`Scene::emissions`](crate::Scene::emissions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EmissionId(pub u32);

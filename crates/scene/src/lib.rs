@@ -13,6 +13,7 @@ pub mod material;
 mod names;
 mod scene;
 pub mod texture;
+mod traits;
 mod view;
 
 pub use compile::{Compiled, compile};
@@ -20,4 +21,5 @@ pub use geometry::RayStats;
 pub use interaction::{Footprint, SurfaceInteraction};
 pub use names::Names;
 pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
+pub use traits::{Occurrence, SceneTraits};
 pub use view::{CompiledView, View, ViewOptions, world_from_render};

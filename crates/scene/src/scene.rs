@@ -7,9 +7,10 @@ use crate::light::{
     SceneSphere,
 };
 use crate::light_sampler::{LightSampler, LightSamplerKind};
-use crate::material::{Material, MaterialId, Materials};
+use crate::material::{Material, MaterialEntry, MaterialId, resolve};
 use crate::names::Names;
 use crate::texture::{FloatTextureId, TextureContext, Textures};
+use crate::traits::SceneTraits;
 use crate::view::View;
 use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
 use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
@@ -65,12 +66,13 @@ pub struct Scene {
     pub(crate) world: World,
     pub(crate) sphere: SceneSphere,
     pub(crate) entries: Vec<GeometryEntry>,
-    pub(crate) materials: Materials,
+    pub(crate) materials: Vec<MaterialEntry>,
     pub(crate) textures: Textures,
     pub(crate) instances: Vec<InstanceEntry>,
     pub(crate) lights: LightTable,
     pub(crate) has_filtered_textures: bool,
     pub(crate) names: Names,
+    pub(crate) traits: SceneTraits,
 }
 
 impl Scene {
@@ -96,9 +98,21 @@ impl Scene {
         &self.instances
     }
 
+    /// What surfaces are made of, by [`MaterialId`]: the materials in the order of the description,
+    /// and last the default one. The parts of a [`Mix`](Material::Mix) are rows of the same table,
+    /// and no mix is a part of itself.
+    pub fn materials(&self) -> &[MaterialEntry] {
+        &self.materials
+    }
+
     /// The names of its objects and materials.
     pub fn names(&self) -> &Names {
         &self.names
+    }
+
+    /// What holds of all of it.
+    pub fn traits(&self) -> &SceneTraits {
+        &self.traits
     }
 
     /// What area lights emit, by [`EmissionId`](crate::light::EmissionId).
@@ -190,17 +204,17 @@ impl Scene {
     /// Whether all of a geometry is nothing but a change of medium.
     pub fn is_all_interface(&self, geometry: GeometryId) -> bool {
         let entry = &self.entries[geometry.0 as usize];
-        matches!(self.materials.get(entry.material).material, Material::Interface)
+        matches!(self.materials[entry.material.0 as usize].material, Material::Interface)
     }
 
     /// Whether `ray` has hit nothing but a change of medium.
     pub fn is_interface(&self, hit: &Hit, ray: &Ray) -> bool {
         let entry = &self.entries[hit.geometry.0 as usize];
-        match self.materials.get(entry.material).material {
+        match self.materials[entry.material.0 as usize].material {
             Material::Interface => true,
             Material::Mix(_) => {
                 let interaction = self.interaction(hit, self.world.surface(ray, hit));
-                matches!(self.materials.resolve(&interaction, &self.textures).material, Material::Interface)
+                matches!(resolve(&self.materials, &interaction, &self.textures).material, Material::Interface)
             }
             _ => false,
         }
@@ -320,7 +334,7 @@ impl Scene {
         if self.needs_footprints(view) {
             interaction.compute_footprint(ray, view);
         }
-        let entry = self.materials.resolve(interaction, &self.textures);
+        let entry = resolve(&self.materials, interaction, &self.textures);
         if matches!(entry.material, Material::Interface) {
             return None;
         }

@@ -47,7 +47,7 @@ impl PairedRenders {
                 .expect("invariant: any seed is valid");
             let built = integrators::build(&desc)?;
             let film = film::compile(&desc)?;
-            warnings = [built.warnings, film.warnings].concat();
+            warnings = [built.warnings, built.integrator.warnings(scene), film.warnings].concat();
             let state = SessionState::new(film.film);
             Ok(Session::new(Arc::clone(scene), view.clone(), built.integrator, state))
         };

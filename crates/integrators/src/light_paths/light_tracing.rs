@@ -26,7 +26,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use description::LightTracingDesc;
+use description::{Diagnostic, LightTracingDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -34,6 +34,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
+use crate::light_paths::endless;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
 
@@ -65,6 +66,10 @@ impl Integrator for LightTracing {
 
     fn splats(&self) -> bool {
         true
+    }
+
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        endless::warnings(scene, "light-tracing")
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {

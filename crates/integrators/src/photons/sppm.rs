@@ -24,7 +24,7 @@
 //! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
 //! [Pharr 2016 §16.2].
 
-use description::SppmDesc;
+use description::{Diagnostic, SppmDesc};
 use film::Film;
 use geometry::RayStats;
 use sampling::sampler::PaddedSobol;
@@ -34,6 +34,7 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
+use crate::light_paths::endless;
 use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator};
@@ -69,6 +70,10 @@ impl Sppm {
 impl Integrator for Sppm {
     fn passes(&self) -> u32 {
         self.sampler.samples_per_pixel()
+    }
+
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        endless::warnings(scene, "sppm")
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {

@@ -48,7 +48,7 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use description::RadiosityDesc;
+use description::{Diagnostic, RadiosityDesc};
 use film::{Film, FilmTile, Sample};
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -62,7 +62,6 @@ use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, OutputFile};
 use bands::Bands;
-pub(crate) use described::warnings;
 use shooting::Solution;
 use show::{Interpolation, SolutionRadiance};
 
@@ -148,6 +147,10 @@ impl Integrator for Radiosity {
 
     fn drafts(&self) -> u32 {
         self.settings.steps
+    }
+
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        described::warnings(scene)
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {

@@ -29,6 +29,7 @@ impl Compiler<'_> {
                 (None, illuminance)
             }
         };
+        self.traits.is_lit_from_infinity |= desc.kind.is_distant();
         let factors = [("scale", Some(desc.scale)), ("power", power), ("illuminance", illuminance)];
         self.check_brightness(origin, &factors);
         let Some(motion) = self.motion(&desc.world_from_light) else {

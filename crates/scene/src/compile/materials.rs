@@ -6,6 +6,7 @@ use crate::material::{
     Material, MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
+use crate::traits::Occurrence;
 use description::{
     ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, MaterialDesc, MaterialKind,
     Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
@@ -34,6 +35,26 @@ impl Compiler<'_> {
     /// The id of a shape's material.
     pub(super) fn material_id(&self, handle: Option<Handle<MaterialDesc>>) -> MaterialId {
         MaterialId(handle.map_or(self.materials.len() - 1, Handle::index) as u32)
+    }
+
+    /// Records which of the materials in use are not diffuse.
+    pub(super) fn material_traits(&mut self) {
+        let mut is_used = vec![false; self.materials.len()];
+        let mut open: Vec<MaterialId> = self.entries.iter().map(|entry| entry.material).collect();
+        while let Some(id) = open.pop() {
+            let index = id.0 as usize;
+            if !std::mem::replace(&mut is_used[index], true)
+                && let Material::Mix(mix) = &self.materials[index].material
+            {
+                open.extend(mix.materials);
+            }
+        }
+        let found = &mut self.traits.materials_not_diffuse;
+        for ((_, material), is_used) in self.desc.materials.iter().zip(is_used) {
+            if is_used && !material.kind.is_diffuse() {
+                Occurrence::add(found, material.kind.name(), material.origin.span);
+            }
+        }
     }
 
     /// Whether a mix reaches itself.

@@ -15,10 +15,11 @@ mod spheres;
 mod tessellation;
 
 use crate::light::{AreaEmission, LightTable, SceneSphere};
-use crate::material::{MaterialEntry, Materials};
+use crate::material::MaterialEntry;
 use crate::names::Names;
 use crate::scene::{GeometryEntry, InstanceEntry, Scene};
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
+use crate::traits::SceneTraits;
 use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
@@ -62,17 +63,20 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         materials: Vec::new(),
         area_emissions: Vec::new(),
         emitters: vec![Emitters::default()],
+        traits: SceneTraits::default(),
     };
     compiler.materials();
     compiler.area_emissions();
     compiler.shapes();
+    compiler.material_traits();
+    compiler.media();
     let world = std::mem::take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
     let lights = compiler.light_table(&world, sphere);
     if !compiler.diagnostics.iter().any(Diagnostic::is_error) {
         compiler.warn_of_darkness(&lights);
     }
-    let Compiler { diagnostics, textures, entries, names, instances, materials, .. } = compiler;
+    let Compiler { diagnostics, textures, entries, names, instances, materials, traits, .. } = compiler;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
@@ -84,11 +88,12 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         sphere,
         entries,
         instances,
-        materials: Materials::new(materials),
+        materials,
         textures,
         lights,
         has_filtered_textures,
         names,
+        traits,
     };
     Ok(Compiled { scene, warnings: diagnostics })
 }
@@ -107,6 +112,7 @@ struct Compiler<'a> {
     area_emissions: Vec<Option<AreaEmission>>,
     /// By group of the world.
     emitters: Vec<Emitters>,
+    traits: SceneTraits,
 }
 
 impl Compiler<'_> {
@@ -116,6 +122,14 @@ impl Compiler<'_> {
 
     fn warn(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
+    }
+
+    /// Warns of each medium.
+    fn media(&mut self) {
+        for (_, medium) in self.desc.media.iter() {
+            let message = "participating media are not drawn yet; left out";
+            self.warn("not-drawn", message, medium.origin.span);
+        }
     }
 
     /// Warns where there is nothing to see.

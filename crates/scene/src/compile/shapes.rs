@@ -5,6 +5,7 @@ use super::curves::are_strands;
 use super::solids::Assembly;
 use crate::scene::GeometryEntry;
 use crate::texture::FloatTextureId;
+use crate::traits::Occurrence;
 use description::{
     Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind, Span, Spanned,
     Stated, TransformDesc,
@@ -63,12 +64,32 @@ impl Compiler<'_> {
     pub(super) fn resting(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
         let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
-        for geometry in self.geometries(run, transform) {
+        let geometries = self.geometries(run, transform);
+        self.shape_traits(run, &geometries);
+        for geometry in geometries {
             let emitter = self.emitter(shape, &geometry, alpha);
             let id = self.world.add_geometry(group, geometry);
             let span = shape.origin.span;
             let first_light = emitter.and_then(|emitter| self.add_emitter(group, id, emitter, span));
             self.entries.push(GeometryEntry { material, alpha, first_light });
+        }
+    }
+
+    /// Records what holds of a shape that has become these geometries.
+    fn shape_traits(&mut self, run: &[&Stated<ShapeDesc>], geometries: &[Geometry]) {
+        let kind = &run[0].kind;
+        // What has no bounds is the only shape of its geometry.
+        let has_no_bounds = |geometry: &Geometry| match geometry {
+            Geometry::Shapes(shapes) => shapes.first().is_some_and(|shape| shape.bounds().is_none()),
+            Geometry::Mesh(_) | Geometry::Spheres(_) | Geometry::Curves(_) => false,
+        };
+        if geometries.iter().any(has_no_bounds) {
+            Occurrence::add(&mut self.traits.unbounded_shapes, kind.name(), run[0].origin.span);
+        }
+        if !kind.traits().has_patches {
+            for shape in run {
+                Occurrence::add(&mut self.traits.shapes_without_patches, kind.name(), shape.origin.span);
+            }
         }
     }
 

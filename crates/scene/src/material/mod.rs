@@ -2,8 +2,8 @@
 //! value.
 //!
 //! A material holds textures and spectra; [`Material::bxdf`] evaluates them at a point. `Mix`
-//! chooses one of two materials at each point by a hash, so it is resolved before
-//! ([`Materials::resolve`]); `Interface` has no BxDF at all: rays pass.
+//! chooses one of two materials at each point by a hash, and is resolved before; `Interface` has no
+//! BxDF at all: rays pass.
 
 mod conductor;
 mod dielectric;
@@ -69,7 +69,8 @@ impl Material {
     }
 }
 
-/// A material with what bends its normals.
+/// A material with what bends its normals: a row of the scene's
+/// [table of materials](crate::Scene::materials).
 #[derive(Clone, Debug)]
 pub struct MaterialEntry {
     /// How it scatters.
@@ -78,33 +79,18 @@ pub struct MaterialEntry {
     pub normal_map: Option<NormalMap>,
 }
 
-/// The materials of a scene by id.
-#[derive(Clone, Debug, Default)]
-pub struct Materials {
-    entries: Vec<MaterialEntry>,
-}
-
-impl Materials {
-    /// A table of these; a `Mix` among them must not lead back to itself.
-    pub fn new(entries: Vec<MaterialEntry>) -> Self {
-        Self { entries }
+/// The material that a point really has: mixes are decided.
+#[inline]
+pub(crate) fn resolve<'a>(
+    materials: &'a [MaterialEntry],
+    interaction: &SurfaceInteraction,
+    textures: &Textures,
+) -> &'a MaterialEntry {
+    let mut entry = &materials[interaction.material.0 as usize];
+    while let Material::Mix(mix) = &entry.material {
+        entry = &materials[mix.choose(interaction, textures).0 as usize];
     }
-
-    /// The entry of an id of this table.
-    #[inline]
-    pub fn get(&self, id: MaterialId) -> &MaterialEntry {
-        &self.entries[id.0 as usize]
-    }
-
-    /// The material that a point really has: mixes are decided.
-    #[inline]
-    pub fn resolve(&self, interaction: &SurfaceInteraction, textures: &Textures) -> &MaterialEntry {
-        let mut entry = self.get(interaction.material);
-        while let Material::Mix(mix) = &entry.material {
-            entry = self.get(mix.choose(interaction, textures));
-        }
-        entry
-    }
+    entry
 }
 
 /// An index of refraction at the first wavelength; where it varies, the other wavelengths end, for

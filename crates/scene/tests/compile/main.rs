@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod materials;
+mod traits;
 
 use alhazen_scene::light::LightId;
 use alhazen_scene::{RayStats, View, compile, world_from_render};

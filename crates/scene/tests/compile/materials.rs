@@ -2,7 +2,8 @@
 
 use super::{check, stated, warns, with, with_parameter};
 use crate::common::*;
-use alhazen_scene::compile;
+use alhazen_scene::material::{Material, MaterialId};
+use alhazen_scene::{Scene, compile};
 use description::{
     AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, HairColor, MaterialDesc,
     MaterialKind, RoughnessDesc, Severity, ShapeDesc, SpectrumDesc, SubsurfaceScattering,
@@ -17,6 +18,28 @@ fn a_mix_of_itself_is_an_error() {
         desc.materials.push_stated(stated(MaterialDesc { name: "loop".into(), ..kind.into() }, 7));
     });
     check(&desc, Severity::Error, "material-cycle", "material `loop` is a mix of itself", 7);
+}
+
+#[test]
+fn geometries_lead_to_materials_and_these_to_textures() {
+    let desc = with(|desc| {
+        let gray = |value: f32| MaterialKind::Diffuse { reflectance: value.into() };
+        let parts = [0.25, 0.75].map(|value| desc.materials.push(gray(value).into()));
+        let mix = MaterialKind::Mix { materials: parts, amount: 0.5.into() };
+        let material = Some(desc.materials.push(mix.into()));
+        desc.shapes.push(ShapeDesc { material, ..sphere(1.0).into() });
+        desc.shapes.push(sphere(2.0).into());
+    });
+    let scene = compile(&desc).unwrap().scene;
+    let reflectance = |scene: &Scene, id: MaterialId| {
+        let Material::Diffuse(diffuse) = &scene.materials()[id.0 as usize].material else { panic!("{id:?}") };
+        scene.textures().spectrum(diffuse.reflectance, &Default::default(), &lambda())[0]
+    };
+    let [first, second] = [0, 1].map(|index| scene.geometries()[index].material);
+    let Material::Mix(mix) = &scene.materials()[first.0 as usize].material else { panic!("{first:?}") };
+    assert_eq!(mix.materials.map(|part| reflectance(&scene, part)), [0.25, 0.75]);
+    assert_eq!(second.0 as usize, scene.materials().len() - 1);
+    assert_eq!(reflectance(&scene, second), 0.5);
 }
 
 #[test]

@@ -36,7 +36,7 @@ mod gather;
 
 use std::ops::AddAssign;
 
-use description::{PhotonMappingDesc, PhotonMappingShow};
+use description::{Diagnostic, PhotonMappingDesc, PhotonMappingShow};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
@@ -45,6 +45,7 @@ use scene::{Interfaces, Scene, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
+use crate::light_paths::endless;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
 use crate::transport::Tracer;
@@ -156,6 +157,10 @@ impl Integrator for PhotonMapping {
 
     fn splats(&self) -> bool {
         true
+    }
+
+    fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
+        endless::warnings(scene, "photon-mapping")
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
