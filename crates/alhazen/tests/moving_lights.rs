@@ -106,3 +106,14 @@ fn delta_lights_move() {
         "moving delta lights",
     );
 }
+
+#[test]
+fn environments_move() {
+    let sky = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/assets/sky.exr");
+    let turned = |turn: &str| format!("{turn} LightSource \"infinite\" \"string filename\" \"{sky}\"");
+    let moving = turned("ActiveTransform EndTime Rotate 120 1 0.3 0 ActiveTransform All");
+    let at_rest =
+        |i: i32| scene(0.5, 1.0, &turned(&format!("Rotate {} 1 0.3 0", (i as f32 + 0.5) / 8.0 * 120.0)));
+    let at_rest: Vec<String> = (0..8).map(at_rest).collect();
+    assert_same(&[scene(0.5, 1.0, &moving)], &at_rest, "moving environments");
+}

@@ -6,12 +6,13 @@ use crate::light::{
     AreaEmission, LightId, LightLeSample, LightLiSample, LightRef, LightSampleContext, LightTable, Lights,
     SceneSphere,
 };
-use crate::light_sampler::{LightSampler, LightSamplerKind};
+use crate::light_sampler::LightSampler;
 use crate::material::{Material, MaterialEntry, MaterialId, resolve};
 use crate::names::Names;
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use crate::traits::SceneTraits;
 use crate::view::View;
+use description::LightSamplerDesc;
 use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
 use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
@@ -138,8 +139,8 @@ impl Scene {
     }
 
     /// A way of choosing among the lights.
-    pub fn light_sampler(&self, kind: LightSamplerKind) -> LightSampler {
-        LightSampler::new(kind, self.lights())
+    pub fn light_sampler(&self, desc: LightSamplerDesc) -> LightSampler {
+        LightSampler::new(desc, self.lights())
     }
 
     /// The geometry, for what wants to look at it without materials.

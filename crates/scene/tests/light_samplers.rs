@@ -4,16 +4,17 @@ mod common;
 
 use alhazen_scene::Scene;
 use alhazen_scene::light::{LightId, LightSampleContext};
-use alhazen_scene::light_sampler::{LightSampler, LightSamplerKind};
+use alhazen_scene::light_sampler::LightSampler;
 use common::*;
 use description::{
-    AreaLightDesc, InfiniteRadiance, LightKind, SceneDesc, ShapeDesc, ShapeKind, TransformDesc,
+    AreaLightDesc, InfiniteRadiance, LightKind, LightSamplerDesc, SceneDesc, ShapeDesc, ShapeKind,
+    TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 use testkit::{Chi2, Moments, Random, welch_test};
 
-const KINDS: [LightSamplerKind; 3] =
-    [LightSamplerKind::Uniform, LightSamplerKind::Power, LightSamplerKind::Bvh];
+const KINDS: [LightSamplerDesc; 3] =
+    [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh];
 
 fn point(p: Vec3, intensity: f32) -> LightKind {
     LightKind::Point { intensity: intensity.into(), power: None, from: p }
@@ -129,7 +130,7 @@ fn choices_have_their_probability() {
                 let pmfs = pmfs(&sampler, scene, from);
                 let total: f64 = pmfs.iter().sum();
                 assert!(total < 1.0 + 1e-5, "{name}, {kind:?}: {total}");
-                if kind != LightSamplerKind::Bvh {
+                if kind != LightSamplerDesc::Bvh {
                     assert!(total > 1.0 - 1e-5, "{name}, {kind:?}: {total}");
                 }
                 let count = 10_000;
@@ -234,7 +235,7 @@ fn coincident_lights_are_distinguished() {
     // On top of them all, other lights are still found.
     desc.lights.push(point(Vec3::ZERO, 1.0).into());
     let scene = common::scene(&desc);
-    let sampler = scene.light_sampler(LightSamplerKind::Bvh);
+    let sampler = scene.light_sampler(LightSamplerDesc::Bvh);
     let inside = context(Vec3::new(0.3, 0.2, 1.0), Vec3::ZERO);
     assert!(pmfs(&sampler, &scene, &inside).iter().all(|pmf| pmf.is_finite()));
     assert!(sampler.sample(&inside, 0.5).is_some());
@@ -248,7 +249,7 @@ fn the_light_bvh_prefers_near_and_facing_lights() {
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, 1.0), 0.0, false, 1.0);
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -4.0), 0.0, false, 1.0);
     let scene = scene(&desc);
-    let pmfs = pmfs(&scene.light_sampler(LightSamplerKind::Bvh), &scene, &context(Vec3::ZERO, Vec3::Z));
+    let pmfs = pmfs(&scene.light_sampler(LightSamplerDesc::Bvh), &scene, &context(Vec3::ZERO, Vec3::Z));
     assert!(pmfs[0] > 4.0 * pmfs[2] && pmfs[2] > 0.0, "{pmfs:?}");
     assert_eq!(pmfs[1], 0.0);
 }

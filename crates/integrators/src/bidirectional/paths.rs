@@ -1,6 +1,7 @@
 //! The context of paths that are made from both ends.
 
-use scene::light_sampler::{LightSampler, LightSamplerKind, PowerLightSampler};
+use description::LightSamplerDesc;
+use scene::light_sampler::{LightSampler, PowerLightSampler};
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
@@ -24,7 +25,7 @@ impl Lights {
     /// For the lights of a scene.
     pub fn of(scene: &Scene) -> Self {
         Self {
-            seen_from: scene.light_sampler(LightSamplerKind::Bvh),
+            seen_from: scene.light_sampler(LightSamplerDesc::Bvh),
             emitting: PowerLightSampler::new(scene.lights()),
         }
     }

@@ -10,11 +10,10 @@
 //! are never hit; without BSDF sampling, smooth metal and glass are black. Source:
 //! [Pharr 2023 §13.2].
 
-use description::SimplePathDesc;
+use description::{LightSamplerDesc, SimplePathDesc};
 use math::{RayDifferential, Vector3};
 use sampling::warp;
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
-use scene::light_sampler::LightSamplerKind;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -93,7 +92,7 @@ fn one_light<B: Scatter>(
     lambda: &SampledWavelengths,
 ) -> SampledSpectrum {
     let context = light_context(surface, bsdf.flags());
-    let lights = tracer.scene.light_sampler(LightSamplerKind::Uniform);
+    let lights = tracer.scene.light_sampler(LightSamplerDesc::Uniform);
     let Some((light, pmf)) = lights.sample(&context, tracer.sampler.get_1d()) else {
         return SampledSpectrum::ZERO;
     };

@@ -48,13 +48,13 @@ mod surfaces;
 #[cfg(test)]
 mod tests;
 
-use description::{Diagnostic, RadiosityDesc};
+use description::{Diagnostic, LightSamplerDesc, RadiosityDesc};
 use film::{Film, FilmTile, Sample};
 use geometry::RayStats;
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::camera::CameraRayDifferential;
-use scene::light_sampler::{LightSampler, LightSamplerKind};
+use scene::light_sampler::LightSampler;
 use scene::{Scene, View};
 use spectrum::RgbColorSpace;
 
@@ -97,7 +97,7 @@ impl State {
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let solution = Solution::new(scene, view, settings, control)?;
-        let lights = scene.light_sampler(LightSamplerKind::Bvh);
+        let lights = scene.light_sampler(LightSamplerDesc::Bvh);
         let interpolation = Interpolation::new(scene, &solution, &lights, 0);
         Ok(Self { solution, lights, sent: 0, interpolation, shown: None, mesh: Vec::new() })
     }

@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use description::{
-    AreaLightDesc, FormFactorsDesc, InfiniteRadiance, LightKind, MaterialKind, MeshDesc, PatchMeshDesc,
-    RadiosityDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
+    AreaLightDesc, FormFactorsDesc, InfiniteRadiance, LightKind, LightSamplerDesc, MaterialKind, MeshDesc,
+    PatchMeshDesc, RadiosityDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc,
 };
 use geometry::RayStats;
 use math::{Point3, Vec2};
@@ -24,7 +24,6 @@ use super::ply;
 use super::shooting::Solution;
 use super::show::Interpolation;
 use crate::Control;
-use scene::light_sampler::LightSamplerKind;
 
 /// The faces of a box with its normals inwards, as patches, of these reflectances.
 fn room(size: Point3, reflectances: [f32; 6]) -> SceneDesc {
@@ -84,7 +83,7 @@ fn solved(scene: &Scene, settings: &RadiosityDesc) -> Solution {
 }
 
 fn interpolation(scene: &Scene, solution: &Solution) -> Interpolation {
-    Interpolation::new(scene, solution, &scene.light_sampler(LightSamplerKind::Bvh), 0)
+    Interpolation::new(scene, solution, &scene.light_sampler(LightSamplerDesc::Bvh), 0)
 }
 
 /// F_ie for all elements e and one patch.

@@ -7,10 +7,11 @@
 //! specular scattering) counts fully. Lights may leave directions to the BSDF (`allow_incomplete`):
 //! their density is then zero there.
 
+use description::LightSamplerDesc;
 use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightLiSample, LightSampleContext};
-use scene::light_sampler::{LightSampler, LightSamplerKind};
+use scene::light_sampler::LightSampler;
 use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -27,8 +28,8 @@ pub(crate) struct DirectLighting {
 impl DirectLighting {
     /// By the lights of a scene. `interfaces` is what surfaces of material `interface` do to the
     /// light of delta lights; that of others passes them.
-    pub fn new(scene: &Scene, kind: LightSamplerKind, interfaces: Interfaces) -> Self {
-        Self { lights: scene.light_sampler(kind), interfaces }
+    pub fn new(scene: &Scene, desc: LightSamplerDesc, interfaces: Interfaces) -> Self {
+        Self { lights: scene.light_sampler(desc), interfaces }
     }
 
     /// By no lights.

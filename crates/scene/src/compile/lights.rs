@@ -8,7 +8,7 @@ use crate::light::{
 };
 use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
 use image::{Projection, require_memory};
-use math::{DMat4, Point3, Transform, Vec3, Vector3};
+use math::{AnimatedTransform, DMat4, Point3, Transform, Vec3, Vector3};
 use std::f32::consts::PI;
 
 impl Compiler<'_> {
@@ -32,18 +32,18 @@ impl Compiler<'_> {
         self.traits.is_lit_from_infinity |= desc.kind.is_distant();
         let factors = [("scale", Some(desc.scale)), ("power", power), ("illuminance", illuminance)];
         self.check_brightness(origin, &factors);
-        let Some(motion) = self.motion(&desc.world_from_light) else {
+        let Some(render_from_light) = self.motion(&desc.world_from_light) else {
             self.singular("light", origin);
             return None;
         };
         // What moves stays in its own space, and is brought to render space at each shutter time.
-        let motion = motion.is_moving().then(|| Box::new(motion));
-        let render_from_light = match motion {
+        let motion = render_from_light.is_moving().then(|| Box::new(render_from_light.clone()));
+        let at_rest = match motion {
             Some(_) => DMat4::IDENTITY,
             None => self.render_from_world * desc.world_from_light.start,
         };
-        let placement = Transform::from_f64(render_from_light)?;
-        let place = |p: Point3| render_from_light.transform_point3(p.as_dvec3()).as_vec3();
+        let placement = Transform::from_f64(at_rest)?;
+        let place = |p: Point3| at_rest.transform_point3(p.as_dvec3()).as_vec3();
         Some(match &desc.kind {
             LightKind::Point { intensity, power, from } => {
                 let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
@@ -83,13 +83,7 @@ impl Compiler<'_> {
                         Light::UniformInfinite(UniformInfiniteLight { radiance, scene })
                     }
                     InfiniteRadiance::Image(handle) => {
-                        if motion.is_some() {
-                            let message = "environments do not move yet; drawn where it starts";
-                            self.warn("not-drawn", message, origin.span);
-                        }
-                        let start = self.render_from_world * desc.world_from_light.start;
-                        let placement = Transform::from_f64(start)?;
-                        self.sky(*handle, desc.scale, *illuminance, &placement, scene, origin)?
+                        self.sky(*handle, desc.scale, *illuminance, render_from_light, scene, origin)?
                     }
                 }
             }
@@ -110,7 +104,7 @@ impl Compiler<'_> {
         handle: Handle<ImageDesc>,
         scale: f32,
         illuminance: Option<f32>,
-        placement: &Transform,
+        render_from_light: AnimatedTransform,
         scene: SceneSphere,
         origin: &Origin,
     ) -> Option<Light> {
@@ -138,8 +132,8 @@ impl Compiler<'_> {
             self.error("image-file", error.to_string(), span);
             return None;
         }
-        let light =
-            ImageInfiniteLight::new(*placement, (image.image, projection), image.color_space, scale, scene);
+        let pixels = (image.image, projection);
+        let light = ImageInfiniteLight::new(render_from_light, pixels, image.color_space, scale, scene);
         Some(Light::ImageInfinite(Box::new(light)))
     }
 

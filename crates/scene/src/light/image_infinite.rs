@@ -9,10 +9,12 @@
 //! multiple importance sampling leaves the dim parts to the BSDF, and light samples go where they
 //! matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the plain
 //! distribution, and start evenly on the disk that faces them and covers the scene.
+//!
+//! Of an environment that moves, directions are turned by its transform at the shutter time.
 
 use super::{LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
 use image::{Image, Projection};
-use math::{Bounds2, Point2, Ray, Transform, Vec3, Vector3};
+use math::{AnimatedTransform, Bounds2, Point2, Ray, Vec3, Vector3};
 use sampling::PiecewiseConstant2d;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
@@ -21,7 +23,7 @@ use std::sync::Arc;
 /// An environment image.
 #[derive(Clone, Debug)]
 pub struct ImageInfiniteLight {
-    render_from_light: Transform,
+    render_from_light: AnimatedTransform,
     image: Arc<Image>,
     projection: Projection,
     color_space: &'static RgbColorSpace,
@@ -38,7 +40,7 @@ impl ImageInfiniteLight {
 
     /// From an image of the sphere in `projection`, with red, green and blue in `color_space`.
     pub fn new(
-        render_from_light: Transform,
+        render_from_light: AnimatedTransform,
         (image, projection): (Arc<Image>, Projection),
         color_space: &'static RgbColorSpace,
         scale: f32,
@@ -86,14 +88,15 @@ impl ImageInfiniteLight {
         self.spectrum(rgb.clamp_zero(), lambda)
     }
 
-    /// The position in the image of a direction in render space.
-    fn position(&self, w: Vector3) -> Point2 {
-        self.projection.position(self.render_from_light.inverse().vector(w).normalize())
+    /// The position in the image of a direction in render space at a shutter time.
+    fn position(&self, w: Vector3, time: f32) -> Point2 {
+        self.projection.position(self.render_from_light.at(time).inverse().vector(w).normalize())
     }
 
     fn sample(
         &self,
         u: Point2,
+        time: f32,
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
@@ -102,7 +105,7 @@ impl ImageInfiniteLight {
         if density == 0.0 || solid_angle == 0.0 {
             return None;
         }
-        let wi = self.render_from_light.vector(self.projection.direction(st)).normalize();
+        let wi = self.render_from_light.at(time).vector(self.projection.direction(st)).normalize();
         Some(LightLiSample {
             l: self.lookup(st, lambda),
             wi,
@@ -112,8 +115,8 @@ impl ImageInfiniteLight {
         })
     }
 
-    fn pdf(&self, wi: Vector3, allow_incomplete: bool) -> f32 {
-        let st = self.position(wi);
+    fn pdf(&self, wi: Vector3, time: f32, allow_incomplete: bool) -> f32 {
+        let st = self.position(wi, time);
         let solid_angle = 4.0 * PI * self.projection.solid_angle_density(st);
         if solid_angle == 0.0 { 0.0 } else { self.distribution(allow_incomplete).pdf(st) / solid_angle }
     }
@@ -141,18 +144,18 @@ impl LightModel for ImageInfiniteLight {
     }
 
     fn le(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.lookup(self.position(ray.d), lambda)
+        self.lookup(self.position(ray.d, ray.time), lambda)
     }
 
     fn sample_li(
         &self,
         _part: &LightPart,
-        _context: &LightSampleContext,
+        context: &LightSampleContext,
         u: Point2,
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        self.sample(u, lambda, allow_incomplete)
+        self.sample(u, context.time, lambda, allow_incomplete)
     }
 
     fn sample_le(
@@ -163,7 +166,7 @@ impl LightModel for ImageInfiniteLight {
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
-        let LightLiSample { l, wi, pdf, n, .. } = self.sample(u_direction, lambda, false)?;
+        let LightLiSample { l, wi, pdf, n, .. } = self.sample(u_direction, time, lambda, false)?;
         Some(LightLeSample {
             l,
             ray: self.scene.ray_from(wi, u_position, time),
@@ -177,14 +180,14 @@ impl LightModel for ImageInfiniteLight {
     fn pdf_li(
         &self,
         _part: &LightPart,
-        _context: &LightSampleContext,
+        context: &LightSampleContext,
         wi: Vector3,
         allow_incomplete: bool,
     ) -> f32 {
-        self.pdf(wi, allow_incomplete)
+        self.pdf(wi, context.time, allow_incomplete)
     }
 
     fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
-        (self.scene.pdf_facing_disk(ray), self.pdf(ray.d, false))
+        (self.scene.pdf_facing_disk(ray), self.pdf(ray.d, ray.time, false))
     }
 }

@@ -26,29 +26,6 @@ pub enum LightSampler {
     Bvh(BvhLightSampler),
 }
 
-/// The names of the ways of choosing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LightSamplerKind {
-    /// All alike.
-    Uniform,
-    /// By power.
-    Power,
-    /// By position, orientation and power.
-    #[default]
-    Bvh,
-}
-
-impl From<LightSamplerDesc> for LightSamplerKind {
-    /// The tree stands in for sampling every light, which is not drawn.
-    fn from(desc: LightSamplerDesc) -> Self {
-        match desc {
-            LightSamplerDesc::Uniform => Self::Uniform,
-            LightSamplerDesc::Power => Self::Power,
-            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => Self::Bvh,
-        }
-    }
-}
-
 impl Default for LightSampler {
     /// A choice among no lights.
     fn default() -> Self {
@@ -57,12 +34,13 @@ impl Default for LightSampler {
 }
 
 impl LightSampler {
-    /// A sampler of the given kind for these lights.
-    pub fn new(kind: LightSamplerKind, lights: Lights) -> Self {
-        match kind {
-            LightSamplerKind::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
-            LightSamplerKind::Power => Self::Power(PowerLightSampler::new(lights)),
-            LightSamplerKind::Bvh => Self::Bvh(BvhLightSampler::new(lights)),
+    /// A sampler for these lights, as described. The tree stands in for sampling every light, which
+    /// is not drawn.
+    pub fn new(desc: LightSamplerDesc, lights: Lights) -> Self {
+        match desc {
+            LightSamplerDesc::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
+            LightSamplerDesc::Power => Self::Power(PowerLightSampler::new(lights)),
+            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => Self::Bvh(BvhLightSampler::new(lights)),
         }
     }
 

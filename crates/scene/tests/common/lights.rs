@@ -200,6 +200,10 @@ fn instanced(mut desc: SceneDesc, transforms: &[TransformDesc]) -> SceneDesc {
 pub fn infinite_lights() -> Vec<Case> {
     // One bright pixel, as a sun.
     let sun = |x, y| if (x, y) == (5, 2) { [40.0, 35.0, 30.0] } else { colours(x, y) };
+    let mut moving = image_sky_of([16, 8], None, sun);
+    for (_, light) in moving.lights.iter_mut() {
+        light.world_from_light.end = placement() * DMat4::from_rotation_z(2.0);
+    }
     let cases = [
         ("sky", free(sky(None))),
         ("image sky", image_sky(8, None, colours)),
@@ -207,6 +211,7 @@ pub fn infinite_lights() -> Vec<Case> {
         ("image sky of one colour", image_sky(8, None, |_, _| [0.5; 3])),
         ("panorama", image_sky_of([16, 8], None, colours)),
         ("panorama with a sun", image_sky_of([16, 8], None, sun)),
+        ("moving panorama with a sun", moving),
         ("panorama of one colour", image_sky_of([16, 8], None, |_, _| [0.5; 3])),
     ];
     cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()

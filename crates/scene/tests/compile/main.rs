@@ -407,12 +407,6 @@ fn moving() -> TransformDesc {
 fn unsupported_lights_are_replaced_with_a_warning() {
     let light = |light: LightDesc| with(|desc| desc.lights.push_stated(stated(light, 4)));
     let image = |desc: &mut SceneDesc| desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
-    let moving_sky = with(|desc| {
-        let radiance = InfiniteRadiance::Image(image(desc));
-        let sky = LightKind::Infinite { radiance, illuminance: None, portal: None };
-        desc.lights.push_stated(stated(LightDesc { world_from_light: moving(), ..sky.into() }, 4));
-    });
-    warns(&moving_sky, "environments do not move yet; drawn where it starts", 4);
     let goniometric = LightKind::Goniometric { intensity: 1.0.into(), power: None, image: None };
     warns(&light(goniometric.into()), "light `goniometric` is not drawn yet; drawn as `point`", 4);
     let projection = with(|desc| {

@@ -36,11 +36,10 @@ mod gather;
 
 use std::ops::AddAssign;
 
-use description::{Diagnostic, PhotonMappingDesc, PhotonMappingShow};
+use description::{Diagnostic, LightSamplerDesc, PhotonMappingDesc, PhotonMappingShow};
 use film::Film;
 use geometry::RayStats;
 use sampling::Sampler;
-use scene::light_sampler::LightSamplerKind;
 use scene::{Interfaces, Scene, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
@@ -165,7 +164,7 @@ impl Integrator for PhotonMapping {
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
         self.lights = Lights::of(scene);
-        self.direct = DirectLighting::new(scene, LightSamplerKind::Bvh, Interfaces::Stop);
+        self.direct = DirectLighting::new(scene, LightSamplerDesc::Bvh, Interfaces::Stop);
         self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
         self.mean_radius = MeanRadius::new(self.radius);
         control.check()
