@@ -18,6 +18,7 @@ use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
+use std::sync::atomic::AtomicBool;
 
 /// What belongs to one geometry of the world.
 #[derive(Clone, Copy, Debug)]
@@ -138,9 +139,9 @@ impl Scene {
         self.lights.infinite()
     }
 
-    /// A way of choosing among the lights.
-    pub fn light_sampler(&self, desc: LightSamplerDesc) -> LightSampler {
-        LightSampler::new(desc, self.lights())
+    /// A way of choosing among the lights; `None` if `cancel` is set while it is made.
+    pub fn light_sampler(&self, desc: LightSamplerDesc, cancel: &AtomicBool) -> Option<LightSampler> {
+        LightSampler::new(desc, self.lights(), cancel)
     }
 
     /// The geometry, for what wants to look at it without materials.

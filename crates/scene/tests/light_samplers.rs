@@ -11,10 +11,15 @@ use description::{
     TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
+use std::sync::atomic::AtomicBool;
 use testkit::{Chi2, Moments, Random, welch_test};
 
 const KINDS: [LightSamplerDesc; 3] =
     [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh];
+
+fn sampler(scene: &Scene, desc: LightSamplerDesc) -> LightSampler {
+    scene.light_sampler(desc, &AtomicBool::new(false)).expect("nobody cancels it")
+}
 
 fn point(p: Vec3, intensity: f32) -> LightKind {
     LightKind::Point { intensity: intensity.into(), power: None, from: p }
@@ -125,7 +130,7 @@ fn choices_have_their_probability() {
     let tests = cases.len() * references.len() * KINDS.len();
     for (name, scene) in &cases {
         for kind in KINDS {
-            let sampler = scene.light_sampler(kind);
+            let sampler = sampler(scene, kind);
             for from in &references {
                 let pmfs = pmfs(&sampler, scene, from);
                 let total: f64 = pmfs.iter().sum();
@@ -166,7 +171,7 @@ fn every_contributing_light_can_be_chosen() {
     let mut random = Random::new(14);
     for (name, scene) in cases() {
         for kind in KINDS {
-            let sampler = scene.light_sampler(kind);
+            let sampler = sampler(&scene, kind);
             for _ in 0..100 {
                 let from = context(point_in_cube(&mut random, 4.0), uniform_direction(&mut random));
                 for i in 0..scene.lights().len() as u32 {
@@ -193,7 +198,7 @@ fn one_light_estimates_agree_with_the_sum_over_lights() {
                 })
                 .collect();
             for kind in KINDS {
-                let sampler = scene.light_sampler(kind);
+                let sampler = sampler(scene, kind);
                 let chosen: Moments = (0..20_000)
                     .map(|_| match sampler.sample(from, random.get_1d()) {
                         Some((light, pmf)) => sent(scene, light, from, random.get_2d()) / pmf as f64,
@@ -220,7 +225,7 @@ fn coincident_lights_are_distinguished() {
     let from = context(Vec3::ZERO, Vec3::Z);
     let mut random = Random::new(16);
     for kind in KINDS {
-        let sampler = scene.light_sampler(kind);
+        let sampler = sampler(&scene, kind);
         let pmfs = pmfs(&sampler, &scene, &from);
         assert!(pmfs.iter().all(|&pmf| pmf > 0.3e-4 && pmf < 3e-4), "{kind:?}");
         assert!((pmfs.iter().sum::<f64>() - 1.0).abs() < 1e-4, "{kind:?}");
@@ -235,7 +240,7 @@ fn coincident_lights_are_distinguished() {
     // On top of them all, other lights are still found.
     desc.lights.push(point(Vec3::ZERO, 1.0).into());
     let scene = common::scene(&desc);
-    let sampler = scene.light_sampler(LightSamplerDesc::Bvh);
+    let sampler = sampler(&scene, LightSamplerDesc::Bvh);
     let inside = context(Vec3::new(0.3, 0.2, 1.0), Vec3::ZERO);
     assert!(pmfs(&sampler, &scene, &inside).iter().all(|pmf| pmf.is_finite()));
     assert!(sampler.sample(&inside, 0.5).is_some());
@@ -249,7 +254,7 @@ fn the_light_bvh_prefers_near_and_facing_lights() {
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, 1.0), 0.0, false, 1.0);
     add_area(&mut desc, disk(0.0, 0.1), Vec3::new(0.0, 0.0, -4.0), 0.0, false, 1.0);
     let scene = scene(&desc);
-    let pmfs = pmfs(&scene.light_sampler(LightSamplerDesc::Bvh), &scene, &context(Vec3::ZERO, Vec3::Z));
+    let pmfs = pmfs(&sampler(&scene, LightSamplerDesc::Bvh), &scene, &context(Vec3::ZERO, Vec3::Z));
     assert!(pmfs[0] > 4.0 * pmfs[2] && pmfs[2] > 0.0, "{pmfs:?}");
     assert_eq!(pmfs[1], 0.0);
 }
@@ -260,6 +265,34 @@ fn scenes_without_lights_choose_none() {
     desc.shapes.push(sphere(1.0).into());
     let scene = scene(&desc);
     for kind in KINDS {
-        assert!(scene.light_sampler(kind).sample(&context(Vec3::ZERO, Vec3::Z), 0.5).is_none());
+        assert!(sampler(&scene, kind).sample(&context(Vec3::ZERO, Vec3::Z), 0.5).is_none());
     }
+}
+
+/// More lights than one thread builds a tree of.
+fn many_lights() -> Scene {
+    let mut desc = SceneDesc::default();
+    desc.shapes.push(sphere(0.1).into());
+    let mut random = Random::new(21);
+    for _ in 0..20_000 {
+        let [x, y] = random.get_2d();
+        desc.lights.push(point(Vec3::new(x, y, random.get_1d()), random.get_1d()).into());
+    }
+    scene(&desc)
+}
+
+#[test]
+fn the_light_bvh_does_not_depend_on_threads() {
+    let scene = many_lights();
+    let by = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| format!("{:?}", sampler(&scene, LightSamplerDesc::Bvh)))
+    };
+    assert!(by(1) == by(4));
+}
+
+#[test]
+fn building_the_light_bvh_can_be_cancelled() {
+    let scene = many_lights();
+    assert!(scene.light_sampler(LightSamplerDesc::Bvh, &AtomicBool::new(true)).is_none());
 }

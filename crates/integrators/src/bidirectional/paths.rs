@@ -6,6 +6,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use super::partial::Balance;
+use crate::{Cancelled, Control};
 
 /// Light samplers.
 #[derive(Clone, Debug)]
@@ -23,11 +24,9 @@ impl Lights {
     }
 
     /// For the lights of a scene.
-    pub fn of(scene: &Scene) -> Self {
-        Self {
-            seen_from: scene.light_sampler(LightSamplerDesc::Bvh),
-            emitting: PowerLightSampler::new(scene.lights()),
-        }
+    pub fn of(scene: &Scene, control: &Control) -> Result<Self, Cancelled> {
+        let seen_from = scene.light_sampler(LightSamplerDesc::Bvh, &control.cancel).ok_or(Cancelled)?;
+        Ok(Self { seen_from, emitting: PowerLightSampler::new(scene.lights()) })
     }
 }
 

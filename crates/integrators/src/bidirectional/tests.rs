@@ -199,7 +199,7 @@ fn weights_for_another_radius_are_told_apart() {
 /// That the recursion with one balance gives the weights by the densities of another.
 fn assert_weights(balance: Balance, expected: Balance) {
     let (scene, view) = room();
-    let lights = Lights::of(&scene);
+    let lights = Lights::of(&scene, &Control::default()).unwrap();
     let paths = Bidirectional {
         scene: &scene,
         view: &view,

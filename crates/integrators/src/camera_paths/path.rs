@@ -86,8 +86,8 @@ impl Path {
 
 impl RayIntegrator for Path {
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces);
-        control.check()
+        self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
+        Ok(())
     }
 
     fn li(

@@ -10,10 +10,11 @@
 //! are never hit; without BSDF sampling, smooth metal and glass are black. Source:
 //! [Pharr 2023 §13.2].
 
-use description::{LightSamplerDesc, SimplePathDesc};
+use description::SimplePathDesc;
 use math::{RayDifferential, Vector3};
 use sampling::warp;
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scene::light_sampler::UniformLightSampler;
 use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -92,8 +93,8 @@ fn one_light<B: Scatter>(
     lambda: &SampledWavelengths,
 ) -> SampledSpectrum {
     let context = light_context(surface, bsdf.flags());
-    let lights = tracer.scene.light_sampler(LightSamplerDesc::Uniform);
-    let Some((light, pmf)) = lights.sample(&context, tracer.sampler.get_1d()) else {
+    let lights = UniformLightSampler::new(tracer.scene.lights());
+    let Some((light, pmf)) = lights.sample(tracer.sampler.get_1d()) else {
         return SampledSpectrum::ZERO;
     };
     let Some(sample) = tracer.scene.sample_light(light, &context, tracer.sampler.get_2d(), lambda, false)

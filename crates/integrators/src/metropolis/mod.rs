@@ -108,9 +108,9 @@ impl Integrator for Mlt {
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         match &mut self.technique {
             Technique::Path(path) => path.prepare(scene, view, control)?,
-            Technique::Bdpt(lights) => *lights = Lights::of(scene),
+            Technique::Bdpt(lights) => *lights = Lights::of(scene, control)?,
         }
-        control.check()
+        Ok(())
     }
 
     fn pass(

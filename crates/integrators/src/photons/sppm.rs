@@ -77,8 +77,8 @@ impl Integrator for Sppm {
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene);
-        control.check()
+        self.lights = Lights::of(scene, control)?;
+        Ok(())
     }
 
     fn pass(

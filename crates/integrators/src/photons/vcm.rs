@@ -110,11 +110,11 @@ impl Integrator for Vcm {
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene);
+        self.lights = Lights::of(scene, control)?;
         self.specular_paths.prepare(scene);
         let radius = self.settings.radius.unwrap_or(SHARE_OF_SCENE * scene.sphere().radius);
         self.merging = Merging::new(radius, self.settings.alpha, self.photon_seed);
-        control.check()
+        Ok(())
     }
 
     fn pass(

@@ -97,7 +97,7 @@ impl State {
         control: &Control,
     ) -> Result<Self, Cancelled> {
         let solution = Solution::new(scene, view, settings, control)?;
-        let lights = scene.light_sampler(LightSamplerDesc::Bvh);
+        let lights = scene.light_sampler(LightSamplerDesc::Bvh, &control.cancel).ok_or(Cancelled)?;
         let interpolation = Interpolation::new(scene, &solution, &lights, 0);
         Ok(Self { solution, lights, sent: 0, interpolation, shown: None, mesh: Vec::new() })
     }

@@ -83,7 +83,8 @@ fn solved(scene: &Scene, settings: &RadiosityDesc) -> Solution {
 }
 
 fn interpolation(scene: &Scene, solution: &Solution) -> Interpolation {
-    Interpolation::new(scene, solution, &scene.light_sampler(LightSamplerDesc::Bvh), 0)
+    let lights = scene.light_sampler(LightSamplerDesc::Bvh, &Control::default().cancel).unwrap();
+    Interpolation::new(scene, solution, &lights, 0)
 }
 
 /// F_ie for all elements e and one patch.

@@ -17,6 +17,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::path_state::Origin;
+use crate::{Cancelled, Control};
 
 /// Direct lighting by one sample of one light, weighted against BSDF sampling.
 #[derive(Clone, Debug)]
@@ -28,8 +29,14 @@ pub(crate) struct DirectLighting {
 impl DirectLighting {
     /// By the lights of a scene. `interfaces` is what surfaces of material `interface` do to the
     /// light of delta lights; that of others passes them.
-    pub fn new(scene: &Scene, desc: LightSamplerDesc, interfaces: Interfaces) -> Self {
-        Self { lights: scene.light_sampler(desc), interfaces }
+    pub fn new(
+        scene: &Scene,
+        desc: LightSamplerDesc,
+        interfaces: Interfaces,
+        control: &Control,
+    ) -> Result<Self, Cancelled> {
+        let lights = scene.light_sampler(desc, &control.cancel).ok_or(Cancelled)?;
+        Ok(Self { lights, interfaces })
     }
 
     /// By no lights.

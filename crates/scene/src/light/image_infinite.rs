@@ -23,12 +23,18 @@ use std::sync::Arc;
 /// An environment image.
 #[derive(Clone, Debug)]
 pub struct ImageInfiniteLight {
-    render_from_light: AnimatedTransform,
-    image: Arc<Image>,
-    projection: Projection,
-    color_space: &'static RgbColorSpace,
-    scale: f32,
-    scene: SceneSphere,
+    /// From the space of the projection to render space.
+    pub render_from_light: AnimatedTransform,
+    /// Pixels with red, green and blue, none counted as negative.
+    pub image: Arc<Image>,
+    /// Where on the sphere a pixel lies.
+    pub projection: Projection,
+    /// What the channels mean.
+    pub color_space: &'static RgbColorSpace,
+    /// Factor on the radiance that the image says.
+    pub scale: f32,
+    /// The extent of the scene.
+    pub scene: SceneSphere,
     distribution: PiecewiseConstant2d,
     compensated: PiecewiseConstant2d,
 }

@@ -7,12 +7,14 @@
 //! as much each as the whole tree.
 //!
 //! The tree is built top-down over 12 buckets per axis by the cost Φ·M_Ω·K_r·A: M_Ω measures the
-//! solid angle of emission, K_r punishes long thin boxes, A is the area of the box. Sources:
+//! solid angle of emission, K_r punishes long thin boxes, A is the area of the box. Large clusters
+//! are built on several threads, whose number does not matter to the tree. Sources:
 //! [Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3].
 
 use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
 use std::f32::consts::PI;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Lights by importance.
 #[derive(Clone, Debug)]
@@ -35,7 +37,7 @@ impl Trail {
     const INFINITE: Self = Self(u64::MAX - 1);
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Node {
     bounds: LightBounds,
     kind: NodeKind,
@@ -53,14 +55,19 @@ enum NodeKind {
 const BUCKETS: usize = 12;
 /// Below this depth splits are by the median, so that a trail always fits into its bits.
 const DEEPEST_CHOICE: u32 = 32;
+/// The two parts of clusters of more lights are built at the same time.
+const LARGE: usize = 4096;
 
 impl BvhLightSampler {
-    /// For these lights.
-    pub fn new(lights: Lights) -> Self {
+    /// For these lights; `None` if `cancel` is set meanwhile.
+    pub fn new(lights: Lights, cancel: &AtomicBool) -> Option<Self> {
         let mut infinite = Vec::new();
         let mut bounded = Vec::new();
         let mut trails = vec![Trail::NOWHERE; lights.len()];
         for light in lights.iter() {
+            if cancel.load(Ordering::Relaxed) {
+                return None;
+            }
             let id = light.id();
             match light.bounds() {
                 None => {
@@ -71,29 +78,26 @@ impl BvhLightSampler {
                 Some(_) => {}
             }
         }
-        let mut sampler = Self { nodes: Vec::with_capacity(2 * bounded.len()), infinite, trails };
-        if !bounded.is_empty() {
-            sampler.build(&mut bounded, 0, 0);
+        let empty = Node { bounds: LightBounds::EMPTY, kind: NodeKind::Interior { right: 0 } };
+        let mut nodes = vec![empty; (2 * bounded.len()).saturating_sub(1)];
+        if !nodes.is_empty() {
+            build(&mut bounded, &mut nodes, [0, 0], cancel)?;
         }
-        sampler
+        let mut sampler = Self { nodes, infinite, trails };
+        sampler.leave_trails(0, 0, 0);
+        Some(sampler)
     }
 
-    fn build(&mut self, lights: &mut [(LightId, LightBounds)], trail: u64, depth: u32) -> LightBounds {
-        let index = self.nodes.len();
-        if let [(id, bounds)] = lights {
-            self.trails[id.0 as usize] = Trail(trail);
-            self.nodes.push(Node { bounds: *bounds, kind: NodeKind::Leaf(*id) });
-            return *bounds;
+    /// Stores the way to each light below a node, whose own is `trail`.
+    fn leave_trails(&mut self, node: usize, trail: u64, depth: u32) {
+        match self.nodes.get(node).map(|node| node.kind) {
+            None => (),
+            Some(NodeKind::Leaf(id)) => self.trails[id.0 as usize] = Trail(trail),
+            Some(NodeKind::Interior { right }) => {
+                self.leave_trails(node + 1, trail, depth + 1);
+                self.leave_trails(right as usize, trail | (1 << depth), depth + 1);
+            }
         }
-        let middle = split(lights, depth);
-        self.nodes.push(Node { bounds: LightBounds::EMPTY, kind: NodeKind::Interior { right: 0 } });
-        let (left, right) = lights.split_at_mut(middle);
-        let left = self.build(left, trail, depth + 1);
-        let right_index = self.nodes.len() as u32;
-        let right = self.build(right, trail | (1 << depth), depth + 1);
-        let bounds = left.union(right);
-        self.nodes[index] = Node { bounds, kind: NodeKind::Interior { right: right_index } };
-        bounds
     }
 
     /// Probability of choosing among the infinite lights.
@@ -164,6 +168,35 @@ impl BvhLightSampler {
         }
         pmf
     }
+}
+
+/// Builds the tree of lights, one at least, in the nodes that it takes: 2n − 1 for n lights. The
+/// first has this index and depth in the whole tree. `None` if `cancel` is set meanwhile.
+fn build(
+    lights: &mut [(LightId, LightBounds)],
+    nodes: &mut [Node],
+    [index, depth]: [u32; 2],
+    cancel: &AtomicBool,
+) -> Option<LightBounds> {
+    if let [(id, bounds)] = lights {
+        nodes[0] = Node { bounds: *bounds, kind: NodeKind::Leaf(*id) };
+        return Some(*bounds);
+    }
+    if cancel.load(Ordering::Relaxed) {
+        return None;
+    }
+    let is_large = lights.len() > LARGE;
+    let middle = split(lights, depth);
+    let (left, right) = lights.split_at_mut(middle);
+    let (node, below) = nodes.split_first_mut()?;
+    let (left_nodes, right_nodes) = below.split_at_mut(2 * middle - 1);
+    let right_index = index + 2 * middle as u32;
+    let mut left = || build(left, left_nodes, [index + 1, depth + 1], cancel);
+    let mut right = || build(right, right_nodes, [right_index, depth + 1], cancel);
+    let (left, right) = if is_large { rayon::join(left, right) } else { (left(), right()) };
+    let bounds = left?.union(right?);
+    *node = Node { bounds, kind: NodeKind::Interior { right: right_index } };
+    Some(bounds)
 }
 
 /// Reorders the lights and returns where the second half starts.

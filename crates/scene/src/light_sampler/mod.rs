@@ -14,6 +14,7 @@ pub use uniform::UniformLightSampler;
 
 use crate::light::{LightId, LightSampleContext, Lights};
 use description::LightSamplerDesc;
+use std::sync::atomic::AtomicBool;
 
 /// A way of choosing.
 #[derive(Clone, Debug)]
@@ -34,14 +35,16 @@ impl Default for LightSampler {
 }
 
 impl LightSampler {
-    /// A sampler for these lights, as described. The tree stands in for sampling every light, which
-    /// is not drawn.
-    pub fn new(desc: LightSamplerDesc, lights: Lights) -> Self {
-        match desc {
+    /// A sampler for these lights, as described; `None` if `cancel` is set while a tree is built.
+    /// The tree stands in for sampling every light, which is not drawn.
+    pub fn new(desc: LightSamplerDesc, lights: Lights, cancel: &AtomicBool) -> Option<Self> {
+        Some(match desc {
             LightSamplerDesc::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
             LightSamplerDesc::Power => Self::Power(PowerLightSampler::new(lights)),
-            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => Self::Bvh(BvhLightSampler::new(lights)),
-        }
+            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => {
+                Self::Bvh(BvhLightSampler::new(lights, cancel)?)
+            }
+        })
     }
 
     /// A light for the point `context`, with the probability of its choice (> 0).

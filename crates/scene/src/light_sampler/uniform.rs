@@ -14,11 +14,15 @@ impl UniformLightSampler {
         Self { count: lights.len() as u32 }
     }
 
-    pub(super) fn sample(&self, u: f32) -> Option<(LightId, f32)> {
+    /// A light, with the probability of its choice (> 0); `None` if there are no lights.
+    #[inline]
+    pub fn sample(&self, u: f32) -> Option<(LightId, f32)> {
         (self.count > 0).then(|| (LightId(((u * self.count as f32) as u32).min(self.count - 1)), self.pmf()))
     }
 
-    pub(super) fn pmf(&self) -> f32 {
+    /// The probability with which each light is chosen.
+    #[inline]
+    pub fn pmf(&self) -> f32 {
         if self.count == 0 { 0.0 } else { 1.0 / self.count as f32 }
     }
 }

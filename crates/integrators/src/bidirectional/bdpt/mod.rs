@@ -68,8 +68,8 @@ impl Integrator for Bdpt {
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene);
-        control.check()
+        self.lights = Lights::of(scene, control)?;
+        Ok(())
     }
 
     fn pass(

@@ -157,7 +157,7 @@ mod tests {
     const PATHS: u32 = 30_000;
 
     fn emit((scene, view): &(Scene, View), kind: Kind, max_depth: u32) -> Vec<Photon> {
-        let lights = Lights::of(scene);
+        let lights = Lights::of(scene, &Control::default()).unwrap();
         let balance = Balance::connecting(1.0);
         let paths = Bidirectional { scene, view, lights: &lights, balance, max_depth, regularize: false };
         let shutter = ShutterSample::new(view, 0.3, 0.0);

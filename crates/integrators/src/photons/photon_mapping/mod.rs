@@ -163,11 +163,11 @@ impl Integrator for PhotonMapping {
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene);
-        self.direct = DirectLighting::new(scene, LightSamplerDesc::Bvh, Interfaces::Stop);
+        self.lights = Lights::of(scene, control)?;
+        self.direct = DirectLighting::new(scene, LightSamplerDesc::Bvh, Interfaces::Stop, control)?;
         self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
         self.mean_radius = MeanRadius::new(self.radius);
-        control.check()
+        Ok(())
     }
 
     fn pass(
