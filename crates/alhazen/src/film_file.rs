@@ -74,7 +74,7 @@ impl RenderOrder {
             done: state.done.clone(),
         };
         // What drafts have left on the film is no part of the picture.
-        let blank = state.done.is_empty().then(|| state.film.blank());
+        let blank = state.done.is_empty().then(|| state.film.blank()).transpose()?;
         let mut writer = FilmWriter::new(output, &film_header, blank.as_ref().unwrap_or(&state.film))?;
         if let Some(second) = &state.second {
             writer.film(SECOND, second)?;
@@ -194,6 +194,11 @@ impl SavedRender {
             shard: first.shard,
             limits: first.limits,
         }
+    }
+
+    /// Which part of the passes each of the merged files was to hold, in their order.
+    pub fn shards(&self) -> Vec<Shard> {
+        self.parts.iter().map(|part| part.shard).collect()
     }
 
     /// What the headers of its pictures say.

@@ -38,22 +38,28 @@ impl Checkpoint {
     }
 
     /// Saves the render after a pass, if more time than the interval would go by until the end of
-    /// the next one. A failure is reported by [`finish`](Self::finish), if it lasts until then.
-    pub fn after_pass(&mut self, session: &Session) {
+    /// the next one; tells whether all passes that are done are saved. A failure is reported by
+    /// [`finish`](Self::finish), if it lasts until then.
+    pub fn after_pass(&mut self, session: &Session) -> bool {
         let now = Instant::now();
         let pass = now - self.last_pass_at;
         self.last_pass_at = now;
         if now - self.saved_at + pass >= self.every {
             self.save(session);
         }
+        self.has(session)
     }
 
     /// Saves the whole render at its end.
     pub fn finish(&mut self, session: &Session) -> Result<(), Failure> {
-        if self.last.0 != session.state().done.count() || self.last.1.is_err() || !self.path.exists() {
+        if !self.has(session) || !self.path.exists() {
             self.save(session);
         }
         std::mem::replace(&mut self.last.1, Ok(()))
+    }
+
+    fn has(&self, session: &Session) -> bool {
+        self.last.0 == session.state().done.count() && self.last.1.is_ok()
     }
 
     fn save(&mut self, session: &Session) {

@@ -4,15 +4,15 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use alhazen::integrators::{Cancelled, Progress, Session, Stop};
+use alhazen::integrators::{Progress, Session, Stop};
 use serde_json::{Value, json};
 
 use crate::numbers::{bytes, count, duration};
 
 /// What a render has done.
 pub struct Summary<'a> {
-    /// Why it ended.
-    pub outcome: Result<Stop, Cancelled>,
+    /// What has ended it; `None` where it was interrupted.
+    pub ended_by: Option<Stop>,
     /// The scene file.
     pub scene: &'a Path,
     /// The pictures.
@@ -69,15 +69,15 @@ impl Summary<'_> {
         let bounds = state.film.pixel_bounds();
         let [width, height] = state.film.full_resolution();
         let stats = progress.stats;
-        let (samples, rejected) = state.with_film(|film| (film.sample_count(), film.rejected()));
+        let (samples, rejected) = (state.sample_count(), state.rejected());
         let path = |path: &Path| path.display().to_string();
         json!({
-            "status": if self.outcome.is_ok() { "done" } else { "interrupted" },
-            "ended_by": match self.outcome {
-                Ok(Stop::Passes) => "passes",
-                Ok(Stop::Time) => "time",
-                Ok(Stop::Noise) => "noise",
-                Err(Cancelled) => "interrupt",
+            "status": if self.ended_by.is_some() { "done" } else { "interrupted" },
+            "ended_by": match self.ended_by {
+                Some(Stop::Passes) => "passes",
+                Some(Stop::Time) => "time",
+                Some(Stop::Noise) => "noise",
+                None => "interrupt",
             },
             "scene": path(self.scene),
             "outputs": self.outputs.iter().map(|output| path(output)).collect::<Vec<_>>(),
@@ -119,7 +119,7 @@ impl Summary<'_> {
             Some(path) => format!("; `alhazen resume {}` goes on from the last checkpoint", path.display()),
             None => String::new(),
         };
-        self.outcome.is_err().then(|| format!("interrupted after {pass}{all} passes{picture}{goes_on}"))
+        self.ended_by.is_none().then(|| format!("interrupted after {pass}{all} passes{picture}{goes_on}"))
     }
 
     fn rays_per_second(&self) -> f64 {
@@ -172,14 +172,14 @@ impl fmt::Display for Summary<'_> {
         if let Some(memory) = self.peak_memory {
             writeln!(f, "  memory   {} at most", bytes(memory))?;
         }
-        match (self.outcome, self.noise()) {
+        match (self.ended_by, self.noise()) {
             (_, None) => (),
-            (Ok(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, low enough")?,
+            (Some(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, low enough")?,
             (_, Some(noise)) => writeln!(f, "  noise    {noise:.4}")?,
         }
         let stats = progress.stats;
         let rays = stats.rays as f64;
-        let (samples, rejected) = state.with_film(|film| (film.sample_count(), film.rejected()));
+        let (samples, rejected) = (state.sample_count(), state.rejected());
         if samples > 0 {
             writeln!(f, "  samples  {}", count(samples as f64))?;
         }

@@ -35,7 +35,7 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, PassError};
 
 /// Light tracing.
 #[derive(Debug)]
@@ -79,7 +79,7 @@ impl Integrator for LightTracing {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let paths = Bidirectional {
             scene,
             view,
@@ -90,9 +90,9 @@ impl Integrator for LightTracing {
         };
         let seen = Bidirectional { max_depth: 0, ..paths };
         let filter = film.filter().clone();
-        let (tiles, splatter) = film.tiles_and_splatter();
+        let (tiles, splatter) = film.tiles_and_splatter()?;
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        pixels.add(tiles, control, |sample, tracer| {
+        let stats = pixels.add(tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();
             light_sampler.start_pixel_sample(sample.pixel, pass, 0);
@@ -118,7 +118,8 @@ impl Integrator for LightTracing {
                 });
             }
             l
-        })
+        })?;
+        Ok(stats)
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {
