@@ -66,6 +66,9 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
         ));
     }
     let passes = order.shard.passes(order.passes);
+    if passes.clone().all(|pass| job.session.state().done.contains(pass)) {
+        notes.push(("passes", format!("all {} are done already: the film has {done}", passes.len())));
+    }
     let limits = order.limits;
     let checkpoint = Checkpoint::new(film.clone(), arguments.every, order, job.header().clone(), done);
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
