@@ -57,10 +57,15 @@ fn output_that_cannot_be_delivered_is_an_error() {
     let folder = Folder::with_scene("full");
     let picture = Image::from_fn(4, 4, ["R", "G", "B"], |_, _| [0.5; 3]);
     write(&picture, folder.path().join("a.exr"), &WriteOptions::default()).expect("a picture for the test");
+    folder.alhazen(&["render", "scene.pbrt", "--checkpoint", "a.film", "--quiet"]).expect(0);
     for arguments in [
         &["render", "scene.pbrt"][..],
         &["render", "scene.pbrt", "--json"],
         &["render", "none.pbrt", "--json"],
+        &["resume", "a.film"],
+        &["resume", "a.film", "--json"],
+        &["merge", "a.film"],
+        &["merge", "a.film", "--json"],
         &["compare", "scene.pbrt", "--integrators", "path", "--spp", "1"],
         &["scene", "check", "scene.pbrt"],
         &["scene", "check", "scene.pbrt", "--json"],
