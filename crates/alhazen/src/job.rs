@@ -134,9 +134,9 @@ fn is_arranged(desc: &SceneDesc, needs_footprints: bool) -> bool {
 /// Why [`render_file`] gives no picture.
 #[derive(Debug)]
 pub enum RenderError {
-    /// The scene is wrong; with everything there is to say about it.
+    /// The scene has errors; with all diagnostics.
     Scene(Box<Imported>),
-    /// A change to the scene makes no sense.
+    /// A change to the scene is not valid.
     Override(OverrideError),
     /// The render was cancelled.
     Cancelled,

@@ -60,7 +60,7 @@ fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
     let mut job = Job::compile(&desc).expect("a scene").job;
     job.render(&Control::default()).expect("nobody cancels it");
     assert_eq!(job.session.progress().stats.extents, 0);
-    job.picture().unwrap().values().collect()
+    job.picture().expect("a picture").values().collect()
 }
 
 #[test]

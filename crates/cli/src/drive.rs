@@ -115,7 +115,7 @@ pub struct Task<'a> {
     pub outputs: Vec<PathBuf>,
     /// Where the render is saved.
     pub checkpoint: Option<Checkpoint>,
-    /// What there is to say about the result beside what the algorithm says.
+    /// Notes on the result beside those of the algorithm.
     pub notes: Vec<(&'static str, String)>,
     /// What is printed.
     pub verbosity: Verbosity,

@@ -41,7 +41,7 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
     let missing = merged.missing();
     if !missing.is_empty() {
         let (missing, splits) = (list(&missing), splits(&arguments.films, &merged.shards()));
-        return Err(Failure::Input(format!("the picture is not whole: {missing} missing{splits}")));
+        return Err(Failure::Input(format!("the picture is incomplete: {missing} missing{splits}")));
     }
     let header = merged.header().clone();
     let (state, films) = merged.into_state();

@@ -33,7 +33,7 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
         let scene = scene.display();
         return Err(about_file(
             film,
-            format!("it is of another scene than {scene} is now: files have changed"),
+            format!("files of the scene {scene} have changed since it was rendered"),
         ));
     }
     let (mut job, compiled) = prepared.compile()?;
@@ -59,7 +59,7 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
         notes.push((
             "samples",
             format!(
-                "arranged for {} per pixel; those beyond are as right, but others than in a render planned for {}",
+                "arranged for {} per pixel; further ones are as valid, but differ from those of a render planned for {}",
                 job.planned(),
                 order.passes
             ),

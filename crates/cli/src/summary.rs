@@ -21,7 +21,7 @@ pub struct Summary<'a> {
     pub beside: &'a [PathBuf],
     /// The film file that the render can go on from.
     pub checkpoint: Option<&'a Path>,
-    /// What there is to say about the render, by the algorithm or others.
+    /// Notes on the render, by the algorithm or others.
     pub notes: &'a [(&'static str, String)],
     /// The algorithm's name.
     pub integrator: &'static str,
@@ -110,7 +110,7 @@ impl Summary<'_> {
         })
     }
 
-    /// What is to say where the render was interrupted.
+    /// The message about an interruption, if there was one.
     pub fn interruption(&self) -> Option<String> {
         let Progress { pass, passes, .. } = self.progress();
         let picture = if self.outputs.is_empty() { "" } else { "; the picture is written as it stands" };
@@ -197,7 +197,7 @@ impl fmt::Display for Summary<'_> {
         if rejected.count > 0 {
             let pixels: Vec<_> = rejected.pixels().map(|[x, y]| format!("{x},{y}")).collect();
             let first = if pixels.len() as u64 == rejected.count { "at" } else { "among them at" };
-            write!(f, "\n  warning  {} samples were no numbers and are left out, {first} ", rejected.count)?;
+            write!(f, "\n  warning  {} samples were not finite and are left out, {first} ", rejected.count)?;
             write!(f, "{}; `--pixel X,Y` renders one alone", pixels.join(" "))?;
         }
         Ok(())

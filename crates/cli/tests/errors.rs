@@ -39,7 +39,7 @@ fn a_wrong_formula_is_shown_with_a_caret_in_it() {
 }
 
 #[test]
-fn scene_check_tells_without_rendering() {
+fn scene_check_does_not_render() {
     let folder = Folder::with_scene("check");
     let right = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(0);
     assert_eq!((right.out.as_str(), right.err.as_str()), ("scene.pbrt is valid\n", ""));
@@ -116,7 +116,7 @@ fn a_scene_that_names_an_impossible_output_is_wrong() {
 }
 
 #[test]
-fn a_mesh_that_cannot_be_written_is_told_before_the_render() {
+fn a_mesh_that_cannot_be_written_is_reported_before_the_render() {
     let folder = Folder::new("mesh-out");
     let scene = |file: &str| {
         let integrator = format!("Integrator \"radiosity\" \"string mesh-out\" \"{file}\"");
@@ -132,7 +132,7 @@ fn a_mesh_that_cannot_be_written_is_told_before_the_render() {
 }
 
 #[test]
-fn a_wrong_command_line_is_told() {
+fn a_wrong_command_line_is_reported() {
     let folder = Folder::with_scene("usage");
     for (arguments, part) in [
         (&["render"][..], "SCENE"),

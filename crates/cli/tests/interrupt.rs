@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use common::{Folder, SCENE};
 
-/// A render that would take for ever, interrupted after a moment: its exit code and what it said.
+/// A render without end, interrupted after a moment: its exit code and standard output.
 fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
     // The warning about the sensor is printed when the render begins, which tells when to interrupt
     // it.

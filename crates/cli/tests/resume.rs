@@ -127,7 +127,7 @@ fn a_render_that_is_done_stays_as_it_is() {
 }
 
 #[test]
-fn samples_beyond_the_plan_are_told() {
+fn samples_beyond_the_plan_are_reported() {
     let folder = room("resume-beyond");
     let resumed = |sampler: &str| {
         let plain: Vec<&str> = ROOM.lines().filter(|line| !line.contains("\"tiles\"")).collect();
@@ -224,7 +224,7 @@ fn films_that_do_not_fit_are_named() {
     assert!(problem.contains("the film is shard 2/4 of 8 passes"), "{problem}");
     folder.write("room.pbrt", &ROOM.replace("radius\" 0.3", "radius\" 0.31"));
     let problem = run(&["resume", "2.film", "-o", "a.exr"], 1);
-    assert!(problem.contains("2.film: it is of another scene than "), "{problem}");
+    assert!(problem.contains("2.film: files of the scene "), "{problem}");
     part("3/4", "3.film", &[]);
     let problem = merge(&["2.film", "3.film"]);
     assert!(problem.contains("3.film: not of the same render as 2.film: the scenes differ"), "{problem}");

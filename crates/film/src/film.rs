@@ -264,7 +264,7 @@ impl Film {
         self.splats.reserve(self.grid).map_err(|_| no_memory(self.grid))
     }
 
-    /// Adds everything that has come in at another film of the same pixels and settings; refused
+    /// Adds the sums of another film of the same pixels and settings; refused
     /// where the other film has splats and there is no memory for them.
     ///
     /// # Panics
@@ -289,12 +289,12 @@ impl Film {
         Ok(())
     }
 
-    /// How many samples have come in.
+    /// The number of samples added.
     pub fn sample_count(&self) -> u64 {
         self.counts.iter().map(|&count| u64::from(count)).sum()
     }
 
-    /// How many samples have come in at a pixel.
+    /// The number of samples added to a pixel.
     ///
     /// # Panics
     /// If the pixel is not to be rendered.

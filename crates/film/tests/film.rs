@@ -47,7 +47,7 @@ fn add(film: &mut Film, sample: &Sample) {
 }
 
 fn floats(film: &Film) -> Vec<u32> {
-    film.develop().unwrap().values().map(f32::to_bits).collect()
+    film.develop().expect("memory").values().map(f32::to_bits).collect()
 }
 
 #[test]

@@ -18,16 +18,16 @@ fn film(filter: FilterDesc) -> Film {
 
 fn splat(film: &mut Film, at: Vec2, l: f32) {
     let lambda = SampledWavelengths::sample_visible(0.3);
-    film.tiles_and_splatter().unwrap().1.add(at, &SampledSpectrum::new([l; 4]), &lambda);
+    film.tiles_and_splatter().expect("memory").1.add(at, &SampledSpectrum::new([l; 4]), &lambda);
 }
 
 fn count(film: &mut Film, paths: u64) {
-    film.tiles_and_splatter().unwrap().1.add_paths(paths);
+    film.tiles_and_splatter().expect("memory").1.add_paths(paths);
 }
 
 /// The green value of a pixel.
 fn green(film: &Film, [x, y]: [i32; 2]) -> f64 {
-    f64::from(film.develop().unwrap().rgb(x as u32, y as u32)[1])
+    f64::from(film.develop().expect("memory").rgb(x as u32, y as u32)[1])
 }
 
 #[test]

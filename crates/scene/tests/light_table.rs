@@ -94,7 +94,7 @@ fn lights_that_emit_nothing_give_a_warning() {
     let area = |radiance: f32, scale| {
         with(|desc| {
             let light = desc.area_lights.push(AreaLightDesc { scale, ..AreaLightDesc::new(radiance.into()) });
-            desc.shapes.push(ShapeDesc { area_light: Some(light), ..sphere(1.0).into() }.into());
+            desc.shapes.push(ShapeDesc { area_light: Some(light), ..sphere(1.0).into() });
         })
     };
     for (lit, black) in [

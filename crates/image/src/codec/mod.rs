@@ -75,7 +75,7 @@ impl Format {
     /// The format of a file: by its content, or where that does not tell, by its name.
     fn of(bytes: &[u8], name: &str) -> Result<Self, ImageError> {
         Self::from_content(bytes).or_else(|| Self::from_name(name)).ok_or_else(|| {
-            ImageError::Unsupported("neither content nor name tell a known image format".into())
+            ImageError::Unsupported("neither content nor extension is that of a known image format".into())
         })
     }
 

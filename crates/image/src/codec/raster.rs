@@ -35,7 +35,7 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
         .filter(|&size| size as u64 <= options.byte_limit(bytes.len()))
         .ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))?;
     let mut samples = reserved(size)?;
-    // Where memory is short, the library's own work would end the program: it is tried out.
+    // The library aborts where its own allocation fails, so that memory is tested first.
     drop(reserved::<u8>(size)?);
     samples.resize(size, 0);
     decoder.read_image(&mut samples).map_err(from_library)?;
