@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 use crate::{Header, Overrides};
 
-/// The name of the film that takes turns with the picture's where noise is estimated.
+/// The name of the film that alternates with the picture's where noise is estimated.
 const SECOND: &str = "second";
 
 /// The name of the state that holds what parts of a render may differ in.
@@ -74,7 +74,7 @@ impl RenderOrder {
             done: state.done.clone(),
         };
         // What drafts have left on the film is no part of the picture.
-        let blank = state.done.is_empty().then(|| state.film.blank());
+        let blank = state.done.is_empty().then(|| state.film.blank()).transpose()?;
         let mut writer = FilmWriter::new(output, &film_header, blank.as_ref().unwrap_or(&state.film))?;
         if let Some(second) = &state.second {
             writer.film(SECOND, second)?;
@@ -152,11 +152,11 @@ impl SavedRender {
         let file = FilmFile::read(input, limits)?;
         let size = |film: &Film| (film.full_resolution(), film.pixel_bounds());
         if file.films.iter().any(|(_, film)| size(film) != size(&file.picture)) {
-            return Err(FilmFileError::Mismatch("its films have not the same pixels".into()));
+            return Err(FilmFileError::Mismatch("its films have different pixel bounds".into()));
         }
         let settings: Value = serde_json::from_str(&file.header.settings).unwrap_or_default();
         if let Some(version) = settings["alhazen"].as_str().filter(|&version| version != VERSION) {
-            let problem = format!("alhazen {version} has rendered it; this is {VERSION}");
+            let problem = format!("it was rendered by alhazen {version}; this is {VERSION}");
             return Err(FilmFileError::Mismatch(problem));
         }
         let (overrides, header) = overrides(&settings)
@@ -194,6 +194,11 @@ impl SavedRender {
             shard: first.shard,
             limits: first.limits,
         }
+    }
+
+    /// Which part of the passes each of the merged files was to hold, in their order.
+    pub fn shards(&self) -> Vec<Shard> {
+        self.parts.iter().map(|part| part.shard).collect()
     }
 
     /// What the headers of its pictures say.

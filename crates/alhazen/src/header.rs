@@ -3,7 +3,7 @@
 use description::schema::Settings;
 use description::{CameraKind, SceneDesc};
 use film::{Development, Film, Layer};
-use image::{Attribute, Image, ImageMetadata};
+use image::{Attribute, Image, ImageError, ImageMetadata};
 use integrators::SessionState;
 use math::Mat4;
 use scene::Scene;
@@ -55,29 +55,32 @@ impl Header {
         }
     }
 
-    /// The picture of a render so far, with this header and the number of passes.
-    pub fn picture(&self, state: &SessionState) -> Image {
-        state.with_film(|film| self.picture_of(film, state.done.count()))
+    /// The picture of a render so far, with this header and the number of passes; refused where
+    /// there is no memory for it.
+    pub fn picture(&self, state: &SessionState) -> Result<Image, ImageError> {
+        self.picture_of(state, state.done.count())
     }
 
-    /// Calls `look` with [`Self::picture`] and all layers. Rows are computed when they are read, so
-    /// that a large picture needs no copy in memory.
-    pub fn with_development<T>(&self, state: &SessionState, look: impl FnOnce(&Development) -> T) -> T {
-        state.with_film(|film| {
-            let mut development = film.development();
-            self.set(&mut development.metadata, state.done.count());
-            for ((layer, _), names) in ID_LAYERS.into_iter().zip(&self.names) {
-                development.set_names(layer, names);
-            }
-            look(&development)
-        })
+    /// [`Self::picture`] with all layers. Rows are computed when they are read, so that a large
+    /// picture needs no copy in memory.
+    pub fn development<'state>(&self, state: &'state SessionState) -> Development<'state> {
+        let mut development = state.development();
+        self.set(&mut development.metadata, state.done.count());
+        for ((layer, _), names) in ID_LAYERS.into_iter().zip(&self.names) {
+            development.set_names(layer, names);
+        }
+        development
     }
 
-    /// The picture of a film with this number of samples per pixel.
-    pub(crate) fn picture_of(&self, film: &Film, samples_per_pixel: u32) -> Image {
-        let mut picture = film.develop();
+    /// The picture of a render with this number of samples per pixel.
+    pub(crate) fn picture_of(
+        &self,
+        state: &SessionState,
+        samples_per_pixel: u32,
+    ) -> Result<Image, ImageError> {
+        let mut picture = state.develop()?;
         self.set(&mut picture.metadata, samples_per_pixel);
-        picture
+        Ok(picture)
     }
 
     fn set(&self, metadata: &mut ImageMetadata, samples_per_pixel: u32) {

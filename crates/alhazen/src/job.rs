@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc};
 use film::Film;
-use image::Image;
+use image::{Image, ImageError};
 use import::{AssetSource, Imported};
-use integrators::{Cancelled, Control, Limits, Session, SessionState, Stop};
+use integrators::{Control, Limits, PassError, Session, SessionState, Stop};
 use scene::View;
 
 use crate::sketch::Sketch;
@@ -81,9 +81,9 @@ impl Job {
         self.sketch.as_ref()?.draw(&self.session, &self.header, control)
     }
 
-    /// Renders all passes that are planned. Where the render is cancelled, the film has what was
-    /// found until then.
-    pub fn render(&mut self, control: &Control) -> Result<Stop, Cancelled> {
+    /// Renders all passes that are planned. Where the render is cancelled or memory runs out, the
+    /// film has what was found until then.
+    pub fn render(&mut self, control: &Control) -> Result<Stop, PassError> {
         let passes = 0..self.planned;
         self.session.run(passes, &Limits::default(), control, &mut |_| ())
     }
@@ -100,8 +100,9 @@ impl Job {
         Ok(())
     }
 
-    /// The picture as it stands, with the scene's camera and settings in its header.
-    pub fn picture(&self) -> Image {
+    /// The picture as it stands, with the scene's camera and settings in its header; refused where
+    /// there is no memory for it.
+    pub fn picture(&self) -> Result<Image, ImageError> {
         self.header.picture(self.session.state())
     }
 
@@ -139,12 +140,23 @@ fn is_arranged(desc: &SceneDesc, needs_footprints: bool) -> bool {
 /// Why [`render_file`] gives no picture.
 #[derive(Debug)]
 pub enum RenderError {
-    /// The scene is wrong; with everything there is to say about it.
+    /// The scene has errors; with all diagnostics.
     Scene(Box<Imported>),
-    /// A change to the scene makes no sense.
+    /// A change to the scene is not valid.
     Override(OverrideError),
     /// The render was cancelled.
     Cancelled,
+    /// There is no memory for what is named here.
+    OutOfMemory(String),
+}
+
+impl From<PassError> for RenderError {
+    fn from(error: PassError) -> Self {
+        match error {
+            PassError::Cancelled => Self::Cancelled,
+            PassError::OutOfMemory(problem) => Self::OutOfMemory(problem),
+        }
+    }
 }
 
 /// Renders a scene file: import, change, compile, render, develop.
@@ -167,6 +179,6 @@ pub fn render_file(
         }
     })?;
     let mut job = compiled.job;
-    job.render(control).map_err(|Cancelled| RenderError::Cancelled)?;
-    Ok(job.picture())
+    job.render(control)?;
+    job.picture().map_err(|error| RenderError::OutOfMemory(error.to_string()))
 }

@@ -32,7 +32,7 @@ pub struct Overrides {
     pub layers: Vec<String>,
 }
 
-/// A change that makes no sense.
+/// A change that is not valid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OverrideError(String);
 
@@ -51,7 +51,7 @@ impl fmt::Display for OverrideError {
 impl std::error::Error for OverrideError {}
 
 impl Overrides {
-    /// Changes the scene; the first change that makes no sense is the error.
+    /// Changes the scene; the first change that is not valid is the error.
     pub fn apply(&self, desc: &mut SceneDesc) -> Result<(), OverrideError> {
         if let Some(name) = &self.integrator {
             let changed = integrator_called(name, &desc.integrator)

@@ -65,7 +65,8 @@ impl Sketch {
         let mut sketch = Session::new(Arc::clone(session.scene()), view, integrator, state);
         sketch.run(0..1, &Limits::default(), control, &mut |_| ()).ok()?;
         let samples = session.integrator().passes();
-        enlarged(&header.picture_of(&sketch.state().film, samples), self.n, &session.state().film)
+        let picture = header.picture_of(sketch.state(), samples).ok()?;
+        enlarged(&picture, self.n, &session.state().film)
     }
 }
 

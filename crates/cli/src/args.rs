@@ -34,8 +34,9 @@ pub enum Command {
     /// Pictures are written when they are done, and before that now and then as they stand: first,
     /// of more than 65536 pixels, as a sketch in larger pixels, then after about a second, then
     /// whenever twice as much time has gone by, but at least every minute. Ctrl-C ends the render
-    /// after the samples in flight, and writes the picture as it stands; a second Ctrl-C ends the
-    /// program at once, with the picture that was written last.
+    /// after the samples in flight, or with --checkpoint after the pass in progress where passes
+    /// are not saved yet, and writes the picture as it stands; a second Ctrl-C ends the program at
+    /// once, with the picture that was written last.
     Render(Box<Render>),
     /// Go on with a render that was saved by --checkpoint.
     ///

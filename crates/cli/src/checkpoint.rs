@@ -12,6 +12,9 @@ use alhazen::{Header, RenderOrder, SavedRender};
 
 use crate::failure::{Failure, about_file};
 
+/// A pass that takes so many times as long as saving is saved at once.
+const LONG_PASS: u32 = 20;
+
 /// Saves a render.
 pub struct Checkpoint {
     path: PathBuf,
@@ -20,6 +23,8 @@ pub struct Checkpoint {
     header: Header,
     saved_at: Instant,
     last_pass_at: Instant,
+    /// How long it took to save.
+    saving: Duration,
     /// Passes at the last attempt to save, and what came of it.
     last: (u32, Result<(), Failure>),
 }
@@ -29,7 +34,16 @@ impl Checkpoint {
     pub fn new(path: PathBuf, every: Duration, order: RenderOrder, header: Header, passes: u32) -> Self {
         remove_leftovers(&path);
         let now = Instant::now();
-        Self { path, every, order, header, saved_at: now, last_pass_at: now, last: (passes, Ok(())) }
+        Self {
+            path,
+            every,
+            order,
+            header,
+            saved_at: now,
+            last_pass_at: now,
+            saving: Duration::ZERO,
+            last: (passes, Ok(())),
+        }
     }
 
     /// The film file.
@@ -37,26 +51,34 @@ impl Checkpoint {
         &self.path
     }
 
-    /// Saves the render after a pass, if more time than the interval would go by until the end of
-    /// the next one. A failure is reported by [`finish`](Self::finish), if it lasts until then.
-    pub fn after_pass(&mut self, session: &Session) {
+    /// Saves the render after a pass, if the pass took much longer than saving does, or if more time
+    /// than the interval would go by until the end of the next one. Tells whether all passes that
+    /// are done are saved. A failure is reported by [`finish`](Self::finish), if it lasts until
+    /// then.
+    pub fn after_pass(&mut self, session: &Session) -> bool {
         let now = Instant::now();
         let pass = now - self.last_pass_at;
         self.last_pass_at = now;
-        if now - self.saved_at + pass >= self.every {
+        if pass >= LONG_PASS * self.saving || now - self.saved_at + pass >= self.every {
             self.save(session);
         }
+        self.has(session)
     }
 
     /// Saves the whole render at its end.
     pub fn finish(&mut self, session: &Session) -> Result<(), Failure> {
-        if self.last.0 != session.state().done.count() || self.last.1.is_err() || !self.path.exists() {
+        if !self.has(session) || !self.path.exists() {
             self.save(session);
         }
         std::mem::replace(&mut self.last.1, Ok(()))
     }
 
+    fn has(&self, session: &Session) -> bool {
+        self.last.0 == session.state().done.count() && self.last.1.is_ok()
+    }
+
     fn save(&mut self, session: &Session) {
+        let begin = Instant::now();
         let saved = replace_file_with(&self.path, |file| {
             self.order.write(session, &self.header, BufWriter::new(file)).map(|_| ())
         });
@@ -65,6 +87,7 @@ impl Checkpoint {
         // How long it takes to save is not to decide how often.
         self.saved_at = Instant::now();
         self.last_pass_at = self.saved_at;
+        self.saving = self.saved_at - begin;
     }
 }
 

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use alhazen::compare::{Bias, Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{self, replace_file};
 use alhazen::import::{Files, import};
-use alhazen::integrators::Control;
+use alhazen::integrators::{Control, PassError};
 use alhazen::system_clock;
 use serde_json::Value;
 
@@ -66,7 +66,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
             return Err(scene_failure(imported));
         }
     };
-    interrupt.begin_rendering(false);
+    interrupt.begin_rendering(talkative);
     if talkative {
         diagnostics::print(&imported.diagnostics, &imported.sources)?;
     }
@@ -81,14 +81,18 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
         current.iter().for_each(|(_, bar)| bar.show(progress));
     });
     current.iter().for_each(|(_, bar)| bar.finish());
-    let Ok(mut comparison) = outcome else {
-        let message = "interrupted before anything could be compared; there is no report";
-        if arguments.json {
-            say(serde_json::json!({ "status": "interrupted" }))?;
-        } else {
-            warn(message)?;
+    let mut comparison = match outcome {
+        Ok(comparison) => comparison,
+        Err(PassError::OutOfMemory(problem)) => return Err(Failure::Input(problem)),
+        Err(PassError::Cancelled) => {
+            let message = "interrupted before anything could be compared; there is no report";
+            if arguments.json {
+                say(serde_json::json!({ "status": "interrupted" }))?;
+            } else {
+                warn(message)?;
+            }
+            return Ok(ExitCode::from(interrupt::EXIT_CODE));
         }
-        return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
     comparison.warnings =
         diagnostics::shown(&imported.diagnostics).into_iter().map(|warning| warning.message).collect();

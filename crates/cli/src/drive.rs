@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use alhazen::description::schema::Settings;
 use alhazen::description::{IntegratorDesc, RadiosityDesc};
 use alhazen::import::{AssetSource, Imported, import};
-use alhazen::integrators::{Control, Limits, Session};
+use alhazen::integrators::{Control, Limits, PassError, Session};
 use alhazen::{Header, Job, Overrides, system_clock};
 
 use crate::bar::Bar;
@@ -115,7 +115,7 @@ pub struct Task<'a> {
     pub outputs: Vec<PathBuf>,
     /// Where the render is saved.
     pub checkpoint: Option<Checkpoint>,
-    /// What there is to say about the result beside what the algorithm says.
+    /// Notes on the result beside those of the algorithm.
     pub notes: Vec<(&'static str, String)>,
     /// What is printed.
     pub verbosity: Verbosity,
@@ -125,8 +125,8 @@ impl Task<'_> {
     /// Renders, writes the results and reports.
     pub fn run(mut self, compiled: Compiled, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
         let Compiled { imported, integrator, begin, imported_at, compiled_at } = compiled;
-        interrupt.begin_rendering(self.checkpoint.is_some());
         let is_talkative = self.verbosity.is_talkative();
+        interrupt.begin_rendering(is_talkative);
         if is_talkative {
             diagnostics::print(&imported.diagnostics, &imported.sources)?;
         }
@@ -143,32 +143,45 @@ impl Task<'_> {
         let outcome = self.job.session.run(self.passes.clone(), &self.limits, &control, &mut |session| {
             bar.show(&session.progress());
             preview.after_pass(session);
-            if let Some(checkpoint) = &mut self.checkpoint {
-                checkpoint.after_pass(session);
-            }
-            interrupt.after_pass();
+            let checkpoint = self.checkpoint.as_mut();
+            interrupt.after_pass(checkpoint.is_some_and(|checkpoint| !checkpoint.after_pass(session)));
         });
         bar.finish();
         let rendered_at = Instant::now();
 
         let session = &self.job.session;
+        let out_of_memory = match &outcome {
+            Err(PassError::OutOfMemory(problem)) => Some(problem),
+            Ok(_) | Err(PassError::Cancelled) => None,
+        };
+        if let Some(problem) = out_of_memory
+            && session.progress().pass == 0
+        {
+            return Err(Failure::Input(problem.clone()));
+        }
         let files = session.integrator().files();
         let films = if self.outputs.is_empty() { Vec::new() } else { session.integrator().films() };
-        let beside = self
-            .job
-            .header()
-            .with_development(session.state(), |picture| write_results(picture, &self.outputs, films, files));
+        let picture = self.job.header().development(session.state());
+        let beside = write_results(&picture, &self.outputs, films, files);
         // Where a cancelled pass has left a part of its light on the film, the last checkpoint
         // stays as it is.
         let saved = match &mut self.checkpoint {
             Some(checkpoint) if session.is_whole() => checkpoint.finish(session),
             _ => Ok(()),
         };
+        if let Some(problem) = out_of_memory {
+            let passes = session.progress().pass;
+            let plural = if passes == 1 { "" } else { "es" };
+            let written = if beside.is_ok() && saved.is_ok() { "is" } else { "could not be" };
+            return Err(Failure::Input(format!(
+                "{problem}; the picture after {passes} pass{plural} {written} written"
+            )));
+        }
         let beside = beside?;
         saved?;
         self.notes.extend(session.integrator().summary());
         let summary = Summary {
-            outcome,
+            ended_by: outcome.ok(),
             scene: self.scene,
             outputs: &self.outputs,
             beside: &beside,
@@ -193,7 +206,7 @@ impl Task<'_> {
         } else if let Some(interruption) = summary.interruption() {
             warn(interruption)?;
         }
-        Ok(if outcome.is_err() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
+        Ok(if summary.ended_by.is_none() { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
     }
 }
 
@@ -218,7 +231,7 @@ impl<'a> Preview<'a> {
         if self.outputs.is_empty() || elapsed < self.next {
             return;
         }
-        self.header.with_development(session.state(), |picture| write_preview(picture, self.outputs));
+        write_preview(&self.header.development(session.state()), self.outputs);
         self.interrupt.note_written(self.outputs, session.progress().pass);
         let writing = self.begin.elapsed() - elapsed;
         self.next = elapsed + writing + elapsed.min(PREVIEW_INTERVAL).max(PREVIEW_SHARE * writing);

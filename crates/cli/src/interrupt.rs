@@ -1,13 +1,12 @@
 //! Ctrl-C. While a picture is being rendered, the first one cancels the render, so that the picture
-//! can be written; where the render is saved, the pass in progress may end first, if it does soon,
-//! so that the whole of it can be saved. At any other time, and the second time, it ends the
-//! program with what has been written before. A request to terminate (SIGTERM, SIGHUP) counts as
-//! Ctrl-C.
+//! can be written. A part of a pass cannot be saved, nor taken off the film; so where passes are
+//! done that the checkpoint does not have yet, the pass in progress ends first, and is saved with
+//! them. At any other time, and the second time, Ctrl-C ends the program with what has been written
+//! before. A request to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -17,15 +16,14 @@ use crate::failure::Failure;
 /// The exit code of a program that was interrupted.
 pub const EXIT_CODE: u8 = 130;
 
-/// How long a pass may go on after Ctrl-C where the render is saved.
-const GRACE: Duration = Duration::from_millis(500);
-
 /// The state of interruption.
 #[derive(Clone, Debug, Default)]
 pub struct Interrupt {
     rendering: Arc<AtomicBool>,
     interrupted: Arc<AtomicBool>,
-    has_checkpoint: Arc<AtomicBool>,
+    /// Whether the checkpoint lacks passes that are done.
+    unsaved: Arc<AtomicBool>,
+    talkative: Arc<AtomicBool>,
     cancel: Arc<AtomicBool>,
     written: Arc<Mutex<Written>>,
 }
@@ -46,11 +44,12 @@ impl Interrupt {
         ctrlc::set_handler(move || {
             let first = !handler.interrupted.swap(true, Ordering::SeqCst);
             if first && handler.rendering.load(Ordering::SeqCst) {
-                let (cancel, wait) = (handler.cancel(), handler.has_checkpoint.load(Ordering::SeqCst));
-                std::thread::spawn(move || {
-                    std::thread::sleep(if wait { GRACE } else { Duration::ZERO });
-                    cancel.store(true, Ordering::SeqCst);
-                });
+                if !handler.unsaved.load(Ordering::SeqCst) {
+                    handler.cancel.store(true, Ordering::SeqCst);
+                } else if handler.talkative.load(Ordering::SeqCst) {
+                    // The render goes on to the end of the pass whether or not anybody hears of it.
+                    let _ = warn("\nending after this pass, to save it; Ctrl-C again ends at once");
+                }
             } else {
                 // The program ends whether or not anybody hears of it.
                 let _ = if as_json { say(handler.to_json()) } else { warn(handler.message()) };
@@ -61,9 +60,9 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// From now on there is a picture to write, and perhaps a checkpoint.
-    pub fn begin_rendering(&self, has_checkpoint: bool) {
-        self.has_checkpoint.store(has_checkpoint, Ordering::SeqCst);
+    /// From now on there is a picture to write.
+    pub fn begin_rendering(&self, is_talkative: bool) {
+        self.talkative.store(is_talkative, Ordering::SeqCst);
         self.rendering.store(true, Ordering::SeqCst);
     }
 
@@ -72,8 +71,11 @@ impl Interrupt {
         Arc::clone(&self.cancel)
     }
 
-    /// Cancels the render between two passes, if there was a Ctrl-C.
-    pub fn after_pass(&self) {
+    /// Cancels the render between two passes, if there was a Ctrl-C. Until the next call passes
+    /// that are done are `unsaved`, or not.
+    pub fn after_pass(&self, unsaved: bool) {
+        // Before the flag of Ctrl-C is read, so that one of both sides sees the other.
+        self.unsaved.store(unsaved, Ordering::SeqCst);
         self.cancel.fetch_or(self.interrupted.load(Ordering::SeqCst), Ordering::SeqCst);
     }
 

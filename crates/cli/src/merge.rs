@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use alhazen::film::{FilmFileError, PassSet};
+use alhazen::{SavedRender, Shard};
 use serde_json::json;
 
 use crate::args::Merge;
@@ -26,7 +27,10 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
                 let first = &arguments.films[..before];
                 // Which of those before has them shows in their headers.
                 let holder = first.iter().find(|path| holds(path, &passes)).unwrap_or(&first[0]);
-                about_file(path, format!("passes {passes} are in {} too", holder.display()))
+                let mut shards = merged.shards();
+                shards.extend(checkpoint::read(path).iter().flat_map(SavedRender::shards));
+                let splits = splits(&arguments.films, &shards);
+                about_file(path, format!("passes {passes} are in {} too{splits}", holder.display()))
             }
             FilmFileError::Mismatch(problem) => {
                 about_file(path, format!("not of the same render as {}: {problem}", first.display()))
@@ -36,13 +40,13 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
     }
     let missing = merged.missing();
     if !missing.is_empty() {
-        return Err(Failure::Input(format!("the picture is not whole: {} missing", list(&missing))));
+        let (missing, splits) = (list(&missing), splits(&arguments.films, &merged.shards()));
+        return Err(Failure::Input(format!("the picture is incomplete: {missing} missing{splits}")));
     }
     let header = merged.header().clone();
     let (state, films) = merged.into_state();
     let films = films.iter().map(|(name, film)| (name.clone(), film));
-    let beside =
-        header.with_development(&state, |picture| write_results(picture, &outputs, films, Vec::new()))?;
+    let beside = write_results(&header.development(&state), &outputs, films, Vec::new())?;
     let passes = state.done.count();
     if arguments.json {
         let names = |paths: &[PathBuf]| paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>();
@@ -68,6 +72,19 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
 /// Whether a film file holds some of these passes.
 fn holds(path: &Path, passes: &PassSet) -> bool {
     checkpoint::header(path).is_ok_and(|header| !header.done.intersection(passes).is_empty())
+}
+
+/// Which shard each film is, where they are not of the same split; else nothing.
+fn splits(films: &[PathBuf], shards: &[Shard]) -> String {
+    if shards.iter().all(|shard| shard.count == shards[0].count) {
+        return String::new();
+    }
+    let shard = |(film, &Shard { index, count }): (&PathBuf, &Shard)| match count {
+        1 => format!("{} is not split", film.display()),
+        _ => format!("{} is shard {index}/{count}", film.display()),
+    };
+    let shards: Vec<_> = films.iter().zip(shards).map(shard).collect();
+    format!("\nThe films are of different splits: {}", shards.join(", "))
 }
 
 /// "a, b and c are", "a is".

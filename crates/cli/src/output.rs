@@ -22,7 +22,7 @@ pub fn check(path: &Path) -> Result<(), String> {
 pub fn check_place(path: &Path) -> Result<(), String> {
     let shown = path.display();
     // The file is written where a symbolic link leads.
-    let path = &link_target(path);
+    let path = &link_target(path).map_err(|error| format!("cannot write {shown}: {error}"))?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -66,6 +66,12 @@ mod tests {
             std::os::unix::fs::symlink("missing/b.exr", folder.join("link.exr")).unwrap();
             assert!(problem("link.exr").ends_with("missing does not exist"));
             fs::remove_file(folder.join("link.exr")).unwrap();
+            for [from, to] in [["a.exr", "b.exr"], ["b.exr", "a.exr"]] {
+                std::os::unix::fs::symlink(to, folder.join(from)).unwrap();
+            }
+            assert!(problem("a.exr").ends_with("too many symbolic links"));
+            fs::remove_file(folder.join("a.exr")).unwrap();
+            fs::remove_file(folder.join("b.exr")).unwrap();
         }
         check(&folder.join("a.EXR")).unwrap();
         let left: Vec<_> = fs::read_dir(&folder).unwrap().collect();

@@ -37,7 +37,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         Some(_) => Prepared::new(&arguments.scene, &fingerprint, arguments.overrides())?,
         None => Prepared::new(&arguments.scene, &Files, arguments.overrides())?,
     };
-    // The picture of a shard alone is of use to few.
+    // The picture of one shard is rarely wanted.
     let outputs = if arguments.output.is_empty() && arguments.shard.is_none() {
         vec![default_output(&arguments.scene, &prepared.imported().desc)?]
     } else {
@@ -51,7 +51,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     if passes.is_empty() {
         let Shard { index, count } = shard;
         return Err(Failure::Usage(format!(
-            "shard {index}/{count} is empty: the render has {all} passes alone"
+            "shard {index}/{count} is empty: the render has only {all} passes"
         )));
     }
     let checkpoint = match &arguments.checkpoint {

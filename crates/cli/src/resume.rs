@@ -33,7 +33,7 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
         let scene = scene.display();
         return Err(about_file(
             film,
-            format!("it is of another scene than {scene} is now: files have changed"),
+            format!("files of the scene {scene} have changed since it was rendered"),
         ));
     }
     let (mut job, compiled) = prepared.compile()?;
@@ -59,13 +59,16 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
         notes.push((
             "samples",
             format!(
-                "arranged for {} per pixel; those beyond are as right, but others than in a render planned for {}",
+                "arranged for {} per pixel; further ones are as valid, but differ from those of a render planned for {}",
                 job.planned(),
                 order.passes
             ),
         ));
     }
     let passes = order.shard.passes(order.passes);
+    if passes.clone().all(|pass| job.session.state().done.contains(pass)) {
+        notes.push(("passes", format!("all {} are done already: the film has {done}", passes.len())));
+    }
     let limits = order.limits;
     let checkpoint = Checkpoint::new(film.clone(), arguments.every, order, job.header().clone(), done);
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };

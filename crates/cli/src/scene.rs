@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use alhazen::Job;
+use alhazen::description::Diagnostic;
 use alhazen::import::{Files, import};
 use serde_json::json;
 
@@ -15,12 +16,15 @@ use crate::failure::Failure;
 pub fn check(arguments: &Check) -> Result<(), Failure> {
     let mut imported = import(&arguments.scene, &Files);
     // A scene with errors is compiled too, as far as it was understood: its author wants to see all
-    // errors in one run.
-    let (found, wrong) = match Job::compile(&imported.desc) {
+    // errors in one run. Warnings about a part of a scene, such as that it is dark, may be wrong.
+    let (mut found, mut wrong) = match Job::compile(&imported.desc) {
         Ok(compiled) => (compiled.warnings, false),
         Err(errors) => (errors, true),
     };
-    let wrong = wrong || imported.has_errors();
+    if imported.has_errors() {
+        found.retain(Diagnostic::is_error);
+        wrong = true;
+    }
     imported.diagnostics.extend(found);
     let (diagnostics, sources) = (imported.diagnostics, imported.sources);
     if wrong {

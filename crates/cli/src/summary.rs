@@ -4,15 +4,15 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use alhazen::integrators::{Cancelled, Progress, Session, Stop};
+use alhazen::integrators::{Progress, Session, Stop};
 use serde_json::{Value, json};
 
 use crate::numbers::{bytes, count, duration};
 
 /// What a render has done.
 pub struct Summary<'a> {
-    /// Why it ended.
-    pub outcome: Result<Stop, Cancelled>,
+    /// What has ended it; `None` where it was interrupted.
+    pub ended_by: Option<Stop>,
     /// The scene file.
     pub scene: &'a Path,
     /// The pictures.
@@ -21,7 +21,7 @@ pub struct Summary<'a> {
     pub beside: &'a [PathBuf],
     /// The film file that the render can go on from.
     pub checkpoint: Option<&'a Path>,
-    /// What there is to say about the render, by the algorithm or others.
+    /// Notes on the render, by the algorithm or others.
     pub notes: &'a [(&'static str, String)],
     /// The algorithm's name.
     pub integrator: &'static str,
@@ -69,15 +69,15 @@ impl Summary<'_> {
         let bounds = state.film.pixel_bounds();
         let [width, height] = state.film.full_resolution();
         let stats = progress.stats;
-        let (samples, rejected) = state.with_film(|film| (film.sample_count(), film.rejected()));
+        let (samples, rejected) = (state.sample_count(), state.rejected());
         let path = |path: &Path| path.display().to_string();
         json!({
-            "status": if self.outcome.is_ok() { "done" } else { "interrupted" },
-            "ended_by": match self.outcome {
-                Ok(Stop::Passes) => "passes",
-                Ok(Stop::Time) => "time",
-                Ok(Stop::Noise) => "noise",
-                Err(Cancelled) => "interrupt",
+            "status": if self.ended_by.is_some() { "done" } else { "interrupted" },
+            "ended_by": match self.ended_by {
+                Some(Stop::Passes) => "passes",
+                Some(Stop::Time) => "time",
+                Some(Stop::Noise) => "noise",
+                None => "interrupt",
             },
             "scene": path(self.scene),
             "outputs": self.outputs.iter().map(|output| path(output)).collect::<Vec<_>>(),
@@ -110,7 +110,7 @@ impl Summary<'_> {
         })
     }
 
-    /// What is to say where the render was interrupted.
+    /// The message about an interruption, if there was one.
     pub fn interruption(&self) -> Option<String> {
         let Progress { pass, passes, .. } = self.progress();
         let picture = if self.outputs.is_empty() { "" } else { "; the picture is written as it stands" };
@@ -119,7 +119,7 @@ impl Summary<'_> {
             Some(path) => format!("; `alhazen resume {}` goes on from the last checkpoint", path.display()),
             None => String::new(),
         };
-        self.outcome.is_err().then(|| format!("interrupted after {pass}{all} passes{picture}{goes_on}"))
+        self.ended_by.is_none().then(|| format!("interrupted after {pass}{all} passes{picture}{goes_on}"))
     }
 
     fn rays_per_second(&self) -> f64 {
@@ -172,14 +172,14 @@ impl fmt::Display for Summary<'_> {
         if let Some(memory) = self.peak_memory {
             writeln!(f, "  memory   {} at most", bytes(memory))?;
         }
-        match (self.outcome, self.noise()) {
+        match (self.ended_by, self.noise()) {
             (_, None) => (),
-            (Ok(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, low enough")?,
+            (Some(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, low enough")?,
             (_, Some(noise)) => writeln!(f, "  noise    {noise:.4}")?,
         }
         let stats = progress.stats;
         let rays = stats.rays as f64;
-        let (samples, rejected) = state.with_film(|film| (film.sample_count(), film.rejected()));
+        let (samples, rejected) = (state.sample_count(), state.rejected());
         if samples > 0 {
             writeln!(f, "  samples  {}", count(samples as f64))?;
         }
@@ -197,7 +197,7 @@ impl fmt::Display for Summary<'_> {
         if rejected.count > 0 {
             let pixels: Vec<_> = rejected.pixels().map(|[x, y]| format!("{x},{y}")).collect();
             let first = if pixels.len() as u64 == rejected.count { "at" } else { "among them at" };
-            write!(f, "\n  warning  {} samples were no numbers and are left out, {first} ", rejected.count)?;
+            write!(f, "\n  warning  {} samples were not finite and are left out, {first} ", rejected.count)?;
             write!(f, "{}; `--pixel X,Y` renders one alone", pixels.join(" "))?;
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! From the description of film and filter to a [`Film`].
 
+use description::schema::Settings;
 use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, GBufferSpace, SceneDesc, Spanned};
 use math::Bounds2i;
 use spectrum::RgbColorSpace;
@@ -24,7 +25,11 @@ pub struct Compiled {
 
 /// Makes the film of a scene, or returns all its errors and warnings.
 pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
-    let mut diagnostics = Vec::new();
+    let mut diagnostics = desc.film.check(&desc.film.origin);
+    diagnostics.extend(desc.filter.check(&desc.filter.origin));
+    if !diagnostics.is_empty() {
+        return Err(diagnostics);
+    }
     let film = settings(desc, &mut diagnostics).and_then(|settings| {
         let refused = |error: image::ImageError| {
             diagnostics.push(Diagnostic::error("invalid-film", error.to_string(), desc.film.origin.span));

@@ -1,14 +1,16 @@
 //! From a film's sums to a picture.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 use half::f16;
-use image::{Channel, Chromaticities, Image, ImageMetadata, PixelSource, SampleDepth, Window};
+use image::{
+    Channel, Chromaticities, Image, ImageError, ImageMetadata, PixelSource, Pixels, SampleDepth, Window,
+};
 use spectrum::{Matrix3, Rgb};
 
 use crate::film::ID_LAYERS;
-use crate::sum::value;
+use crate::sum::{reserved, value};
 use crate::{Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
 
 /// The depth of pixels in which nothing is hit: the usual number for "infinitely far" in
@@ -17,29 +19,19 @@ const FAR: f32 = 1e10;
 
 impl Film {
     /// The picture as it stands: linear R, G and B in the film's colour space, without layers.
-    pub fn develop(&self) -> Image {
-        let development = Development::new(self, LayerSet::NONE);
-        let (width, height) = (development.width(), development.height());
-        let mut row = vec![0.0; 3 * width as usize];
-        let image = Image::from_fn(width, height, ["R", "G", "B"], |x, y| {
-            if x == 0 {
-                development.row(y, &mut row);
-            }
-            [0, 1, 2].map(|c| row[3 * x as usize + c])
-        });
-        let mut image = if self.half_floats() { image.to_f16() } else { image };
-        image.metadata = development.metadata;
-        image
+    /// Refused where there is no memory for it.
+    pub fn develop(&self) -> Result<Image, ImageError> {
+        Development::new(self, None, LayerSet::NONE).to_image()
     }
 
     /// The picture with all layers, row by row while it is written, so that a large one needs no
     /// copy in memory.
     pub fn development(&self) -> Development<'_> {
-        Development::new(self, self.layers())
+        Development::new(self, None, self.layers())
     }
 }
 
-/// A film that is developed while it is written.
+/// A film, or the sum of two, that is developed while it is written.
 ///
 /// Beside R, G and B there are the channels of the layers: A; Z; N, P, uv and motion; albedo;
 /// samples and variance; and for identifiers those of Cryptomatte. All but the colours, alpha and
@@ -47,6 +39,7 @@ impl Film {
 #[derive(Debug)]
 pub struct Development<'film> {
     film: &'film Film,
+    second: Option<&'film Film>,
     layers: LayerSet,
     output_from_sensor: Matrix3,
     channels: Vec<Channel>,
@@ -55,17 +48,9 @@ pub struct Development<'film> {
 }
 
 impl<'film> Development<'film> {
-    /// Writes the names of a layer's identifiers to the header, if the film has the layer: of these
-    /// names, those that are in the picture.
-    pub fn set_names<S: AsRef<str>>(&mut self, layer: Layer, names: impl IntoIterator<Item = S>) {
-        if layer.is_id() && self.layers.has(layer) {
-            let ids = self.film.ids[usize::from(layer == ID_LAYERS[1])].iter();
-            let present: BTreeSet<u32> = ids.flat_map(|ids| ids.keys().map(|&(_, id)| id)).collect();
-            cryptomatte::set_manifest(layer, names, &present, &mut self.metadata);
-        }
-    }
-
-    fn new(film: &'film Film, layers: LayerSet) -> Self {
+    /// The picture of a film with these of its layers. Where there is a second film, of the same
+    /// pixels and settings, it is the picture of both [merged](Film::merge).
+    pub fn new(film: &'film Film, second: Option<&'film Film>, layers: LayerSet) -> Self {
         let color_space = film.color_space();
         let [red, green, blue] = color_space.primaries();
         let bounds = film.pixel_bounds();
@@ -88,39 +73,102 @@ impl<'film> Development<'film> {
             }
         }
         let output_from_sensor = color_space.rgb_from_xyz() * film.exposure.sensor.xyz_from_sensor_rgb();
-        Self { film, layers, output_from_sensor, channels, metadata }
+        Self { film, second, layers, output_from_sensor, channels, metadata }
+    }
+
+    /// Writes the names of a layer's identifiers to the header, if the film has the layer: of these
+    /// names, those that are in the picture.
+    pub fn set_names<S: AsRef<str>>(&mut self, layer: Layer, names: impl IntoIterator<Item = S>) {
+        if layer.is_id() && self.layers.has(layer) {
+            let ids = self.films().flat_map(|film| &film.ids[usize::from(layer == ID_LAYERS[1])]);
+            let present: BTreeSet<u32> = ids.flat_map(|ids| ids.keys().map(|&(_, id)| id)).collect();
+            cryptomatte::set_manifest(layer, names, &present, &mut self.metadata);
+        }
+    }
+
+    /// R, G and B as an image; refused where there is no memory for it.
+    pub fn to_image(&self) -> Result<Image, ImageError> {
+        let (width, height) = (self.width() as usize, self.height() as usize);
+        let mut row = vec![0.0; width * self.channels.len()];
+        let mut colors = |put: &mut dyn FnMut(f32)| {
+            for y in 0..self.height() {
+                self.row(y, &mut row);
+                row.chunks_exact(self.channels.len()).flat_map(|pixel| &pixel[..3]).for_each(|&c| put(c));
+            }
+        };
+        let count = (3 * width).saturating_mul(height);
+        let pixels = if self.film.half_floats() {
+            let mut values = reserved(count)?;
+            colors(&mut |value| values.push(f16::from_f32(value)));
+            Pixels::F16(values)
+        } else {
+            let mut values = reserved(count)?;
+            colors(&mut |value| values.push(value));
+            Pixels::F32(values)
+        };
+        let mut image = Image::new(self.width(), self.height(), ["R", "G", "B"], pixels)?;
+        image.metadata = self.metadata.clone();
+        Ok(image)
+    }
+
+    fn films(&self) -> impl Iterator<Item = &'film Film> + use<'film> {
+        std::iter::once(self.film).chain(self.second)
+    }
+
+    /// A sum of the films' sums.
+    fn sum(&self, units: impl Fn(&Film) -> i128) -> f64 {
+        value(self.films().map(units).fold(0, i128::saturating_add))
+    }
+
+    fn count(&self, pixel: usize) -> u32 {
+        self.films().map(|film| film.counts[pixel]).fold(0, u32::saturating_add)
     }
 
     /// Colour and layers of a pixel of a tile, channel by channel.
     fn pixel(&self, tile: usize, first: usize, pixel: usize, mut put: impl FnMut(f32)) {
-        let film = self.film;
-        let color = |c| value(film.color.units(tile, first, pixel, c));
-        let weight = if film.counts.is_empty() { 0.0 } else { color(3) };
+        let color = |c| self.sum(|film| film.color.units(tile, first, pixel, c));
+        let weight = if self.film.counts.is_empty() { 0.0 } else { color(3) };
         let mean = if weight == 0.0 { [0.0; 3] } else { [0, 1, 2].map(|c| color(c) / weight) };
-        let splat = film.splats.value(tile, pixel);
+        let splat = self.splat(tile, pixel);
         let response = [0, 1, 2].map(|c| mean[c] + splat[c]);
         let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
-        let rgb = if film.half_floats() { as_half(rgb) } else { rgb };
+        let rgb = if self.film.half_floats() { as_half(rgb) } else { rgb };
         rgb.to_array().into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
         }
     }
 
+    /// The contribution of all light paths to a pixel of a tile, in sensor RGB.
+    fn splat(&self, tile: usize, pixel: usize) -> [f64; 3] {
+        let paths: u64 = self.films().map(|film| film.splats.paths()).sum();
+        if paths == 0 {
+            return [0.0; 3];
+        }
+        let sums = self.films().map(|film| film.splats.units(tile, pixel));
+        let sums = sums.fold([0; 3], |a, b| [0, 1, 2].map(|c| i128::saturating_add(a[c], b[c])));
+        sums.map(|sum| value(sum) / paths as f64)
+    }
+
     fn layer(&self, layer: Layer, [tile, first, pixel]: [usize; 3], weight: f64, mut put: impl FnMut(f32)) {
-        let film = self.film;
-        let sum = |c| value(film.data.units(tile, first, pixel, c));
+        let sum = |c| self.sum(|film| film.data.units(tile, first, pixel, c));
         let quotient = |a: f64, b: f64| if b == 0.0 { 0.0 } else { (a / b) as f32 };
-        let offset = film.layout.offset(layer).unwrap_or(0);
+        let offset = self.film.layout.offset(layer).unwrap_or(0);
         match layer {
-            Layer::Samples => put(film.counts[first + pixel] as f32),
+            Layer::Samples => put(self.count(first + pixel) as f32),
             Layer::Variance => {
                 let moments = [0, 1, 2].map(|i| sum(offset + i));
                 put(self.variance([tile, first, pixel], moments, weight));
             }
             Layer::ObjectId | Layer::MaterialId => {
-                let ids = &film.ids[usize::from(layer == ID_LAYERS[1])][tile];
-                let covered = ids.range(keys(pixel)).map(|(&(_, id), &weight)| (id, value(weight)));
+                let mut covered = BTreeMap::<u32, i128>::new();
+                for film in self.films() {
+                    let ids = &film.ids[usize::from(layer == ID_LAYERS[1])][tile];
+                    for (&(_, id), weight) in ids.range(keys(pixel)) {
+                        *covered.entry(id).or_default() += weight;
+                    }
+                }
+                let covered = covered.into_iter().map(|(id, weight)| (id, value(weight)));
                 cryptomatte::ranks(covered, sum(1)).for_each(put);
             }
             _ => {
@@ -136,11 +184,11 @@ impl<'film> Development<'film> {
     /// The variance of a pixel's luminance, the mean of n samples yᵢ of weights wᵢ: n/(n−1) Σ wᵢ²
     /// (yᵢ − ȳ)² / (Σ wᵢ)².
     fn variance(&self, [tile, first, pixel]: [usize; 3], [ww, wwy, wwyy]: [f64; 3], weight: f64) -> f32 {
-        let count = f64::from(self.film.counts[first + pixel]);
+        let count = f64::from(self.count(first + pixel));
         if count < 2.0 || weight == 0.0 {
             return 0.0;
         }
-        let mean = value(self.film.color.units(tile, first, pixel, 1)) / weight;
+        let mean = self.sum(|film| film.color.units(tile, first, pixel, 1)) / weight;
         let squares = (wwyy - 2.0 * mean * wwy + mean * mean * ww).max(0.0);
         (count / (count - 1.0) * squares / (weight * weight)) as f32
     }

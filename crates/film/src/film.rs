@@ -19,7 +19,7 @@ use crate::exposure::Exposure;
 use crate::grid::Grid;
 use crate::layer::Layout;
 use crate::splats::SplatSums;
-use crate::sum::{SUM_BYTES, Sums, maps, zeros};
+use crate::sum::{SUM_BYTES, Sums, maps, reserved, zeros};
 use crate::tile::{FilmTile, IdSums, TileData};
 use crate::{Filter, Layer, LayerSet, PixelSensor, Rejected, SPLAT_BYTES, Sample, Splatter};
 
@@ -103,8 +103,7 @@ impl Film {
             )));
         }
         let (grid, layout) = (Grid(bounds), Layout::new(layers));
-        let no_memory =
-            |_| ImageError::Limits(format!("no memory for {} × {} pixels", bounds.width(), bounds.height()));
+        let no_memory = |_| no_memory(grid);
         let ids = |layer| maps(if layers.has(layer) { grid.tile_count() } else { 0 });
         Ok(Self {
             full_resolution,
@@ -138,25 +137,18 @@ impl Film {
         }
     }
 
-    /// A film with the same pixels and settings, without light.
-    ///
-    /// # Panics
-    /// If there is no memory for it.
-    pub fn blank(&self) -> Self {
-        Self::new(self.settings()).expect("memory for another film")
+    /// A film with the same pixels and settings, without light; refused where there is no memory
+    /// for it.
+    pub fn blank(&self) -> Result<Self, ImageError> {
+        Self::new(self.settings())
     }
 
     /// A film with the same pixels for splats alone, which takes [`SPLAT_BYTES`] for each pixel; it
-    /// has no tiles.
-    ///
-    /// # Panics
-    /// If there is no memory for it.
-    pub fn for_splats(&self) -> Self {
-        let film = Self::of_splats(self.settings()).and_then(|mut film| {
-            film.reserve_splats()?;
-            Ok(film)
-        });
-        film.expect("memory for another film")
+    /// has no tiles. Refused where there is no memory for it.
+    pub fn for_splats(&self) -> Result<Self, ImageError> {
+        let mut film = Self::of_splats(self.settings())?;
+        film.reserve_splats()?;
+        Ok(film)
     }
 
     /// Width and height of the whole image in pixels.
@@ -235,28 +227,25 @@ impl Film {
     }
 
     /// The film cut into tiles, at most [`TILE_SIZE`](crate::TILE_SIZE) pixels wide and high, that
-    /// different threads can fill.
-    pub fn tiles_mut(&mut self) -> Vec<FilmTile<'_>> {
-        self.tiles_and_maybe_splatter(false).0
+    /// different threads can fill; refused where there is no memory for the list of them.
+    pub fn tiles_mut(&mut self) -> Result<Vec<FilmTile<'_>>, ImageError> {
+        Ok(self.cut()?.0)
     }
 
-    /// [`Film::tiles_mut`], and what takes light that arrives anywhere.
-    ///
-    /// # Panics
-    /// If there is no memory for splats, which [`Self::reserve_splats`] tells beforehand.
-    pub fn tiles_and_splatter(&mut self) -> (Vec<FilmTile<'_>>, Splatter<'_>) {
-        self.reserve_splats().expect("memory for splats is reserved before a render");
-        let (tiles, splatter) = self.tiles_and_maybe_splatter(true);
-        (tiles, splatter.expect("invariant: a splatter was asked for"))
+    /// [`Film::tiles_mut`], and what takes light that arrives anywhere; refused where there is no
+    /// memory for splats, which may be [reserved](Self::reserve_splats) before.
+    pub fn tiles_and_splatter(&mut self) -> Result<(Vec<FilmTile<'_>>, Splatter<'_>), ImageError> {
+        self.reserve_splats()?;
+        self.cut()
     }
 
-    fn tiles_and_maybe_splatter(&mut self, splats: bool) -> (Vec<FilmTile<'_>>, Option<Splatter<'_>>) {
+    fn cut(&mut self) -> Result<(Vec<FilmTile<'_>>, Splatter<'_>), ImageError> {
         let (grid, exposure, layout) = (self.grid, &self.exposure, &self.layout);
         let mut rest = &mut self.counts[..];
         let mut data = self.data.tiles(grid);
         let [mut objects, mut materials] = self.ids.each_mut().map(|ids| ids.iter_mut());
-        let colors = self.color.tiles(grid).enumerate();
-        let tiles = colors.map(|(tile, color)| {
+        let mut tiles = reserved(grid.tile_count()).map_err(|_| no_memory(grid))?;
+        tiles.extend(self.color.tiles(grid).enumerate().map(|(tile, color)| {
             let bounds = grid.bounds(tile);
             let (counts, others) = std::mem::take(&mut rest).split_at_mut(bounds.area());
             rest = others;
@@ -266,24 +255,27 @@ impl Film {
                 ids: [objects.next(), materials.next()],
             });
             FilmTile { bounds, exposure, color, counts, data }
-        });
-        let tiles = tiles.collect();
-        let splatter = splats.then(|| Splatter::new(grid, &self.filter, &self.exposure, &self.splats));
-        (tiles, splatter)
+        }));
+        Ok((tiles, Splatter::new(grid, &self.filter, exposure, &self.splats)))
     }
 
     /// Takes the memory that splats need; refused where there is none.
     pub fn reserve_splats(&mut self) -> Result<(), ImageError> {
-        self.splats.reserve(self.grid)
+        self.splats.reserve(self.grid).map_err(|_| no_memory(self.grid))
     }
 
-    /// Adds everything that has come in at another film of the same pixels and settings.
+    /// Adds the sums of another film of the same pixels and settings; refused
+    /// where the other film has splats and there is no memory for them.
     ///
     /// # Panics
-    /// If the other film has other pixels or layers, or has splats and there is no memory for them.
-    pub fn merge(&mut self, other: &Self) {
+    /// If the other film has other pixels or layers.
+    pub fn merge(&mut self, other: &Self) -> Result<(), ImageError> {
         assert_eq!(self.grid.0, other.grid.0, "films of the same pixels can be merged");
         assert_eq!(self.layers(), other.layers(), "films of the same layers can be merged");
+        if !other.splats.is_empty() {
+            self.reserve_splats()?;
+            self.splats.merge(&other.splats);
+        }
         self.color.merge(&other.color, self.grid);
         self.data.merge(&other.data, self.grid);
         for (count, other) in self.counts.iter_mut().zip(&other.counts) {
@@ -292,20 +284,17 @@ impl Film {
         for (ids, other) in self.ids.iter_mut().flatten().zip(other.ids.iter().flatten()) {
             other.iter().for_each(|(&key, &weight)| *ids.entry(key).or_insert(0) += weight);
         }
-        if !other.splats.is_empty() {
-            self.reserve_splats().expect("memory for splats is reserved before a render");
-            self.splats.merge(&other.splats);
-        }
         let rejected = other.rejected();
         self.exposure.rejected().merge(&rejected);
+        Ok(())
     }
 
-    /// How many samples have come in.
+    /// The number of samples added.
     pub fn sample_count(&self) -> u64 {
         self.counts.iter().map(|&count| u64::from(count)).sum()
     }
 
-    /// How many samples have come in at a pixel.
+    /// The number of samples added to a pixel.
     ///
     /// # Panics
     /// If the pixel is not to be rendered.
@@ -330,4 +319,8 @@ impl Film {
         let (color, splats) = (if color { PIXEL_BYTES } else { 0 }, if splats { SPLAT_BYTES } else { 0 });
         (color + data + splats) as u64
     }
+}
+
+fn no_memory(Grid(bounds): Grid) -> ImageError {
+    ImageError::Limits(format!("no memory for a film of {} × {} pixels", bounds.width(), bounds.height()))
 }

@@ -35,7 +35,8 @@ impl Rejected {
         }
     }
 
-    pub(crate) fn merge(&mut self, other: &Self) {
+    /// Adds those of another film.
+    pub fn merge(&mut self, other: &Self) {
         self.count = self.count.saturating_add(other.count);
         other.pixels.iter().for_each(|&pixel| self.remember(pixel));
     }

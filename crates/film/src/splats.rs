@@ -18,7 +18,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use crate::Filter;
 use crate::exposure::Exposure;
 use crate::grid::Grid;
-use crate::sum::{OwnTileSums, SUM_BYTES, can_add, value};
+use crate::sum::{OwnTileSums, SUM_BYTES, can_add, reserved};
 
 /// The sums of a pixel's splats: the three responses of the sensor.
 const SPLAT_SUMS: usize = 3;
@@ -37,9 +37,7 @@ impl SplatSums {
     /// Takes memory for a film of these tiles; refused where there is none.
     pub(crate) fn reserve(&mut self, grid: Grid) -> Result<(), ImageError> {
         if self.tiles.is_empty() {
-            let mut tiles = Vec::new();
-            let no_memory = |_| ImageError::Limits("no memory for the splats of a film".into());
-            tiles.try_reserve_exact(grid.tile_count()).map_err(no_memory)?;
+            let mut tiles = reserved(grid.tile_count())?;
             for tile in 0..grid.tile_count() {
                 tiles.push(Mutex::new(OwnTileSums::new(grid.bounds(tile).area(), SPLAT_SUMS)?));
             }
@@ -76,14 +74,13 @@ impl SplatSums {
         *self.paths.get_mut() += other.paths();
     }
 
-    /// The contribution of all paths to a pixel of a tile, in sensor RGB.
-    pub(crate) fn value(&self, tile: usize, pixel: usize) -> [f64; 3] {
-        let paths = self.paths();
-        if paths == 0 || self.tiles.is_empty() {
-            return [0.0; 3];
+    /// The sums of a pixel of a tile, in units of 2⁻⁶⁴.
+    pub(crate) fn units(&self, tile: usize, pixel: usize) -> [i128; 3] {
+        if self.is_empty() {
+            return [0; 3];
         }
         let sums = self.tile(tile);
-        [0, 1, 2].map(|c| value(sums.units(pixel, c)) / paths as f64)
+        [0, 1, 2].map(|c| sums.units(pixel, c))
     }
 }
 

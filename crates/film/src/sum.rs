@@ -219,17 +219,23 @@ impl OwnTileSums {
     }
 }
 
-/// So many zeros. The operating system gives their memory when it is first written to.
+/// `count` zeros. The operating system allocates their pages when they are first written to.
 pub(crate) fn zeros<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>, ImageError> {
-    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| no_memory(count * size_of::<T>()))
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| no_memory(count.saturating_mul(size_of::<T>())))
 }
 
-/// So many empty maps.
+/// `count` empty maps.
 pub(crate) fn maps<K, V>(count: usize) -> Result<Vec<BTreeMap<K, V>>, ImageError> {
-    let mut maps = Vec::new();
-    maps.try_reserve_exact(count).map_err(|_| no_memory(count * size_of::<BTreeMap<K, V>>()))?;
+    let mut maps = reserved(count)?;
     maps.resize_with(count, BTreeMap::new);
     Ok(maps)
+}
+
+/// An empty array with a capacity of `count` values.
+pub(crate) fn reserved<T>(count: usize) -> Result<Vec<T>, ImageError> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| no_memory(count.saturating_mul(size_of::<T>())))?;
+    Ok(values)
 }
 
 fn no_memory(bytes: usize) -> ImageError {

@@ -5,7 +5,7 @@ use std::{fmt, io};
 /// Why an image could not be read or written.
 #[derive(Debug)]
 pub enum ImageError {
-    /// The file system said no.
+    /// Reading or writing failed.
     Io(io::Error),
     /// The bytes contradict their format, or the request contradicts the image.
     Invalid(String),

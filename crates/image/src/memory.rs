@@ -1,29 +1,29 @@
-//! Memory for pixels, which may not be there.
+//! Fallible allocation of pixels.
 
 use crate::ImageError;
 
-/// An empty array with room for so many values; refused where there is no memory for them.
+/// An empty array with a capacity of `count` values; refused where there is no memory for them.
 pub(crate) fn reserved<T>(count: usize) -> Result<Vec<T>, ImageError> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_| no_memory(count.saturating_mul(size_of::<T>())))?;
     Ok(values)
 }
 
-/// An array of so many equal values; refused where there is no memory for it.
+/// An array of `count` equal values; refused where there is no memory for it.
 pub(crate) fn filled<T: Clone>(count: usize, value: T) -> Result<Vec<T>, ImageError> {
     let mut values = reserved(count)?;
     values.resize(count, value);
     Ok(values)
 }
 
-/// These values, so many of them, in an array; refused where there is no memory for it.
+/// The first `count` of these values as an array; refused where there is no memory for it.
 pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Result<Vec<T>, ImageError> {
     let mut array = reserved(count)?;
     array.extend(values.take(count));
     Ok(array)
 }
 
-/// Refuses work that takes so many bytes where there is no memory for them now.
+/// Refused where `bytes` bytes cannot be allocated now.
 pub fn require_memory(bytes: usize) -> Result<(), ImageError> {
     reserved::<u8>(bytes).map(drop)
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use geometry::RayStats;
+use image::ImageError;
 
 /// The time since some fixed moment. It is injected because not every platform has a clock:
 /// `std::time::Instant` does not exist in a browser.
@@ -50,8 +51,7 @@ impl Control {
     }
 }
 
-/// The render was cancelled. The film holds the light of the passes, and tiles, that were done, and
-/// is valid.
+/// The render was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cancelled;
 
@@ -62,3 +62,39 @@ impl fmt::Display for Cancelled {
 }
 
 impl std::error::Error for Cancelled {}
+
+/// Why a pass was not completed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PassError {
+    /// The render was cancelled. The film is valid, but holds a part of the pass.
+    Cancelled,
+    /// There is no memory for what is named here. The film is as it was before the pass.
+    OutOfMemory(String),
+}
+
+impl fmt::Display for PassError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Cancelled => Cancelled.fmt(f),
+            Self::OutOfMemory(problem) => f.write_str(problem),
+        }
+    }
+}
+
+impl std::error::Error for PassError {}
+
+impl From<Cancelled> for PassError {
+    fn from(Cancelled: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// Memory is all that a film may lack in a pass.
+impl From<ImageError> for PassError {
+    fn from(error: ImageError) -> Self {
+        match error {
+            ImageError::Limits(problem) => Self::OutOfMemory(problem),
+            error => Self::OutOfMemory(error.to_string()),
+        }
+    }
+}

@@ -7,7 +7,7 @@ use film::Film;
 use geometry::RayStats;
 use scene::{Scene, View};
 
-use crate::{Cancelled, Control};
+use crate::{Cancelled, Control, PassError};
 
 /// An algorithm of light transport, run by a [`Session`](crate::Session).
 ///
@@ -41,7 +41,7 @@ pub trait Integrator: Send {
 
     /// Does one pass, one sample per pixel, on the threads of rayon's current pool. A cancelled
     /// pass ends within a few rays, and leaves some pixels with one sample less, for which their
-    /// weights account.
+    /// weights account. A pass that lacks memory leaves the film as it was.
     fn pass(
         &mut self,
         pass: u32,
@@ -49,7 +49,7 @@ pub trait Integrator: Send {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled>;
+    ) -> Result<RayStats, PassError>;
 
     /// Films that the passes so far have filled beside the picture's, with their names. Their
     /// pictures stand beside the main one and are called like it with the name added.

@@ -42,7 +42,7 @@ pub use build::{Built, build};
 pub use camera_paths::{
     AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
 };
-pub use control::{Cancelled, Clock, Control};
+pub use control::{Cancelled, Clock, Control, PassError};
 pub use integrator::{Integrator, OutputFile};
 pub use light_paths::LightTracing;
 pub use metropolis::Mlt;

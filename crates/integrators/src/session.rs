@@ -31,12 +31,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
-use film::{Film, PassSet};
+use film::{Development, Film, LayerSet, PassSet, Rejected};
 use geometry::RayStats;
-use image::Image;
+use image::{Image, ImageError, PixelSource};
+use rayon::prelude::*;
 use scene::{Scene, View};
 
-use crate::{Cancelled, Control, Integrator};
+use crate::{Control, Integrator, PassError};
 
 /// Passes before which noise is not trusted: light that few paths find may not have been found.
 const FIRST_ESTIMATE: u32 = 16;
@@ -124,17 +125,31 @@ impl SessionState {
         Self { done: PassSet::new(), film, second: None, counts: [0; 2], elapsed: Duration::ZERO }
     }
 
-    /// What `look` finds on the film with the light of all passes.
-    pub fn with_film<T>(&self, look: impl FnOnce(&Film) -> T) -> T {
-        match &self.second {
-            None => look(&self.film),
-            Some(second) => {
-                let mut whole = self.film.blank();
-                whole.merge(&self.film);
-                whole.merge(second);
-                look(&whole)
-            }
-        }
+    /// The picture of all passes, without layers; refused where there is no memory for it.
+    pub fn develop(&self) -> Result<Image, ImageError> {
+        Development::new(&self.film, self.second.as_ref(), LayerSet::NONE).to_image()
+    }
+
+    /// The picture of all passes with its layers, row by row while it is written.
+    pub fn development(&self) -> Development<'_> {
+        Development::new(&self.film, self.second.as_ref(), self.film.layers())
+    }
+
+    /// How many samples have come in.
+    pub fn sample_count(&self) -> u64 {
+        self.films().map(Film::sample_count).sum()
+    }
+
+    /// The samples that were refused.
+    pub fn rejected(&self) -> Rejected {
+        self.films().fold(Rejected::default(), |mut all, film| {
+            all.merge(&film.rejected());
+            all
+        })
+    }
+
+    fn films(&self) -> impl Iterator<Item = &Film> {
+        std::iter::once(&self.film).chain(&self.second)
     }
 
     /// The estimated relative standard error of the picture; `None` where passes do not alternate,
@@ -142,7 +157,7 @@ impl SessionState {
     pub fn noise(&self) -> Option<f64> {
         let [a, b] = self.counts;
         let second = self.second.as_ref().filter(|_| a.min(b) >= FIRST_ESTIMATE / 2)?;
-        Some(noise(&[self.film.develop(), second.develop()], self.counts))
+        Some(noise([&self.film, second], self.counts))
     }
 }
 
@@ -171,15 +186,16 @@ impl Session {
     /// and calls `after_pass` after each.
     ///
     /// Pass 0 of an integrator that makes drafts is preceded by them. After `Err` the film is valid
-    /// all the same: it holds the light of the passes, and tiles, that were done. But unless it
-    /// [is whole](Self::is_whole), no other session can go on from it.
+    /// all the same: it holds the light of the passes that were done, and after a cancellation that
+    /// of some tiles of the next one. But unless it [is whole](Self::is_whole), no other session
+    /// can go on from it.
     pub fn run(
         &mut self,
         passes: Range<u32>,
         limits: &Limits,
         control: &Control,
         after_pass: &mut dyn FnMut(&Self),
-    ) -> Result<Stop, Cancelled> {
+    ) -> Result<Stop, PassError> {
         let clock = Stopwatch { control, begin: control.now(), before: self.elapsed };
         let outcome = self.run_passes(passes, limits, &clock, after_pass);
         self.stats += control.take_counted();
@@ -193,12 +209,12 @@ impl Session {
         limits: &Limits,
         clock: &Stopwatch,
         after_pass: &mut dyn FnMut(&Self),
-    ) -> Result<Stop, Cancelled> {
+    ) -> Result<Stop, PassError> {
         clock.control.check()?;
         self.planned = self.state.done.union(&passes.clone().into());
         self.limits = *limits;
         if limits.noise.is_some() && self.state.second.is_none() {
-            self.state.second = Some(self.state.film.blank());
+            self.state.second = Some(self.state.film.blank()?);
         }
         if !self.is_prepared {
             self.integrator.prepare(&self.scene, &self.view, clock.control)?;
@@ -238,14 +254,14 @@ impl Session {
     }
 
     /// One pass of the integrator.
-    fn pass(&mut self, pass: u32, on_second: bool, clock: &Stopwatch) -> Result<(), Cancelled> {
+    fn pass(&mut self, pass: u32, on_second: bool, clock: &Stopwatch) -> Result<(), PassError> {
         let begin = clock.control.now();
         let film = match &mut self.state.second {
             Some(second) if on_second => second,
             _ => &mut self.state.film,
         };
         let outcome = self.integrator.pass(pass, &self.scene, &self.view, film, clock.control);
-        self.is_whole &= outcome.is_ok();
+        self.is_whole &= !matches!(outcome, Err(PassError::Cancelled));
         let stats = outcome?;
         clock.control.take_counted();
         self.stats += stats;
@@ -340,19 +356,35 @@ fn is_estimated_after(passes: u32) -> bool {
     passes >= FIRST_ESTIMATE && passes.is_multiple_of(step)
 }
 
-/// The noise of the mean of two independent pictures of so many passes each.
-fn noise(pictures: &[Image; 2], counts: [u32; 2]) -> f64 {
+/// The noise of the mean of the independent pictures of two films of so many passes each.
+fn noise(films: [&Film; 2], counts: [u32; 2]) -> f64 {
     let [a, b] = counts.map(f64::from);
     let [share_a, share_b] = [a / (a + b), b / (a + b)];
-    let values = || pictures[0].values().zip(pictures[1].values()).map(|(a, b)| [f64::from(a), f64::from(b)]);
     let mean_of = |[a, b]: [f64; 2]| share_a * a + share_b * b;
-    let count = values().count() as f64;
-    let mean = values().map(mean_of).sum::<f64>() / count;
+    let mean = mean_over(films, mean_of);
     let floor = (mean / 10.0).powi(2);
     let relative_variance = |[a, b]: [f64; 2]| {
         let variance = share_a * share_b * (a - b).powi(2);
         // Where the whole picture is black there is nothing to differ.
         if variance == 0.0 { 0.0 } else { variance / (mean_of([a, b]).powi(2) + floor) }
     };
-    (values().map(relative_variance).sum::<f64>() / count).sqrt()
+    mean_over(films, relative_variance).sqrt()
+}
+
+/// The mean of a function of the values of two films' pictures, over pixels and channels. The
+/// pictures are developed row by row, so that they need no memory; rows are summed in order, so
+/// that threads do not matter.
+fn mean_over(films: [&Film; 2], f: impl Fn([f64; 2]) -> f64 + Sync) -> f64 {
+    let pictures = films.map(|film| Development::new(film, None, LayerSet::NONE));
+    let (width, height) = (pictures[0].width(), pictures[0].height());
+    let row_sum = |y| {
+        let [a, b] = pictures.each_ref().map(|picture| {
+            let mut row = vec![0.0; 3 * width as usize];
+            picture.row(y, &mut row);
+            row
+        });
+        a.into_iter().zip(b).map(|(a, b)| f([a, b].map(f64::from))).sum::<f64>()
+    };
+    let sums: Vec<f64> = (0..height).into_par_iter().map(row_sum).collect();
+    sums.iter().sum::<f64>() / (3.0 * f64::from(width) * f64::from(height))
 }

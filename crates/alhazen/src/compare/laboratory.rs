@@ -5,7 +5,7 @@ use std::sync::Arc;
 use description::{Diagnostic, SceneDesc};
 use image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use image::{Image, Window};
-use integrators::{Cancelled, Control, Progress};
+use integrators::{Control, PassError, Progress};
 use scene::{Scene, View};
 
 use super::measure::{measure, reference_noise};
@@ -144,19 +144,19 @@ impl Laboratory {
     /// after each pass of both pictures.
     ///
     /// After a cancellation the comparison covers what has been done. `Err` means that there is
-    /// nothing to compare: no contender has completed a pass.
+    /// nothing to compare: no contender has completed a pass, or memory ran out.
     pub fn compare(
         self,
         control: &Control,
         progress: &mut dyn FnMut(&str, &Progress),
-    ) -> Result<Comparison, Cancelled> {
+    ) -> Result<Comparison, PassError> {
         let Self { setup, scene, view, contenders, reference, warnings } = self;
         let reference = match reference {
             ReferencePlan::Picture(reference) => *reference,
             ReferencePlan::Render(entry, half) => {
                 // Different seeds: errors against a reference with the same samples would be too
                 // small.
-                let pair = paired_renders(&entry, (&scene, &view), setup.seed.wrapping_add(2));
+                let pair = paired_renders(&entry, (&scene, &view), setup.seed.wrapping_add(2))?;
                 render_reference(&entry, half, pair, control, progress)?
             }
         };
@@ -164,10 +164,10 @@ impl Laboratory {
         let mut interrupted = false;
         for entry in &contenders {
             let mut run = || {
-                let pair = paired_renders(entry, (&scene, &view), setup.seed);
+                let pair = paired_renders(entry, (&scene, &view), setup.seed)?;
                 run(entry, &setup, pair, &reference, control, progress)
             };
-            let run = if interrupted { None } else { run() };
+            let run = if interrupted { None } else { run()? };
             interrupted |= run.as_ref().is_none_or(|run| run.interrupted);
             match run {
                 Some(run) => runs.push(run),
@@ -175,7 +175,7 @@ impl Laboratory {
             }
         }
         if runs.is_empty() {
-            return Err(Cancelled);
+            return Err(PassError::Cancelled);
         }
         Ok(Comparison { setup, reference, runs, missing, warnings })
     }
@@ -233,14 +233,14 @@ fn render_reference(
     mut pair: PairedRenders,
     control: &Control,
     progress: &mut dyn FnMut(&str, &Progress),
-) -> Result<Reference, Cancelled> {
+) -> Result<Reference, PassError> {
     let name = format!("reference by {}", entry.name);
-    pair.render(half, control, &mut |now| progress(&name, now), |_| ())?;
-    let halves = pair.pictures();
-    let picture = Image::from_fn(halves[0].width(), halves[0].height(), ["R", "G", "B"], |x, y| {
+    pair.render(half, control, &mut |now| progress(&name, now), |_| Ok(()))?;
+    let halves = pair.pictures()?;
+    let picture = Image::try_from_fn(halves[0].width(), halves[0].height(), ["R", "G", "B"], |x, y| {
         let [a, b] = [0, 1].map(|half: usize| halves[half].rgb(x, y));
         std::array::from_fn(|c| (a[c] + b[c]) / 2.0)
-    });
+    })?;
     let mut reference = Reference {
         source: format!(
             "{}, twice {} passes in {:.1} s",
@@ -256,7 +256,8 @@ fn render_reference(
     Ok(reference)
 }
 
-/// Renders and measures one contender; `None` if it was cancelled before its first pass was done.
+/// Renders and measures one contender; `None` if it was cancelled before its first pass was done,
+/// and an error if memory ran out.
 fn run(
     entry: &Entry,
     setup: &Setup,
@@ -264,7 +265,7 @@ fn run(
     reference: &Reference,
     control: &Control,
     progress: &mut dyn FnMut(&str, &Progress),
-) -> Option<Run> {
+) -> Result<Option<Run>, PassError> {
     let mut checkpoints = Vec::new();
     let outcome = pair.render(setup.budget, control, &mut |now| progress(&entry.name, now), |pair| {
         let effort = pair.effort();
@@ -272,15 +273,19 @@ fn run(
             passes: effort.passes,
             seconds: effort.seconds,
             rays: effort.rays,
-            measure: measure(&pair.pictures(), &reference.picture, reference.noise),
+            measure: measure(&pair.pictures()?, &reference.picture, reference.noise),
         });
+        Ok(())
     });
-    if checkpoints.is_empty() {
-        return None;
+    if let Err(error @ PassError::OutOfMemory(_)) = outcome {
+        return Err(error);
     }
-    let pictures = pair.pictures();
+    if checkpoints.is_empty() {
+        return Ok(None);
+    }
+    let pictures = pair.pictures()?;
     let flip = hdr_flip(&reference.picture, &pictures[0], PIXELS_PER_DEGREE).ok().map(|flip| flip.mean);
-    Some(Run {
+    Ok(Some(Run {
         name: entry.name.clone(),
         settings: listed(&entry.desc.integrator.value).split_off(1),
         sampler: settings::of_sampler(&entry.desc.sampler.kind),
@@ -289,11 +294,18 @@ fn run(
         pictures,
         flip,
         interrupted: outcome.is_err(),
-    })
+    }))
 }
 
-fn paired_renders(entry: &Entry, viewed: (&Arc<Scene>, &View), seed: i32) -> PairedRenders {
-    let (pair, _) = PairedRenders::new(&entry.desc, viewed, seed)
-        .expect("invariant: they have been built before, with another seed");
-    pair
+/// Pairs that have been built before, with another seed: now they can only lack memory.
+fn paired_renders(
+    entry: &Entry,
+    viewed: (&Arc<Scene>, &View),
+    seed: i32,
+) -> Result<PairedRenders, PassError> {
+    let pair = PairedRenders::new(&entry.desc, viewed, seed);
+    pair.map(|(pair, _)| pair).map_err(|errors| {
+        let problems: Vec<String> = errors.into_iter().map(|error| error.message).collect();
+        PassError::OutOfMemory(problems.join("; "))
+    })
 }

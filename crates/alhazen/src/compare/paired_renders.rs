@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 use description::{Diagnostic, SceneDesc};
 use geometry::RayStats;
-use image::Image;
-use integrators::{Cancelled, Control, Limits, Progress, Session, SessionState};
+use image::{Image, ImageError};
+use integrators::{Control, Limits, PassError, Progress, Session, SessionState};
 use scene::{Scene, View};
 
 use super::Budget;
@@ -63,8 +63,8 @@ impl PairedRenders {
         budget: Budget,
         control: &Control,
         progress: &mut dyn FnMut(&Progress),
-        mut at_checkpoint: impl FnMut(&Self),
-    ) -> Result<(), Cancelled> {
+        mut at_checkpoint: impl FnMut(&Self) -> Result<(), PassError>,
+    ) -> Result<(), PassError> {
         let mut checkpoint = 0;
         progress(&self.progress(budget));
         for pass in 0..self.most_passes(budget) {
@@ -75,14 +75,14 @@ impl PairedRenders {
             let outcome = self.pass(pass, control);
             let done = self.effort().passes;
             if done == next_checkpoint(checkpoint) || (outcome.is_err() && done > checkpoint) {
-                at_checkpoint(self);
+                at_checkpoint(self)?;
                 checkpoint = done;
             }
             progress(&self.progress(budget));
             outcome?;
         }
         if self.effort().passes > checkpoint {
-            at_checkpoint(self);
+            at_checkpoint(self)?;
         }
         Ok(())
     }
@@ -96,7 +96,7 @@ impl PairedRenders {
     }
 
     /// Runs one pass of each.
-    fn pass(&mut self, pass: u32, control: &Control) -> Result<(), Cancelled> {
+    fn pass(&mut self, pass: u32, control: &Control) -> Result<(), PassError> {
         let mut run = |session: &mut Session| {
             session.run(pass..pass + 1, &Limits::default(), control, &mut |_| ()).map(|_| ())
         };
@@ -145,8 +145,9 @@ impl PairedRenders {
     }
 
     /// The two pictures so far.
-    pub fn pictures(&self) -> [Image; 2] {
-        self.pair.each_ref().map(|session| session.state().film.develop())
+    pub fn pictures(&self) -> Result<[Image; 2], ImageError> {
+        let [a, b] = self.pair.each_ref().map(|session| session.state().film.develop());
+        Ok([a?, b?])
     }
 }
 

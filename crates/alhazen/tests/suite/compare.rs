@@ -10,7 +10,7 @@ use std::time::Duration;
 use alhazen::compare::{Budget, Comparison, Laboratory, Plan, PlanError, ReferenceSource, Run};
 use alhazen::image::{Image, metrics};
 use alhazen::import::{MemoryAssets, import};
-use alhazen::integrators::{Cancelled, Control};
+use alhazen::integrators::{Control, PassError};
 use alhazen::{Overrides, render_file, system_clock};
 use serde_json::Value;
 
@@ -221,7 +221,7 @@ fn a_cancelled_comparison_reports_completed_runs() {
         })
     };
     for nothing in ["reference by path", "path"] {
-        assert_eq!(from(nothing).unwrap_err(), Cancelled);
+        assert_eq!(from(nothing).unwrap_err(), PassError::Cancelled);
     }
     let comparison = from("whitted").unwrap();
     assert!(comparison.interrupted());

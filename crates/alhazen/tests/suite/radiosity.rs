@@ -94,7 +94,7 @@ fn every_pass_is_better_than_the_last() {
             control.cancel.store(session.progress().pass == passes, Ordering::Relaxed);
         };
         assert!(job.session.run(0..1, &Limits::default(), &control, &mut cancel).is_err());
-        distances.push(distance(&job.picture(), &last));
+        distances.push(distance(&job.picture().unwrap(), &last));
     }
     assert!(distances.is_sorted_by(|a, b| a > b), "{distances:?}");
 }
@@ -190,7 +190,8 @@ fn a_pass_depends_on_its_number_alone() {
         }
         film
     };
-    let values = |film: &alhazen::film::Film| film.develop().values().map(f32::to_bits).collect::<Vec<_>>();
+    let values =
+        |film: &alhazen::film::Film| film.develop().unwrap().values().map(f32::to_bits).collect::<Vec<_>>();
     // A better draft takes the place of the one before, and the first sample that of the last.
     for passes in [0..=1, 0..=2] {
         let last = [*passes.end()];
@@ -198,7 +199,7 @@ fn a_pass_depends_on_its_number_alone() {
     }
     // The samples of the finished solution add up, whoever takes them.
     let mut merged = picture(&[2]);
-    merged.merge(&picture(&[3]));
+    merged.merge(&picture(&[3])).unwrap();
     assert_eq!(values(&merged), values(&picture(&[0, 1, 2, 3])));
 }
 

@@ -46,7 +46,7 @@ fn every_scene_renders_without_diagnostics() {
         };
         silent(name, &warnings);
         job.render(&Control::default()).expect("nobody cancels it");
-        let values: Vec<f32> = job.picture().values().collect();
+        let values: Vec<f32> = job.picture().unwrap().values().collect();
         assert_eq!(values, without_extents(desc), "{name} without extents");
         assert!(values.iter().all(|value| value.is_finite()), "{name} has values that are no numbers");
         assert!(values.iter().any(|&value| value > 0.01), "{name} is black");
@@ -60,7 +60,7 @@ fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
     let mut job = Job::compile(&desc).expect("a scene").job;
     job.render(&Control::default()).expect("nobody cancels it");
     assert_eq!(job.session.progress().stats.extents, 0);
-    job.picture().values().collect()
+    job.picture().expect("a picture").values().collect()
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn a_sketch_has_the_means_of_the_picture() {
     for overrides in [whole(), part()] {
         let mut path = job("path", overrides.clone());
         path.render(&Control::default()).unwrap();
-        let picture = path.picture();
+        let picture = path.picture().unwrap();
         let expected = means(&picture);
         // Markov chains are correlated, the photons of a pass have four wavelengths, and large
         // patches blur shadows.
@@ -104,7 +104,7 @@ fn a_sketch_has_the_positions_of_the_picture() {
         let mut job = job("path", of_depth("0", overrides));
         let sketch = sketch(&mut job).unwrap();
         job.render(&Control::default()).unwrap();
-        let [found, expected] = [&sketch, &job.picture()].map(middle);
+        let [found, expected] = [&sketch, &job.picture().unwrap()].map(middle);
         assert!((0..2).all(|axis| (found[axis] - expected[axis]).abs() < 0.5), "{found:?}, not {expected:?}");
     }
 }
@@ -127,7 +127,7 @@ fn a_sketch_does_not_change_the_picture() {
             let mut job = job(integrator, whole());
             assert!(!with_sketch || sketch(&mut job).is_some());
             job.render(&Control::default()).unwrap();
-            let bits: Vec<u32> = job.picture().values().map(f32::to_bits).collect();
+            let bits: Vec<u32> = job.picture().unwrap().values().map(f32::to_bits).collect();
             let progress = job.session.progress();
             (bits, progress.stats, progress.samples, job.session.integrator().summary())
         };

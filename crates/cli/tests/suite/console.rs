@@ -51,14 +51,19 @@ fn quiet_and_json_go_together() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn output_that_cannot_be_delivered_is_an_error() {
+fn output_that_cannot_be_written_is_an_error() {
     let folder = Folder::with_scene("full");
     let picture = Image::from_fn(4, 4, ["R", "G", "B"], |_, _| [0.5; 3]);
     write(&picture, folder.path().join("a.exr"), &WriteOptions::default()).expect("a picture for the test");
+    folder.alhazen(&["render", "scene.pbrt", "--checkpoint", "a.film", "--quiet"]).expect(0);
     for arguments in [
         &["render", "scene.pbrt"][..],
         &["render", "scene.pbrt", "--json"],
         &["render", "none.pbrt", "--json"],
+        &["resume", "a.film"],
+        &["resume", "a.film", "--json"],
+        &["merge", "a.film"],
+        &["merge", "a.film", "--json"],
         &["compare", "scene.pbrt", "--integrators", "path", "--spp", "1"],
         &["scene", "check", "scene.pbrt"],
         &["scene", "check", "scene.pbrt", "--json"],
@@ -80,7 +85,7 @@ fn output_that_cannot_be_delivered_is_an_error() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_error() {
+fn a_broken_pipe_is_not_an_error() {
     let folder = Folder::with_scene("pipe");
     let mut child = folder
         .command(&["render", "scene.pbrt", "--json"])

@@ -15,7 +15,7 @@ fn with_pictures(name: &str) -> Folder {
 }
 
 #[test]
-fn differences_are_told_and_drawn() {
+fn differences_are_reported_and_drawn() {
     let folder = with_pictures("diff");
     for metric in ["mse", "relmse", "flip"] {
         let picture = format!("{metric}.png");

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::common::{Folder, SCENE};
 
-/// A render that would take for ever, interrupted after a moment: its exit code and what it said.
+/// A render without end, interrupted after a moment: its exit code and standard output.
 fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
     // The warning about the sensor is printed when the render begins, which tells when to interrupt
     // it.
@@ -126,26 +126,44 @@ fn a_second_interrupt_ends_a_program_that_is_stuck() {
     );
 }
 
+/// A white box that light does not leave, so that a pass takes a second or so.
+#[cfg(target_os = "linux")]
+const BOX: &str = r#"
+Camera "perspective" "float fov" 40
+Film "rgb" "integer xresolution" 256 "integer yresolution" 256
+Sampler "independent"
+Integrator "simplepath" "integer maxdepth" 10
+WorldBegin
+Material "diffuse" "rgb reflectance" [ 1 1 1 ]
+AreaLightSource "diffuse"
+ReverseOrientation
+Shape "sphere" "float radius" 1
+"#;
+
 #[cfg(target_os = "linux")]
 #[test]
 fn all_passes_before_an_interrupt_are_saved() {
-    let folder = Folder::with_scene("interrupt-checkpoint");
-    let save = ["--checkpoint", "a.film", "--every", "1h", "-o", "a.exr"];
-    let mut command = folder.command(&["render", "scene.pbrt", "--json", "--spp", "100000000"]);
-    let child = command.args(save).stdout(Stdio::piped()).spawn().expect("the program runs");
-    let deadline = Instant::now() + Duration::from_secs(60);
-    while !folder.path().join("a.exr").exists() && Instant::now() < deadline {
-        std::thread::sleep(Duration::from_millis(50));
+    // The second is interrupted in the middle of a pass.
+    for (name, scene) in [("short", SCENE), ("long", BOX)] {
+        let folder = Folder::new(&format!("interrupt-{name}-pass"));
+        folder.write("scene.pbrt", scene);
+        let save = ["--checkpoint", "a.film", "--every", "1h", "-o", "a.exr"];
+        let mut command = folder.command(&["render", "scene.pbrt", "--json", "--spp", "100000000"]);
+        let child = command.args(save).stdout(Stdio::piped()).spawn().expect("the program runs");
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while !folder.path().join("a.exr").exists() && Instant::now() < deadline {
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        interrupt(&child);
+        let (code, json) = end(child);
+        assert_eq!(
+            (code, &json["status"], &json["checkpoint"]),
+            (Some(130), &"interrupted".into(), &"a.film".into())
+        );
+        // Nothing is left to be done for as many passes, whose picture it was.
+        let passes = json["passes"].to_string();
+        folder.alhazen(&["resume", "a.film", "--spp", &passes, "-o", "b.exr"]).expect(0);
+        let read = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
+        assert!(read("a.exr") == read("b.exr"));
     }
-    interrupt(&child);
-    let (code, json) = end(child);
-    assert_eq!(
-        (code, &json["status"], &json["checkpoint"]),
-        (Some(130), &"interrupted".into(), &"a.film".into())
-    );
-    // Nothing is left to be done for as many passes, whose picture it was.
-    let passes = json["passes"].to_string();
-    folder.alhazen(&["resume", "a.film", "--spp", &passes, "-o", "b.exr"]).expect(0);
-    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
-    assert!(read("a.exr") == read("b.exr"));
 }

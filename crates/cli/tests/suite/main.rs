@@ -8,6 +8,8 @@ mod console;
 mod errors;
 mod image;
 mod interrupt;
+#[cfg(target_os = "linux")]
+mod memory;
 mod meshes;
 mod render;
 mod resume;

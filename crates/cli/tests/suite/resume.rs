@@ -111,16 +111,21 @@ fn a_render_that_is_done_stays_as_it_is() {
     let saved = ["-o", "whole.exr", "--checkpoint", "whole.film"];
     folder.alhazen(&render(INTEGRATORS[0], &saved)).expect(0);
     let film = bytes(&folder, "whole.film");
-    folder.alhazen(&["resume", "whole.film", "-o", "again.exr", "--quiet"]).expect(0);
-    assert!(bytes(&folder, "again.exr") == bytes(&folder, "whole.exr"));
-    assert!(bytes(&folder, "whole.film") == film, "there was nothing to save");
+    for (more, passes) in [(&[][..], 8), (&["--spp", "8"], 8), (&["--spp", "3"], 3)] {
+        let resumed =
+            folder.alhazen(&[&["resume", "whole.film", "-o", "again.exr"], more].concat()).expect(0);
+        let note = format!("all {passes} are done already: the film has 8");
+        assert!(resumed.out.contains(&note), "{resumed:?}");
+        assert!(bytes(&folder, "again.exr") == bytes(&folder, "whole.exr"));
+        assert!(bytes(&folder, "whole.film") == film, "there was nothing to save");
+    }
     // A single film is whole, too.
     folder.alhazen(&["merge", "whole.film", "-o", "merged.exr", "--quiet"]).expect(0);
     assert!(bytes(&folder, "merged.exr") == bytes(&folder, "whole.exr"));
 }
 
 #[test]
-fn samples_beyond_the_plan_are_told() {
+fn samples_beyond_the_plan_are_reported() {
     let folder = room("resume-beyond");
     let resumed = |sampler: &str| {
         let plain: Vec<&str> = ROOM.lines().filter(|line| !line.contains("\"tiles\"")).collect();
@@ -184,6 +189,16 @@ fn films_that_do_not_fit_are_named() {
     assert!(problem.contains("passes 5 of shard 3/4 and shard 4/4 (passes 6-7) are missing"), "{problem}");
     let problem = merge(&["1.film", "2.film", "1.film"]);
     assert!(problem.contains("1.film: passes 0-1 are in 1.film too"), "{problem}");
+    part("1/3", "third.film", &[]);
+    let problem = merge(&["third.film", "2.film"]);
+    let splits = "The films are of different splits: third.film is shard 1/3, 2.film is shard 2/4";
+    assert!(problem.contains("passes 4-7 are missing") && problem.contains(splits), "{problem}");
+    let problem = merge(&["third.film", "1.film"]);
+    let splits = "The films are of different splits: third.film is shard 1/3, 1.film is shard 1/4";
+    assert!(
+        problem.contains("1.film: passes 0-1 are in third.film too") && problem.contains(splits),
+        "{problem}"
+    );
     let problem = merge(&["2.film", "seed.film"]);
     assert!(problem.contains("seed.film: not of the same render as 2.film"), "{problem}");
 
@@ -207,7 +222,7 @@ fn films_that_do_not_fit_are_named() {
     assert!(problem.contains("the film is shard 2/4 of 8 passes"), "{problem}");
     folder.write("room.pbrt", &ROOM.replace("radius\" 0.3", "radius\" 0.31"));
     let problem = run(&["resume", "2.film", "-o", "a.exr"], 1);
-    assert!(problem.contains("2.film: it is of another scene than "), "{problem}");
+    assert!(problem.contains("2.film: files of the scene "), "{problem}");
     part("3/4", "3.film", &[]);
     let problem = merge(&["2.film", "3.film"]);
     assert!(problem.contains("3.film: not of the same render as 2.film: the scenes differ"), "{problem}");

@@ -2,6 +2,8 @@
 
 use std::{fmt, io};
 
+use image::ImageError;
+
 use crate::PassSet;
 
 /// Why a film file could not be written, read or merged.
@@ -53,6 +55,16 @@ impl std::error::Error for FilmFileError {
         match self {
             Self::Io(error) => Some(error),
             _ => None,
+        }
+    }
+}
+
+/// Of a film that there is no memory for.
+impl From<ImageError> for FilmFileError {
+    fn from(error: ImageError) -> Self {
+        match error {
+            ImageError::Limits(problem) => Self::Limits(problem),
+            error => Self::Limits(error.to_string()),
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{FilmFileError, VERSION};
 /// transfer in text mode would change.
 const MAGIC: [u8; 8] = *b"\x89ALZF\r\n\x1a";
 
-/// How much memory is taken at a time for a section that claims to be long.
+/// Bytes allocated at a time, as the length that a section claims may be wrong.
 const STEP: usize = 1 << 20;
 
 /// The tag of a section.
@@ -99,7 +99,10 @@ impl<R: Read> SectionReader<R> {
         read_exact(&mut self.input, tag, &mut length)?;
         let claimed = u64::from_le_bytes(length);
         if claimed > max_bytes {
-            return Err(damaged(tag, format!("it claims {claimed} bytes; at most {max_bytes} make sense")));
+            return Err(damaged(
+                tag,
+                format!("its length is {claimed} bytes; at most {max_bytes} are possible"),
+            ));
         }
         let payload = self.payload(tag, claimed)?;
         let mut written = [0; 4];
@@ -131,7 +134,7 @@ impl<R: Read> SectionReader<R> {
     /// Refuses bytes after the last section.
     pub fn finish(mut self) -> Result<(), FilmFileError> {
         match read_exact(&mut self.input, *b"END ", &mut [0]) {
-            Ok(()) => Err(damaged(*b"END ", "bytes follow it".into())),
+            Ok(()) => Err(damaged(*b"END ", "more bytes follow it".into())),
             Err(FilmFileError::Damaged { .. }) => Ok(()),
             Err(error) => Err(error),
         }
@@ -203,20 +206,20 @@ impl<'a> Fields<'a> {
     /// Four bytes, a floating-point number that is finite.
     pub fn f32(&mut self) -> Result<f32, FilmFileError> {
         let value = self.array().map(f32::from_le_bytes)?;
-        if value.is_finite() { Ok(value) } else { Err(self.wrong(&format!("{value} is no finite number"))) }
+        if value.is_finite() { Ok(value) } else { Err(self.wrong(&format!("{value} is not finite"))) }
     }
 
     /// Eight bytes, a floating-point number that is finite.
     pub fn f64(&mut self) -> Result<f64, FilmFileError> {
         let value = self.array().map(f64::from_le_bytes)?;
-        if value.is_finite() { Ok(value) } else { Err(self.wrong(&format!("{value} is no finite number"))) }
+        if value.is_finite() { Ok(value) } else { Err(self.wrong(&format!("{value} is not finite"))) }
     }
 
     /// Text: its length in bytes, four bytes, then UTF-8.
     pub fn text(&mut self) -> Result<&'a str, FilmFileError> {
         let length = self.u32()?;
         let bytes = self.bytes(length as usize)?;
-        std::str::from_utf8(bytes).map_err(|_| self.wrong("a text is no UTF-8"))
+        std::str::from_utf8(bytes).map_err(|_| self.wrong("a text is not UTF-8"))
     }
 
     /// Refuses bytes that are left over.

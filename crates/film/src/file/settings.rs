@@ -84,14 +84,11 @@ pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFi
     };
     let pixels = settings.pixel_bounds.area() as u64;
     limits.take(pixels.saturating_mul(Film::pixel_bytes(layers, color, splats)), "a film")?;
-    let film = if color { Film::new(settings) } else { Film::of_splats(settings) };
-    let reserved = film.and_then(|mut film| {
-        if splats {
-            film.reserve_splats()?;
-        }
-        Ok(film)
-    });
-    reserved.map_err(|error| FilmFileError::Limits(error.to_string()))
+    let mut film = if color { Film::new(settings) } else { Film::of_splats(settings) }?;
+    if splats {
+        film.reserve_splats()?;
+    }
+    Ok(film)
 }
 
 /// Reads what [`put`] has written, and refuses settings that are not those of this film.

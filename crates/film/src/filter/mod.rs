@@ -63,7 +63,9 @@ impl Filter {
                 if !(radius > 0.0 && radius <= MAX_RADIUS) {
                     return Err((
                         name,
-                        format!("a filter's radius is above 0 and at most {MAX_RADIUS} pixels, not {radius}"),
+                        format!(
+                            "a filter's radius must be above 0 and at most {MAX_RADIUS} pixels, not {radius}"
+                        ),
                     ));
                 }
             }

@@ -1,8 +1,8 @@
 //! Layers beside the colour: means, identifiers, variance, and how they are written.
 
 use alhazen_film::{
-    Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstHit, Layer, LayerSet, PIXEL_BYTES, PassSet,
-    ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,
+    Development, Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstHit, Layer, LayerSet,
+    PIXEL_BYTES, PassSet, ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,
 };
 use description::SceneDesc;
 use image::{Attribute, Format, Image, PixelSource, ReadOptions, WriteOptions, encode, read};
@@ -49,7 +49,11 @@ fn add_light(film: &mut Film, pixel: [i32; 2], weight: f32, first_hit: Option<Fi
 
 /// The picture with all layers, as a reader of its file sees it.
 fn written(film: &Film) -> Image {
-    let bytes = encode(&film.development(), Format::Exr, &WriteOptions::default()).unwrap();
+    through_file(&film.development())
+}
+
+fn through_file(picture: &Development) -> Image {
+    let bytes = encode(picture, Format::Exr, &WriteOptions::default()).unwrap();
     read(&bytes, "", &ReadOptions::default()).unwrap()
 }
 
@@ -210,9 +214,11 @@ fn order_merging_and_files_do_not_change_a_bit() {
             film
         })
     });
-    let mut merged = whole.blank();
-    parts.iter().for_each(|part| merged.merge(part));
+    let mut merged = whole.blank().unwrap();
+    parts.iter().for_each(|part| merged.merge(part).unwrap());
     assert!(bits(&merged) == bits(&whole));
+    let both = Development::new(&parts[0], Some(&parts[1]), whole.layers());
+    assert!(through_file(&both).values().map(f32::to_bits).eq(bits(&whole)), "without merging");
 
     let files = [0, 1].map(|part| {
         let done = PassSet::from(3 * part..3 * part + 3);
@@ -236,7 +242,7 @@ fn layers_do_not_change_the_colours() {
         add_pass(&mut plain, pass);
         add_pass(&mut layered, pass);
     });
-    let colors = |film: &Film| film.develop().values().map(f32::to_bits).collect::<Vec<_>>();
+    let colors = |film: &Film| film.develop().unwrap().values().map(f32::to_bits).collect::<Vec<_>>();
     assert!(colors(&plain) == colors(&layered));
     assert!(plain.development().channels().len() == 3);
 }

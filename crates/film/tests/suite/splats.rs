@@ -1,6 +1,6 @@
 //! Light that arrives anywhere on the film.
 
-use alhazen_film::{Film, compile};
+use alhazen_film::{Development, Film, LayerSet, compile};
 use description::{FilterDesc, SceneDesc};
 use math::Vec2;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -18,16 +18,16 @@ fn film(filter: FilterDesc) -> Film {
 
 fn splat(film: &mut Film, at: Vec2, l: f32) {
     let lambda = SampledWavelengths::sample_visible(0.3);
-    film.tiles_and_splatter().1.add(at, &SampledSpectrum::new([l; 4]), &lambda);
+    film.tiles_and_splatter().expect("memory").1.add(at, &SampledSpectrum::new([l; 4]), &lambda);
 }
 
 fn count(film: &mut Film, paths: u64) {
-    film.tiles_and_splatter().1.add_paths(paths);
+    film.tiles_and_splatter().expect("memory").1.add_paths(paths);
 }
 
 /// The green value of a pixel.
 fn green(film: &Film, [x, y]: [i32; 2]) -> f64 {
-    f64::from(film.develop().rgb(x as u32, y as u32)[1])
+    f64::from(film.develop().expect("memory").rgb(x as u32, y as u32)[1])
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn a_splat_reaches_pixels_as_their_filter_says() {
     let mut film = film(gaussian);
     // A sample of weight 1 of the same light is the measure of all.
     let lambda = SampledWavelengths::sample_visible(0.3);
-    let mut measure = film.blank();
+    let mut measure = film.blank().unwrap();
     measure.add_sample([0, 0], &SampledSpectrum::new([1.0; 4]), &lambda, 1.0);
     let unit = green(&measure, [0, 0]);
 
@@ -78,7 +78,7 @@ fn the_largest_component_of_a_splat_is_that_of_a_sample() {
     splat(&mut film, below, 0.5 * pixels);
     splat(&mut film, above, 1e6 * pixels);
     count(&mut film, pixels as u64);
-    let mut measure = film.blank();
+    let mut measure = film.blank().unwrap();
     let lambda = SampledWavelengths::sample_visible(0.3);
     measure.add_sample([0, 0], &SampledSpectrum::new([0.5; 4]), &lambda, 1.0);
     measure.add_sample([1, 0], &SampledSpectrum::new([1e6; 4]), &lambda, 1.0);
@@ -102,14 +102,17 @@ fn order_and_merging_do_not_change_a_bit() {
         count(&mut film, 250);
         film
     };
-    let bits = |film: &Film| film.develop().values().map(f32::to_bits).collect::<Vec<_>>();
+    let bits = |film: &Film| film.develop().unwrap().values().map(f32::to_bits).collect::<Vec<_>>();
     let (first, second) = splats.split_at(200);
     let mut backward = all(&mut splats.iter().rev());
     let mut merged = all(&mut second.iter());
-    merged.merge(&all(&mut first.iter()));
+    merged.merge(&all(&mut first.iter())).unwrap();
     let mut whole = all(&mut splats.iter());
     count(&mut whole, 250);
     assert_eq!(bits(&merged), bits(&whole), "paths are added, too");
+    let parts = [&second, &first].map(|part| all(&mut part.iter()));
+    let both = Development::new(&parts[0], Some(&parts[1]), LayerSet::NONE).to_image().unwrap();
+    assert!(both.values().map(f32::to_bits).eq(bits(&whole)), "without merging");
     count(&mut backward, 250);
     assert_eq!(bits(&backward), bits(&whole));
 }
@@ -123,8 +126,8 @@ fn what_is_no_light_or_not_on_the_film_is_left_out() {
     assert_eq!(film.rejected().count, 2);
     for at in [Vec2::NAN, Vec2::splat(f32::INFINITY), Vec2::splat(-1e30), Vec2::new(36.0, 5.0)] {
         splat(&mut film, at, 1.0);
-        assert!(!film.tiles_and_splatter().1.reach().contains(at));
+        assert!(!film.tiles_and_splatter().unwrap().1.reach().contains(at));
     }
     assert_eq!(film.rejected().count, 2);
-    assert!(film.develop().values().all(|value| value == 0.0));
+    assert!(film.develop().unwrap().values().all(|value| value == 0.0));
 }

@@ -75,7 +75,7 @@ impl Format {
     /// The format of a file: by its content, or where that does not tell, by its name.
     fn of(bytes: &[u8], name: &str) -> Result<Self, ImageError> {
         Self::from_content(bytes).or_else(|| Self::from_name(name)).ok_or_else(|| {
-            ImageError::Unsupported("neither content nor name tell a known image format".into())
+            ImageError::Unsupported("neither content nor extension is that of a known image format".into())
         })
     }
 
@@ -231,7 +231,7 @@ pub fn replace_file_with<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut File) -> Result<(), E>,
 ) -> Result<(), E> {
-    let path = &link_target(path);
+    let path = &link_target(path)?;
     if is_special(path) {
         return write(&mut OpenOptions::new().write(true).open(path)?);
     }
@@ -254,17 +254,17 @@ fn is_special(path: &Path) -> bool {
 }
 
 /// The file that a path leads to through symbolic links, whether it exists or not; the path itself
-/// where it is no link.
-pub fn link_target(path: &Path) -> PathBuf {
+/// where it is no link. An error where links lead to each other in a circle.
+pub fn link_target(path: &Path) -> io::Result<PathBuf> {
     /// As many links as Linux follows.
     const MOST_LINKS: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {
-        let Ok(next) = fs::read_link(&target) else { break };
+        let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         // A relative link starts at the folder that it is in.
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    target
+    Err(io::Error::other("too many symbolic links"))
 }
 
 /// Creates a new file in the folder of `path`, so that it can be renamed to it.

@@ -34,9 +34,10 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
         .ok()
         .filter(|&size| size as u64 <= options.byte_limit(bytes.len()))
         .ok_or_else(|| ImageError::Limits(format!("{width} × {height} pixels")))?;
-    let mut samples = filled(size, 0)?;
-    // Where memory is short, the library's own work would end the program: it is tried out.
+    let mut samples = reserved(size)?;
+    // The library aborts where its own allocation fails, so that memory is tested first.
     drop(reserved::<u8>(size)?);
+    samples.resize(size, 0);
     decoder.read_image(&mut samples).map_err(from_library)?;
     if format == Format::Png {
         check_palette(bytes)?;

@@ -10,7 +10,7 @@ fn picture(channels: &[&str]) -> Image {
 }
 
 #[test]
-fn every_format_tells_its_size_and_depth() {
+fn every_format_reports_its_size_and_depth() {
     use SampleDepth::{F16, F32, Natural, U8, U16};
     for (format, depth, sample) in [
         (Format::Exr, F16, Sample::Float(16)),
@@ -37,7 +37,7 @@ fn every_format_tells_its_size_and_depth() {
 }
 
 #[test]
-fn layers_windows_and_attributes_of_exr_are_told() {
+fn layers_windows_and_attributes_of_exr_are_reported() {
     let mut picture = picture(&["R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B", "depth.Z"]);
     picture.metadata.data_window = Some(Window { min: [10, 20], max: [16, 24] });
     picture.metadata.display_window = Some(Window::of_size(64, 48));

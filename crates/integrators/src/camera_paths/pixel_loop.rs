@@ -8,7 +8,7 @@ use scene::{Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, Tracer};
+use crate::{Cancelled, Control, Integrator, PassError, Tracer};
 
 /// An algorithm that estimates the radiance along a ray.
 pub trait RayIntegrator: Send + Sync {
@@ -58,12 +58,13 @@ impl<R: RayIntegrator> Integrator for PixelLoop<R> {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        pixels.add(film.tiles_mut(), control, |sample, tracer| {
+        let stats = pixels.add(film.tiles_mut()?, control, |sample, tracer| {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
             self.rays.li(tracer, camera_ray.ray, &mut sample.lambda) * camera_ray.weight
-        })
+        })?;
+        Ok(stats)
     }
 }

@@ -36,7 +36,7 @@ use spectrum::SampledSpectrum;
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
 use crate::light_paths::endless;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, PassError};
 
 /// Light tracing.
 #[derive(Debug)]
@@ -84,7 +84,7 @@ impl Integrator for LightTracing {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let paths = Bidirectional {
             scene,
             view,
@@ -95,9 +95,9 @@ impl Integrator for LightTracing {
         };
         let seen = Bidirectional { max_depth: 0, ..paths };
         let filter = film.filter().clone();
-        let (tiles, splatter) = film.tiles_and_splatter();
+        let (tiles, splatter) = film.tiles_and_splatter()?;
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        pixels.add(tiles, control, |sample, tracer| {
+        let stats = pixels.add(tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();
             light_sampler.start_pixel_sample(sample.pixel, pass, 0);
@@ -123,7 +123,8 @@ impl Integrator for LightTracing {
                 });
             }
             l
-        })
+        })?;
+        Ok(stats)
     }
 
     fn summary(&self) -> Vec<(&'static str, String)> {

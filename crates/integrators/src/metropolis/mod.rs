@@ -60,7 +60,7 @@ use target::{CameraPaths, ConnectedPaths, FilmDomain, Target};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, Path, RayIntegrator};
+use crate::{Cancelled, Control, Integrator, PassError, Path, RayIntegrator};
 
 /// Metropolis light transport.
 #[derive(Debug)]
@@ -120,11 +120,11 @@ impl Integrator for Mlt {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let MltDesc { max_depth, regularize, .. } = self.settings;
         let filter = film.filter().clone();
         let mutations = film.pixel_bounds().area();
-        let (tiles, splatter) = film.tiles_and_splatter();
+        let (tiles, splatter) = film.tiles_and_splatter()?;
         let domain = FilmDomain::new(&splatter);
 
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };

@@ -37,7 +37,7 @@ use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::light_paths::endless;
 use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, PassError};
 
 /// How slowly the radius shrinks.
 const ALPHA: f32 = 2.0 / 3.0;
@@ -88,7 +88,7 @@ impl Integrator for Sppm {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let pixel_count = film.pixel_bounds().area();
         let photon_paths = self.settings.photons_per_iteration.map_or(pixel_count, |count| count as usize);
         if self.settings.radius.is_none() {
@@ -120,7 +120,7 @@ impl Integrator for Sppm {
         let shutter = self.merging.shutter(view, pass);
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        stats += pixels.add_at(Some(&shutter), film.tiles_mut(), control, |sample, tracer| {
+        stats += pixels.add_at(Some(&shutter), film.tiles_mut()?, control, |sample, tracer| {
             let mut l = SampledSpectrum::ZERO;
             let Some(camera_ray) = &sample.camera_ray else { return l };
             let lambda = &sample.lambda;

@@ -61,7 +61,7 @@ use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
 use crate::photons::merging::Merging;
 use crate::photons::specular_paths::{SpecularChain, SpecularPaths};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, PassError};
 
 /// The first radius as a part of that of the scene, as in [Georgiev 2012]. Where photons come
 /// through a narrow gap, a larger one lets them seep far: behind a door 2.4 times this one has 70
@@ -124,7 +124,7 @@ impl Integrator for Vcm {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let bounds = film.pixel_bounds();
         let pixel_count = bounds.area();
         let photon_paths = pixel_count.min(self.photon_paths);
@@ -154,7 +154,7 @@ impl Integrator for Vcm {
         let photons = self.merging.sort(photons, photon_paths, subpaths.bytes(), pass);
         let shutter = self.merging.shutter(view, pass);
         let filter = film.filter().clone();
-        let (tiles, splatter) = film.tiles_and_splatter();
+        let (tiles, splatter) = film.tiles_and_splatter()?;
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
         stats += pixels.add_at(Some(&shutter), tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;

@@ -60,7 +60,7 @@ use spectrum::RgbColorSpace;
 
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, OutputFile};
+use crate::{Cancelled, Control, Integrator, OutputFile, PassError};
 use bands::Bands;
 use shooting::Solution;
 use show::{Interpolation, SolutionRadiance};
@@ -166,7 +166,7 @@ impl Integrator for Radiosity {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let steps = self.settings.steps;
         let samples = self.sampler.samples_per_pixel();
         let Some(state) = &mut self.state else { return Ok(RayStats::default()) };
@@ -197,8 +197,9 @@ impl Integrator for Radiosity {
             Ok(stats)
         };
         // A better solution makes a new picture, which takes the place of a draft when it is whole.
-        let mut better = (pass < steps || self.draft_is_shown).then(|| film.blank());
-        let tiles = better.as_mut().unwrap_or(film).tiles_mut();
+        let is_new = pass < steps || self.draft_is_shown;
+        let mut better = is_new.then(|| film.blank()).transpose()?;
+        let tiles = better.as_mut().unwrap_or(film).tiles_mut()?;
         let drawn: Vec<RayStats> = tiles.into_par_iter().map(draw).collect::<Result<_, Cancelled>>()?;
         drawn.into_iter().for_each(|some| stats += some);
         if let Some(better) = better {

@@ -34,7 +34,7 @@ fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: u32, seed: i3
     let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
     let kind = SamplerKind::Independent { pixel_samples: samples };
     desc.sampler.value = SamplerDesc { kind, seed: Some(seed) };
-    let image = finished(&desc, build(&desc).unwrap().integrator).state().film.develop();
+    let image = finished(&desc, build(&desc).unwrap().integrator).state().film.develop().unwrap();
     let [width, height] = RESOLUTION.map(|n| n as u32);
     let row = |y| (0..width).map(|x| f64::from(image.rgb(x, y)[1])).sum::<f64>() / f64::from(width);
     let column = |x| (0..height).map(|y| f64::from(image.rgb(x, y)[1])).sum::<f64>() / f64::from(height);

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Vcm, build};
+use alhazen_integrators::{Control, PassError, Vcm, build};
 use description::{
     BdptDesc, CameraKind, IntegratorDesc, LensDesc, LightKind, SamplerDesc, SamplerKind, SceneDesc,
     ScreenDesc, ShapeDesc, SpectrumDesc, SppmDesc, TextureDesc, TextureKind, TransformDesc, VcmDesc,
@@ -50,7 +50,7 @@ fn means<const N: usize>(
 
 /// The mean of all values of the picture.
 fn mean(film: &Film) -> f64 {
-    let picture = film.develop();
+    let picture = film.develop().unwrap();
     picture.values().map(f64::from).sum::<f64>() / picture.values().count() as f64
 }
 
@@ -223,7 +223,7 @@ fn a_pass_can_be_stopped_before_its_photons_are_shot() {
         integrator.pass(0, &scene, &view, &mut film, &control).unwrap();
         let taken = film.sample_count();
         control.cancel.store(true, Ordering::Relaxed);
-        assert_eq!(integrator.pass(1, &scene, &view, &mut film, &control), Err(Cancelled));
+        assert_eq!(integrator.pass(1, &scene, &view, &mut film, &control), Err(PassError::Cancelled));
         assert_eq!(film.sample_count(), taken);
         let summary = integrator.summary();
         assert_eq!(summary.iter().map(|(name, _)| *name).collect::<Vec<_>>(), ["photons", "radius"]);

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::Ordering;
 
-use alhazen_integrators::{Cancelled, Control, Integrator, build};
+use alhazen_integrators::{Control, Integrator, PassError, build};
 use description::{
     IntegratorDesc, LightKind, LightSamplerDesc, MltDesc, MltTechnique, Origin, PathDesc, SamplerDesc,
     SamplerKind, SceneDesc, ShapeDesc, Span, SpectrumDesc, Stated,
@@ -47,12 +47,12 @@ fn picture(desc: &SceneDesc) -> Film {
 }
 
 fn bits(film: &Film) -> Vec<u32> {
-    film.develop().values().map(f32::to_bits).collect()
+    film.develop().unwrap().values().map(f32::to_bits).collect()
 }
 
 /// The mean luminance of the picture.
 fn mean(desc: &SceneDesc) -> f64 {
-    let image = picture(desc).develop();
+    let image = picture(desc).develop().unwrap();
     let (width, height) = (image.width(), image.height());
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
     let luminance = pixels.map(|[x, y]| {
@@ -162,7 +162,7 @@ fn a_pass_owes_nothing_to_those_before_it() {
         let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(technique, 5)), 2);
         let ((scene, view), mut film, mut integrator) = prepared(&desc);
         integrator.prepare(&scene, &view, &Control::default()).unwrap();
-        let mut parts = film.blank();
+        let mut parts = film.blank().unwrap();
         for pass in [0, 1, 2] {
             integrator.pass(pass, &scene, &view, &mut film, &Control::default()).unwrap();
         }
@@ -170,7 +170,7 @@ fn a_pass_owes_nothing_to_those_before_it() {
             let (_, mut part, mut integrator) = prepared(&desc);
             integrator.prepare(&scene, &view, &Control::default()).unwrap();
             integrator.pass(pass, &scene, &view, &mut part, &Control::default()).unwrap();
-            parts.merge(&part);
+            parts.merge(&part).unwrap();
         }
         assert!(bits(&film) == bits(&parts), "{technique:?}");
     }
@@ -183,8 +183,8 @@ fn chains_stop_when_told_to() {
     integrator.prepare(&scene, &view, &Control::default()).unwrap();
     let control = Control::default();
     control.cancel.store(true, Ordering::Relaxed);
-    assert_eq!(integrator.pass(0, &scene, &view, &mut film, &control), Err(Cancelled));
-    assert!(film.develop().values().all(|value| value == 0.0));
+    assert_eq!(integrator.pass(0, &scene, &view, &mut film, &control), Err(PassError::Cancelled));
+    assert!(film.develop().unwrap().values().all(|value| value == 0.0));
 }
 
 #[test]

@@ -22,7 +22,7 @@ fn luminances(desc: &SceneDesc, integrator: &IntegratorDesc, seed: i32, passes: 
     desc.sampler.value =
         SamplerDesc { kind: SamplerKind::Independent { pixel_samples: passes }, seed: Some(seed) };
     let (film, _) = picture(&desc, 1);
-    let image = film.develop();
+    let image = film.develop().unwrap();
     let luminance = |[r, g, b]: [f32; 3]| f64::from(0.2126 * r + 0.7152 * g + 0.0722 * b);
     let pixels = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
     pixels.map(|(x, y)| luminance(image.rgb(x, y))).collect()

@@ -17,9 +17,13 @@ impl Compiler<'_> {
     /// Reports factors of brightness, by name, that make no sense.
     pub(super) fn check_brightness(&mut self, origin: &Origin, factors: &[(&str, Option<f32>)]) {
         for &(name, factor) in factors {
-            if let Some(factor) = factor.filter(|factor| !(factor.is_finite() && *factor >= 0.0)) {
+            let Some(factor) = factor else { continue };
+            if !(factor.is_finite() && factor >= 0.0) {
                 let message = format!("`{name}` of a light is {factor}; it must be finite and not negative");
                 self.error("invalid-value", message, origin.parameter(name));
+            } else if factor == 0.0 {
+                let message = format!("`{name}` of a light is 0; it emits nothing");
+                self.warn("black-light", message, origin.parameter(name));
             }
         }
     }
@@ -28,6 +32,9 @@ impl Compiler<'_> {
     pub(super) fn emission(&mut self, spectrum: &SpectrumDesc, scale: f32, span: Span) -> Emission {
         let spectrum = compile_spectrum(spectrum, SpectrumType::Illuminant, span, &mut self.diagnostics);
         let photometric = spectrum.to_photometric();
+        if photometric == 0.0 {
+            self.warn("black-light", "the light is black; it emits nothing", span);
+        }
         let scale = if photometric > 0.0 { scale / photometric } else { 0.0 };
         let emission = Emission { spectrum: spectrum.to_dense(), scale };
         if !photometric.is_finite() || !emission.max_value().is_finite() {

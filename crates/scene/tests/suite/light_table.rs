@@ -81,6 +81,36 @@ fn scenes_without_light_give_a_warning() {
 }
 
 #[test]
+fn lights_that_emit_nothing_give_a_warning() {
+    let point = |intensity: f32, scale, power| {
+        with(|desc| {
+            desc.shapes.push(sphere(1.0).into());
+            let kind = LightKind::Point { intensity: intensity.into(), power, from: Vec3::ZERO };
+            desc.lights.push(LightDesc { scale, ..kind.into() });
+        })
+    };
+    let area = |radiance: f32, scale| {
+        with(|desc| {
+            let light = desc.area_lights.push(AreaLightDesc { scale, ..AreaLightDesc::new(radiance.into()) });
+            desc.shapes.push(ShapeDesc { area_light: Some(light), ..sphere(1.0).into() });
+        })
+    };
+    for (lit, black) in [
+        (
+            point(1.0, 1.0, Some(5.0)),
+            [point(0.0, 1.0, None), point(1.0, 0.0, None), point(1.0, 1.0, Some(0.0))],
+        ),
+        (area(1.0, 1.0), [area(0.0, 1.0), area(1.0, 0.0), area(0.0, 2.0)]),
+    ] {
+        assert_eq!(diagnostics(&lit), []);
+        for desc in black {
+            let [warning] = &diagnostics(&desc)[..] else { panic!("one warning") };
+            assert!(warning.code == "black-light" && !warning.is_error(), "{}", warning.message);
+        }
+    }
+}
+
+#[test]
 fn invalid_emission_is_an_error() {
     let span = Span::new(FileId(0), 7, 8);
     let light = |scale, power| {

@@ -1,4 +1,4 @@
-//! What the tests of the command line share: the program, folders that vanish, and a small scene.
+//! What the tests of the command line share: the program, temporary folders, and a small scene.
 
 use std::fs;
 use std::io::Write;

@@ -32,7 +32,7 @@ use techniques::Techniques;
 
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Found, Lights};
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, PassError};
 
 /// Bidirectional path tracing.
 #[derive(Debug)]
@@ -79,7 +79,7 @@ impl Integrator for Bdpt {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let pixel_count = film.pixel_bounds().area();
         let paths = Bidirectional {
             scene,
@@ -90,12 +90,12 @@ impl Integrator for Bdpt {
             regularize: self.settings.regularize,
         };
         let filter = film.filter().clone();
-        let techniques = self.techniques.open(film);
-        let (tiles, splatter) = film.tiles_and_splatter();
+        let techniques = self.techniques.open(film)?;
+        let (tiles, splatter) = film.tiles_and_splatter()?;
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
         // On films of splats a sample of a pixel counts as one of all paths.
         let per_sample = pixel_count as f32 / filter.integral();
-        pixels.add(tiles, control, |sample, tracer| {
+        let stats = pixels.add(tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;
             let mut light_sampler = self.light_sampler.clone();
             light_sampler.start_pixel_sample(sample.pixel, pass, 0);
@@ -139,7 +139,8 @@ impl Integrator for Bdpt {
                 });
             }
             l
-        })
+        })?;
+        Ok(stats)
     }
 
     fn films(&self) -> Vec<(String, &Film)> {

@@ -7,6 +7,7 @@
 //! KiB for each pixel. More than 2 GiB are refused.
 
 use film::{Film, SPLAT_BYTES, Splatter};
+use image::ImageError;
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::Found;
@@ -40,12 +41,13 @@ impl Techniques {
     }
 
     /// To be added to; each film is made like `film` when there is none yet.
-    pub fn open(&mut self, film: &Film) -> Splatters<'_> {
+    /// Refused where there is no memory for them.
+    pub fn open(&mut self, film: &Film) -> Result<Splatters<'_>, ImageError> {
         let count = strategies(self.max_depth).count();
-        Splatters {
-            unweighted: splatters(&mut self.unweighted, count, film),
-            weighted: splatters(&mut self.weighted, count, film),
-        }
+        Ok(Splatters {
+            unweighted: splatters(&mut self.unweighted, count, film)?,
+            weighted: splatters(&mut self.weighted, count, film)?,
+        })
     }
 
     /// The films with their names, once there are any.
@@ -67,14 +69,16 @@ impl Techniques {
     }
 }
 
-fn splatters<'film>(films: &'film mut Option<Vec<Film>>, count: usize, like: &Film) -> Vec<Splatter<'film>> {
-    let films = films.iter_mut().flat_map(|films| {
-        if films.is_empty() {
-            films.resize_with(count, || like.for_splats());
-        }
-        films.iter_mut()
-    });
-    films.map(|film| film.tiles_and_splatter().1).collect()
+fn splatters<'film>(
+    films: &'film mut Option<Vec<Film>>,
+    count: usize,
+    like: &Film,
+) -> Result<Vec<Splatter<'film>>, ImageError> {
+    let Some(films) = films else { return Ok(Vec::new()) };
+    if films.is_empty() {
+        *films = (0..count).map(|_| like.for_splats()).collect::<Result<_, _>>()?;
+    }
+    films.iter_mut().map(|film| Ok(film.tiles_and_splatter()?.1)).collect()
 }
 
 /// The films, while a pass adds to them.

@@ -51,7 +51,7 @@ use crate::transport::Tracer;
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::shutter_sample::ShutterSample;
-use crate::{Cancelled, Control, Integrator};
+use crate::{Cancelled, Control, Integrator, PassError};
 
 use emission::{Emission, Kind};
 use gather::{Gather, MeanRadius, PhotonMaps};
@@ -124,13 +124,13 @@ impl PhotonMapping {
         emission: &Emission,
         film: &mut Film,
         control: &Control,
-    ) -> Result<(Tally, RayStats), Cancelled> {
+    ) -> Result<(Tally, RayStats), PassError> {
         let scene = emission.paths.scene;
         let mean = |lambda: &SampledWavelengths, l: SampledSpectrum| l.safe_div(lambda.pdf()).average();
         let fixed = SampledWavelengths::sample_visible(0.5);
         let power: f32 = scene.lights().iter().map(|light| mean(&fixed, light.phi(&fixed))).sum();
         let white = mean(&fixed, SampledSpectrum::ONE) / (power * CIE_Y_INTEGRAL);
-        let (_, splatter) = film.tiles_and_splatter();
+        let (_, splatter) = film.tiles_and_splatter()?;
         let dot = |vertex: &Vertex, tracer: &mut Tracer| {
             let lens = tracer.sampler.get_2d();
             if let Some(seen) = emission.paths.connect_to_camera(vertex, lens, splatter.reach(), tracer) {
@@ -177,7 +177,7 @@ impl Integrator for PhotonMapping {
         view: &View,
         film: &mut Film,
         control: &Control,
-    ) -> Result<RayStats, Cancelled> {
+    ) -> Result<RayStats, PassError> {
         let settings = &self.settings;
         let paths = Bidirectional {
             scene,
@@ -206,7 +206,7 @@ impl Integrator for PhotonMapping {
         let gather = Gather { direct, maps: &maps, settings, neighbourhood, mean_radius };
         let filter = film.filter().clone();
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        stats += pixels.add_at(Some(&shutter), film.tiles_mut(), control, |sample, tracer| {
+        stats += pixels.add_at(Some(&shutter), film.tiles_mut()?, control, |sample, tracer| {
             let Some(camera_ray) = sample.camera_ray else { return SampledSpectrum::ZERO };
             gather.li(camera_ray.ray, &sample.lambda, tracer) * camera_ray.weight
         })?;

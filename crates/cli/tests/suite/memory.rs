@@ -1,0 +1,30 @@
+//! Memory that runs out is an error that says what it was for, wherever input can cause it.
+
+use std::process::Command;
+
+use crate::common::{Finished, Folder};
+
+/// Runs the program in the folder with this many MiB of address space.
+fn with_memory(folder: &Folder, mebibytes: u32, arguments: &[&str]) -> Finished {
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v $0 && exec \"$@\"", &(mebibytes << 10).to_string()]);
+    command.arg(env!("CARGO_BIN_EXE_alhazen")).args(arguments).current_dir(folder.path());
+    command.output().expect("the program runs").into()
+}
+
+#[test]
+fn a_second_film_may_not_fit() {
+    let folder = Folder::with_scene("memory-films");
+    // A film of 393 MiB; the second has the same size.
+    let layers = "depth,normal,camera-normal,position,camera-position,albedo,uv,motion,variance,alpha";
+    let film = ["render", "scene.pbrt", "-o", "a.exr", "--threads", "1", "--resolution", "1000x1000"];
+    let more = ["--integrator", "ray-casting", "--spp", "1", "--aov", layers, "--noise", "0.1"];
+    let finished = with_memory(&folder, 740, &[&film[..], &more].concat()).expect(1);
+    assert!(finished.err.contains("error: no memory for a film of 1000 × 1000 pixels"), "{finished:?}");
+    // Main film and splats take 84 MiB, each strategy 34 MiB.
+    let techniques = ["--integrator", "bdpt", "--set", "techniques=true", "--json"];
+    let finished = with_memory(&folder, 600, &[&film[..], &techniques].concat()).expect(1);
+    assert_eq!(finished.json()["status"], "error");
+    let message = &finished.json()["errors"][0]["message"];
+    assert_eq!(message, "no memory for a film of 1000 × 1000 pixels");
+}
