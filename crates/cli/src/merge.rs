@@ -41,7 +41,7 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
     let missing = merged.missing();
     if !missing.is_empty() {
         let (missing, splits) = (list(&missing), splits(&arguments.films, &merged.shards()));
-        return Err(Failure::Input(format!("the picture is incomplete: {missing} missing{splits}")));
+        return Err(Failure::Input(format!("the picture is incomplete: missing {missing}{splits}")));
     }
     let header = merged.header().clone();
     let (state, films) = merged.into_state();
@@ -87,11 +87,11 @@ fn splits(films: &[PathBuf], shards: &[Shard]) -> String {
     format!("\nThe films are of different splits: {}", shards.join(", "))
 }
 
-/// "a, b and c are", "a is".
+/// "a, b and c".
 fn list(names: &[String]) -> String {
     match names {
         [] => String::new(),
-        [one] => format!("{one} is"),
-        [first @ .., last] => format!("{} and {last} are", first.join(", ")),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }

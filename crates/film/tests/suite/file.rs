@@ -221,10 +221,10 @@ fn errors_name_the_section_and_what_is_wrong_with_it() {
     assert!(text.starts_with("damaged film file: section HEAD: its checksum is "), "{text}");
     let text = message(&bytes[..bytes.len() - 1]);
     assert_eq!(text, "damaged film file: section END: the file ends early");
-    // A length that the file could not have; nothing of that size is made room for.
+    // A length that the file could not have; nothing of that size is allocated.
     let mut long = bytes;
     long[16..24].copy_from_slice(&u64::MAX.to_le_bytes());
-    assert!(message(&long).contains("section HEAD: it claims 18446744073709551615 bytes"));
+    assert!(message(&long).contains("section HEAD: its length is 18446744073709551615 bytes"));
 }
 
 /// A file whose film claims to have this many pixels, with right checksums.

@@ -30,9 +30,11 @@ impl Compiler<'_> {
 
     /// A light's spectrum, scaled to one unit of luminance times `scale`.
     pub(super) fn emission(&mut self, spectrum: &SpectrumDesc, scale: f32, span: Span) -> Emission {
+        let before = self.diagnostics.len();
         let spectrum = compile_spectrum(spectrum, SpectrumType::Illuminant, span, &mut self.diagnostics);
         let photometric = spectrum.to_photometric();
-        if photometric == 0.0 {
+        // In the place of a spectrum with an error is a black one.
+        if photometric == 0.0 && self.diagnostics.len() == before {
             self.warn("black-light", "the light is black; it emits nothing", span);
         }
         let scale = if photometric > 0.0 { scale / photometric } else { 0.0 };
