@@ -1,11 +1,11 @@
-//! Indices into the tables of a scene, by which everything refers to everything else.
+//! Indices into the tables of a scene, by which its parts refer to each other.
 
 /// Index of a material in [`Scene::materials`](crate::Scene::materials).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(pub u32);
 
-/// Index of a light in its scene. The lights of an emitting geometry follow each other in the order
-/// of its primitives.
+/// Index of a light in its scene. The lights of an emitting geometry have consecutive indices, in
+/// the order of its primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LightId(pub u32);
 

@@ -1,10 +1,10 @@
-//! A hit as shading sees it: the point on the surface, what the surface is made of, and how large a
-//! pixel is there.
+//! A surface interaction: the point of a hit with its material, its light and its footprint.
 //!
-//! The footprint of a pixel on the surface comes from ray differentials where the ray still has
-//! them — the neighbouring rays meet the tangent plane at p + ∂p/∂x — and from the camera's mean
-//! otherwise; ∂(u,v)/∂(x,y) then follow by least squares from ∂p/∂(u,v). Reflections and
-//! refractions off smooth surfaces carry the differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
+//! The footprint of a pixel on the surface comes from the ray differentials, if the ray has them —
+//! the neighbouring rays hit the tangent plane at p + ∂p/∂x — and otherwise from the camera's
+//! [minimum differentials](crate::camera::Camera::approximate_dp_dxy); ∂(u,v)/∂(x,y) then follow by
+//! least squares from ∂p/∂(u,v). Reflections and refractions off smooth surfaces carry the
+//! differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
 
 use crate::camera::differential_scale;
 use crate::id::{LightId, MaterialId};
@@ -15,7 +15,7 @@ use geometry::SurfacePoint;
 use math::{Differentials, Point3, Ray, RayDifferential, Vec3, Vector3, difference_of_products};
 use scattering::BsdfSample;
 
-/// How far the surface point moves when the film position moves by a pixel.
+/// Derivatives of the surface point by film position, in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint {
     /// ∂p/∂x.
@@ -35,13 +35,13 @@ pub struct Footprint {
 /// A point on a surface of the scene.
 #[derive(Clone, Debug)]
 pub struct SurfaceInteraction {
-    /// Geometry's answer.
+    /// The point, as geometry returns it.
     pub surface: SurfacePoint,
-    /// What it is made of.
+    /// Its material.
     pub material: MaterialId,
-    /// The light that its surface is, if any.
+    /// The area light of the surface, if it emits.
     pub area_light: Option<LightId>,
-    /// The size of a pixel there; zero until [`SurfaceInteraction::compute_footprint`].
+    /// The footprint of the pixel; zero until [`SurfaceInteraction::compute_footprint`].
     pub footprint: Footprint,
 }
 
@@ -52,7 +52,7 @@ impl SurfaceInteraction {
         self.surface.p.p
     }
 
-    /// What light sampling needs to know.
+    /// The context of light sampling.
     #[inline]
     pub fn light_context(&self) -> LightSampleContext {
         LightSampleContext {
@@ -63,7 +63,7 @@ impl SurfaceInteraction {
         }
     }
 
-    /// What textures need to know.
+    /// The context of texture evaluation.
     #[inline]
     pub fn texture_context(&self) -> TextureContext {
         let f = &self.footprint;
@@ -81,7 +81,7 @@ impl SurfaceInteraction {
         }
     }
 
-    /// Finds the footprint of the pixel that `ray` came from.
+    /// Computes the footprint of the pixel of `ray`.
     pub fn compute_footprint(&mut self, ray: &RayDifferential, view: &View) {
         let s = &self.surface;
         let plane = |o: Point3, d: Vector3| {
@@ -92,7 +92,8 @@ impl SurfaceInteraction {
             .differentials
             .and_then(|d| Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?]));
         let [dpdx, dpdy] = seen.unwrap_or_else(|| {
-            // Without jitter each sample of a pixel stands for the whole pixel.
+            // Without jitter, all samples of a pixel have the same position, and each covers the
+            // whole pixel.
             let samples = if view.options.disable_pixel_jitter { 1 } else { view.samples_per_pixel };
             view.camera.approximate_dp_dxy(s.p.p, s.n, s.time, differential_scale(samples))
         });
@@ -127,7 +128,7 @@ impl SurfaceInteraction {
             .filter(|_| sample.flags.is_specular())
             .and_then(|d| self.scattered_differentials(from, &d, sample))
             .filter(|d| {
-                // Differentials that have grown beyond any use are dropped.
+                // Differentials too large for filtering are dropped.
                 d.rx_direction.length_squared() < 1e16
                     && d.ry_direction.length_squared() < 1e16
                     && d.rx_origin.length_squared() < 1e16
@@ -151,23 +152,23 @@ impl SurfaceInteraction {
         let dwodx = -d.rx_direction * unit - wo;
         let dwody = -d.ry_direction * unit - wo;
         let (rx_direction, ry_direction) = if sample.flags.is_reflective() {
-            let turned = |dwo: Vector3, dn: Vec3| {
+            let reflected = |dwo: Vector3, dn: Vec3| {
                 let dwo_dot_n = dwo.dot(n) + wo.dot(dn);
                 wi - dwo + 2.0 * (dn * wo.dot(n) + n * dwo_dot_n)
             };
-            (turned(dwodx, dndx), turned(dwody, dndy))
+            (reflected(dwodx, dndx), reflected(dwody, dndy))
         } else {
             if wo.dot(n) < 0.0 {
                 (n, dndx, dndy) = (-n, -dndx, -dndy);
             }
             let eta = sample.eta.recip();
             let mu = eta * wo.dot(n) - wi.dot(n).abs();
-            let bent = |dwo: Vector3, dn: Vec3| {
+            let refracted = |dwo: Vector3, dn: Vec3| {
                 let dwo_dot_n = dwo.dot(n) + wo.dot(dn);
                 let dmu = dwo_dot_n * (eta + eta * eta * wo.dot(n) / wi.dot(n));
                 wi - dwo * eta + n * dmu + dn * mu
             };
-            (bent(dwodx, dndx), bent(dwody, dndy))
+            (refracted(dwodx, dndx), refracted(dwody, dndy))
         };
         let (rx_origin, ry_origin) = (s.p.p + f.dpdx, s.p.p + f.dpdy);
         (rx_direction.is_finite() && ry_direction.is_finite()).then_some(Differentials {

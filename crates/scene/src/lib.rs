@@ -1,7 +1,7 @@
 //! The compiled scene: textures, materials, lights and geometry, and the views of it.
 //!
-//! [`compile`] turns a description into a [`Scene`], once; from then on nothing changes. Everything
-//! is in tables and is referred to by small ids. A [`View`] adds the camera.
+//! [`compile`] turns a description into an immutable [`Scene`]. Its parts are stored in tables and
+//! refer to each other by small ids. A [`View`] adds the camera.
 
 pub mod camera;
 mod compile;

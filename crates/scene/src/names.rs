@@ -4,20 +4,20 @@ use crate::material::MaterialId;
 use description::{InstanceDesc, SceneDesc};
 use geometry::Hit;
 
-/// Names of the objects and materials of a scene, for layers that identify them.
+/// Names of the objects and materials of a scene, for AOVs that identify them.
 ///
 /// An object is a shape of the world, or an instance with everything in it. The n-th instance of
-/// the object `tree` is `tree/n`, counted from 0. What the author gave no name is numbered in the
+/// the object `tree` is `tree/n`, counted from 0. Unnamed shapes and materials are numbered in the
 /// order of the description: `shape-7`, `material-7`.
 #[derive(Clone, Debug, Default)]
 pub struct Names {
     objects: Vec<Object>,
-    /// Names of what instances show.
+    /// The instanced objects.
     prototypes: Vec<Prototype>,
     materials: Vec<String>,
-    /// The object of each geometry that stands in no instance.
+    /// The object of each geometry outside of instances.
     of_geometries: Vec<u32>,
-    /// The object of each instance that stands in no other.
+    /// The object of each instance outside of other instances.
     of_instances: Vec<u32>,
 }
 
@@ -51,13 +51,13 @@ impl Names {
         }
     }
 
-    /// Names a shape of the world. Its geometries and instances are the last that the world has,
-    /// up to these counts.
+    /// Names a shape of the world. Its geometries and instances are those added to the world last,
+    /// up to these total counts.
     pub(crate) fn add_shape(&mut self, index: usize, geometries: usize, instances: usize) {
         self.add(Object::Shape(index as u32), geometries, instances);
     }
 
-    /// Names an instance of the world, as [`Self::add_shape`] names a shape.
+    /// Names an instance of the world, like [`Self::add_shape`].
     pub(crate) fn add_instance(&mut self, desc: &InstanceDesc, geometries: usize, instances: usize) {
         let prototype = desc.object.index();
         let count = &mut self.prototypes[prototype].instances;

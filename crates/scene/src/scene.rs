@@ -1,4 +1,4 @@
-//! The compiled world: what rays meet, what it is made of, and what shines.
+//! The compiled scene: geometry, materials and lights.
 
 use crate::camera::{CameraRay, CameraSample};
 use crate::interaction::{Footprint, SurfaceInteraction};
@@ -20,48 +20,47 @@ use scattering::{Bsdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::sync::atomic::AtomicBool;
 
-/// What belongs to one geometry of the world.
+/// Material, alpha and lights of one geometry of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct GeometryEntry {
-    /// What it is made of.
+    /// Its material.
     pub material: MaterialId,
-    /// Where it is there, unless everywhere.
+    /// Alpha texture, which cuts the surface out; `None` is opaque.
     pub alpha: Option<FloatTextureId>,
-    /// The light of its first primitive, if it emits; those of the others follow. Counted from the
-    /// first light of the group that it stands in: the id is the sum with the
-    /// [`InstanceEntry::first_light`] of all instances through which it is seen.
+    /// The light of its first primitive, if it emits; those of the other primitives follow. It is
+    /// an offset from the first light of the group that holds the geometry: the id is its sum with
+    /// the [`InstanceEntry::first_light`] of all instances on the path to the geometry.
     pub first_light: Option<u32>,
 }
 
-/// What belongs to one instance of the world.
+/// Lights of one instance of the world.
 #[derive(Clone, Copy, Debug)]
 pub struct InstanceEntry {
-    /// The first light of what it shows, counted from the first light of the group that it stands
-    /// in.
+    /// The first light of the instanced group, as an offset from the first light of the group that
+    /// holds the instance.
     pub first_light: u32,
 }
 
-/// What surfaces of material `interface` do to shadow rays. Rays that look for surfaces always pass
-/// them.
+/// Whether surfaces of material `interface` occlude shadow rays. All other rays pass through them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interfaces {
-    /// They stop them.
+    /// Interfaces occlude.
     #[default]
     Stop,
-    /// They let them pass.
+    /// Interfaces are ignored.
     Pass,
 }
 
 impl Interfaces {
-    /// What they do to the light of `light` where media are not known. The path tracer of the
-    /// pbrt-v4 format, which draws them as surfaces that a path goes through, finds lights behind
-    /// them by chance alone: so delta lights throw their shadow, and others do not.
+    /// Whether they occlude `light` where media are not supported. pbrt-v4's path tracer treats
+    /// interfaces as surfaces that shadow rays hit, and finds lights behind them by BSDF sampling
+    /// alone: delta lights therefore cast the shadows of interfaces, and other lights do not.
     pub fn before(light: LightRef) -> Self {
         if light.is_delta() { Self::Stop } else { Self::Pass }
     }
 }
 
-/// Everything that is rendered, from any [`View`]. Never changes once compiled.
+/// Everything that is rendered, from any [`View`]. Immutable once compiled.
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(crate) world_from_render: DMat4,
@@ -90,34 +89,34 @@ impl Scene {
         self.has_filtered_textures && !view.options.disable_texture_filtering
     }
 
-    /// What belongs to the geometries of the world, by [`GeometryId`].
+    /// The entries of the geometries of the world, by [`GeometryId`].
     pub fn geometries(&self) -> &[GeometryEntry] {
         &self.entries
     }
 
-    /// What belongs to the instances of the world, by [`InstanceId`](geometry::InstanceId).
+    /// The entries of the instances of the world, by [`InstanceId`](geometry::InstanceId).
     pub fn instances(&self) -> &[InstanceEntry] {
         &self.instances
     }
 
-    /// What surfaces are made of, by [`MaterialId`]: the materials in the order of the description,
-    /// and last the default one. The parts of a [`Mix`](Material::Mix) are rows of the same table,
-    /// and no mix is a part of itself.
+    /// The materials, by [`MaterialId`], in the order of the description; the default material
+    /// comes last. The parts of a [`Mix`](Material::Mix) are rows of the same table, and no mix is
+    /// a part of itself.
     pub fn materials(&self) -> &[MaterialEntry] {
         &self.materials
     }
 
-    /// The names of its objects and materials.
+    /// The names of objects and materials.
     pub fn names(&self) -> &Names {
         &self.names
     }
 
-    /// What holds of all of it.
+    /// Facts about the whole scene.
     pub fn traits(&self) -> &SceneTraits {
         &self.traits
     }
 
-    /// What area lights emit, by [`EmissionId`](crate::light::EmissionId).
+    /// The emissions of area lights, by [`EmissionId`](crate::light::EmissionId).
     pub fn emissions(&self) -> &[AreaEmission] {
         self.lights.emissions()
     }
@@ -128,38 +127,38 @@ impl Scene {
         Lights { table: &self.lights, world: &self.world, textures: &self.textures }
     }
 
-    /// The light of an id.
+    /// A light by its id.
     #[inline]
     pub fn light(&self, id: LightId) -> LightRef<'_> {
         self.lights().get(id)
     }
 
-    /// The lights that rays leaving the scene meet.
+    /// The lights whose radiance rays that leave the scene receive.
     pub fn infinite_lights(&self) -> &[LightId] {
         self.lights.infinite()
     }
 
-    /// A way of choosing among the lights; `None` if `cancel` is set while it is made.
+    /// A sampler of the lights; `None` if `cancel` is set while it is built.
     pub fn light_sampler(&self, desc: LightSamplerDesc, cancel: &AtomicBool) -> Option<LightSampler> {
         LightSampler::new(desc, self.lights(), cancel)
     }
 
-    /// The geometry, for what wants to look at it without materials.
+    /// The geometry, without materials.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The textures, which materials and lights refer to.
+    /// The textures of materials and lights.
     pub fn textures(&self) -> &Textures {
         &self.textures
     }
 
-    /// The sphere around everything that has an end.
+    /// The bounding sphere of all bounded shapes.
     pub fn sphere(&self) -> SceneSphere {
         self.sphere
     }
 
-    /// The nearest surface at 0 < t < `t_max`, and its t.
+    /// The nearest intersection at 0 < t < `t_max`, and its t.
     pub fn intersect(
         &self,
         ray: &Ray,
@@ -170,9 +169,9 @@ impl Scene {
         Some((self.interaction(&hit, self.world.surface(ray, &hit)), hit.t))
     }
 
-    /// Where the nearest surface at 0 < t < `t_max` is met.
+    /// The nearest hit at 0 < t < `t_max`.
     pub fn hit(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> Option<Hit> {
-        self.world.intersect(ray, t_max, &|hit, ray| self.is_there(hit, ray), stats)
+        self.world.intersect(ray, t_max, &|hit, ray| self.passes_alpha_test(hit, ray), stats)
     }
 
     /// Whether one of 64 × 64 camera rays, spread over a view of the given resolution, hits a
@@ -188,7 +187,7 @@ impl Scene {
         })
     }
 
-    /// What belongs to the primitive of a hit, at a point of its surface.
+    /// The surface interaction of a hit, at a point of the primitive's surface.
     pub fn interaction(&self, hit: &Hit, surface: SurfacePoint) -> SurfaceInteraction {
         let entry = &self.entries[hit.geometry.0 as usize];
         SurfaceInteraction {
@@ -203,13 +202,13 @@ impl Scene {
         }
     }
 
-    /// Whether all of a geometry is nothing but a change of medium.
+    /// Whether all of a geometry is an interface between media.
     pub fn is_all_interface(&self, geometry: GeometryId) -> bool {
         let entry = &self.entries[geometry.0 as usize];
         matches!(self.materials[entry.material.0 as usize].material, Material::Interface)
     }
 
-    /// Whether `ray` has hit nothing but a change of medium.
+    /// Whether `ray` has hit an interface between media.
     pub fn is_interface(&self, hit: &Hit, ray: &Ray) -> bool {
         let entry = &self.entries[hit.geometry.0 as usize];
         match self.materials[entry.material.0 as usize].material {
@@ -222,11 +221,11 @@ impl Scene {
         }
     }
 
-    /// Whether a surface that stops light lies at 0 < t < `t_max`.
+    /// Whether an occluding surface lies at 0 < t < `t_max`.
     pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
         let stops = |hit: &Hit, ray: &Ray| {
             let passes = interfaces == Interfaces::Pass && self.is_interface(hit, ray);
-            !passes && self.is_there(hit, ray)
+            !passes && self.passes_alpha_test(hit, ray)
         };
         self.world.occluded(ray, t_max, &stops, stats)
     }
@@ -246,9 +245,9 @@ impl Scene {
         !self.occluded(&ray, t_max, interfaces, stats)
     }
 
-    /// Whether a surface is there, where its alpha makes it come and go: it is with the probability
-    /// alpha, decided by a hash of the ray and the place.
-    fn is_there(&self, hit: &Hit, ray: &Ray) -> bool {
+    /// The stochastic alpha test: a hit counts with probability alpha, decided by a hash of the ray
+    /// and the point.
+    fn passes_alpha_test(&self, hit: &Hit, ray: &Ray) -> bool {
         let Some(texture) = self.entries[hit.geometry.0 as usize].alpha else { return true };
         let alpha = self.alpha(texture, &self.world.surface(ray, hit));
         if alpha >= 1.0 {
@@ -258,7 +257,7 @@ impl Scene {
         alpha > 0.0 && hash_float(&words) < alpha
     }
 
-    /// How much of the surface is there, around a point of the primitive of a hit: from 0 to 1.
+    /// The alpha, in [0, 1], at a point of the primitive of a hit.
     pub fn coverage(&self, hit: &Hit, surface: &SurfacePoint) -> f32 {
         let texture = self.entries[hit.geometry.0 as usize].alpha;
         texture.map_or(1.0, |texture| self.alpha(texture, surface).clamp(0.0, 1.0))
@@ -269,14 +268,14 @@ impl Scene {
         self.textures.float(texture, &context)
     }
 
-    /// Radiance that arrives along a ray which leaves the scene.
+    /// Radiance from the infinite lights along a ray that leaves the scene.
     pub fn escaped(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
         self.infinite_lights()
             .iter()
             .fold(SampledSpectrum::ZERO, |sum, &id| sum + self.light(id).le(ray, lambda))
     }
 
-    /// Radiance that a surface itself sends along `w`.
+    /// Radiance that a surface emits along `w`.
     pub fn emitted(
         &self,
         from: &SurfaceInteraction,
@@ -301,8 +300,9 @@ impl Scene {
         self.light(light).sample_li(context, u, lambda, allow_incomplete)
     }
 
-    /// [`LightRef::sample_le`] of one of this scene's lights. Light from infinity starts at the
-    /// sphere around all that has an end; what has none may keep it from there: `None` if it does.
+    /// [`LightRef::sample_le`] of one of this scene's lights. Rays of distant lights start on the
+    /// bounding sphere of all bounded shapes. Unbounded shapes may occlude them before they reach
+    /// it: `None` if one does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -323,9 +323,8 @@ impl Scene {
         Some(sample)
     }
 
-    /// How the surface scatters at a point that `ray` of a view has hit. Computes the footprint and
-    /// perturbs the shading normal on the way. `None` for a mere interface between media, which the
-    /// ray passes.
+    /// The BSDF at a point that `ray` of a view has hit. Also computes the footprint and applies
+    /// the normal map. `None` for an interface between media, which the ray passes.
     pub fn bsdf(
         &self,
         view: &View,
@@ -342,7 +341,7 @@ impl Scene {
             return None;
         }
         if let Some(map) = &entry.normal_map {
-            interaction.surface.shading = map.bend(&interaction.surface);
+            interaction.surface.shading = map.perturb(&interaction.surface);
         }
         let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
         let s = &interaction.surface;

@@ -1,20 +1,20 @@
-//! A view of a scene: the camera and what else decides which samples are taken.
+//! A view of a scene: the camera and the settings that decide which samples are taken.
 //!
-//! A [`Scene`](crate::Scene) knows none of it, so that another camera, another number of samples or
-//! a preview in larger pixels costs a new view and rebuilds nothing.
+//! A [`Scene`](crate::Scene) does not depend on its views: another camera, another number of
+//! samples or a preview in larger pixels needs a new view, but no new scene.
 
 use crate::camera::{self, Camera};
 use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc};
 use math::DMat4;
 
-/// Options of the format that concern all algorithms.
+/// Options of the format that apply to all algorithms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewOptions {
     /// All samples of a pixel go through its centre.
     pub disable_pixel_jitter: bool,
     /// All samples have the same wavelengths.
     pub disable_wavelength_jitter: bool,
-    /// Textures are evaluated at points.
+    /// Textures are evaluated at points, without filtering.
     pub disable_texture_filtering: bool,
     /// Every BSDF is replaced by a diffuse one of the same albedo.
     pub force_diffuse: bool,
@@ -25,10 +25,10 @@ pub struct ViewOptions {
 pub struct View {
     /// The camera, placed in the scene's render space.
     pub camera: Camera,
-    /// Samples per pixel, at least 1, by which textures are filtered: the more samples, the less
-    /// each has to cover.
+    /// Samples per pixel, at least 1. The more samples, the smaller the footprint by which textures
+    /// are filtered.
     pub samples_per_pixel: u32,
-    /// Options that concern all algorithms.
+    /// Options that apply to all algorithms.
     pub options: ViewOptions,
 }
 
@@ -37,13 +37,13 @@ pub struct View {
 pub struct CompiledView {
     /// The view.
     pub view: View,
-    /// What is rendered other than described.
+    /// What is rendered differently from its description.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl View {
-    /// Compiles camera, resolution, number of samples and options of a description; the rest of it
-    /// is not looked at. `world_from_render` is the render space of the scene to be viewed:
+    /// Compiles camera, resolution, number of samples and options of a description, and ignores the
+    /// rest of it. `world_from_render` is the render space of the scene to be viewed:
     /// [`Scene::world_from_render`](crate::Scene::world_from_render), or, before it is compiled,
     /// [`world_from_render`]. Returns all errors and warnings if there is an error.
     pub fn compile(desc: &SceneDesc, world_from_render: DMat4) -> Result<CompiledView, Vec<Diagnostic>> {
@@ -60,20 +60,21 @@ impl View {
         Ok(CompiledView { view, warnings: diagnostics })
     }
 
-    /// The same view in pixels `n` times as wide and high: film position x shows what n·x showed.
+    /// The same view in pixels `n` times as wide and high: film position x of the new view is n·x
+    /// of this one.
     pub fn coarser(&self, n: u32) -> Self {
         Self { camera: self.camera.coarser(n), ..self.clone() }
     }
 }
 
-/// The render space that [`compile`](crate::compile()) gives the scene of a description, as its
-/// transform to world space.
+/// The render space in which [`compile`](crate::compile()) places the scene of a description, as
+/// its transform to world space.
 pub fn world_from_render(desc: &SceneDesc) -> DMat4 {
     camera::world_from_render(&desc.camera.camera_from_world, desc.options.render_space)
 }
 
-/// How many samples a description gives a pixel: of Metropolis, mutations; else those of the
-/// sampler, of which Sobol' sequences over the whole image round up to a power of two.
+/// Samples per pixel of a description: for Metropolis, mutations per pixel; else the sampler's,
+/// which Sobol' sequences over the whole image round up to a power of two.
 fn samples_per_pixel(desc: &SceneDesc) -> u32 {
     if let IntegratorDesc::Mlt(mlt) = &desc.integrator.value {
         return mlt.mutations_per_pixel.max(1);

@@ -1,9 +1,9 @@
 //! All film positions of one ray.
 //!
-//! A film that shows all directions has no border: beyond it, where reconstruction filters reach,
-//! the picture continues with another part of itself. A ray thus has many film positions, one on
-//! the film and others around it, and its light reaches the pixels near each of them. The plane of
-//! film positions covers the sphere periodically, for a film of W × H pixels:
+//! The film of a spherical camera is periodic: beyond its border, where reconstruction filters
+//! reach, the picture continues with another part of itself. A ray thus has many film positions,
+//! one on the film and others around it, and contributes to the pixels near each of them. The plane
+//! of film positions covers the sphere periodically, for a film of W × H pixels:
 //!
 //! | mapping | (x, y) is seen at | repeated every |
 //! |---|---|---|
@@ -21,7 +21,7 @@ pub struct FilmPositions {
     around: Option<Around>,
 }
 
-/// How a film continues beyond its border.
+/// The continuation of a film beyond its border.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Around {
     mapping: SphericalMapping,
@@ -47,7 +47,7 @@ impl Camera {
 }
 
 impl FilmPositions {
-    /// Those of them within a part of the plane.
+    /// The positions within `bounds`.
     pub fn within(&self, bounds: Bounds2) -> impl Iterator<Item = Point2> {
         let (x, y) = (self.first.x, self.first.y);
         let (positions, count, period) = match self.around {

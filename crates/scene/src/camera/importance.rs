@@ -1,35 +1,35 @@
-//! Importance: the camera as paths from the lights find it.
+//! Importance: the camera as an emitter, to which light paths connect.
 //!
 //! A pixel's value is an integral over the rays (p, ω) that enter the camera through its lens, in
-//! which the importance W_e says what radiance counts and h, of integral 1 over the film in pixels,
-//! is the pixel's reconstruction filter:
+//! which the importance W_e weights radiance and h, of integral 1 over the film in pixels, is the
+//! pixel's reconstruction filter:
 //!
 //! ```text
 //! I = ∫∫ W_e(p, ω)·h(film(p, ω))·L(p, ω)·cos θ dω dA(p)
 //! ```
 //!
 //! [`Camera::generate_ray`] must be an estimator of it with film positions drawn by h and weight 1.
-//! So the film in pixels measures importance: W_e·cos θ·dω·dA, of all rays with film positions in
-//! an area of the film, is that area (as a lens has all of it see every film position, each part of
-//! the lens has its share). Choosing the film position evenly in one pixel and the point evenly on
-//! the lens, a ray then has the densities
+//! So the film in pixels measures importance: W_e·cos θ·dω·dA, over all rays with film positions in
+//! an area of the film, is that area (a film position is seen by all of the lens, and each part of
+//! the lens has its share). With the film position uniform in one pixel and the point uniform on
+//! the lens, a ray has the densities
 //!
 //! ```text
 //! p_position = 1/A_lens        p_direction = d(film)/dω        W_e = p_position·p_direction/cos θ
 //! ```
 //!
-//! of which the second is, for a pixel of the area A on the plane of what is sharp at the distance
-//! f, f²/(A·cos³θ): a perspective camera has W_e = 1/(A_1·A_lens·cos⁴θ), where A_1 is the pixel's
-//! area at the distance 1. Deltas have the coefficient 1: a pinhole and the point that sees all
-//! around have p_position = 1 (the latter has no normal, and cos θ = 1). The film of an
-//! orthographic camera without a lens lies in the scene itself, and its direction is fixed:
-//! p_position = 1/A_pixel, p_direction = 1.
+//! of which the second is, for a pixel of the area A on the plane of focus at the distance f,
+//! f²/(A·cos³θ): a perspective camera has W_e = 1/(A_1·A_lens·cos⁴θ), where A_1 is the pixel's area
+//! at the distance 1. Deltas have the coefficient 1: a pinhole and the point of a spherical camera
+//! have p_position = 1 (the latter has no normal, and cos θ = 1). The film of an orthographic
+//! camera without a lens lies in the scene itself, and its direction is fixed: p_position =
+//! 1/A_pixel, p_direction = 1.
 //!
-//! Areas, angles and normals are those of render space, also where the camera's transform scales or
-//! shears. Film positions are found wherever a point is in front of the camera, on the film and
-//! beside it, as filters reach over its border. What a spherical camera sees beyond its border is
-//! the same again: of all the places of the film that see a ray the one on it is found, and
-//! [`Camera::film_positions`] tells the others. Sources: [Pharr 2016 §16.1.1]; [Veach 1997 ch. 8].
+//! Areas, angles and normals are those of render space, also if the camera's transform scales or
+//! shears. Every point in front of the camera has a film position, perhaps beside the film, as
+//! filters reach over its border. The film of a spherical camera repeats beyond its border: the
+//! film position returned is the one on the film, and [`Camera::film_positions`] lists the others.
+//! Sources: [Pharr 2016 §16.1.1]; [Veach 1997 ch. 8].
 
 use super::Camera;
 use super::projection::{Aperture, Projection};
@@ -43,8 +43,8 @@ pub struct CameraWiSample {
     /// Unit direction from the point to the camera.
     pub wi: Vector3,
     /// Density per solid angle at the point, as d²/cos θ is for a pinhole; 1 where the direction is
-    /// fixed. What the point sends, of radiance L and at an angle α to its normal, adds W_e·L·cos α
-    /// / pdf to the film at `film`.
+    /// fixed. Exitant radiance L of the point, at an angle α to its normal, adds W_e·L·cos α / pdf
+    /// to the film at `film`.
     pub pdf: f32,
     /// Position on the film, in pixels; perhaps beside it.
     pub film: Point2,
@@ -70,14 +70,14 @@ impl Seen {
 }
 
 impl Camera {
-    /// Whether all its rays are parallel: it sees along one direction and from no point.
+    /// Whether all its rays are parallel, so that it has no lens to connect to.
     #[inline]
     pub fn is_parallel(&self) -> bool {
         matches!(self.projection.aperture(), Aperture::Film)
     }
 
     /// The importance of a ray that starts on the lens, at its time, and its film position, in
-    /// pixels and perhaps beside the film; `None` for rays that do not lead to the front of the
+    /// pixels and perhaps beside the film; `None` for rays that do not leave the front of the
     /// camera.
     #[doc(alias = "We")]
     pub fn we(&self, ray: &Ray) -> Option<(f32, Point2)> {
@@ -85,8 +85,8 @@ impl Camera {
     }
 
     /// The densities of a ray that starts on the lens: of its point per area of the lens, and of
-    /// its direction per solid angle, where film positions are spread evenly over the area of one
-    /// pixel. Deltas have the coefficient 1.
+    /// its direction per solid angle, with film positions uniform over the area of one pixel.
+    /// Deltas have the coefficient 1.
     #[doc(alias = "Pdf_We")]
     pub fn pdf_we(&self, ray: &Ray) -> (f32, f32) {
         self.seen_along(ray).map_or((0.0, 0.0), |seen| (seen.pdf_position, seen.pdf_direction))
@@ -120,10 +120,12 @@ impl Camera {
         self.seen(&render_from_camera, camera_from_render.point(ray.o), d)
     }
 
-    /// What is seen from the lens point `o` along the unit direction `d`, both in camera space.
+    /// Film position and densities of the ray from the lens point `o` along the unit direction `d`,
+    /// both in camera space.
     fn seen(&self, render_from_camera: &Transform, o: Point3, d: Vector3) -> Option<Seen> {
         let (film, density) = self.projection.film(o, d)?;
-        // How the transform changes volumes, hence areas of the plane z = 0 and solid angles.
+        // The factor of the transform on volumes, from which follow those on areas of the plane z =
+        // 0 and on solid angles.
         let volume = Mat3::from_mat4(*render_from_camera.matrix()).determinant().abs();
         let normal = render_from_camera.normal(Vec3::Z);
         let along = render_from_camera.vector(d);

@@ -1,4 +1,4 @@
-//! Rays into a camera are those out of it.
+//! Importance agrees with the rays that the camera generates.
 
 use super::tests::{RESOLUTION, build, kinds, sample, somewhere};
 use super::{Camera, CameraSample};
@@ -6,7 +6,7 @@ use description::{RenderSpace, TransformDesc};
 use math::{Bounds2, DMat4, DVec3, Point3, Ray, Vec2, Vec3};
 use testkit::{Moments, Random, t_test, welch_test};
 
-/// Cameras at rest, scaled and sheared, and on their way.
+/// Cameras at rest, scaled and sheared, and in motion.
 fn cameras() -> Vec<(String, Camera)> {
     let mut sheared = DMat4::from_scale(DVec3::new(0.5, -0.4, 0.7));
     sheared.z_axis.x = 0.2;
@@ -31,7 +31,7 @@ fn anywhere(random: &mut Random) -> CameraSample {
 }
 
 #[test]
-fn a_ray_leads_back_to_its_place_on_the_film() {
+fn importance_returns_the_film_position_of_a_ray() {
     let mut random = Random::new(1);
     for (name, camera) in cameras() {
         for _ in 0..500 {
@@ -39,7 +39,7 @@ fn a_ray_leads_back_to_its_place_on_the_film() {
             let ray = camera.generate_ray(&from).unwrap().ray;
             let (we, film) = camera.we(&ray).unwrap();
             assert!((film - from.film).length() < 2e-3, "{name}: {film} {}", from.film);
-            // The same way from a point that the ray meets.
+            // The same ray, from a point on it.
             let p = ray.at(0.5 + 5.0 * random.get_1d());
             let way = camera.sample_wi(p, ray.time, from.lens).unwrap();
             assert!((way.film - film).length() < 2e-3, "{name}: {} {film}", way.film);
@@ -56,7 +56,7 @@ fn a_ray_leads_back_to_its_place_on_the_film() {
 }
 
 #[test]
-fn a_ray_leads_back_to_all_its_places_around_the_film() {
+fn film_positions_of_a_ray_generate_the_same_ray() {
     let mut random = Random::new(4);
     let size = Vec2::from(RESOLUTION.map(|n| n as f32));
     let around = Bounds2 { min: size * -0.4, max: size * 1.4 };
@@ -100,8 +100,8 @@ fn densities_are_those_of_neighbouring_rays() {
                 assert_eq!(direction, 1.0, "{name}");
                 continue;
             }
-            // Near a pole directions turn quickly; across a fold of the octahedron they do not turn
-            // evenly.
+            // Near a pole directions change quickly; at a fold of the octahedron their derivative
+            // is discontinuous.
             let solid_angle = (x.0.d - x.1.d).cross(y.0.d - y.1.d).length();
             let is_even = !name.starts_with("eq") || (middle.d.y.abs() < 0.9 && !near_a_fold(&from));
             if is_even {
@@ -110,8 +110,8 @@ fn densities_are_those_of_neighbouring_rays() {
             if camera.we(&middle).is_some() && ray(from.film, Vec2::ZERO).o == middle.o {
                 assert_eq!(position, 1.0, "{name}");
             } else {
-                // Within the quarter that is turned the same way, a lens is spread evenly over its
-                // square.
+                // Within one quarter of the concentric mapping, areas of the lens and of its square
+                // are proportional.
                 let lens = |u: f32, v: f32| ray(from.film, Vec2::new(u, v)).o;
                 let (right, up) = (lens(0.9, 0.51) - lens(0.9, 0.49), lens(0.91, 0.5) - lens(0.89, 0.5));
                 near(position, 0.02 * 0.02 / right.cross(up).length());
@@ -129,7 +129,7 @@ fn near_a_fold(from: &CameraSample) -> bool {
 }
 
 #[test]
-fn a_film_has_as_much_importance_as_pixels() {
+fn the_integral_of_importance_is_the_number_of_pixels() {
     let cameras = cameras();
     let mut random = Random::new(3);
     let pixels = (RESOLUTION[0] * RESOLUTION[1]) as f64;
@@ -178,7 +178,7 @@ impl Lamp {
 }
 
 #[test]
-fn a_lamp_is_as_bright_from_both_ends() {
+fn a_lamp_is_as_bright_by_camera_rays_as_by_light_rays() {
     let cameras = cameras();
     let pixels = (RESOLUTION[0] * RESOLUTION[1]) as f32;
     for (i, (name, camera)) in cameras.iter().enumerate() {
@@ -212,7 +212,7 @@ fn a_lamp_is_as_bright_from_both_ends() {
 }
 
 #[test]
-fn nothing_is_seen_behind() {
+fn points_behind_the_camera_are_not_seen() {
     for (name, camera) in cameras() {
         let behind = camera.transform().render_from_camera(0.0).point(Vec3::new(0.1, 0.2, -1.0));
         let seen = camera.sample_wi(behind, 0.0, Vec2::splat(0.3));

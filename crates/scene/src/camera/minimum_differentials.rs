@@ -1,11 +1,11 @@
 //! The footprint of a pixel where ray differentials are missing.
 //!
-//! After a bounce no neighbouring rays are left to say how densely the film samples a surface. The
-//! footprint is then taken as if the point were seen directly, by the smallest differences in
-//! origin and direction between the rays of neighbouring pixels anywhere on the film: textures may
-//! be filtered too little, never too much ([Pharr 2023 §10.1.1]). The differences are kept in the
-//! frame whose z is the ray, and meet the surface again in the frame of the ray that would see it:
-//! with p = (0, 0, distance) and a neighbour from Δo along (0, 0, 1) + Δd,
+//! After a bounce off a rough surface there are no ray differentials. The footprint is then
+//! estimated as if the camera saw the point directly, from the smallest differences in origin and
+//! direction between the rays of neighbouring pixels anywhere on the film: textures may be filtered
+//! too little, never too much ([Pharr 2023 §10.1.1]). The differences are stored in the frame whose
+//! z axis is the ray, and applied in the frame of the ray from the camera to the point: with p =
+//! (0, 0, distance) and a neighbour from Δo along (0, 0, 1) + Δd,
 //!
 //! ```text
 //! ∂p/∂x = Δo + t·((0, 0, 1) + Δd) − p        t = n·(p − Δo) / n·((0, 0, 1) + Δd)
@@ -14,14 +14,13 @@
 use super::projection::Projection;
 use math::{Frame, Normal3, Vec2, Vec3, Vector3};
 
-/// How far apart rays of neighbouring pixels are kept to be, one pixel wide: 1/√n for n samples a
-/// pixel, but never below 1/8, as filters blur the picture over a pixel however many samples there
-/// are.
+/// The factor on ray differentials of one pixel: 1/√n for n samples per pixel, but at least 1/8, as
+/// reconstruction filters blur the picture over a pixel for any number of samples.
 pub fn differential_scale(samples_per_pixel: u32) -> f32 {
     (samples_per_pixel.max(1) as f32).sqrt().recip().max(0.125)
 }
 
-/// The smallest differences between the rays of neighbouring pixels, in the frame of the ray.
+/// The smallest differences between rays of neighbouring pixels, in the frame of the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MinimumDifferentials {
     /// Of origins, for the neighbours in x and y.
@@ -53,14 +52,14 @@ impl MinimumDifferentials {
         least
     }
 
-    /// Those between the rays of pixels `n` times as wide and high, to first order.
+    /// The differences for pixels `n` times as wide and high, to first order.
     pub fn coarser(&self, n: u32) -> Self {
         let [origin, direction] = [self.origin, self.direction].map(|both| both.map(|v| v * n as f32));
         Self { origin, direction }
     }
 
-    /// ∂p/∂x and ∂p/∂y in camera space, on the plane with normal `n` that the ray along `d` of unit
-    /// length meets after `distance`; zero where that plane is seen edge-on.
+    /// ∂p/∂x and ∂p/∂y in camera space, on the plane with normal `n` that the ray along the unit
+    /// direction `d` hits at `distance`; zero where that plane is seen edge-on.
     pub fn dp_dxy(&self, d: Vector3, distance: f32, n: Normal3) -> [Vector3; 2] {
         let frame = Frame::from_z(d);
         let n = frame.to_local(n);

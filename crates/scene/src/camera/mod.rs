@@ -1,7 +1,7 @@
 //! Cameras.
 //!
-//! A [`Camera`] generates the ray of a film position. It is a [`Projection`], which knows camera
-//! space alone, placed in render space by a [`CameraTransform`], with a shutter.
+//! A [`Camera`] generates the ray of a film position. It consists of a [`Projection`] in camera
+//! space, a [`CameraTransform`] to render space, and a shutter.
 //!
 //! Conventions: camera space looks along +z, x to the right, y up (a left-handed frame, as in
 //! pbrt). Film positions are in pixels, x to the right and y down, (0, 0) at the top left corner of
@@ -9,8 +9,8 @@
 //! their directions have unit length, and their `time` is in the scene's units. For paths from the
 //! lights, [`Camera::we`] is the importance of a ray and [`Camera::sample_wi`] samples the lens
 //! from a point: a pixel's value is ∫∫ W_e·h·L·cos θ dω dA for its filter h of integral 1 over the
-//! film in pixels. Differentials are one pixel wide, to be scaled by [`differential_scale`] when a
-//! pixel takes many samples.
+//! film in pixels. Differentials are one pixel wide; [`differential_scale`] is the factor on them
+//! for many samples per pixel.
 
 mod compile;
 mod film_positions;
@@ -59,7 +59,7 @@ pub struct CameraSample {
 pub struct CameraRay {
     /// The ray, in render space.
     pub ray: Ray,
-    /// How much of the light along the ray reaches the film.
+    /// The share of the radiance along the ray that reaches the film.
     pub weight: f32,
 }
 
@@ -68,7 +68,7 @@ pub struct CameraRay {
 pub struct CameraRayDifferential {
     /// The ray with its neighbours, in render space.
     pub ray: RayDifferential,
-    /// How much of the light along the ray reaches the film.
+    /// The share of the radiance along the ray that reaches the film.
     pub weight: f32,
 }
 
@@ -94,8 +94,8 @@ impl Camera {
         Self { projection, transform, shutter, minimum_differentials }
     }
 
-    /// The same camera with pixels `n` times as wide and high: film position x shows what n·x
-    /// showed.
+    /// The same camera with pixels `n` times as wide and high: film position x of the new camera is
+    /// n·x of this one.
     pub fn coarser(&self, n: u32) -> Self {
         Self {
             projection: self.projection.coarser(n),
@@ -105,7 +105,7 @@ impl Camera {
         }
     }
 
-    /// How the film sees camera space.
+    /// The mapping from film positions to rays of camera space.
     pub fn projection(&self) -> &Projection {
         &self.projection
     }
@@ -143,8 +143,8 @@ impl Camera {
         let (o, d, differentials) = self.projection.ray_differential(sample.film, sample.lens);
         let ray = RayDifferential { ray: Ray::new(o, d, time), differentials: Some(differentials) };
         let mut ray = self.transform.render_from_camera(time).ray_differential(&ray);
-        // A transform that scales stretches directions: all three by the same factor, to keep their
-        // differences.
+        // A transform that scales changes the length of directions. All three are divided by the
+        // same factor, to keep their differences.
         let factor = ray.ray.d.length_recip();
         ray.ray.d *= factor;
         if let Some(d) = &mut ray.differentials {
@@ -154,10 +154,9 @@ impl Camera {
         Some(CameraRayDifferential { ray, weight: 1.0 })
     }
 
-    /// About how far apart, on the tangent plane of a surface at `p` with normal `n` (render
-    /// space), the rays of neighbouring pixels would be if they came straight from the camera:
-    /// ∂p/∂x and ∂p/∂y, each times `scale` (see [`differential_scale`]). For surfaces that a path
-    /// reaches without ray differentials.
+    /// The approximate footprint of a pixel on the tangent plane of a surface at `p` with normal
+    /// `n` (render space), as if the camera saw it directly: ∂p/∂x and ∂p/∂y, each times `scale`
+    /// (see [`differential_scale`]). For surfaces that a path reaches without ray differentials.
     #[doc(alias = "Approximate_dp_dxy")]
     pub fn approximate_dp_dxy(&self, p: Point3, n: Normal3, time: f32, scale: f32) -> [Vector3; 2] {
         let render_from_camera = self.transform.render_from_camera(time);

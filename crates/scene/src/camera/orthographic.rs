@@ -1,5 +1,5 @@
-//! The orthographic camera: all rays are parallel to the axis of view, so that things look the same
-//! size at any distance.
+//! The orthographic camera: all rays are parallel to the viewing axis, so that objects have the
+//! same size at any distance.
 //!
 //! The film position at screen point (x, y) sees along the ray (x, y, 0) + t·(0, 0, 1) of camera
 //! space. With a thin lens, all rays leave the lens about the origin towards (x, y, focal
@@ -22,7 +22,7 @@ impl Orthographic {
         Self { screen: Screen::new(window, resolution), lens }
     }
 
-    /// Whether there is no lens to bend the rays.
+    /// Whether there is no lens, so that all rays are parallel.
     pub(super) fn is_parallel(&self) -> bool {
         self.lens.radius <= 0.0
     }
@@ -42,9 +42,9 @@ impl Orthographic {
         self.lens
     }
 
-    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a
-    /// pixel of the area A on the focal plane z = f is seen at the angle θ under A·cos³θ/f². Of
-    /// parallel rays film per area, 1/A.
+    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film area per solid
+    /// angle: a pixel of the area A on the focal plane z = f subtends A·cos³θ/f² at the angle θ.
+    /// For parallel rays film area per area, 1/A.
     #[inline]
     pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         let per_area = 1.0 / self.screen.pixel_area();

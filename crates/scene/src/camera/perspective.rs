@@ -32,7 +32,7 @@
 use super::{Screen, ThinLens};
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
 
-/// Rays through one point.
+/// The projection through one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Perspective {
     /// On the plane z = 1.
@@ -41,7 +41,7 @@ pub struct Perspective {
 }
 
 impl Perspective {
-    /// A view of `fov` degrees over [−1, 1] of the screen, of which `window` is shown on
+    /// A view of `fov` degrees over [−1, 1] of the screen, whose part `window` is mapped to
     /// `resolution` pixels.
     pub fn new(fov: f32, window: Bounds2, lens: ThinLens, resolution: [u32; 2]) -> Self {
         let tan_half = (f64::from(fov).to_radians() * 0.5).tan() as f32;
@@ -64,8 +64,8 @@ impl Perspective {
         self.lens
     }
 
-    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film per solid angle: a
-    /// pixel of the area A at z = 1 is seen at the angle θ under A·cos³θ.
+    /// The inverse of [`Self::ray`] from the ray's point on the lens, and film area per solid
+    /// angle: a pixel of the area A at z = 1 subtends A·cos³θ at the angle θ.
     #[inline]
     pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         (d.z > 0.0).then(|| {
@@ -83,7 +83,7 @@ mod tests {
 
     /// The observer's formulas, as they stand at the head of this file.
     #[test]
-    fn pixel_corners_are_seen_as_the_observer_model_says() {
+    fn pixel_corners_follow_the_observer_model() {
         let eye = DVec3::new(3.0, -1.5, 7.0);
         let w = DVec3::new(0.48, -0.6, 0.64);
         let u = w.cross(DVec3::new(0.2, 1.0, -0.3)).normalize();

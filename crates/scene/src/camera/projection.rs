@@ -1,4 +1,4 @@
-//! The projections of cameras: film positions against rays of camera space.
+//! The projections of cameras, between film positions and rays of camera space.
 
 use math::{Differentials, Point2, Point3, Vec2, Vec3, Vector3};
 
@@ -13,7 +13,7 @@ pub enum Projection {
     Perspective(Perspective),
     /// In parallel.
     Orthographic(Orthographic),
-    /// All around.
+    /// In all directions.
     Spherical(Spherical),
 }
 
@@ -28,8 +28,8 @@ impl Projection {
     }
 
     /// The film position of the ray from `o` on the lens along the unit direction `d`, both in
-    /// camera space, and how much film, in square pixels, sees a solid angle there, or of parallel
-    /// rays an area of the film's plane. `None` for rays that do not lead to the front.
+    /// camera space, and the film area in square pixels per solid angle, or for parallel rays per
+    /// area of the film's plane. `None` for rays that do not leave the front.
     pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         match self {
             Self::Perspective(p) => p.film(o, d),
@@ -47,7 +47,7 @@ impl Projection {
         }
     }
 
-    /// What rays pass to reach the film.
+    /// The aperture through which rays reach the film.
     pub(super) fn aperture(&self) -> Aperture {
         match self {
             Self::Perspective(p) => p.lens().area().map_or(Aperture::Pinhole, Aperture::Lens),
@@ -56,7 +56,8 @@ impl Projection {
         }
     }
 
-    /// Where a ray from `p` may enter, in camera space; on a lens chosen by `u` in [0, 1)².
+    /// A point of the aperture that sees `p`, in camera space; on a lens it is chosen by `u` in [0,
+    /// 1)².
     pub(super) fn lens_point(&self, p: Point3, u: Vec2) -> Point3 {
         match self {
             Self::Orthographic(o) if o.is_parallel() => Vec3::new(p.x, p.y, 0.0),
@@ -75,9 +76,9 @@ impl Projection {
         }
     }
 
-    /// How far away, in pixels, the neighbour is that differentials are measured by. Rays of a flat
-    /// film are compared with those a whole pixel away, which is exact; on the sphere, where a
-    /// pixel may span a large angle, with near ones.
+    /// The step, in pixels, of the finite differences from which differentials are computed: a
+    /// whole pixel on a flat film, which is exact; less on the sphere, where a pixel may span a
+    /// large angle.
     fn differential_step(&self) -> f32 {
         match self {
             Self::Perspective(_) | Self::Orthographic(_) => 1.0,
@@ -99,7 +100,7 @@ impl Projection {
     }
 }
 
-/// What rays pass to reach the film.
+/// The aperture through which rays reach the film.
 pub(super) enum Aperture {
     /// A point, from any direction.
     Point,

@@ -1,17 +1,17 @@
 //! The flat screen and the thin lens that perspective and orthographic cameras share.
 //!
 //! The screen is a rectangle of the plane z = 1 (perspective, scaled by the field of view) or z = 0
-//! (orthographic), seen as [−1, 1] over its shorter side unless a window is given. A thin lens of
-//! radius r at the origin sends every ray that a pinhole would send through p_focus, its point on
-//! the plane z = focal distance, through that same point from another point of the lens: what lies
-//! on the plane is sharp ([Pharr 2023 §5.2.3]).
+//! (orthographic), which spans [−1, 1] over its shorter side unless a window is given. A thin lens
+//! of radius r at the origin sends every ray that a pinhole would send through p_focus, its point
+//! on the plane z = focal distance, through that same point from another point of the lens: points
+//! on the plane are in focus ([Pharr 2023 §5.2.3]).
 
 use description::{LensDesc, ScreenDesc};
 use math::{Bounds2, Point2, Point3, Vec2, Vector3};
 use sampling::warp::sample_uniform_disk_concentric;
 use std::f32::consts::PI;
 
-/// From film positions to positions on the screen.
+/// The mapping from film positions to positions on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Screen {
     top_left: Vec2,
@@ -67,7 +67,7 @@ impl Screen {
 pub struct ThinLens {
     /// Radius; 0 is a pinhole.
     pub radius: f32,
-    /// Distance along z to the plane of what is sharp.
+    /// Distance along z to the plane of focus.
     pub focal_distance: f32,
 }
 
@@ -78,8 +78,7 @@ impl From<LensDesc> for ThinLens {
 }
 
 impl ThinLens {
-    /// Bends the pinhole ray (`o`, `d`) as if it passed through the point of the lens that `u` in
-    /// [0, 1)² names.
+    /// Refracts the pinhole ray (`o`, `d`) at the point of the lens that `u` in [0, 1)² selects.
     #[inline]
     pub fn refract(&self, o: Point3, d: Vector3, u: Vec2) -> (Point3, Vector3) {
         if self.radius <= 0.0 {
@@ -90,19 +89,20 @@ impl ThinLens {
         (on_lens, (focus - on_lens).normalize())
     }
 
-    /// The point of the lens that `u` in [0, 1)² names.
+    /// The point of the lens that `u` in [0, 1)² selects.
     #[inline]
     pub fn at(&self, u: Vec2) -> Point3 {
         (sample_uniform_disk_concentric(u) * self.radius.max(0.0)).extend(0.0)
     }
 
-    /// The area; `None` of a pinhole.
+    /// The area; `None` for a pinhole.
     #[inline]
     pub fn area(&self) -> Option<f32> {
         (self.radius > 0.0).then_some(PI * self.radius * self.radius)
     }
 
-    /// Where a ray from the lens meets the plane of what is sharp; for a pinhole that is z = 1.
+    /// The intersection of a ray from the lens with the plane of focus; for a pinhole that is z =
+    /// 1.
     #[inline]
     pub fn focus(&self, o: Point3, d: Vector3) -> Point3 {
         if self.radius <= 0.0 {

@@ -1,11 +1,10 @@
-//! The spherical camera: one point that looks in every direction, as is needed to record an
-//! environment map.
+//! The spherical camera: one point that sees in every direction, for rendering environment maps.
 //!
-//! With (s, t) the film position over the resolution, the equirectangular mapping looks at θ = πt
-//! from +y and φ = 2πs from +x towards +z; the equal-area mapping unfolds the sphere into an
-//! octahedron ([Clarberg 2008]), so that all pixels see the same solid angle, 4π/n for n pixels.
-//! Film positions beyond the border, where wide reconstruction filters reach, continue on the
-//! sphere ([Pharr 2023 §5.3]).
+//! With (s, t) the film position over the resolution, the equirectangular mapping has θ = πt from
+//! +y and φ = 2πs from +x towards +z; the equal-area mapping unfolds the sphere into an octahedron
+//! ([Clarberg 2008]), so that all pixels see the same solid angle, 4π/n for n pixels. Film
+//! positions beyond the border, where wide reconstruction filters reach, continue on the sphere
+//! ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
 use math::{
@@ -14,7 +13,7 @@ use math::{
 };
 use std::f32::consts::{PI, TAU};
 
-/// All directions.
+/// The projection of all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spherical {
     mapping: SphericalMapping,
@@ -22,7 +21,7 @@ pub struct Spherical {
 }
 
 impl Spherical {
-    /// The sphere of directions spread over `resolution` pixels.
+    /// The sphere of directions, mapped to `resolution` pixels.
     pub fn new(mapping: SphericalMapping, resolution: [u32; 2]) -> Self {
         Self { mapping, resolution: Vec2::new(resolution[0] as f32, resolution[1] as f32) }
     }
@@ -55,9 +54,9 @@ impl Spherical {
         (Vec3::ZERO, Vec3::new(z_up.x, z_up.z, z_up.y))
     }
 
-    /// The inverse of [`Self::ray`] on the film itself, and film per solid angle: dω is 2π²·sin θ
-    /// ds dt, or 4π ds dt where areas are kept. `None` at the poles of the first mapping, which a
-    /// whole row of film sees.
+    /// The inverse of [`Self::ray`] on the film itself, and film area per solid angle: dω is
+    /// 2π²·sin θ ds dt, or 4π ds dt for equal areas. `None` at the poles of the equirectangular
+    /// mapping, each of which is mapped to a whole row.
     #[inline]
     pub(super) fn film(&self, d: Vector3) -> Option<(Point2, f32)> {
         let z_up = Vec3::new(d.x, d.z, d.y);

@@ -1,4 +1,4 @@
-//! What every camera must do.
+//! Properties of all cameras.
 
 use super::*;
 use description::{
@@ -45,7 +45,7 @@ pub(super) fn sample(x: f32, y: f32, lens: Vec2, time: f32) -> CameraSample {
 }
 
 #[test]
-fn coarser_pixels_see_the_same_at_other_numbers() {
+fn coarser_pixels_see_the_same_at_scaled_film_positions() {
     for (name, kind) in kinds() {
         let fine = build(kind, somewhere(), RenderSpace::CameraWorld);
         let coarse = fine.coarser(3);
@@ -93,7 +93,7 @@ fn differentials_are_finite_differences() {
 }
 
 #[test]
-fn differentials_of_a_flat_film_are_the_neighbours_themselves() {
+fn differentials_of_a_flat_film_equal_the_neighbouring_rays() {
     for (name, kind) in kinds().into_iter().take(5) {
         let camera = build(kind, somewhere(), RenderSpace::CameraWorld);
         let lens = Vec2::new(0.9, 0.1);
@@ -121,12 +121,15 @@ fn rays_through_a_lens_meet_on_the_focal_plane() {
         let (a, b) = (ray(0.1, 0.3), ray(0.8, 0.9));
         assert!((a.o - b.o).length() > 0.1 && a.o.length() <= LENS.radius && b.o.length() <= LENS.radius);
         assert!((focus(a) - focus(b)).length() < 1e-5);
-        assert!((focus(ray(0.5, 0.5)) - focus(a)).length() < 1e-5, "the centre of the lens bends nothing");
+        assert!(
+            (focus(ray(0.5, 0.5)) - focus(a)).length() < 1e-5,
+            "the ray through the centre of the lens is not refracted"
+        );
     }
 }
 
 #[test]
-fn the_equal_area_sphere_is_covered_evenly() {
+fn equal_area_directions_are_uniform() {
     let kind = CameraKind::Spherical { mapping: SphericalMapping::EqualArea };
     let camera = build(kind, somewhere(), RenderSpace::CameraWorld);
     let n = 400;
@@ -146,7 +149,7 @@ fn the_equal_area_sphere_is_covered_evenly() {
 }
 
 #[test]
-fn the_equirectangular_sphere_has_its_poles_up_and_down() {
+fn the_equirectangular_poles_are_up_and_down() {
     let kind = CameraKind::Spherical { mapping: SphericalMapping::EquiRectangular };
     let camera = build(kind, TransformDesc::default(), RenderSpace::Camera);
     let [w, h] = RESOLUTION.map(|n| n as f32);
@@ -178,7 +181,7 @@ fn the_film_has_x_to_the_right_and_y_down() {
 }
 
 #[test]
-fn a_moving_camera_is_where_its_time_says() {
+fn a_moving_camera_is_interpolated_in_time() {
     let moving = TransformDesc {
         start: DMat4::from_translation(DVec3::new(-1.0, 0.0, 0.0)),
         end: DMat4::from_translation(DVec3::new(-5.0, 2.0, 0.0)),
@@ -241,7 +244,7 @@ fn a_scaling_transform_leaves_directions_of_unit_length() {
 }
 
 #[test]
-fn the_footprint_is_never_wider_than_what_pixels_see() {
+fn the_footprint_is_never_wider_than_a_pixel() {
     for (name, kind) in kinds() {
         let camera = build(kind, TransformDesc::default(), RenderSpace::CameraWorld);
         let mut narrowest = f32::INFINITY;
@@ -272,12 +275,12 @@ fn an_edge_on_surface_has_no_footprint() {
 }
 
 #[test]
-fn samples_narrow_differentials_down_to_an_eighth() {
+fn samples_scale_differentials_down_to_an_eighth() {
     assert_eq!([0, 1, 4, 64, 1024].map(differential_scale), [1.0, 1.0, 0.5, 0.125, 0.125]);
 }
 
 #[test]
-fn mistakes_are_reported_and_named() {
+fn invalid_cameras_are_reported() {
     let codes = |desc: CameraDesc, resolution: [i32; 2]| {
         let film = FilmDesc { resolution, ..FilmDesc::default() };
         let mut diagnostics = Vec::new();

@@ -1,10 +1,10 @@
 //! The position of a camera, and the choice of the space in which rays are traced.
 //!
-//! Single precision is finest near zero. Render space is therefore usually world space translated
-//! so that the camera of the description is at the origin in the middle of its motion
-//! ([Pharr 2023 §5.1.1]). It is chosen once, when a scene is compiled; other cameras are placed in
-//! that same space. Matrices are multiplied in double precision before they are rounded, so the
-//! choice of space changes a picture by rounding alone.
+//! Single precision has the smallest absolute error near zero. Render space is therefore usually
+//! world space translated so that the camera of the description is at the origin in the middle of
+//! its motion ([Pharr 2023 §5.1.1]). It is chosen once, when a scene is compiled; other cameras are
+//! placed in that same space. Matrices are multiplied in double precision before they are rounded,
+//! so the choice of space changes a picture by rounding alone.
 
 use description::{RenderSpace, TransformDesc};
 use math::{AnimatedTransform, DMat4, DVec3, Transform};
@@ -34,7 +34,7 @@ impl CameraTransform {
         self.render_from_camera.at(time)
     }
 
-    /// Camera to render space, as it moves.
+    /// Camera to render space, as a function of time.
     pub fn animated(&self) -> &AnimatedTransform {
         &self.render_from_camera
     }
@@ -50,8 +50,8 @@ impl CameraTransform {
     }
 }
 
-/// Render space as a camera's description chooses it, as its transform to world space; world space
-/// itself if the camera's transform has no inverse.
+/// The render space of a camera's description, as its transform to world space; world space if the
+/// camera's transform has no inverse.
 pub fn world_from_render(camera_from_world: &TransformDesc, space: RenderSpace) -> DMat4 {
     let TransformDesc { start, end, times } = camera_from_world.inverse();
     let Some(world_from_camera) = AnimatedTransform::new(start, end, times) else { return DMat4::IDENTITY };
@@ -65,7 +65,7 @@ pub fn world_from_render(camera_from_world: &TransformDesc, space: RenderSpace) 
     match space {
         RenderSpace::Camera => middle(),
         RenderSpace::CameraWorld => {
-            // Rounded, so that the translation is exact in either precision.
+            // Rounded, so that the translation is exact in both precisions.
             DMat4::from_translation(middle().transform_point3(DVec3::ZERO).as_vec3().as_dvec3())
         }
         RenderSpace::World => DMat4::IDENTITY,

@@ -1,12 +1,12 @@
-//! Surfaces that emit the same radiance in all directions: of one colour, or of an image over their
-//! (u, v).
+//! Surfaces that emit the same radiance in all directions: a constant, or an image over their (u,
+//! v).
 //!
 //! Every primitive of an emitting geometry is a light of its own; a row of the table names the
 //! geometry, the instances through which it is seen, and the emission. Power: Φ = π·A·L, twice that
-//! when both sides emit. Where the surface is cut out by an alpha texture, it does not emit; a
-//! surface with the constant alpha 0 is an invisible light, which rays never meet but points still
-//! sample. Emitted rays are uniform in area (patches may follow an image) and cosine-distributed,
-//! on either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
+//! when both sides emit. Where an alpha texture cuts the surface out, it does not emit; a surface
+//! with the constant alpha 0 is an invisible light, which rays never hit but light sampling still
+//! finds. Emitted rays are uniform in area (patches may follow an image) and cosine-distributed, on
+//! either side with equal probability if both emit. Sources: [Pharr 2023 §12.4].
 
 use super::emitter::{Emitter, motion_bounds};
 use super::{
@@ -23,33 +23,34 @@ use std::f32::consts::PI;
 /// The primitives of an emitting geometry.
 #[derive(Clone, Debug)]
 pub struct AreaLight {
-    /// What emits.
+    /// The geometry that emits.
     pub geometry: GeometryId,
     /// The instances through which it is seen.
     pub instance: InstancePath,
-    /// What it emits.
+    /// Its emission.
     pub emission: EmissionId,
-    /// Where the surface is there, unless everywhere or invisible.
+    /// Alpha texture; `None` is opaque or invisible.
     pub alpha: Option<FloatTextureId>,
-    /// Whether no ray ever meets the surface (its alpha is constantly 0).
+    /// Whether no ray ever hits the surface (its alpha is constantly 0).
     pub invisible: bool,
-    /// The scale of the emission by primitive, where every primitive has a power that is asked for;
-    /// `None` where all have the emission's own.
+    /// The scale of the emission by primitive, where the description requests a power for each;
+    /// `None` where all have the emission's own scale.
     pub scales: Option<Box<[f32]>>,
 }
 
 impl AreaLight {
-    /// The answer of a primitive as it is at `time`; `None` where there is none to give.
+    /// Calls `f` with the emitter of a primitive at `time`; `None` if there is no such primitive or
+    /// `f` returns `None`.
     #[inline]
-    fn ask<T>(
+    fn with_emitter<T>(
         &self,
         world: &World,
         primitive: u32,
         time: f32,
-        question: impl FnOnce(&Emitter) -> Option<T>,
+        f: impl FnOnce(&Emitter) -> Option<T>,
     ) -> Option<T> {
         let shape = world.geometry(self.geometry).shape(primitive)?;
-        Emitter::ask(&shape, world, &self.instance, time, question)
+        Emitter::with(&shape, world, &self.instance, time, f)
     }
 
     fn scale(&self, part: &LightPart) -> f32 {
@@ -64,19 +65,20 @@ impl AreaLight {
         self.instance.ids().iter().any(moves) || world.geometry(self.geometry).is_moving()
     }
 
-    /// The area of a primitive; of what moves, the mean of the first and the last.
+    /// The area of a primitive; for a moving one, the mean of the areas at the start and the end of
+    /// motion.
     pub(crate) fn area(&self, world: &World, primitive: u32) -> f32 {
-        let at = |time| self.ask(world, primitive, time, |emitter| Some(emitter.area())).unwrap_or(0.0);
+        let at =
+            |time| self.with_emitter(world, primitive, time, |emitter| Some(emitter.area())).unwrap_or(0.0);
         if self.is_moving(world) { 0.5 * (at(f32::MIN) + at(f32::MAX)) } else { at(0.0) }
     }
 
-    /// Whether a point of the surface is there, decided by a hash where its alpha is between 0 and
-    /// 1.
-    fn is_there(&self, part: &LightPart, s: &ShapeSample) -> bool {
+    /// The stochastic alpha test of a point, decided by a hash of it.
+    fn passes_alpha_test(&self, part: &LightPart, s: &ShapeSample) -> bool {
         let Some(alpha) = self.alpha.filter(|_| !self.invisible) else { return true };
         let context = TextureContext { p: s.p.p, n: s.n, uv: s.uv, ..Default::default() };
-        let there = part.textures().float(alpha, &context);
-        there >= 1.0 || hash_float(&s.p.p.to_array().map(f32::to_bits)) < there
+        let alpha = part.textures().float(alpha, &context);
+        alpha >= 1.0 || hash_float(&s.p.p.to_array().map(f32::to_bits)) < alpha
     }
 }
 
@@ -133,10 +135,11 @@ impl LightModel for AreaLight {
         lambda: &SampledWavelengths,
         _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let s =
-            self.ask(part.world(), part.primitive, context.time, |emitter| emitter.sample_from(context, u))?;
+        let s = self.with_emitter(part.world(), part.primitive, context.time, |emitter| {
+            emitter.sample_from(context, u)
+        })?;
         let to_light = s.p.p - context.p.p;
-        if s.pdf == 0.0 || to_light.length_squared() == 0.0 || !self.is_there(part, &s) {
+        if s.pdf == 0.0 || to_light.length_squared() == 0.0 || !self.passes_alpha_test(part, &s) {
             return None;
         }
         let wi = to_light.normalize();
@@ -151,11 +154,13 @@ impl LightModel for AreaLight {
         wi: Vector3,
         _allow_incomplete: bool,
     ) -> f32 {
-        self.ask(part.world(), part.primitive, context.time, |emitter| Some(emitter.pdf_from(context, wi)))
-            .unwrap_or(0.0)
+        self.with_emitter(part.world(), part.primitive, context.time, |emitter| {
+            Some(emitter.pdf_from(context, wi))
+        })
+        .unwrap_or(0.0)
     }
 
-    /// By area, and by the cosine on the sides that emit.
+    /// Uniform by area, cosine-distributed on the sides that emit.
     fn sample_le(
         &self,
         part: &LightPart,
@@ -164,8 +169,9 @@ impl LightModel for AreaLight {
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
-        let s = self.ask(part.world(), part.primitive, time, |emitter| emitter.sample(u_position))?;
-        if !self.is_there(part, &s) {
+        let s =
+            self.with_emitter(part.world(), part.primitive, time, |emitter| emitter.sample(u_position))?;
+        if !self.passes_alpha_test(part, &s) {
             return None;
         }
         let emission = part.emission(self.emission);
@@ -193,7 +199,7 @@ impl LightModel for AreaLight {
 
     fn pdf_le(&self, part: &LightPart, p: Point3, n: Normal3, w: Vector3, time: f32) -> (f32, f32) {
         let position = self
-            .ask(part.world(), part.primitive, time, |emitter| Some(emitter.pdf_area(p, n)))
+            .with_emitter(part.world(), part.primitive, time, |emitter| Some(emitter.pdf_area(p, n)))
             .unwrap_or(0.0);
         (position, part.emission(self.emission).pdf_direction(n, w))
     }
@@ -212,7 +218,7 @@ impl LightModel for AreaLight {
         let normals = if self.is_moving(part.world()) {
             DirectionCone::ENTIRE_SPHERE
         } else {
-            self.ask(part.world(), part.primitive, 0.0, |emitter| Some(emitter.normal_bounds()))?
+            self.with_emitter(part.world(), part.primitive, 0.0, |emitter| Some(emitter.normal_bounds()))?
         };
         let shape = part.world().geometry(self.geometry).shape(part.primitive)?;
         let area = self.area(part.world(), part.primitive);

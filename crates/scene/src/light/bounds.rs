@@ -1,5 +1,5 @@
-//! What is known of a light, or of many, without asking them one by one: a box, a cone of emission,
-//! a power; and from that how much they may matter to a point.
+//! Bounds of one light or of a cluster of lights: a box around the positions, a cone around the
+//! directions of emission, and the power; from these follows the importance to a shading point.
 //!
 //! Emission leaves within θ_e of normals that lie within θ_o of the axis w. The importance of a
 //! cluster to a point at distance d is Φ·cos θ′ / d², where θ′ is the smallest possible angle
@@ -8,20 +8,20 @@
 
 use math::{Bounds3, DirectionCone, Normal3, Point3, Vec3, Vector3, safe_sqrt};
 
-/// Where light comes from and whereto it goes.
+/// Bounds of the positions and directions of emission of lights.
 #[derive(Clone, Copy, Debug)]
 pub struct LightBounds {
     /// Box around the positions.
     pub bounds: Bounds3,
     /// Axis of the cone of normals, of unit length.
     pub w: Vector3,
-    /// Power, as one number.
+    /// Power, as one number for all wavelengths.
     pub phi: f32,
     /// Cosine of the half angle of the cone of normals.
     pub cos_theta_o: f32,
     /// Cosine of the largest angle between a normal and emission.
     pub cos_theta_e: f32,
-    /// Whether light leaves against the normals, too.
+    /// Whether the lights emit on both sides.
     pub two_sided: bool,
 }
 
@@ -36,7 +36,7 @@ fn sin_sub_clamped(sin_a: f32, cos_a: f32, sin_b: f32, cos_b: f32) -> f32 {
 }
 
 impl LightBounds {
-    /// The bounds of nothing.
+    /// The bounds of no light.
     pub const EMPTY: Self = Self {
         bounds: Bounds3::EMPTY,
         w: Vec3::Z,
@@ -46,7 +46,7 @@ impl LightBounds {
         two_sided: false,
     };
 
-    /// Bounds of both.
+    /// The bounds of both.
     pub fn union(self, other: Self) -> Self {
         if self.phi == 0.0 {
             return other;
@@ -66,8 +66,8 @@ impl LightBounds {
         }
     }
 
-    /// An estimate ≥ 0 of how much arrives at `p`; a surface with normal `n` (zero: none) counts
-    /// the angle of incidence.
+    /// An estimate ≥ 0 of the unoccluded contribution to `p`. A nonzero `n` is the surface normal
+    /// there, and includes the cosine of incidence.
     pub fn importance(&self, p: Point3, n: Normal3) -> f32 {
         let to = p - self.bounds.centroid();
         let distance2 = to.length_squared();
@@ -78,7 +78,8 @@ impl LightBounds {
             cos_w = cos_w.abs();
         }
         let sin_w = safe_sqrt(1.0 - cos_w * cos_w);
-        // Of the cone that holds the box: everything, from inside of its sphere.
+        // The cone around the box is the whole sphere of directions for points in the box's
+        // bounding sphere.
         let sin2_b = radius2 / distance2;
         let (sin_b, cos_b) = if sin2_b < 1.0 { (sin2_b.sqrt(), (1.0 - sin2_b).sqrt()) } else { (0.0, -1.0) };
         let sin_o = safe_sqrt(1.0 - self.cos_theta_o * self.cos_theta_o);
@@ -88,14 +89,14 @@ impl LightBounds {
         if cos_p <= self.cos_theta_e {
             return 0.0;
         }
-        // Near a cluster, 1/d² would blow up: no nearer than half of its size.
+        // The distance is clamped to half of the box's diagonal, as 1/d² diverges near a cluster.
         let mut importance = self.phi * cos_p / distance2.max(radius2);
         if n != Vec3::ZERO {
             let cos_i = wi.dot(n).abs();
             let sin_i = safe_sqrt(1.0 - cos_i * cos_i);
             importance *= cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
         }
-        // Finite even on top of a point light, so that importances can be compared.
+        // Finite even at the position of a point light, so that importances can be compared.
         importance.clamp(0.0, f32::MAX / 4.0)
     }
 }
@@ -116,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn the_dark_side_does_not_matter() {
+    fn importance_behind_a_light_is_zero() {
         assert_eq!(lamp().importance(Vec3::new(0.0, 0.0, -5.0), Vec3::ZERO), 0.0);
         assert!(lamp().importance(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO) > 0.0);
         let both = LightBounds { two_sided: true, ..lamp() };
@@ -124,14 +125,14 @@ mod tests {
     }
 
     #[test]
-    fn nearer_and_brighter_matter_more() {
+    fn importance_grows_with_power_and_proximity() {
         let near = lamp().importance(Vec3::new(0.0, 0.0, 2.0), Vec3::Z);
         assert!(near > lamp().importance(Vec3::new(0.0, 0.0, 4.0), Vec3::Z));
         assert!(near < LightBounds { phi: 3.0, ..lamp() }.importance(Vec3::new(0.0, 0.0, 2.0), Vec3::Z));
     }
 
     #[test]
-    fn a_union_is_never_less_visible_than_its_parts() {
+    fn a_union_has_importance_wherever_its_parts_have() {
         let other = LightBounds { w: Vec3::X, bounds: Bounds3::new(Vec3::ONE, Vec3::splat(1.2)), ..lamp() };
         let both = lamp().union(other);
         for p in [Vec3::new(0.0, 0.0, 5.0), Vec3::new(5.0, 1.0, 1.0), Vec3::new(3.0, 3.0, 3.0)] {

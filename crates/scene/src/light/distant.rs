@@ -1,8 +1,8 @@
-//! Light from one direction, as from the sun without its disk; the same everywhere in the scene.
+//! Light from one direction, the same everywhere in the scene.
 //!
-//! Its power is what falls on a disk that covers the scene: Φ = π·R²·L. Emitted rays start
-//! uniformly on that disk. They miss what lies outside of the scene's sphere, as parts of infinite
-//! planes do. Sources: [Pharr 2023 §12.3].
+//! Its power is the flux through a disk that covers the scene: Φ = π·R²·L. Emitted rays start
+//! uniformly on that disk. They miss geometry outside of the scene's sphere, such as parts of
+//! infinite planes. Sources: [Pharr 2023 §12.3].
 
 use super::{Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
 use math::{AnimatedTransform, Point2, Ray, Vec3, Vector3};
@@ -14,11 +14,11 @@ use std::f32::consts::PI;
 pub struct DistantLight {
     /// Unit direction towards the light in render space; in the light's own space if it moves.
     pub w: Vector3,
-    /// From the light's own space to render space; `None` of a light at rest.
+    /// From the light's own space to render space; `None` for a light at rest.
     pub motion: Option<Box<AnimatedTransform>>,
-    /// Radiance (of a delta distribution in direction: irradiance on a facing surface).
+    /// Radiance (of a delta distribution in direction: irradiance on a perpendicular surface).
     pub radiance: Emission,
-    /// The extent of the scene.
+    /// The bounding sphere of the scene.
     pub scene: SceneSphere,
 }
 

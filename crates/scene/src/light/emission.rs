@@ -1,4 +1,4 @@
-//! What lights emit: a spectrum and its scale; on surfaces, also an image.
+//! Emission of lights: a spectrum and its scale; on surfaces, also an image.
 
 use image::Image;
 use math::{Normal3, Vector3};
@@ -7,7 +7,7 @@ use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// What a light emits: `scale · spectrum(λ)`.
+/// The emission of a light: `scale · spectrum(λ)`.
 #[derive(Clone, Debug)]
 pub struct Emission {
     /// Shape of the spectrum.
@@ -29,14 +29,14 @@ impl Emission {
     }
 }
 
-/// What emitting surfaces send out; shared by all lights that are described alike.
+/// The emission of surfaces, shared by all lights with the same description.
 #[derive(Clone, Debug)]
 pub struct AreaEmission {
-    /// Radiance; with an image only its scale counts.
+    /// Radiance; with an image, only its scale is used.
     pub radiance: Emission,
     /// Colours over (u, v).
     pub image: Option<EmissionImage>,
-    /// Emits on the side against the normal, too.
+    /// Whether the side opposite to the normal emits, too.
     pub two_sided: bool,
 }
 
@@ -45,12 +45,12 @@ pub struct AreaEmission {
 pub struct EmissionImage {
     /// Pixels with red, green and blue; v = 0 is the bottom row.
     pub image: Arc<Image>,
-    /// What the channels mean.
+    /// The colour space of the pixels.
     pub color_space: &'static RgbColorSpace,
 }
 
 impl EmissionImage {
-    /// Its colours, none negative.
+    /// Its colours, with negative components set to zero.
     pub(super) fn pixels(&self) -> impl Iterator<Item = Rgb> + '_ {
         let (width, height) = (self.image.width(), self.image.height());
         (0..width * height).map(move |i| Rgb::from(self.image.rgb(i % width, i / width)).clamp_zero())
@@ -65,7 +65,7 @@ impl EmissionImage {
 }
 
 impl AreaEmission {
-    /// No light.
+    /// Emission of zero.
     pub fn black() -> Self {
         let radiance = Emission { spectrum: Spectrum::Constant(0.0), scale: 0.0 };
         Self { radiance, image: None, two_sided: false }

@@ -1,10 +1,10 @@
-//! A primitive that emits, where it stands at one shutter time.
+//! An emitting primitive at one shutter time.
 //!
 //! Primitives of instances, and of shapes under animated transforms, are sampled in their own
 //! space; densities follow by the Jacobian of the affine map p ↦ M·p + t to render space. An area
-//! at right angles to the unit normal n grows by |det M|·|M⁻ᵀn|. A solid angle around the unit
-//! direction ω of render space shrinks to its size in the primitive's space by |det M⁻¹|/|M⁻¹ω|³.
-//! Under rotation and translation both are 1, and sampling is as good as in render space.
+//! with the unit normal n grows by |det M|·|M⁻ᵀn|. A solid angle around the unit direction ω of
+//! render space shrinks to its size in the primitive's space by |det M⁻¹|/|M⁻¹ω|³. Under rotation
+//! and translation both factors are 1.
 
 use geometry::{InstancePath, Shape, ShapeSample, World};
 use math::{
@@ -13,13 +13,13 @@ use math::{
 
 use super::LightSampleContext;
 
-/// Strata per axis over which the mean area of curved surfaces under a map that is no similarity is
-/// found.
+/// Strata per axis to average the area factor of curved surfaces over, under maps other than
+/// similarities.
 const AREA_STRATA: u32 = 8;
 
 /// An emitting primitive at one shutter time.
 pub(super) struct Emitter<'a> {
-    /// The shape in its own space; of a moving one, as it is at that time.
+    /// The shape in its own space, at the shutter time.
     shape: &'a Shape,
     world: &'a World,
     instance: &'a InstancePath,
@@ -27,14 +27,14 @@ pub(super) struct Emitter<'a> {
 }
 
 impl<'a> Emitter<'a> {
-    /// Asks for the emitter that is `shape` through `instance` at `time`.
+    /// Calls `f` with the emitter that is `shape`, seen through `instance`, at `time`.
     #[inline]
-    pub fn ask<T>(
+    pub fn with<T>(
         shape: &Shape,
         world: &World,
         instance: &InstancePath,
         time: f32,
-        question: impl FnOnce(&Emitter) -> T,
+        f: impl FnOnce(&Emitter) -> T,
     ) -> T {
         let moved;
         let shape = match shape {
@@ -44,10 +44,10 @@ impl<'a> Emitter<'a> {
             }
             _ => shape,
         };
-        question(&Emitter { shape, world, instance, time })
+        f(&Emitter { shape, world, instance, time })
     }
 
-    /// To render space from that of the shape; `None` where they are the same, as they mostly are.
+    /// From the space of the shape to render space; `None` for the identity, the common case.
     #[inline]
     fn render_from_shape(&self) -> Option<Transform> {
         if self.instance.is_top() { None } else { self.render_from_instances() }
@@ -69,7 +69,7 @@ impl<'a> Emitter<'a> {
         let center = |i: u32| (i as f32 + 0.5) / n as f32;
         let factors = (0..n * n).filter_map(|i| {
             let sample = self.shape.sample(Vec2::new(center(i % n), center(i / n)))?;
-            // Weighted by 1/pdf where the shape does not choose its points evenly.
+            // Weighted by 1/pdf, as not all shapes sample their area uniformly.
             let weight = f64::from(sample.pdf).recip();
             Some((f64::from(area_factor(&transform, sample.n)) * weight, weight))
         });
@@ -122,8 +122,8 @@ impl<'a> Emitter<'a> {
         (pdf.is_finite() && pdf > 0.0).then_some(ShapeSample { pdf, ..outside })
     }
 
-    /// The density per solid angle with which [`sample_from`](Self::sample_from) chooses what is
-    /// first met along the unit direction `wi`.
+    /// The density per solid angle with which [`sample_from`](Self::sample_from) chooses the first
+    /// intersection along the unit direction `wi`.
     pub fn pdf_from(&self, context: &LightSampleContext, wi: Vector3) -> f32 {
         let Some(transform) = self.render_from_shape() else { return self.shape.pdf_from(context, wi) };
         let inverse = transform.inverse();
@@ -133,7 +133,7 @@ impl<'a> Emitter<'a> {
         if pdf.is_finite() { pdf } else { 0.0 }
     }
 
-    /// A cone of all its normals.
+    /// A cone that bounds all its normals.
     pub fn normal_bounds(&self) -> DirectionCone {
         let cone = self.shape.normal_bounds();
         match self.render_from_shape() {
@@ -146,14 +146,14 @@ impl<'a> Emitter<'a> {
     }
 }
 
-/// A box around all places that `shape` reaches through `instance`.
+/// Bounds of `shape`, seen through `instance`, over all times.
 pub(super) fn motion_bounds(shape: &Shape, world: &World, instance: &InstancePath) -> Option<Bounds3> {
     let outward = instance.ids().iter().rev();
     Some(outward.fold(shape.bounds()?, |b, &id| world.render_from_instance(id).motion_bounds(&b)))
 }
 
-/// A sample brought to render space, with the density `pdf`. Its error grows by what rays lose that
-/// are brought back into the space of the shape.
+/// A sample transformed to render space, with the density `pdf`. Its error includes that of rays
+/// that are transformed back to the space of the shape.
 fn placed(transform: &Transform, sample: &ShapeSample, pdf: f32) -> ShapeSample {
     let return_loss = sample.p.p.abs() * (2.0 * MACHINE_EPSILON);
     ShapeSample {
@@ -192,7 +192,7 @@ fn solid_angle_factor(inverse: &Transform, w: Vector3) -> f32 {
     determinant(inverse).abs() / inverse.vector(w).length().powi(3)
 }
 
-/// Whether all lengths grow alike.
+/// Whether the transform scales all lengths by the same factor.
 fn is_similarity(transform: &Transform) -> bool {
     let axes = axes(transform);
     let squared = axes[0].length_squared();
@@ -207,7 +207,7 @@ mod tests {
     use geometry::{GroupId, Instance, Sphere, Triangle};
     use math::{AnimatedTransform, DMat4, DVec3};
 
-    /// A shape seen through an instance that stretches, turns, and mirrors it.
+    /// A shape seen through an instance that stretches, rotates and mirrors it.
     fn stretched(shape: Shape) -> (World, InstancePath, Shape) {
         let matrix = DMat4::from_translation(DVec3::new(0.5, -1.0, 4.0))
             * DMat4::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), 0.7)

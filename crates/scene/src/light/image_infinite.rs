@@ -1,16 +1,17 @@
-//! Radiance from infinity given by an image of the sphere, sampled in proportion to its brightness.
+//! Radiance from infinity given by an image of the sphere, importance-sampled by its brightness.
 //!
 //! The image is in the equal-area or the latitude–longitude [`Projection`]. With p(s, t) the
-//! density over the unit square and j(s, t) the solid angle per area as a part of 4π, the density
-//! per solid angle is p/(4π·j): j = 1 for equal areas and (π/2)·sin θ for latitude and longitude,
-//! whose pixels are sampled in proportion to brightness · sin θ.
+//! density over the unit square and 4π·j(s, t) the solid angle per area, the density per solid
+//! angle is p/(4π·j): j = 1 for equal areas and (π/2)·sin θ for latitude and longitude, whose
+//! pixels are sampled in proportion to brightness · sin θ.
 //!
 //! With incomplete sampling allowed, the *compensated* distribution max(0, f − mean) is used:
-//! multiple importance sampling leaves the dim parts to the BSDF, and light samples go where they
-//! matter ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Rays of light come by the plain
-//! distribution, and start evenly on the disk that faces them and covers the scene.
+//! multiple importance sampling leaves the dim parts to BSDF sampling, and light samples go to the
+//! bright parts ([Karlík et al. 2019]; [Pharr 2023 §12.5.2]). Emitted rays are chosen by the plain
+//! distribution, and start uniformly on the disk that is perpendicular to them and covers the
+//! scene.
 //!
-//! Of an environment that moves, directions are turned by its transform at the shutter time.
+//! Directions to a moving environment are transformed at the shutter time.
 
 use super::{LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
 use image::{Image, Projection};
@@ -25,22 +26,22 @@ use std::sync::Arc;
 pub struct ImageInfiniteLight {
     /// From the space of the projection to render space.
     pub render_from_light: AnimatedTransform,
-    /// Pixels with red, green and blue, none counted as negative.
+    /// Pixels with red, green and blue; negative values count as zero.
     pub image: Arc<Image>,
-    /// Where on the sphere a pixel lies.
+    /// The mapping from pixels to directions.
     pub projection: Projection,
-    /// What the channels mean.
+    /// The colour space of the pixels.
     pub color_space: &'static RgbColorSpace,
-    /// Factor on the radiance that the image says.
+    /// Factor on the radiance of the image.
     pub scale: f32,
-    /// The extent of the scene.
+    /// The bounding sphere of the scene.
     pub scene: SceneSphere,
     distribution: PiecewiseConstant2d,
     compensated: PiecewiseConstant2d,
 }
 
 impl ImageInfiniteLight {
-    /// Bytes that [`Self::new`] takes for each pixel: the density, and two distributions of values,
+    /// Bytes per pixel that [`Self::new`] allocates: the density, and two distributions of values,
     /// cumulative values and guides.
     pub const BYTES_PER_PIXEL: usize = 28;
 

@@ -1,33 +1,31 @@
-//! Lights: what emits into the scene, and how a point finds it.
+//! Lights: emission and light sampling.
 //!
-//! A light answers two questions. *How much comes from there?* — [`LightRef::radiance`] for
-//! emitting surfaces, [`LightRef::le`] for rays that leave the scene. *Where should I look?* —
-//! [`LightRef::sample_li`] draws a direction from a point towards the light, [`LightRef::pdf_li`]
-//! is its density per solid angle. Lights at a point or in one direction (delta lights) can only be
-//! sampled, never hit: their pdf is 0.
+//! Emission is [`LightRef::radiance`] of emitting surfaces and [`LightRef::le`] for rays that leave
+//! the scene. For next-event estimation, [`LightRef::sample_li`] samples a direction from a point
+//! to the light, and [`LightRef::pdf_li`] is its density per solid angle. Lights at a point or in
+//! one direction (delta lights) can only be sampled, never hit: their pdf is 0.
 //!
-//! To trace paths from the lights there is a third question, *which rays leave?* —
-//! [`LightRef::sample_le`] draws a ray with two densities. That of its position is per area of the
-//! surface; of lights infinitely far away, which have none, per area of the disk of the scene's
-//! radius R that faces them, 1/(πR²). That of its direction is per solid angle. Where one of the
-//! two is fixed, its delta has the coefficient 1. What the ray carries on average is the light's
-//! power,
+//! For light paths, [`LightRef::sample_le`] samples a ray with two densities. That of its position
+//! is per area of the surface; for lights infinitely far away, which have none, it is per area of
+//! the disk of the scene's radius R that faces them, 1/(πR²). That of its direction is per solid
+//! angle. Where one of the two is fixed, its delta has the coefficient 1. The ray's throughput β
+//! has the light's power as its mean,
 //!
 //! ```text
 //! β = L·|cos θ| / (p_position·p_direction)        E[β] = Φ
 //! ```
 //!
-//! with θ at the light's surface (|cos θ| = 1 where there is none) and for L radiance, of lights at
-//! a point radiant intensity. [`LightRef::pdf_le`] and [`LightRef::pdf_le_infinite`] are the
-//! densities of a given ray, 0 for a delta: bidirectional methods weight with them a path that
-//! found the light from its other end ([Pharr 2016 §16.1.2]).
+//! with θ at the light's surface (|cos θ| = 1 where there is none) and L the radiance, or for
+//! lights at a point the radiant intensity. [`LightRef::pdf_le`] and [`LightRef::pdf_le_infinite`]
+//! are the densities of a given ray, 0 for a delta: bidirectional methods use them to weight paths
+//! that hit the light from the camera ([Pharr 2016 §16.1.2]).
 //!
-//! Everything is a function of shutter time: a sample at time t is on the light where it stands at
-//! t, and a density is that of the same time.
+//! All functions depend on the shutter time: a sample at time t is on the light as it is placed at
+//! t, and so are densities.
 //!
 //! Each kind of light implements [`LightModel`]. A row of the scene's table of lights is a
-//! [`Light`]; the row of an emitting geometry stands for one light per primitive. A [`LightRef`]
-//! is one light with the tables that it refers to, and the way to ask it.
+//! [`Light`]; the row of an emitting geometry holds one light per primitive. A [`LightRef`] is one
+//! light with the tables that it refers to; its methods are the interface to lights.
 //!
 //! Radiometric scale follows the pbrt-v4 format: a light's spectrum is first divided by its
 //! photometric integral, so that a scale of 1 is a luminance of 1.
@@ -78,7 +76,7 @@ pub enum Light {
     ImageInfinite(Box<ImageInfiniteLight>),
 }
 
-/// Dispatches to the member.
+/// Dispatches to the kind of light.
 macro_rules! each_light {
     ($self:expr, $light:ident => $e:expr) => {
         match $self {
@@ -94,13 +92,13 @@ macro_rules! each_light {
 
 use each_light;
 
-/// What a kind of light can do. `part` names the primitive of an emitting geometry that is asked,
-/// and holds the tables of the scene; other kinds have no use for it.
+/// The interface of a kind of light. `part` is the primitive of an emitting geometry, with the
+/// tables of the scene; other kinds of lights ignore it.
 pub trait LightModel {
-    /// Whether it can only be sampled, never met by a ray.
+    /// Whether it can only be sampled, never hit by a ray.
     fn is_delta(&self) -> bool;
 
-    /// Whether rays that leave the scene meet it.
+    /// Whether rays that leave the scene receive its radiance.
     fn is_infinite(&self) -> bool {
         false
     }
@@ -110,11 +108,12 @@ pub trait LightModel {
         self.is_infinite()
     }
 
-    /// Emitted power. Of what moves and changes its size, the mean of the first and the last.
+    /// Emitted power. If the size changes with time, the mean of the powers at the start and the
+    /// end of motion.
     #[doc(alias = "Phi")]
     fn phi(&self, part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum;
 
-    /// A direction from `context` to the light, chosen by `u`, or `None` where no light comes from.
+    /// A direction from `context` to the light, chosen by `u`; `None` if it has no radiance.
     ///
     /// With `allow_incomplete` the light may leave out directions that BSDF sampling covers well,
     /// as long as the caller combines both with the pdf of the same flag.
@@ -129,7 +128,7 @@ pub trait LightModel {
     ) -> Option<LightLiSample>;
 
     /// Density per solid angle with which [`sample_li`](Self::sample_li) chooses the unit direction
-    /// `wi`; 0 of delta lights.
+    /// `wi`; 0 for delta lights.
     #[doc(alias = "PDF_Li")]
     fn pdf_li(
         &self,
@@ -141,8 +140,8 @@ pub trait LightModel {
         0.0
     }
 
-    /// A ray of light that leaves at `time`, its position chosen by `u_position` and its direction
-    /// by `u_direction`; `None` where no light does.
+    /// An emitted ray at `time`, its position chosen by `u_position` and its direction by
+    /// `u_direction`; `None` if it has no radiance.
     #[doc(alias = "SampleLe")]
     fn sample_le(
         &self,
@@ -163,8 +162,8 @@ pub trait LightModel {
 
     /// Densities of position and direction with which [`sample_le`](Self::sample_le) of a light
     /// infinitely far away chooses the ray that arrives along `ray`, a ray of unit direction that
-    /// leaves the scene towards the light. Both are 0 for other lights, and where no chosen ray
-    /// passes: beside the scene's sphere, and above the disk where they start.
+    /// leaves the scene towards the light. Both are 0 for other lights, and for rays that are never
+    /// chosen: those that miss the scene's sphere or start beyond the disk.
     #[doc(alias = "PDF_Le")]
     fn pdf_le_infinite(&self, _ray: &Ray) -> (f32, f32) {
         (0.0, 0.0)
@@ -190,36 +189,36 @@ pub trait LightModel {
         SampledSpectrum::ZERO
     }
 
-    /// Where it is over all the shutter's time, and where it emits to; `None` for what is
-    /// infinitely far away.
+    /// Bounds over all times; `None` for lights infinitely far away.
     fn bounds(&self, _part: &LightPart) -> Option<LightBounds> {
         None
     }
 }
 
-/// Light that may arrive from a light, before visibility is known.
+/// A sample of incident light, before its visibility is tested.
 #[derive(Clone, Copy, Debug)]
 pub struct LightLiSample {
-    /// Incident radiance; for delta lights radiance whose delta cancels with that of `pdf`.
+    /// Incident radiance; for delta lights, the coefficient of a delta that cancels with that of
+    /// `pdf`.
     pub l: SampledSpectrum,
     /// Unit direction from the reference point to the light.
     pub wi: Vector3,
     /// Density per solid angle at the reference point; 1 for delta lights.
     pub pdf: f32,
-    /// Where on the light; `None` for lights infinitely far away.
+    /// Point of the light; `None` for lights infinitely far away.
     pub p: Option<Point3Error>,
     /// Normal of the light's surface there; zero where it has none.
     pub n: Normal3,
 }
 
-/// A ray of light on its way from a light.
+/// A sampled ray that leaves a light.
 #[derive(Clone, Copy, Debug)]
 pub struct LightLeSample {
-    /// Radiance along the ray; of lights at a point radiant intensity.
+    /// Radiance along the ray; for lights at a point, radiant intensity.
     pub l: SampledSpectrum,
-    /// The way of the light, a unit direction; clear of the surface that it leaves.
+    /// The ray, of unit direction; its origin is offset from the surface against self-intersection.
     pub ray: Ray,
-    /// Where on the light; `None` for lights infinitely far away.
+    /// Point of the light; `None` for lights infinitely far away.
     pub p: Option<Point3Error>,
     /// Normal of the light's surface there; zero where it has none.
     pub n: Normal3,
@@ -230,7 +229,7 @@ pub struct LightLeSample {
 }
 
 impl LightLeSample {
-    /// What a particle that leaves along the ray carries: L·|cos θ| over the densities.
+    /// Initial path throughput: L·|cos θ| over the densities.
     pub fn beta(&self) -> SampledSpectrum {
         let cos_theta = if self.n == Normal3::ZERO { 1.0 } else { self.n.dot(self.ray.d).abs() };
         self.l * (cos_theta / (self.pdf_position * self.pdf_direction))

@@ -1,4 +1,4 @@
-//! A light at a point that emits alike into all directions: L = I / r².
+//! A light at a point that emits uniformly into all directions: L = I / r².
 //!
 //! Parameters: radiant intensity I; power 4π·I. Emitted rays are uniform in direction. Sources:
 //! [Pharr 2023 §12.2].
@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 pub struct PointLight {
     /// Position in render space; in the light's own space if it moves.
     pub p: Point3,
-    /// From the light's own space to render space; `None` of a light at rest.
+    /// From the light's own space to render space; `None` for a light at rest.
     pub motion: Option<Box<AnimatedTransform>>,
     /// Radiant intensity.
     pub intensity: Emission,
@@ -27,7 +27,7 @@ impl PointLight {
     }
 }
 
-/// A box around all places of a point.
+/// Bounds of the point over all times.
 pub(super) fn reach(p: Point3, motion: Option<&AnimatedTransform>) -> Bounds3 {
     let here = Bounds3::new(p, p);
     motion.map_or(here, |motion| motion.motion_bounds(&here))

@@ -2,8 +2,8 @@
 //! smooth step s falls from 1 at the start of the falloff to 0 at the cone's end.
 //!
 //! Power 2π·I·((1 − cos θ_start) + (cos θ_start − cos θ_end)/2). Rays leave with the density of the
-//! intensity itself, p_direction = s(cos θ)·I/Φ: evenly within the start of the falloff, around it
-//! with cos θ by the smooth step; each carries all of Φ. Sources: [Pharr 2023 §12.2.1].
+//! intensity itself, p_direction = s(cos θ)·I/Φ: uniform in the inner cone, and by the smooth step
+//! of cos θ around it; each ray carries all of Φ. Sources: [Pharr 2023 §12.2.1].
 
 use super::point::reach;
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
@@ -22,18 +22,18 @@ pub struct SpotLight {
     pub p: Point3,
     /// Unit axis of the cone, in the same space.
     pub axis: Vector3,
-    /// From the light's own space to render space; `None` of a light at rest.
+    /// From the light's own space to render space; `None` for a light at rest.
     pub motion: Option<Box<AnimatedTransform>>,
     /// Radiant intensity on the axis.
     pub intensity: Emission,
     /// Cosine of the angle where the falloff starts.
     pub cos_falloff_start: f32,
-    /// Cosine of the angle where no light is left; at most `cos_falloff_start`.
+    /// Cosine of the angle where the intensity becomes zero; at most `cos_falloff_start`.
     pub cos_falloff_end: f32,
 }
 
 impl SpotLight {
-    /// The solid angle that shines at full intensity with the same power.
+    /// The solid angle that has the same power at full intensity.
     pub fn effective_solid_angle(cos_falloff_start: f32, cos_falloff_end: f32) -> f32 {
         2.0 * PI * ((1.0 - cos_falloff_start) + (cos_falloff_start - cos_falloff_end) / 2.0)
     }
@@ -49,7 +49,7 @@ impl SpotLight {
         }
     }
 
-    /// The fraction of the intensity on the axis at the cosine `cos_theta` with it.
+    /// The intensity at the cosine `cos_theta` with the axis, as a fraction of that on the axis.
     fn falloff(&self, cos_theta: f32) -> f32 {
         smooth_step(cos_theta, self.cos_falloff_end, self.cos_falloff_start)
     }
@@ -139,8 +139,7 @@ impl LightModel for SpotLight {
             w: self.axis,
             phi: 4.0 * PI * self.intensity.max_value(),
             cos_theta_o: if self.motion.is_some() { -1.0 } else { self.cos_falloff_start },
-            // Room for rounding, so that points just inside of the edge keep some importance, be it
-            // soft or hard.
+            // A margin for rounding, so that points just inside of the edge keep some importance.
             cos_theta_e: edge.cos().min(0.999),
             two_sided: false,
         })

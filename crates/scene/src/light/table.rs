@@ -1,7 +1,7 @@
-//! The lights of a scene: the table, and one light of it.
+//! The table of the lights of a scene, and references to single lights.
 //!
-//! A row stands for one light, or for one light per primitive of an emitting geometry; the ids of
-//! its lights follow each other. A million emitting triangles are one row.
+//! A row holds one light, or one light per primitive of an emitting geometry, with consecutive ids.
+//! A mesh of a million emitting triangles is one row.
 
 use super::{
     AreaEmission, EmissionId, Light, LightBounds, LightId, LightLeSample, LightLiSample, LightModel,
@@ -12,7 +12,7 @@ use geometry::World;
 use math::{Normal3, Point2, Point3, Ray, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-/// The rows, and what they share.
+/// The rows, and the emissions that they share.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LightTable {
     rows: Vec<Light>,
@@ -29,7 +29,7 @@ impl LightTable {
         Self { emissions, ..Self::default() }
     }
 
-    /// Adds a row that stands for `count` lights.
+    /// Adds a row of `count` lights.
     pub fn push(&mut self, light: Light, count: u32) {
         if each_light!(&light, light => light.is_infinite()) {
             self.infinite.push(LightId(self.len));
@@ -44,12 +44,12 @@ impl LightTable {
         self.len == 0
     }
 
-    /// What area lights emit.
+    /// The emissions of area lights.
     pub fn emissions(&self) -> &[AreaEmission] {
         &self.emissions
     }
 
-    /// The lights that rays leaving the scene meet.
+    /// The lights whose radiance rays that leave the scene receive.
     pub fn infinite(&self) -> &[LightId] {
         &self.infinite
     }
@@ -64,7 +64,7 @@ pub struct Lights<'a> {
 }
 
 impl<'a> Lights<'a> {
-    /// How many lights there are; their ids are 0 … `len` − 1.
+    /// The number of lights; their ids are 0 … `len` − 1.
     pub fn len(self) -> usize {
         self.table.len as usize
     }
@@ -97,10 +97,10 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// Which of the lights of a row is asked, and the tables that it refers to.
+/// Selects one of the lights of a row, with the tables that it refers to.
 #[derive(Clone, Copy, Debug)]
 pub struct LightPart<'a> {
-    /// The primitive of an emitting geometry; 0 of other lights.
+    /// The primitive of an emitting geometry; 0 for other lights.
     pub primitive: u32,
     lights: Lights<'a>,
 }
@@ -111,12 +111,12 @@ impl<'a> LightPart<'a> {
         self.lights.world
     }
 
-    /// The textures that cut surfaces out.
+    /// The alpha textures.
     pub(super) fn textures(&self) -> &'a Textures {
         self.lights.textures
     }
 
-    /// What is emitted.
+    /// The emission of an id.
     pub(super) fn emission(&self, id: EmissionId) -> &'a AreaEmission {
         &self.lights.table.emissions[id.0 as usize]
     }

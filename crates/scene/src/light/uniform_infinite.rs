@@ -1,9 +1,9 @@
-//! A sky of one radiance in all directions.
+//! A sky with the same radiance in all directions.
 //!
 //! Its power is what enters the sphere around the scene: Φ = 4π²·R²·L. With incomplete sampling
-//! allowed it is left wholly to BSDF sampling, which covers a constant sky better than uniform
-//! directions do. Emitted rays are uniform in direction, and start uniformly on the disk that faces
-//! them and covers the scene. Sources: [Pharr 2023 §12.5.1].
+//! allowed it is never sampled: BSDF sampling finds a constant sky better than uniform directions
+//! do. Emitted rays are uniform in direction, and start uniformly on the disk that is perpendicular
+//! to them and covers the scene. Sources: [Pharr 2023 §12.5.1].
 
 use super::{Emission, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
 use math::{Point2, Ray, Vec3, Vector3};
@@ -16,7 +16,7 @@ use std::f32::consts::PI;
 pub struct UniformInfiniteLight {
     /// Radiance from every direction.
     pub radiance: Emission,
-    /// The extent of the scene.
+    /// The bounding sphere of the scene.
     pub scene: SceneSphere,
 }
 

@@ -1,15 +1,15 @@
-//! Lights by what they may contribute to the point at hand: a walk down a tree of clusters.
+//! Lights by their importance to the shading point: a stochastic descent through a BVH of lights.
 //!
-//! Each node bounds its lights' positions, directions and power ([`LightBounds`]); at each step the
-//! two children's importances decide with one random number, rescaled on the way. To find the
-//! probability of a given light again, the way to it is stored as a trail of bits. Lights
-//! infinitely far away have no bounds; they are chosen among themselves alike, and together count
-//! as much each as the whole tree.
+//! Each node bounds its lights' positions, directions and power ([`LightBounds`]); at each node a
+//! child is chosen in proportion to importance, with one random number that is rescaled after each
+//! choice. The path to each light is stored as a trail of bits, from which the probability of a
+//! given light is computed. Lights infinitely far away have no bounds: each is chosen with the same
+//! probability as the whole tree.
 //!
 //! The tree is built top-down over 12 buckets per axis by the cost Φ·M_Ω·K_r·A: M_Ω measures the
-//! solid angle of emission, K_r punishes long thin boxes, A is the area of the box. Large clusters
-//! are built on several threads, whose number does not matter to the tree. Sources:
-//! [Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3].
+//! solid angle of emission, K_r penalizes long thin boxes, A is the area of the box. Large clusters
+//! are built on several threads; the tree does not depend on their number. Sources: [Conty Estevez
+//! & Kulla 2018]; [Pharr 2023 §12.6.3].
 
 use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
@@ -25,13 +25,13 @@ pub struct BvhLightSampler {
     trails: Vec<Trail>,
 }
 
-/// Where a light is found. In the tree: the path from the root, where bit i is set for the right
-/// child at depth i; trees are less than 64 deep. Elsewhere: one of two values that are no path.
+/// The place of a light. In the tree: the path from the root, where bit i is set for the right
+/// child at depth i; trees are less than 64 deep. Elsewhere: one of two reserved values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Trail(u64);
 
 impl Trail {
-    /// Nowhere: it has no power.
+    /// Not in the sampler: its power is zero.
     const NOWHERE: Self = Self(u64::MAX);
     /// Among the lights infinitely far away.
     const INFINITE: Self = Self(u64::MAX - 1);
@@ -53,13 +53,13 @@ enum NodeKind {
 }
 
 const BUCKETS: usize = 12;
-/// Below this depth splits are by the median, so that a trail always fits into its bits.
-const DEEPEST_CHOICE: u32 = 32;
-/// The two parts of clusters of more lights are built at the same time.
-const LARGE: usize = 4096;
+/// Below this depth splits are at the median, so that every trail fits into its bits.
+const MAX_COST_SPLIT_DEPTH: u32 = 32;
+/// The two halves of clusters with more lights are built in parallel.
+const PARALLEL_LIGHTS: usize = 4096;
 
 impl BvhLightSampler {
-    /// For these lights; `None` if `cancel` is set meanwhile.
+    /// Builds the tree; `None` if `cancel` is set meanwhile.
     pub fn new(lights: Lights, cancel: &AtomicBool) -> Option<Self> {
         let mut infinite = Vec::new();
         let mut bounded = Vec::new();
@@ -84,24 +84,24 @@ impl BvhLightSampler {
             build(&mut bounded, &mut nodes, [0, 0], cancel)?;
         }
         let mut sampler = Self { nodes, infinite, trails };
-        sampler.leave_trails(0, 0, 0);
+        sampler.store_trails(0, 0, 0);
         Some(sampler)
     }
 
-    /// Stores the way to each light below a node, whose own is `trail`.
-    fn leave_trails(&mut self, node: usize, trail: u64, depth: u32) {
+    /// Stores the trails of all lights below a node, whose own is `trail`.
+    fn store_trails(&mut self, node: usize, trail: u64, depth: u32) {
         match self.nodes.get(node).map(|node| node.kind) {
             None => (),
             Some(NodeKind::Leaf(id)) => self.trails[id.0 as usize] = Trail(trail),
             Some(NodeKind::Interior { right }) => {
-                self.leave_trails(node + 1, trail, depth + 1);
-                self.leave_trails(right as usize, trail | (1 << depth), depth + 1);
+                self.store_trails(node + 1, trail, depth + 1);
+                self.store_trails(right as usize, trail | (1 << depth), depth + 1);
             }
         }
     }
 
     /// Probability of choosing among the infinite lights.
-    fn infinite_share(&self) -> f32 {
+    fn infinite_probability(&self) -> f32 {
         let infinite = self.infinite.len() as f32;
         let tree = if self.nodes.is_empty() { 0.0 } else { 1.0 };
         if infinite == 0.0 { 0.0 } else { infinite / (infinite + tree) }
@@ -111,24 +111,24 @@ impl BvhLightSampler {
         self.nodes[node].bounds.importance(context.p.p, context.ns)
     }
 
-    /// Probability of choosing the tree: none where nothing in it matters.
-    fn tree_share(&self, context: &LightSampleContext) -> f32 {
-        // Whether an inner node matters is known from its children.
+    /// Probability of choosing the tree: zero if its root is a leaf of importance zero.
+    fn tree_probability(&self, context: &LightSampleContext) -> f32 {
+        // Below an interior root the descent finds importances of zero.
         match self.nodes.first() {
             Some(Node { kind: NodeKind::Leaf(_), .. }) if self.importance(0, context) == 0.0 => 0.0,
-            _ => 1.0 - self.infinite_share(),
+            _ => 1.0 - self.infinite_probability(),
         }
     }
 
     pub(super) fn sample(&self, context: &LightSampleContext, u: f32) -> Option<(LightId, f32)> {
-        let share = self.infinite_share();
+        let share = self.infinite_probability();
         if u < share {
             let count = self.infinite.len();
             let i = ((u / share * count as f32) as usize).min(count - 1);
             return Some((self.infinite[i], share / count as f32));
         }
         let mut u = ((u - share) / (1.0 - share)).min(ONE_MINUS_EPSILON);
-        let mut pmf = self.tree_share(context);
+        let mut pmf = self.tree_probability(context);
         let mut index = 0;
         loop {
             match self.nodes.get(index)?.kind {
@@ -151,10 +151,10 @@ impl BvhLightSampler {
     pub(super) fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
         let mut trail = match self.trails[light.0 as usize] {
             Trail::NOWHERE => return 0.0,
-            Trail::INFINITE => return self.infinite_share() / self.infinite.len() as f32,
+            Trail::INFINITE => return self.infinite_probability() / self.infinite.len() as f32,
             Trail(trail) => trail,
         };
-        let (mut pmf, mut index) = (self.tree_share(context), 0);
+        let (mut pmf, mut index) = (self.tree_probability(context), 0);
         while let NodeKind::Interior { right } = self.nodes[index].kind {
             let children = [index + 1, right as usize];
             let importances = children.map(|child| self.importance(child, context));
@@ -170,8 +170,8 @@ impl BvhLightSampler {
     }
 }
 
-/// Builds the tree of lights, one at least, in the nodes that it takes: 2n − 1 for n lights. The
-/// first has this index and depth in the whole tree. `None` if `cancel` is set meanwhile.
+/// Builds the tree of n ≥ 1 lights in 2n − 1 nodes. The first node has the given index and depth in
+/// the whole tree. `None` if `cancel` is set meanwhile.
 fn build(
     lights: &mut [(LightId, LightBounds)],
     nodes: &mut [Node],
@@ -185,7 +185,7 @@ fn build(
     if cancel.load(Ordering::Relaxed) {
         return None;
     }
-    let is_large = lights.len() > LARGE;
+    let is_large = lights.len() > PARALLEL_LIGHTS;
     let middle = split(lights, depth);
     let (left, right) = lights.split_at_mut(middle);
     let (node, below) = nodes.split_first_mut()?;
@@ -205,7 +205,7 @@ fn split(lights: &mut [(LightId, LightBounds)], depth: u32) -> usize {
     let centroids = Bounds3::around(lights.iter().map(|l| l.1.bounds.centroid()));
     let is_below =
         |(axis, first): (usize, usize), light: &LightBounds| bucket(light, &centroids, axis) < first;
-    if depth < DEEPEST_CHOICE
+    if depth < MAX_COST_SPLIT_DEPTH
         && lights.len() > 2
         && let Some(best) = best_split(lights, &bounds, &centroids)
     {
@@ -228,8 +228,8 @@ fn split(lights: &mut [(LightId, LightBounds)], depth: u32) -> usize {
     middle
 }
 
-/// The axis and the first bucket of the upper side that cost least; `None` where no split has a
-/// cost, as between points on one line.
+/// The axis and the first bucket of the upper side with the least cost; `None` where no split has a
+/// positive cost, as for points on one line.
 fn best_split(
     lights: &[(LightId, LightBounds)],
     bounds: &Bounds3,

@@ -2,7 +2,7 @@
 //!
 //! [`LightSampler::sample`] returns a light with the probability of its choice;
 //! [`LightSampler::pmf`] is that probability for a given light, which multiple importance sampling
-//! needs when a BSDF sample happens to meet it.
+//! needs when a BSDF sample hits that light.
 
 mod bvh;
 mod power;
@@ -16,7 +16,7 @@ use crate::light::{LightId, LightSampleContext, Lights};
 use description::LightSamplerDesc;
 use std::sync::atomic::AtomicBool;
 
-/// A way of choosing.
+/// A light sampler.
 #[derive(Clone, Debug)]
 pub enum LightSampler {
     /// See [`UniformLightSampler`].
@@ -28,15 +28,15 @@ pub enum LightSampler {
 }
 
 impl Default for LightSampler {
-    /// A choice among no lights.
+    /// A sampler of no lights.
     fn default() -> Self {
         Self::Uniform(UniformLightSampler::default())
     }
 }
 
 impl LightSampler {
-    /// A sampler for these lights, as described; `None` if `cancel` is set while a tree is built.
-    /// The tree stands in for sampling every light, which is not drawn.
+    /// A sampler of these lights, as described; `None` if `cancel` is set while a tree is built.
+    /// The description's sampling of every light is not supported; the tree replaces it.
     pub fn new(desc: LightSamplerDesc, lights: Lights, cancel: &AtomicBool) -> Option<Self> {
         Some(match desc {
             LightSamplerDesc::Uniform => Self::Uniform(UniformLightSampler::new(lights)),

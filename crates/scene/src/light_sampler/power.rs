@@ -1,18 +1,18 @@
-//! Lights in proportion to their power, wherever the point is; so that it also chooses where paths
-//! of light start, which have no point to look from.
+//! Lights in proportion to their power, independent of the shading point. This sampler therefore
+//! also chooses the lights at which light paths start.
 
 use crate::light::{LightId, Lights};
 use sampling::AliasTable;
 use spectrum::SampledWavelengths;
 
-/// Lights by power. The default is among no lights.
+/// Lights by power. The default has no lights.
 #[derive(Clone, Debug, Default)]
 pub struct PowerLightSampler {
     table: Option<AliasTable>,
 }
 
 impl PowerLightSampler {
-    /// For these lights. When none has any power, all are alike.
+    /// Builds the distribution; uniform if no light has power.
     pub fn new(lights: Lights) -> Self {
         let lambda = SampledWavelengths::sample_visible(0.5);
         let mut powers: Vec<f32> =

@@ -1,4 +1,4 @@
-//! All lights alike.
+//! All lights with equal probability.
 
 use crate::light::{LightId, Lights};
 
@@ -9,7 +9,7 @@ pub struct UniformLightSampler {
 }
 
 impl UniformLightSampler {
-    /// For these lights.
+    /// A sampler of these lights.
     pub fn new(lights: Lights) -> Self {
         Self { count: lights.len() as u32 }
     }

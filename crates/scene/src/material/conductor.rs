@@ -12,13 +12,13 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 /// A metal.
 #[derive(Clone, Debug)]
 pub struct ConductorMaterial {
-    /// What it reflects.
+    /// Index of refraction.
     pub index: ConductorIndex,
-    /// How rough it is.
+    /// Surface roughness.
     pub roughness: Roughness,
 }
 
-/// How the reflection of a metal is said.
+/// How the reflectance of a metal is given.
 #[derive(Clone, Copy, Debug)]
 pub enum ConductorIndex {
     /// By its index of refraction.
@@ -28,7 +28,7 @@ pub enum ConductorIndex {
         /// Imaginary part.
         k: SpectrumTextureId,
     },
-    /// By its colour at normal incidence.
+    /// By its reflectance at normal incidence.
     Reflectance(SpectrumTextureId),
 }
 

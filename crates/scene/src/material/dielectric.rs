@@ -1,19 +1,19 @@
-//! Glass, water, plastics' clear surface: reflection and refraction, smooth or rough.
+//! Glass, water, clear coats: reflection and refraction, smooth or rough.
 //!
 //! Parameters: index of refraction over wavelength, default 1.5; roughness, default 0. An index
-//! that varies with wavelength disperses: from here on the path goes on with one wavelength.
+//! that varies with wavelength disperses: the path continues with one wavelength only.
 
 use super::{Roughness, dispersed_index};
 use crate::texture::{TextureContext, Textures};
 use scattering::Dielectric;
 use spectrum::{SampledWavelengths, Spectrum};
 
-/// A transparent body's surface.
+/// The surface of a transparent body.
 #[derive(Clone, Debug)]
 pub struct DielectricMaterial {
     /// Index of refraction inside over that outside.
     pub eta: Spectrum,
-    /// How rough it is.
+    /// Surface roughness.
     pub roughness: Roughness,
 }
 

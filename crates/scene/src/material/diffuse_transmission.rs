@@ -10,9 +10,9 @@ use spectrum::SampledWavelengths;
 /// A matte, translucent surface.
 #[derive(Clone, Debug)]
 pub struct DiffuseTransmissionMaterial {
-    /// Part reflected.
+    /// Reflected share.
     pub reflectance: SpectrumTextureId,
-    /// Part transmitted.
+    /// Transmitted share.
     pub transmittance: SpectrumTextureId,
     /// Factor on both.
     pub scale: f32,

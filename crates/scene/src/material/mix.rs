@@ -1,8 +1,8 @@
 //! One of two materials, chosen at each point with a given probability.
 //!
-//! The choice is a hash of the point and the direction it is seen from: the same for the same hit,
-//! whichever thread asks, and on the mean over many hits the mixture. Parameter: the probability of
-//! the second material, default 0.5.
+//! The choice is a hash of the point and the outgoing direction: the same for the same hit on any
+//! thread, and on average over many hits in the given proportion. Parameter: the probability of the
+//! second material, default 0.5.
 
 use super::MaterialId;
 use crate::interaction::SurfaceInteraction;
@@ -12,7 +12,7 @@ use sampling::hash_float;
 /// A stochastic mixture.
 #[derive(Clone, Debug)]
 pub struct MixMaterial {
-    /// The two.
+    /// The two materials.
     pub materials: [MaterialId; 2],
     /// Probability of the second.
     pub amount: FloatTextureId,

@@ -1,9 +1,8 @@
-//! Materials: what a surface is made of becomes, at one point and four wavelengths, a BxDF by
-//! value.
+//! Materials. At one point and four wavelengths a material evaluates to a BxDF, returned by value.
 //!
 //! A material holds textures and spectra; [`Material::bxdf`] evaluates them at a point. `Mix`
-//! chooses one of two materials at each point by a hash, and is resolved before; `Interface` has no
-//! BxDF at all: rays pass.
+//! chooses one of two materials at each point by a hash, and is resolved before that; `Interface`
+//! has no BxDF: rays pass through it.
 
 mod conductor;
 mod dielectric;
@@ -44,13 +43,13 @@ pub enum Material {
     ThinDielectric(ThinDielectricMaterial),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
-    /// Rays pass; only the medium changes.
+    /// Rays pass through; only the medium changes.
     Interface,
 }
 
 impl Material {
-    /// The BxDF at a point. Dispersive materials end all wavelengths but the first. `None`: rays
-    /// pass as if nothing were there.
+    /// The BxDF at a point. Dispersive materials terminate the secondary wavelengths. `None`: rays
+    /// pass through the surface.
     #[inline]
     pub fn bxdf(
         &self,
@@ -69,17 +68,17 @@ impl Material {
     }
 }
 
-/// A material with what bends its normals: a row of the scene's
-/// [table of materials](crate::Scene::materials).
+/// A material with its normal map: a row of the scene's [table of
+/// materials](crate::Scene::materials).
 #[derive(Clone, Debug)]
 pub struct MaterialEntry {
-    /// How it scatters.
+    /// The material.
     pub material: Material,
-    /// What bends its normals.
+    /// Its normal map, if it has one.
     pub normal_map: Option<NormalMap>,
 }
 
-/// The material that a point really has: mixes are decided.
+/// The material at a point, after the choices of mixes.
 #[inline]
 pub(crate) fn resolve<'a>(
     materials: &'a [MaterialEntry],
@@ -93,13 +92,13 @@ pub(crate) fn resolve<'a>(
     entry
 }
 
-/// An index of refraction at the first wavelength; where it varies, the other wavelengths end, for
-/// they would part here.
+/// An index of refraction at the first wavelength. Where it varies, the secondary wavelengths are
+/// terminated, as they would refract in other directions.
 fn dispersed_index(eta: &Spectrum, lambda: &mut SampledWavelengths) -> f32 {
     let index = eta.at(lambda.lambda()[0]);
     if !matches!(eta, Spectrum::Constant(_)) {
         lambda.terminate_secondary();
     }
-    // A spectrum is zero outside of its table: no glass there.
+    // A spectrum is zero outside of its table, where the index is unknown.
     if index == 0.0 { 1.0 } else { index }
 }

@@ -1,7 +1,8 @@
-//! Normals from an image in tangent space: red, green and blue in [0, 1] are x, y and z in [−1, 1].
+//! Normals from an image in tangent space: red, green and blue in [0, 1] encode x, y and z in [−1,
+//! 1].
 //!
-//! The shading frame is turned to the new normal; its tangents keep their lengths. Sources:
-//! [Pharr 2023 §10.5.2].
+//! The shading frame is rotated to the new normal; its tangents keep their lengths. Sources: [Pharr
+//! 2023 §10.5.2].
 
 use geometry::{Shading, SurfacePoint};
 use image::{Image, WrapMode};
@@ -11,13 +12,13 @@ use std::sync::Arc;
 /// A tangent-space normal map.
 #[derive(Clone, Debug)]
 pub struct NormalMap {
-    /// The image, not colour-encoded; v = 0 is its bottom row.
+    /// The image, in linear encoding; v = 0 is its bottom row.
     pub image: Arc<Image>,
 }
 
 impl NormalMap {
-    /// The shading geometry at a point with the map's normal.
-    pub fn bend(&self, s: &SurfacePoint) -> Shading {
+    /// The shading geometry at a point, with the normal of the map.
+    pub fn perturb(&self, s: &SurfacePoint) -> Shading {
         let st = Vec2::new(s.uv.x, 1.0 - s.uv.y);
         let [r, g, b] = self.image.bilerp_rgb(st, WrapMode::Repeat);
         let local = Vec3::new(2.0 * r - 1.0, 2.0 * g - 1.0, 2.0 * b - 1.0).normalize_or(Vec3::Z);

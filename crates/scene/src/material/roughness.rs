@@ -1,9 +1,9 @@
-//! Roughness of a microfacet surface: two textures and what their values mean.
+//! Roughness of a microfacet surface: two textures and the meaning of their values.
 
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use scattering::TrowbridgeReitz;
 
-/// How rough a surface is along its two tangents.
+/// Roughness of a surface along its two tangents.
 #[derive(Clone, Copy, Debug)]
 pub struct Roughness {
     /// Along ∂p/∂u.

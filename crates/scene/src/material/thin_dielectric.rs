@@ -1,4 +1,4 @@
-//! A thin pane: both interfaces at once, light passes straight.
+//! A thin pane: both interfaces in one surface, which light passes without changing direction.
 //!
 //! Parameter: index of refraction over wavelength, default 1.5.
 

@@ -1,12 +1,12 @@
-//! From the textures of a description to programs.
+//! Compiles the textures of a description to programs.
 //!
 //! All textures become nodes of the graph in the order of the description, in which each refers
 //! only to textures before it. A texture of spectra becomes one node for each [`SpectrumType`], as
-//! only its use decides what its colours stand for. Programs are made for those textures that
-//! parameters of materials and shapes refer to. A texture that is wrong, or not drawn yet, is
-//! reported and replaced by a constant.
+//! the meaning of its colours depends on its use. Programs are compiled for the textures that
+//! parameters of materials and shapes refer to. An invalid or unsupported texture is reported and
+//! replaced by a constant.
 
-use super::graph::{Graph, Index, MAX_OPERATIONS, MAX_OPERATIONS_IN_ALL, NodeId, ProgramError};
+use super::graph::{Graph, Index, MAX_OPERATIONS, MAX_TOTAL_OPERATIONS, NodeId, ProgramError};
 use super::program::{Code, MAX_SLOTS};
 use super::{
     FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage, SpectrumTextureId, SpectrumType,
@@ -36,7 +36,7 @@ struct Nodes {
 }
 
 impl TextureCompiler {
-    /// Builds the graph of a description's textures. Errors and what is not drawn are added to
+    /// Builds the graph of a description's textures. Errors and warnings are added to
     /// `diagnostics`.
     pub fn new(desc: &SceneDesc, render_from_world: &DMat4, diagnostics: &mut Vec<Diagnostic>) -> Self {
         let mut builder = GraphBuilder {
@@ -60,7 +60,7 @@ impl TextureCompiler {
             let nodes = SpectrumType::ALL.map(|spectrum_type| {
                 let end = builder.diagnostics.len();
                 let node = builder.texture(texture, spectrum_type);
-                // Each type has the same mistakes.
+                // The errors are the same for each type.
                 if end > start {
                     builder.diagnostics.truncate(end);
                 }
@@ -69,7 +69,7 @@ impl TextureCompiler {
             builder.nodes.spectrum.push(nodes);
         }
         let mut compiler = Self { graph: builder.graph, nodes: builder.nodes };
-        // Program 0, in place of those that cannot be made.
+        // Program 0 replaces those that cannot be compiled.
         let zero = compiler.graph.number(0.0);
         compiler.program(zero, Span::NONE, diagnostics);
         compiler
@@ -90,8 +90,8 @@ impl TextureCompiler {
         FloatTextureId(self.program(node, span, diagnostics))
     }
 
-    /// The texture of a parameter of the description that was given at `span`, whose colours stand
-    /// for a `spectrum_type`. Errors are added to `diagnostics`.
+    /// The texture of a parameter of the description that was given at `span`, whose colours are
+    /// spectra of type `spectrum_type`. Errors are added to `diagnostics`.
     pub fn spectrum_parameter(
         &mut self,
         parameter: &SpectrumParameter,
@@ -118,8 +118,8 @@ impl TextureCompiler {
                 ProgramError::Slots => {
                     format!("this texture has more than {MAX_SLOTS} intermediate values at once")
                 }
-                ProgramError::OperationsInAll => {
-                    format!("the textures of the scene take more than {MAX_OPERATIONS_IN_ALL} operations")
+                ProgramError::TotalOperations => {
+                    format!("the textures of the scene take more than {MAX_TOTAL_OPERATIONS} operations")
                 }
             };
             diagnostics.push(Diagnostic::error("texture-size", message, span));
@@ -138,11 +138,11 @@ impl TextureCompiler {
     }
 }
 
-/// The two sorts of values that textures give, as descriptions have them: numbers and spectra.
+/// The two types of texture values in a description: numbers and spectra.
 trait Value: From<f32> + Clone {
-    /// What the value stands for.
+    /// The meaning of the value.
     type Use: Copy;
-    /// Whether images keep their colours.
+    /// Whether image lookups return colours.
     const IN_COLOR: bool;
 
     fn node(
@@ -152,8 +152,8 @@ trait Value: From<f32> + Clone {
         graph: &mut Graph,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> NodeId;
-    /// The node of a texture, if it comes before the one under way.
-    fn known(handle: Handle<TextureDesc<Self>>, usage: Self::Use, nodes: &Nodes) -> Option<NodeId>;
+    /// The node of a texture; `None` if it is not built yet.
+    fn built_node(handle: Handle<TextureDesc<Self>>, usage: Self::Use, nodes: &Nodes) -> Option<NodeId>;
     fn image(lookup: ImageLookup, image: &ImageDesc, usage: Self::Use, builder: &mut GraphBuilder) -> Code;
 }
 
@@ -163,13 +163,13 @@ impl Value for f32 {
 
     fn node(&self, (): (), span: Span, graph: &mut Graph, diagnostics: &mut Vec<Diagnostic>) -> NodeId {
         if !self.is_finite() {
-            let message = format!("{self} is no value for a texture");
+            let message = format!("{self} is not a valid value for a texture");
             diagnostics.push(Diagnostic::error("invalid-value", message, span));
         }
         graph.number(*self)
     }
 
-    fn known(handle: Handle<TextureDesc<f32>>, (): (), nodes: &Nodes) -> Option<NodeId> {
+    fn built_node(handle: Handle<TextureDesc<f32>>, (): (), nodes: &Nodes) -> Option<NodeId> {
         nodes.float.get(handle.index()).copied()
     }
 
@@ -190,7 +190,7 @@ impl Value for SpectrumDesc {
         graph: &mut Graph,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> NodeId {
-        // Which colours are out of range depends on the use, which is not known here.
+        // Which colours are out of range depends on the spectrum type, which is not known here.
         let reported = diagnostics.len();
         let spectrum = compile_spectrum(self, usage, span, diagnostics);
         if !diagnostics[reported..].iter().any(Diagnostic::is_error) {
@@ -199,7 +199,7 @@ impl Value for SpectrumDesc {
         graph.spectrum(spectrum)
     }
 
-    fn known(
+    fn built_node(
         handle: Handle<TextureDesc<SpectrumDesc>>,
         usage: SpectrumType,
         nodes: &Nodes,
@@ -298,11 +298,11 @@ impl GraphBuilder<'_> {
                 let textures = [inside.clone(), outside.clone()];
                 self.even_mix("dots", &textures, ["inside", "outside"], usage, desc)
             }
-            TextureKind::Fbm { .. } => self.half("fbm", origin),
-            TextureKind::Wrinkled { .. } => self.half("wrinkled", origin),
-            TextureKind::Windy => self.half("windy", origin),
-            TextureKind::Marble { .. } => self.half("marble", origin),
-            TextureKind::Ptex { .. } => self.half("ptex", origin),
+            TextureKind::Fbm { .. } => self.constant_half("fbm", origin),
+            TextureKind::Wrinkled { .. } => self.constant_half("wrinkled", origin),
+            TextureKind::Windy => self.constant_half("windy", origin),
+            TextureKind::Marble { .. } => self.constant_half("marble", origin),
+            TextureKind::Ptex { .. } => self.constant_half("ptex", origin),
         }
     }
 
@@ -321,7 +321,7 @@ impl GraphBuilder<'_> {
         let span = user.origin.parameter(name);
         match parameter {
             Parameter::Value(value) => self.value(value, usage, span),
-            Parameter::Texture(handle) => V::known(*handle, usage, &self.nodes).unwrap_or_else(|| {
+            Parameter::Texture(handle) => V::built_node(*handle, usage, &self.nodes).unwrap_or_else(|| {
                 let message = format!("texture `{}` refers to itself or to a later one", user.name);
                 self.error("texture-cycle", message, span);
                 self.graph.number(0.0)
@@ -339,7 +339,7 @@ impl GraphBuilder<'_> {
         [self.operand(first, usage, names[0], user), self.operand(second, usage, names[1], user)]
     }
 
-    /// Replaces a texture that lies between two others.
+    /// Replaces an unsupported combination of two textures.
     fn even_mix<V: Value>(
         &mut self,
         kind: &str,
@@ -354,8 +354,8 @@ impl GraphBuilder<'_> {
         self.graph.mix(textures, amount)
     }
 
-    /// Replaces a texture that makes its own values.
-    fn half(&mut self, kind: &str, origin: &Origin) -> NodeId {
+    /// Replaces an unsupported procedural texture.
+    fn constant_half(&mut self, kind: &str, origin: &Origin) -> NodeId {
         self.not_drawn(kind, "the constant 0.5", origin);
         self.graph.number(0.5)
     }
@@ -365,7 +365,7 @@ impl GraphBuilder<'_> {
         self.diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
     }
 
-    /// `None`, with a report, if the image cannot serve as a texture.
+    /// `None`, with an error, if the image is not valid as a texture.
     fn image<V: Value>(
         &mut self,
         desc: &ImageTextureDesc,
@@ -374,20 +374,20 @@ impl GraphBuilder<'_> {
     ) -> Option<Code> {
         let origin = &texture.origin;
         if !desc.scale.is_finite() {
-            let message = format!("{} is no factor for an image", desc.scale);
+            let message = format!("{} is not a valid scale of an image", desc.scale);
             self.error("invalid-value", message, origin.parameter("scale"));
         }
         let anisotropy = 1.0..=f32::INFINITY;
         if desc.filter == description::TextureFilter::Ewa && !anisotropy.contains(&desc.max_anisotropy) {
-            let message = format!("the greatest anisotropy must be at least 1, not {}", desc.max_anisotropy);
+            let message = format!("the maximum anisotropy must be at least 1, not {}", desc.max_anisotropy);
             self.error("invalid-value", message, origin.parameter("maxanisotropy"));
         }
         let image = &self.images[desc.image];
         let pyramid = match self.pyramids.get(desc, V::IN_COLOR, &mut self.graph.textures.pyramids) {
             Ok(pyramid) => pyramid,
             Err(error) => {
-                let to_blame = if desc.channel.is_some() { "channel" } else { "filename" };
-                self.error("image", format!("{}: {error}", image.name), origin.parameter(to_blame));
+                let parameter = if desc.channel.is_some() { "channel" } else { "filename" };
+                self.error("image", format!("{}: {error}", image.name), origin.parameter(parameter));
                 return None;
             }
         };
@@ -440,5 +440,6 @@ impl GraphBuilder<'_> {
     }
 }
 
-/// A point at which mappings that differ usually have different coordinates, to hash them by.
+/// A point at which different mappings usually have different coordinates, from which they are
+/// hashed.
 const PROBE: Vec3 = Vec3::new(0.625, -1.75, 2.375);

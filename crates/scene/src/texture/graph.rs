@@ -1,14 +1,14 @@
-//! The texture graph while a scene is compiled, and the programs made from it.
+//! The texture graph while a scene is compiled, and the programs compiled from it.
 //!
-//! Nodes are hash-consed: a node that equals an earlier one is that node, so that equal parts of
-//! all textures are shared. What depends on constants alone is computed when its node is made, by
-//! the floating-point operations that the program would have done. Operands come before the nodes
-//! that use them, so that ascending node numbers are an order of evaluation and no step recurs.
+//! Nodes are hash-consed: a new node that equals an earlier one is replaced by it, so that all
+//! textures share common subexpressions. Constants are folded when a node is created, by the
+//! floating-point operations that the program would have done. Operands come before the nodes that
+//! use them: ascending node numbers are an order of evaluation, and nothing is recursive.
 //!
-//! A program visits the nodes below its root depth first and emits each after its operands. Of the
-//! operands, the one that needs most slots comes first, so that a chain of any length needs few
-//! ([Sethi 1970]). A slot is free again after the last operation that reads it. Constants are not
-//! kept for a second use but repeated, as each would take a slot for longer.
+//! A program visits the nodes below its root depth first and emits each after its operands. The
+//! operand that needs the most slots comes first, so that a chain of any length needs few ([Sethi
+//! 1970]). A slot is free again after the last operation that reads it. Constants are loaded again
+//! for each use, as keeping them would occupy slots for longer.
 
 use super::program::{Code, MAX_SLOTS, Operation, Program, Textures, mix};
 use spectrum::Spectrum;
@@ -19,7 +19,7 @@ use std::mem::{Discriminant, discriminant};
 pub const MAX_OPERATIONS: usize = 4096;
 
 /// The largest number of operations of all programs of a scene.
-pub const MAX_OPERATIONS_IN_ALL: usize = 1 << 24;
+pub const MAX_TOTAL_OPERATIONS: usize = 1 << 24;
 
 /// Index of a node of a [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -28,7 +28,7 @@ pub(super) struct NodeId(u32);
 #[derive(Clone, Copy, Debug)]
 struct Node {
     code: Code,
-    /// Those beyond the number of operands of the code are node 0.
+    /// Unused operands are node 0.
     operands: [NodeId; 4],
 }
 
@@ -42,7 +42,7 @@ impl Node {
     }
 }
 
-/// A node's content, with numbers by their bits.
+/// A node's content, with numbers as their bits.
 type NodeKey = (Discriminant<Code>, u32, [NodeId; 4]);
 
 /// Why a texture has no program.
@@ -52,16 +52,16 @@ pub(super) enum ProgramError {
     Operations,
     /// More than [`MAX_SLOTS`] values at once.
     Slots,
-    /// More than [`MAX_OPERATIONS_IN_ALL`].
-    OperationsInAll,
+    /// More than [`MAX_TOTAL_OPERATIONS`].
+    TotalOperations,
 }
 
-/// Where the entries of a table are, by a hash that equal entries have in common.
+/// A hash index of a table: the positions of entries, by a hash of their content.
 #[derive(Debug, Default)]
 pub(super) struct Index(HashMap<[u32; 4], Vec<u32>>);
 
 impl Index {
-    /// The index of `entry` in `table`, which gets it if it has none that is equal.
+    /// The index of `entry` in `table`; it is added unless the table has an equal one.
     pub fn intern<T: PartialEq>(&mut self, table: &mut Vec<T>, entry: T, hash: [f32; 4]) -> u32 {
         let bucket = self.0.entry(hash.map(f32::to_bits)).or_default();
         if let Some(&known) = bucket.iter().find(|&&known| table[known as usize] == entry) {
@@ -74,24 +74,24 @@ impl Index {
     }
 }
 
-/// Nodes, and the textures that are made from them.
+/// Nodes, and the textures that are compiled from them.
 #[derive(Debug, Default)]
 pub(super) struct Graph {
     nodes: Vec<Node>,
     ids: HashMap<NodeKey, NodeId>,
     spectra: Index,
     programs: HashMap<NodeId, u32>,
-    /// The tables; without programs for nodes that no use has asked for.
+    /// The tables, with programs only for nodes in use.
     pub textures: Textures,
 }
 
 impl Graph {
-    /// A number, or the spectrum that has this value at all wavelengths.
+    /// The node of a number, which is also the spectrum that has this value at all wavelengths.
     pub fn number(&mut self, value: f32) -> NodeId {
         self.node(Code::Number(value), &[])
     }
 
-    /// A spectrum.
+    /// The node of a spectrum.
     pub fn spectrum(&mut self, spectrum: Spectrum) -> NodeId {
         if let Spectrum::Constant(value) = spectrum {
             return self.number(value);
@@ -158,8 +158,8 @@ impl Graph {
         }
         let operations = Schedule::new(&self.nodes, root)?.operations()?;
         let textures = &mut self.textures;
-        if textures.operations.len() + operations.len() > MAX_OPERATIONS_IN_ALL {
-            return Err(ProgramError::OperationsInAll);
+        if textures.operations.len() + operations.len() > MAX_TOTAL_OPERATIONS {
+            return Err(ProgramError::TotalOperations);
         }
         let index = textures.programs.len() as u32;
         textures
@@ -171,14 +171,14 @@ impl Graph {
     }
 }
 
-/// What is known of a node that a program needs.
+/// Scheduling data of a node of a program.
 #[derive(Clone, Copy, Default)]
 struct Need {
-    /// How many operations still read it.
+    /// Number of operations that still have to read it.
     uses: u32,
-    /// Slots that its evaluation takes if nothing is shared.
+    /// Slots that its evaluation needs if nothing is shared.
     slots: u32,
-    /// Where its value stands, once it is computed.
+    /// The slot of its value, once it is computed.
     slot: Option<u8>,
 }
 
@@ -220,8 +220,8 @@ impl<'a> Schedule<'a> {
     fn operations(mut self) -> Result<Vec<Operation>, ProgramError> {
         let mut operations = Vec::with_capacity(self.needs.len());
         let mut free = u64::MAX >> (64 - MAX_SLOTS);
-        // Nodes under way, each an operand of the one before it: with their operands in the order
-        // of evaluation and how many of these are done.
+        // The stack of the depth-first traversal: each node is an operand of the one before it, and
+        // has its operands in the order of evaluation and the number of those visited.
         let mut path = vec![self.step(self.root)];
         while let Some((id, order, done)) = path.last_mut() {
             if let Some(&operand) = order.get(*done) {
@@ -261,7 +261,7 @@ impl<'a> Schedule<'a> {
         Ok(operations)
     }
 
-    /// A node with its operands by falling need of slots.
+    /// A stack entry: a node with its operands in descending order of the slots that they need.
     fn step(&self, id: NodeId) -> (NodeId, Vec<NodeId>, usize) {
         let mut order = self.nodes[id.0 as usize].operands().to_vec();
         order.sort_by_key(|operand| std::cmp::Reverse(self.needs[operand].slots));

@@ -19,11 +19,11 @@ pub struct ImageLookup {
     pub mapping: u32,
     /// Index of the image in [`Textures::pyramids`](super::Textures::pyramids).
     pub pyramid: u32,
-    /// How texels are averaged.
+    /// Reconstruction filter.
     pub filter: TextureFilter,
     /// Factor on the values.
     pub scale: f32,
-    /// One minus the scaled value.
+    /// Whether the result is one minus the scaled value.
     pub invert: bool,
 }
 
@@ -39,11 +39,11 @@ impl ImageLookup {
 /// A filtered lookup of colours in an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumImage {
-    /// Where and how the image is looked up.
+    /// Position and filter of the lookup.
     pub lookup: ImageLookup,
     /// The colour space of the pixels.
     pub space: &'static RgbColorSpace,
-    /// What the colours stand for.
+    /// The type of the spectra.
     pub spectrum_type: SpectrumType,
 }
 
@@ -64,7 +64,7 @@ impl SpectrumImage {
     }
 }
 
-/// Where a pyramid is looked up: the position, and its derivatives by film x and y.
+/// The position of a lookup in a pyramid, and its derivatives by film x and y.
 fn position(mapping: &Mapping2d, ctx: &TextureContext) -> [Vec2; 3] {
     let c = mapping.map(ctx);
     [Vec2::new(c.st.x, 1.0 - c.st.y), c.dstdx, c.dstdy]

@@ -1,6 +1,6 @@
-//! From points of a surface to texture coordinates, with their derivatives by film position.
+//! Texture coordinates of surface points, with their derivatives by film position.
 //!
-//! The chain rule takes the footprint along: for (s, t) a function of the point p in texture space,
+//! The footprint follows by the chain rule: for (s, t) a function of the point p in texture space,
 //! ∂s/∂x = ∇s·∂p/∂x. With ρ² = x² + y² and r² = ρ² + z²:
 //!
 //! ```text
@@ -14,8 +14,8 @@
 //! ```
 //!
 //! On the axis of the spherical and cylindrical mappings derivatives are infinite or undefined;
-//! lookups take that as a very wide footprint. The spherical mapping exchanges the derivatives of s
-//! and t against pbrt-v4, where ∂s belongs to the formula of t.
+//! lookups treat that as a very wide footprint. pbrt-v4 exchanges the derivatives of s and t in its
+//! spherical mapping; here they are not exchanged.
 //!
 //! Source: [Pharr 2023 §10.2].
 
@@ -28,9 +28,9 @@ use std::f32::consts::{PI, TAU};
 pub struct TexCoord2d {
     /// (s, t).
     pub st: Point2,
-    /// How they change with film x.
+    /// Derivative by film x.
     pub dstdx: Vec2,
-    /// How they change with film y.
+    /// Derivative by film y.
     pub dstdy: Vec2,
 }
 
@@ -39,9 +39,9 @@ pub struct TexCoord2d {
 pub struct TexCoord3d {
     /// The point in texture space.
     pub p: Point3,
-    /// How it changes with film x.
+    /// Derivative by film x.
     pub dpdx: Vector3,
-    /// How it changes with film y.
+    /// Derivative by film y.
     pub dpdy: Vector3,
 }
 
@@ -52,7 +52,7 @@ pub enum Mapping2d {
     Uv {
         /// Factors on u and v.
         scale: Vec2,
-        /// Added to them.
+        /// Offsets, added after scaling.
         delta: Vec2,
     },
     /// Polar angles about the origin of texture space.
@@ -65,13 +65,13 @@ pub enum Mapping2d {
         /// From render to texture space.
         texture_from_render: Transform,
     },
-    /// Lengths along two vectors of texture space.
+    /// Dot products with two vectors of texture space.
     Planar {
         /// From render to texture space.
         texture_from_render: Transform,
         /// The vectors, for s and t.
         axes: [Vector3; 2],
-        /// Added.
+        /// Offsets, added to both.
         delta: Vec2,
     },
 }
@@ -125,7 +125,8 @@ impl Mapping3d {
 }
 
 impl TexCoord3d {
-    /// The plane coordinates `st` of this point, whose gradients are given.
+    /// The texture coordinates `st` of this point, with derivatives by the chain rule from their
+    /// gradients.
     fn onto(&self, st: Point2, [dsdp, dtdp]: [Vector3; 2]) -> TexCoord2d {
         let along = |dp: Vector3| Vec2::new(dsdp.dot(dp), dtdp.dot(dp));
         TexCoord2d { st, dstdx: along(self.dpdx), dstdy: along(self.dpdy) }

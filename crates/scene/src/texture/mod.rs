@@ -12,12 +12,12 @@
 //! image          pixels, averaged over the footprint of the pixel
 //! ```
 //!
-//! A scene's textures form a graph. It is compiled to flat programs, one for each texture that
-//! something uses, in which equal parts are shared and constants folded ([`Textures`]).
+//! A scene's textures form a graph. It is compiled to flat programs, one for each texture in use,
+//! with common subexpressions shared and constants folded ([`Textures`]).
 //!
 //! Footprints are given as derivatives by film position, x and y counted in pixels: ∂p/∂x, ∂u/∂x
-//! and so on. Zero derivatives give the value at the point. A spectrum from RGB depends on what it
-//! stands for, its [`SpectrumType`].
+//! and so on. Zero derivatives give the value at the point. A spectrum from RGB depends on its
+//! [`SpectrumType`].
 //!
 //! Source: [Pharr 2023 ch. 10].
 
@@ -36,7 +36,7 @@ mod tests;
 use math::{Normal3, Point2, Point3, Vector3};
 
 pub use compile::TextureCompiler;
-pub use graph::{MAX_OPERATIONS, MAX_OPERATIONS_IN_ALL};
+pub use graph::{MAX_OPERATIONS, MAX_TOTAL_OPERATIONS};
 pub use imagemap::{ImageLookup, SpectrumImage};
 pub use mapping::{Mapping2d, Mapping3d, TexCoord2d, TexCoord3d};
 pub use program::{Code, MAX_SLOTS, Operation, Program, Textures};
@@ -50,27 +50,27 @@ pub struct FloatTextureId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpectrumTextureId(pub u32);
 
-/// Where on a surface, and how densely the film samples it there.
+/// A point of a surface, and the footprint of a pixel there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TextureContext {
     /// The point, in render space.
     pub p: Point3,
-    /// How the point moves with film x.
+    /// Derivative of the point by film x.
     pub dpdx: Vector3,
-    /// How the point moves with film y.
+    /// Derivative of the point by film y.
     pub dpdy: Vector3,
     /// The surface normal, in render space.
     pub n: Normal3,
-    /// The surface's own parameters.
+    /// The surface parameters (u, v).
     pub uv: Point2,
-    /// How u changes with film x.
+    /// ∂u/∂x.
     pub dudx: f32,
-    /// How u changes with film y.
+    /// ∂u/∂y.
     pub dudy: f32,
-    /// How v changes with film x.
+    /// ∂v/∂x.
     pub dvdx: f32,
-    /// How v changes with film y.
+    /// ∂v/∂y.
     pub dvdy: f32,
-    /// Which face of a mesh, for textures that are stored by face.
+    /// Index of the mesh face, for textures that are stored by face.
     pub face_index: u32,
 }

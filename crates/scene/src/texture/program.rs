@@ -1,13 +1,13 @@
 //! Textures as flat programs, and their evaluation.
 //!
-//! A program is a row of operations in post-order: what an operation reads has been computed by
-//! operations before it. Values stand on a small stack of [`MAX_SLOTS`] slots. An operation names
-//! the slots of its operands and the slot that it writes, so that a value that several operations
-//! need is computed once and read where it stands. The last operation writes slot 0.
+//! A program is a sequence of operations in post-order: the operands of an operation are computed
+//! before it. Values are kept in [`MAX_SLOTS`] slots. An operation names the slots of its operands
+//! and the slot of its result, so that a value that several operations read is computed once. The
+//! last operation writes slot 0.
 //!
-//! Operations are plain data: what does not fit into 32 bits stands in tables of [`Textures`] and
-//! is named by its index there. There is no recursion and no branch, so that any back end can run
-//! the same programs.
+//! Operations are plain data: larger data than 32 bits is stored in tables of [`Textures`] and
+//! referred to by its index. There is no recursion and no branch, so that any back end can run the
+//! same programs.
 
 use super::{
     FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage, SpectrumTextureId, TextureContext,
@@ -18,7 +18,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 use std::ops::{Add, Mul};
 use std::sync::Arc;
 
-/// The number of slots that a program has for its values.
+/// The number of slots of a program.
 pub const MAX_SLOTS: usize = 32;
 
 /// What an operation computes. Numbers are indices into the tables of [`Textures`].
@@ -40,8 +40,8 @@ pub enum Code {
     Cubes(u32),
     /// The product of operands 0 and 1, of which 1 is a number.
     Scale,
-    /// (1 − a)·operand 0 + a·operand 1, where the number a is operand 2. For a = 0 and a = 1 it is
-    /// the one operand, whatever the other is.
+    /// (1 − a)·operand 0 + a·operand 1, where the number a is operand 2. For a = 0 and a = 1 the
+    /// value is exactly one operand, even if the other is infinite or NaN.
     Mix,
     /// Operands 0 to 3 at the corners (0, 0), (0, 1), (1, 0), (1, 1) of the unit square,
     /// interpolated at coordinates mapped by an entry of [`Textures::mappings`].
@@ -73,9 +73,9 @@ impl Code {
 /// One step of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Operation {
-    /// What is computed.
+    /// The computation.
     pub code: Code,
-    /// The slot that the result goes to.
+    /// The slot of the result.
     pub target: u8,
     /// The slots of the operands; those beyond [`Code::operand_count`] are 0.
     pub operands: [u8; 4],
@@ -139,7 +139,7 @@ impl Textures {
         &self.spectrum_images
     }
 
-    /// The images that lookups refer to, with their averages.
+    /// The image pyramids that lookups refer to.
     pub fn pyramids(&self) -> &[Arc<Pyramid>] {
         &self.pyramids
     }
@@ -170,7 +170,7 @@ impl Textures {
         ctx: &TextureContext,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        // Most are constant.
+        // The common case: a constant.
         if let [Operation { code: Code::Spectrum(index), .. }] = self.program(id.0) {
             return self.spectra[*index as usize].sample(lambda);
         }
@@ -197,8 +197,8 @@ impl Textures {
         (&self.mappings[lookup.mapping as usize], &self.pyramids[lookup.pyramid as usize])
     }
 
-    /// Runs a program on values `V`: `splat` makes one of a number, `number` is its inverse, and
-    /// `spectral` evaluates the operations that give spectra.
+    /// Runs a program on values `V`: `splat` converts a number to a value, `number` is its inverse,
+    /// and `spectral` evaluates the operations that return spectra.
     #[inline]
     fn evaluate<V: Copy + Default + Add<Output = V> + Mul<f32, Output = V>>(
         &self,
@@ -220,7 +220,7 @@ impl Textures {
             _ => spectral(code),
         };
         let operations = self.program(program);
-        // Most textures are one constant or one image.
+        // The common case: one constant or one image.
         if let [only] = operations {
             return leaf(only.code);
         }
@@ -242,8 +242,7 @@ impl Textures {
     }
 }
 
-/// (1 − `amount`)·first + `amount`·second. A value with no part in the mix may be anything, even
-/// not a number.
+/// (1 − `amount`)·first + `amount`·second. A value of weight 0 may be infinite or NaN.
 #[inline]
 pub(super) fn mix<V: Add<Output = V> + Mul<f32, Output = V>>([first, second]: [V; 2], amount: f32) -> V {
     if amount == 0.0 {

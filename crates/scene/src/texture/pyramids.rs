@@ -1,27 +1,26 @@
-//! The pyramids of a scene's images, each made once.
+//! The image pyramids of a scene, each built once.
 
 use description::{Arena, ImageChannel, ImageDesc, ImageTextureDesc, TextureFilter};
 use image::{Image, ImageError, Pixels, Pyramid, WrapMode};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What a pyramid depends on: the image, what lies beyond it and, for one of numbers, what they
-/// are.
-type Key = (usize, description::WrapMode, Option<Numbers>);
+/// What a pyramid depends on: the image, the wrap mode and, for numbers, the channel.
+type Key = (usize, description::WrapMode, Option<NumberSource>);
 
-/// Which numbers stand for an image of several channels.
+/// How the numbers of a texture are computed from an image of several channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Numbers {
-    /// Opacity where that is not one everywhere, else the mean of red, green and blue: what the
-    /// pbrt-v4 format reads with filters that interpolate.
+enum NumberSource {
+    /// Opacity, or the mean of red, green and blue if opacity is one everywhere: pbrt-v4's choice
+    /// for filters that interpolate.
     OpacityOrMean,
-    /// The first channel: what the pbrt-v4 format reads with filters that take single texels.
+    /// The first channel: pbrt-v4's choice for filters of single texels.
     First,
-    /// The channel that the scene names.
+    /// The channel that the description names.
     Channel(ImageChannel),
 }
 
-/// Makes pyramids of images, and remembers them.
+/// Builds and caches pyramids of images.
 pub(super) struct Pyramids<'a> {
     images: &'a Arena<ImageDesc>,
     made: HashMap<Key, u32>,
@@ -32,7 +31,7 @@ impl<'a> Pyramids<'a> {
         Self { images, made: HashMap::new() }
     }
 
-    /// The index in `pyramids` of the pyramid for a texture, of colours or of numbers.
+    /// The index in `pyramids` of the pyramid for a texture of colours or of numbers.
     pub fn get(
         &mut self,
         texture: &ImageTextureDesc,
@@ -40,9 +39,9 @@ impl<'a> Pyramids<'a> {
         pyramids: &mut Vec<Arc<Pyramid>>,
     ) -> Result<u32, ImageError> {
         let numbers = (!in_color).then_some(match (texture.channel, texture.filter) {
-            (Some(channel), _) => Numbers::Channel(channel),
-            (None, TextureFilter::Point | TextureFilter::Ewa) => Numbers::First,
-            (None, TextureFilter::Bilinear | TextureFilter::Trilinear) => Numbers::OpacityOrMean,
+            (Some(channel), _) => NumberSource::Channel(channel),
+            (None, TextureFilter::Point | TextureFilter::Ewa) => NumberSource::First,
+            (None, TextureFilter::Bilinear | TextureFilter::Trilinear) => NumberSource::OpacityOrMean,
         });
         let key = (texture.image.index(), texture.wrap, numbers);
         if let Some(&index) = self.made.get(&key) {
@@ -50,7 +49,7 @@ impl<'a> Pyramids<'a> {
         }
         let image = self.images[texture.image].image.clone();
         let image = match numbers {
-            Some(numbers) => numbers.of(image)?,
+            Some(numbers) => numbers.extract(image)?,
             None => image,
         };
         let wrap = match texture.wrap {
@@ -66,9 +65,9 @@ impl<'a> Pyramids<'a> {
     }
 }
 
-impl Numbers {
-    /// An image of the one channel that stands for `image`.
-    fn of(self, image: Arc<Image>) -> Result<Arc<Image>, ImageError> {
+impl NumberSource {
+    /// An image with these numbers of `image` as its only channel.
+    fn extract(self, image: Arc<Image>) -> Result<Arc<Image>, ImageError> {
         let single = |value: &dyn Fn(u32, u32) -> f32| {
             Image::try_from_fn(image.width(), image.height(), ["Y"], |x, y| [value(x, y)]).map(Arc::new)
         };
@@ -83,7 +82,7 @@ impl Numbers {
             (Self::Channel(ImageChannel::Green), _) => color(1),
             (Self::Channel(ImageChannel::Blue), _) => color(2),
             (Self::OpacityOrMean, alpha) => {
-                // The opacity of a grey image does not count.
+                // The opacity of a grey image is ignored.
                 let alpha = alpha.filter(|_| image.is_color());
                 let opacity = alpha
                     .map(|alpha| single(&|x, y| decoded_opacity(&image, image.channel(x, y, alpha))))
@@ -100,7 +99,7 @@ impl Numbers {
     }
 }
 
-/// Opacity as the pbrt-v4 format reads it from 8-bit images: decoded as if it were a colour.
+/// Opacity of 8-bit images as in pbrt-v4: decoded as if it were a colour.
 fn decoded_opacity(image: &Image, opacity: f32) -> f32 {
     match image.pixels() {
         Pixels::U8(_, encoding) => encoding.to_linear(opacity),

@@ -1,12 +1,12 @@
-//! What a spectrum stands for, and spectra made from their descriptions.
+//! Types of spectra, and spectra compiled from their descriptions.
 
 use description::{ColorSpaceDesc, Diagnostic, Span, SpectrumDesc};
 use spectrum::{Rgb, RgbColorSpace, Spectrum};
 
-/// What a spectrum stands for. RGB values become different spectra for each.
+/// The meaning of a spectrum. An RGB value becomes a different spectrum for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SpectrumType {
-    /// A part of light that is kept, within [0, 1]: reflectance, transmittance.
+    /// A share of light, within [0, 1]: reflectance, transmittance.
     Albedo,
     /// Any other quantity that is not light, such as a coefficient of absorption.
     Unbounded,
@@ -54,12 +54,12 @@ pub fn compile_spectrum(
     };
     let spectrum = match desc {
         SpectrumDesc::Constant(value) if value.is_finite() => Spectrum::Constant(*value),
-        SpectrumDesc::Constant(value) => wrong(format!("{value} is no value for a spectrum")),
+        SpectrumDesc::Constant(value) => wrong(format!("{value} is not a valid value for a spectrum")),
         SpectrumDesc::Rgb { rgb, space } => {
             let [r, g, b] = *rgb;
             let rgb = Rgb::from(*rgb);
             if !rgb.is_finite() {
-                return wrong(format!("({r}, {g}, {b}) is no colour"));
+                return wrong(format!("({r}, {g}, {b}) is not a valid colour"));
             }
             let largest = if spectrum_type == SpectrumType::Albedo { 1.0 } else { f32::INFINITY };
             if rgb.min_component() < 0.0 || rgb.max_component() > largest {

@@ -1,4 +1,4 @@
-//! What textures must do, by themselves and compiled from a scene.
+//! Textures: single ones, and compiled from a scene.
 
 mod programs;
 
@@ -28,7 +28,7 @@ fn push_image(scene: &mut SceneDesc, image: Image) -> Handle<ImageDesc> {
     scene.images.push(ImageDesc { name: "test.png".into(), image: Arc::new(image) })
 }
 
-/// The compiled textures of a scene, by their places in it.
+/// The compiled textures of a scene, in its order.
 struct Compiled {
     textures: Textures,
     floats: Vec<FloatTextureId>,
@@ -83,7 +83,7 @@ fn sound(scene: &SceneDesc) -> Compiled {
     compiled
 }
 
-/// One texture of numbers.
+/// A scene of one texture of numbers.
 fn float_texture(kind: TextureKind<f32>) -> Compiled {
     let mut scene = SceneDesc::default();
     scene.float_textures.push(FloatTextureDesc::new(kind));
@@ -181,7 +181,7 @@ fn a_filtered_checkerboard_is_the_average_under_a_triangle() {
                     wave(f64::from(x) + e * f64::from(r)) * (1.0 - e.abs()) * 2.0 / f64::from(n)
                 })
                 .sum();
-            // v is far from an edge, so that the average over u shows alone.
+            // v is far from an edge, so that only u is averaged.
             let ctx = TextureContext { dudx: r / 1.5, dudy: -0.1 * r, ..at(x, 0.5) };
             let found = f64::from(squares.float(&ctx));
             assert!((found - (0.5 - 0.5 * average)).abs() < 2e-4, "x {x} r {r}: {found} {average}");
@@ -190,7 +190,7 @@ fn a_filtered_checkerboard_is_the_average_under_a_triangle() {
 }
 
 #[test]
-fn a_checkerboard_seen_from_afar_is_grey() {
+fn a_checkerboard_under_a_wide_footprint_is_grey() {
     let squares = checkerboard(Some(MappingDesc::default()));
     for wide in [1e3, 1e30, f32::INFINITY] {
         let amount = squares.float(&TextureContext { dudx: wide, dvdy: wide, ..at(0.3, 0.4) });
@@ -269,7 +269,7 @@ fn four() -> Image {
 }
 
 #[test]
-fn an_image_stands_on_its_lower_left_corner() {
+fn the_origin_of_an_image_is_its_lower_left_corner() {
     for filter in FILTERS {
         let t = float_image(four(), |desc| desc.filter = filter);
         for (u, v, value) in [(0.25, 0.75, 0.0), (0.75, 0.75, 1.0), (0.25, 0.25, 2.0), (0.75, 0.25, 3.0)] {
@@ -281,7 +281,7 @@ fn an_image_stands_on_its_lower_left_corner() {
 }
 
 #[test]
-fn beyond_an_image_its_wrap_mode_rules() {
+fn the_wrap_mode_determines_values_beyond_an_image() {
     for (wrap, value) in [(WrapMode::Repeat, 2.0), (WrapMode::Black, 0.0), (WrapMode::Clamp, 3.0)] {
         let t = float_image(four(), |desc| desc.wrap = wrap);
         assert_eq!(t.float(&at(1.25, 0.25)), value, "{wrap:?}");
@@ -392,7 +392,7 @@ fn opacity_in_8_bits_is_decoded_as_colours_are() {
 }
 
 #[test]
-fn colours_become_what_they_stand_for() {
+fn colours_become_spectra_of_the_requested_type() {
     let t = spectrum_image(Image::from_fn(1, 1, ["R", "G", "B"], |_, _| [2.0; 3]), |desc| desc.scale = 0.25);
     let [albedo, unbounded, illuminant] = t.spectra(&at(0.5, 0.5));
     let half = SampledSpectrum::splat(0.5);
@@ -416,7 +416,7 @@ fn pyramids_are_shared() {
 }
 
 #[test]
-fn texture_space_is_where_the_author_put_it() {
+fn texture_space_follows_the_texture_transform() {
     let mut scene = SceneDesc::default();
     let mut desc = FloatTextureDesc::new(TextureKind::Checkerboard {
         textures: [1.0.into(), 0.0.into()],
@@ -434,7 +434,7 @@ fn texture_space_is_where_the_author_put_it() {
 }
 
 #[test]
-fn bilerp_meets_its_corners_and_their_mean() {
+fn bilerp_interpolates_its_corners() {
     let mapping = MappingDesc::Uv { scale: [2.0, 1.0], delta: [0.0, 0.5] };
     let t = float_texture(TextureKind::Bilerp { corners: [0.1, 0.2, 0.4, 0.8], mapping });
     for (u, v, value) in
@@ -445,7 +445,7 @@ fn bilerp_meets_its_corners_and_their_mean() {
 }
 
 #[test]
-fn what_is_not_drawn_is_said_once_and_has_a_stand_in() {
+fn unsupported_textures_are_replaced_with_one_warning() {
     let (octaves, roughness) = (8, 0.5);
     let mapping = MappingDesc::default();
     fn colour(value: f32) -> Parameter<SpectrumDesc> {
@@ -474,7 +474,7 @@ fn what_is_not_drawn_is_said_once_and_has_a_stand_in() {
 }
 
 #[test]
-fn values_without_sense_are_reported() {
+fn invalid_values_are_reported() {
     let codes = |change: &dyn Fn(&mut SceneDesc)| {
         let mut scene = SceneDesc::default();
         change(&mut scene);
@@ -491,7 +491,7 @@ fn values_without_sense_are_reported() {
         codes(&constant(SpectrumDesc::Samples([(500.0, 1.0), (400.0, 1.0)].into()))),
         ["invalid-value"]
     );
-    assert!(codes(&constant(SpectrumDesc::rgb(2.0, 0.0, 0.0))).is_empty(), "it may be meant as light");
+    assert!(codes(&constant(SpectrumDesc::rgb(2.0, 0.0, 0.0))).is_empty(), "valid as an illuminant");
     let image = |change: fn(&mut FloatTextureDesc, &mut ImageTextureDesc)| {
         move |scene: &mut SceneDesc| {
             let mut desc = FloatTextureDesc::new(TextureKind::Constant(0.0));
@@ -512,7 +512,7 @@ fn values_without_sense_are_reported() {
 }
 
 #[test]
-fn spectra_are_made_for_their_use() {
+fn spectra_depend_on_the_spectrum_type() {
     let make = |desc: &SpectrumDesc, spectrum_type| {
         let mut diagnostics = Vec::new();
         let spectrum = compile_spectrum(desc, spectrum_type, Span::NONE, &mut diagnostics);

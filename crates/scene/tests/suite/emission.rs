@@ -25,7 +25,7 @@ fn emitted_rays_carry_the_power() {
     let cases = all_lights();
     let mut random = Random::new(1);
     for case in &cases {
-        // The power of an image assumes uniform (u, v), which a disk has not.
+        // The power of an image assumes that (u, v) is uniform by area, which it is not on a disk.
         if case.name == "disk, image" {
             continue;
         }
@@ -85,7 +85,7 @@ fn emitted_directions_have_their_density() {
     for (i, case) in cases.iter().enumerate() {
         let light = case.light();
         let mut random = Random::new(i as u64);
-        // Around the normal they are the same everywhere.
+        // Around the normal the distribution does not depend on the position.
         let direction = |u: [f32; 2]| {
             let place = random.get_2d().into();
             let sample = light.sample_le(place, u.into(), TIME, &lambda())?;
@@ -260,7 +260,7 @@ fn emission_is_scaled_by_alpha() {
     };
     let whole = power(1.0).mean;
     t_test(&power(0.3), 0.3 * whole, 1).unwrap();
-    // Entirely cut out, it is invisible, but shines.
+    // With alpha 0 it is invisible, but emits.
     assert!((power(0.0).mean / whole - 1.0).abs() < 1e-4);
 }
 

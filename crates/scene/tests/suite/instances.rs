@@ -1,4 +1,4 @@
-//! Positions of instances and of the shapes in them, also in motion.
+//! Positions of instances and of the shapes in them, at rest and in motion.
 
 use crate::common::{scene, sphere};
 use alhazen_scene::{RayStats, Scene};
@@ -43,8 +43,8 @@ fn moving_shapes_move_in_instances() {
 
 #[test]
 fn instances_rotate_about_the_origin_of_render_space() {
-    // A quarter turn about z, of which the half is about the camera: the translations that belong
-    // to the keys, (0, 0) and (−4, 4) for the second eye, meet in the middle.
+    // A quarter turn about z, at its middle. Interpolation is about the camera: the translations of
+    // the keys, (0, 0) and (−4, 4) for the second eye, are averaged.
     let shape = ball(TransformDesc::translation(1.0, 0.0, 0.0));
     let turn = moving(DMat4::IDENTITY, DMat4::from_rotation_z(FRAC_PI_2));
     let c = FRAC_1_SQRT_2 as f32;
@@ -58,8 +58,8 @@ fn instances_rotate_about_the_origin_of_render_space() {
 
 #[test]
 fn nested_instances_compose_their_transforms() {
-    // A ball at x = 1 of its object, which stands at y = 2 of another, which moves along x; the
-    // camera is elsewhere.
+    // A ball at x = 1 of its object, which is at y = 2 of another, which moves along x; the camera
+    // is not at the origin.
     let mut desc = SceneDesc::default();
     desc.camera.camera_from_world = TransformDesc::fixed(DMat4::from_translation(DVec3::new(-3.0, 1.0, 0.0)));
     let mut inner = ObjectDesc::default();
@@ -86,7 +86,7 @@ fn nested_instances_compose_their_transforms() {
 }
 
 #[test]
-fn the_name_of_an_instance_stands_for_everything_in_it() {
+fn the_name_of_an_instance_applies_to_everything_in_it() {
     // From left to right: a shape, one that moves, two instances of `tree`, and between them one of
     // `leaf`, which `tree` contains as well.
     let mut desc = SceneDesc::default();

@@ -235,7 +235,7 @@ fn coincident_lights_are_distinguished() {
         }
         assert!(reached.iter().all(|&reached| reached), "{kind:?}");
     }
-    // On top of them all, other lights are still found.
+    // At the position of the coincident lights, other lights are still chosen.
     desc.lights.push(point(Vec3::ZERO, 1.0).into());
     let scene = crate::common::scene(&desc);
     let sampler = sampler(&scene, LightSamplerDesc::Bvh);
@@ -267,7 +267,7 @@ fn scenes_without_lights_choose_none() {
     }
 }
 
-/// More lights than one thread builds a tree of.
+/// More lights than one thread builds the tree for.
 fn many_lights() -> Scene {
     let mut desc = SceneDesc::default();
     desc.shapes.push(sphere(0.1).into());

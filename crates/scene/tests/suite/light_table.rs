@@ -1,4 +1,5 @@
-//! Lights as a whole: which light a hit is of, warnings of darkness, errors of brightness.
+//! The light table: the light of a hit, warnings of scenes without light, errors of invalid
+//! emission.
 
 use crate::common::*;
 use alhazen_scene::compile;
@@ -8,7 +9,7 @@ use description::{
 };
 use math::{DMat4, DVec3, Vec3};
 
-/// A scene changed in one way, whatever the change returns.
+/// A scene with one change, whose return value is ignored.
 fn with<T>(change: impl FnOnce(&mut SceneDesc) -> T) -> SceneDesc {
     let mut desc = SceneDesc::default();
     change(&mut desc);

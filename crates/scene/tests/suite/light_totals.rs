@@ -15,7 +15,7 @@ fn power_is_the_emitted_flux() {
     let (areas, lambda) = (area_lights(), lambda());
     let mut random = Random::new(4);
     for case in &areas {
-        // The power of an image assumes uniform (u, v), which a disk has not.
+        // The power of an image assumes that (u, v) is uniform by area, which it is not on a disk.
         if case.name == "disk, image" {
             continue;
         }
@@ -201,7 +201,7 @@ fn spots_fall_off_smoothly_within_their_cone() {
     }
 }
 
-/// ∫ f(λ) ȳ(λ) dλ of what `f` gives at four wavelengths.
+/// ∫ f(λ) ȳ(λ) dλ of `f`, which is evaluated at four wavelengths.
 fn photometric(f: impl Fn(&spectrum::SampledWavelengths) -> spectrum::SampledSpectrum) -> f64 {
     let count = 2000;
     let sum: f64 = (0..count)
@@ -252,7 +252,7 @@ fn requested_power_and_illuminance_are_met() {
     for (_, light) in image.area_lights.iter_mut() {
         light.power = Some(60.0);
     }
-    // As well as spectra made from colours keep their luminance.
+    // Spectra from colours keep their luminance only approximately.
     assert!((power(&image) / 60.0 - 1.0).abs() < 1e-2, "{}", power(&image));
 
     let facing = |desc: &SceneDesc| {
@@ -261,7 +261,7 @@ fn requested_power_and_illuminance_are_met() {
         photometric(|lambda| light.le(&ray(Vec3::ZERO, Vec3::Z), lambda)) * PI as f64
     };
     near(facing(&free(sky(Some(500.0)))), 500.0);
-    // The format counts half of the illuminance of images; see `upward_illuminance`.
+    // The format halves the illuminance of images; see `upward_illuminance`.
     near(facing(&image_sky(64, Some(500.0), |_, _| [0.3; 3])), 1000.0);
     let sun = scene(&free(distant(Some(500.0))));
     near(

@@ -36,7 +36,7 @@ fn bsdf_at(scene: &Scene, ray: Ray, lambda: &mut SampledWavelengths) -> (Surface
     (surface, bsdf)
 }
 
-/// The BxDF of a floor of this material; and whether other wavelengths than the first have ended.
+/// The BxDF of a floor of this material, and whether the secondary wavelengths are terminated.
 fn bxdf(kind: MaterialKind) -> (Option<Bxdf>, bool) {
     let scene = scene(&floor(|_| kind.into()));
     let mut lambda = lambda();
@@ -111,7 +111,7 @@ fn dispersion_terminates_secondary_wavelengths() {
 }
 
 #[test]
-fn an_interface_scatters_nothing_and_stops_shadow_rays_only_if_asked() {
+fn an_interface_does_not_scatter_and_occludes_only_on_request() {
     let scene = scene(&floor(|_| MaterialKind::Interface.into()));
     assert!(bsdf_at(&scene, down(0.0, 0.0), &mut lambda()).1.is_none());
     for (interfaces, stops) in [(Interfaces::Pass, false), (Interfaces::Stop, true)] {
@@ -149,7 +149,7 @@ fn mixes_have_their_proportions() {
 }
 
 #[test]
-fn a_mix_with_an_interface_is_one_for_its_fraction_of_rays() {
+fn a_mix_with_an_interface_passes_its_fraction_of_rays() {
     let scene = scene(&floor(|desc| {
         let materials = [MaterialKind::Diffuse { reflectance: 0.5.into() }, MaterialKind::Interface];
         let materials = materials.map(|kind| desc.materials.push(kind.into()));
@@ -163,7 +163,7 @@ fn a_mix_with_an_interface_is_one_for_its_fraction_of_rays() {
             assert_eq!(
                 stops,
                 bsdf_at(&scene, ray, &mut lambda()).1.is_some(),
-                "the same ray always fares alike"
+                "the alpha test of a ray is deterministic"
             );
             f64::from(u8::from(stops))
         })
@@ -185,7 +185,7 @@ fn alpha_is_the_probability_of_a_hit() {
             met.push(f64::from(u8::from(meets)));
             let stops = scene.occluded(&ray, f32::INFINITY, Interfaces::Stop, &mut Default::default());
             stopped.push(f64::from(u8::from(stops)));
-            assert_eq!(meets, stops, "the same ray always fares alike");
+            assert_eq!(meets, stops, "the alpha test of a ray is deterministic");
         }
         t_test(&met, alpha.min(1.0) as f64, 10).unwrap();
         t_test(&stopped, alpha.min(1.0) as f64, 10).unwrap();
@@ -311,7 +311,7 @@ fn footprints_without_differentials_are_those_of_the_camera() {
     assert!(ratio > 0.5 && ratio < 1.05, "{ratio}");
 }
 
-/// Follows a ray over one smooth surface to the next; returns the footprint there and the true
+/// Traces a ray over one smooth surface to the next; returns the footprint there and the exact
 /// distances.
 fn after_scattering(
     observed: &(Scene, View),

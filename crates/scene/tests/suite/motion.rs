@@ -5,7 +5,7 @@ use alhazen_scene::RayStats;
 use description::{InstanceDesc, ObjectDesc, SceneDesc, ShapeDesc, TransformDesc};
 use math::{DMat4, DVec3, Ray, Vec3};
 
-/// A scene changed in one way, whatever the change returns.
+/// A scene with one change, whose return value is ignored.
 fn with<T>(change: impl FnOnce(&mut SceneDesc) -> T) -> SceneDesc {
     let mut desc = SceneDesc::default();
     change(&mut desc);

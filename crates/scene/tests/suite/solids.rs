@@ -61,7 +61,7 @@ fn implicit_surfaces_and_solids_are_hit() {
     let bite = object(&mut desc, [ShapeDesc { world_from_object: moved, ..sphere(0.5).into() }]);
     let bitten = solid(SolidOperation::Difference, vec![ball, bite]);
     assert_eq!(met(desc.clone(), bitten.clone()), Some(-0.5));
-    // A solid of solids, all of which is twice as large.
+    // A nested solid, scaled by two.
     let part = object(&mut desc, [bitten]);
     let shape = solid(SolidOperation::Intersection, vec![part, ball]);
     let world_from_object = TransformDesc::fixed(DMat4::from_scale(DVec3::splat(2.0)));

@@ -17,7 +17,7 @@ fn from_distance(z: f64) -> SceneDesc {
     desc
 }
 
-/// The distance, and the position in the world, of what the camera sees at a film position.
+/// The distance and the world position of the surface seen at a film position.
 fn seen(scene: &Scene, view: &View, film: Vec2) -> (f32, Vec3) {
     let sample = CameraSample { film, lens: Vec2::ZERO, time: 0.0, filter_weight: 1.0 };
     let ray = view.camera.generate_ray(&sample).expect("a ray").ray;

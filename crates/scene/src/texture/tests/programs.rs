@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A scene with an image of numbers that varies over u, the texture 0.
+/// A scene whose texture 0 is an image of numbers that varies over u.
 fn with_ramp() -> SceneDesc {
     let mut scene = SceneDesc::default();
     let ramp = Image::from_fn(4, 1, ["Y"], |x, _| [[0.25, 0.75, 0.5, 0.125][x as usize]]);
@@ -68,7 +68,7 @@ fn each_node_of_a_shared_graph_is_evaluated_once() {
 }
 
 #[test]
-fn equal_textures_are_one() {
+fn equal_textures_are_shared() {
     let mut scene = with_ramp();
     let ramp = scene.float_textures[Handle::new(0)].clone();
     let again = scene.float_textures.push(ramp);
@@ -104,7 +104,7 @@ fn constants_are_folded() {
     assert_eq!(compiled(&scene).diagnostics[0].span(), scene.float_textures.origin(huge).span);
 }
 
-/// A chain of mixes with the last texture as operand `place`, of three.
+/// A chain of mixes, each with the previous texture as operand `place` of three.
 fn chain(length: u32, place: usize) -> SceneDesc {
     let mut scene = with_ramp();
     let mut texture: Handle<FloatTextureDesc> = Handle::new(0);
@@ -175,7 +175,7 @@ fn a_program_that_needs_too_many_values_at_once_is_an_error() {
 }
 
 #[test]
-fn references_go_backwards() {
+fn forward_references_are_errors() {
     for index in [0, 1, 7] {
         let mut scene = SceneDesc::default();
         push(&mut scene, TextureKind::Scale { texture: Handle::new(index).into(), scale: 1.0.into() });

@@ -14,7 +14,7 @@ use testkit::Random;
 /// Compiles a valid scene. World space is render space, as the camera is at the origin.
 pub fn scene(desc: &SceneDesc) -> Scene {
     let compiled = alhazen_scene::compile(desc).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
-    // Many scenes of tests need no light.
+    // Many test scenes have no light.
     let is_dark = |code: &str| matches!(code, "empty-scene" | "no-light");
     assert!(compiled.warnings.iter().all(|warning| is_dark(warning.code)), "{:?}", compiled.warnings);
     compiled.scene
@@ -105,7 +105,7 @@ pub fn rectangle([x0, y0]: [f32; 2], [x1, y1]: [f32; 2]) -> ShapeKind {
     patch([[x0, y0, 0.0], [x1, y0, 0.0], [x0, y1, 0.0], [x1, y1, 0.0]])
 }
 
-/// An image of one colour a pixel.
+/// An image from one colour per pixel.
 pub fn rgb_image(width: u32, height: u32, pixel: impl FnMut(u32, u32) -> [f32; 3]) -> ImageDesc {
     ImageDesc { name: "image".into(), image: Arc::new(Image::from_fn(width, height, ["R", "G", "B"], pixel)) }
 }

@@ -21,7 +21,7 @@ fn a_mix_of_itself_is_an_error() {
 }
 
 #[test]
-fn geometries_lead_to_materials_and_these_to_textures() {
+fn geometries_refer_to_materials_and_these_to_textures() {
     let desc = with(|desc| {
         let gray = |value: f32| MaterialKind::Diffuse { reflectance: value.into() };
         let parts = [0.25, 0.75].map(|value| desc.materials.push(gray(value).into()));

@@ -41,7 +41,7 @@ fn all_diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     .concat()
 }
 
-/// Without those of scenes without light, which have a test of their own.
+/// The diagnostics, except those of scenes without light, which have a test of their own.
 fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     let mut all = all_diagnostics(desc);
     all.retain(|diagnostic| !matches!(diagnostic.code, "empty-scene" | "no-light"));
@@ -60,7 +60,7 @@ fn warns(desc: &SceneDesc, message: &str, start: u32) {
     check(desc, Severity::Warning, "not-drawn", message, start);
 }
 
-/// A scene changed in one way, whatever the change returns.
+/// A scene with one change, whose return value is ignored.
 fn with<T>(change: impl FnOnce(&mut SceneDesc) -> T) -> SceneDesc {
     let mut desc = SceneDesc::default();
     change(&mut desc);
@@ -175,7 +175,7 @@ fn unusable_images_are_errors() {
         let image = Some(desc.images.push(gray_image()));
         let light = AreaLightDesc { image, ..AreaLightDesc::new(1.0.into()) };
         let area_light = Some(desc.area_lights.push_stated(with_parameter(light, "filename", 5)));
-        // Said once, however many shapes there are.
+        // Reported once for any number of shapes.
         for _ in 0..3 {
             desc.shapes.push(ShapeDesc { area_light, ..sphere(1.0).into() });
         }
@@ -319,8 +319,7 @@ fn successive_curves_become_one_geometry() {
         desc.shapes.push(shape(CurveDesc { split_depth: 0, ..ribbon() }));
     });
     let scene = compile(&desc).unwrap().scene;
-    // The four points are one segment of degree 3, or one of degree 2 and a point that is left
-    // over.
+    // The four points are one segment of degree 3, or one of degree 2 and a leftover point.
     let parts: Vec<_> = (0..6).map(|id| scene.world().geometry(GeometryId(id)).len()).collect();
     assert_eq!(parts, [24, 8, 8, 16, 16, 1]);
 }

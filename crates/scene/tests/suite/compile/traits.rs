@@ -62,7 +62,7 @@ fn materials_in_use_that_are_not_diffuse_are_counted() {
 }
 
 #[test]
-fn light_from_infinity_is_noted() {
+fn light_from_infinity_is_recorded() {
     let mut desc = SceneDesc::default();
     let point = LightKind::Point { intensity: 1.0.into(), power: None, from: Vec3::ZERO };
     desc.lights.push(point.into());
