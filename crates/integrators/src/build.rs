@@ -1,4 +1,4 @@
-//! From what a scene's author said of algorithm and sampler to an integrator.
+//! Builds the integrator and sampler that a scene describes.
 
 use description::schema::Settings;
 use description::{
@@ -16,16 +16,15 @@ use crate::{
     Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, Whitted,
 };
 
-/// What [`build`] gives.
+/// The result of [`build`].
 pub struct Built {
     /// The algorithm with its sampler.
     pub integrator: Box<dyn Integrator>,
-    /// What its settings and sampler do otherwise than described, in any scene.
+    /// Settings that are rendered differently from their description, in any scene.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Makes the integrator of a scene, or tells everything that is wrong with its settings (warnings
-/// included).
+/// Builds the integrator of a scene. Returns all errors and warnings if there is an error.
 pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     let mut wrong = desc.sampler.check(&desc.sampler.origin);
     wrong.extend(desc.integrator.check(&desc.integrator.origin));
@@ -82,8 +81,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The sampler of paths that begin at lights, which has nothing in common with that of the
-    /// camera's.
+    /// The sampler of light paths, independent of that of camera paths.
     fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
         const LIGHTS: u32 = 0x6c69_6768;
         let seed = hash(&[self.desc.sampler.seed.unwrap_or(self.desc.options.seed) as u32, LIGHTS]) as u32;
@@ -91,7 +89,7 @@ impl Builder<'_> {
         Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed))
     }
 
-    /// The seed of photons, which have nothing in common with the other samplers.
+    /// The seed of photons, independent of the other samplers.
     fn photon_seed(&self, seed: Option<i32>) -> u32 {
         const PHOTONS: u32 = 0x7068_6f74;
         let seed = seed.or(self.desc.sampler.seed).unwrap_or(self.desc.options.seed);
@@ -139,7 +137,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Tells which strategies' pictures are left out, and refuses those that take too much memory.
+    /// Checks the pictures of strategies: a warning if some are left out, an error if they take too
+    /// much memory.
     fn techniques(&mut self, settings: &BdptDesc, bdpt: &Bdpt) {
         if !(settings.visualize_strategies || settings.visualize_weights) {
             return;
@@ -148,7 +147,7 @@ impl Builder<'_> {
             if settings.visualize_strategies { "visualizestrategies" } else { "visualizeweights" };
         if settings.max_depth > MAX_DEPTH {
             let message = format!(
-                "of paths with more than {MAX_DEPTH} scattering events no pictures of strategies are made"
+                "there are no pictures of strategies for paths with more than {MAX_DEPTH} scattering events"
             );
             let span = self.desc.integrator.origin.parameter(parameter);
             self.diagnostics.push(Diagnostic::warning("techniques", message, span));
@@ -157,14 +156,14 @@ impl Builder<'_> {
         if bytes > MAX_BYTES {
             let [bytes, most] = [bytes, MAX_BYTES].map(|bytes| bytes as f64 / f64::from(1 << 30));
             let message = format!(
-                "pictures of all strategies take {bytes:.1} GiB, more than {most:.0} GiB; a smaller picture, a part of it or a smaller `maxdepth` takes less"
+                "pictures of all strategies take {bytes:.1} GiB, more than {most:.0} GiB; render fewer pixels or lower `maxdepth`"
             );
             let span = self.desc.integrator.origin.parameter(parameter);
             self.diagnostics.push(Diagnostic::error("invalid-integrator", message, span));
         }
     }
 
-    /// Path tracing instead of what the author asked for.
+    /// Path tracing in place of an unsupported integrator.
     fn instead(&mut self, max_depth: u32, sampler: Sampler) -> Box<dyn Integrator> {
         let name = self.desc.integrator.name();
         let message = format!("integrator `{name}` is not drawn yet; drawn as `path`");

@@ -11,16 +11,16 @@ use crate::{Cancelled, Control, PassError};
 
 /// An algorithm of light transport, run by a [`Session`](crate::Session).
 ///
-/// What a pass adds to the film depends on the scene, the view, the settings, the seed and the
-/// number of the pass alone: not on threads, nor on which passes were done before. The numbers
-/// begin with those of the [drafts](Self::drafts).
+/// The contribution of a pass to the film depends only on the scene, the view, the settings, the
+/// seed and the number of the pass: not on threads, nor on other passes. The [drafts](Self::drafts)
+/// have the first numbers.
 pub trait Integrator: Send {
-    /// How many passes the picture is planned for: the samples of a pixel that it is the mean of.
-    /// There may be fewer, and more.
+    /// The planned number of passes, each with one sample per pixel. A render may take fewer or
+    /// more.
     fn passes(&self) -> u32;
 
-    /// How many passes come before those, each of which puts a better draft in the place of the
-    /// picture. They add nothing to the finished one.
+    /// The number of passes before those that each replace the picture by a better draft. They do
+    /// not contribute to the finished picture.
     fn drafts(&self) -> u32 {
         0
     }
@@ -30,18 +30,18 @@ pub trait Integrator: Send {
         false
     }
 
-    /// What of the scene it draws otherwise than described.
+    /// What it renders differently from the scene's description.
     fn warnings(&self, _scene: &Scene) -> Vec<Diagnostic> {
         Vec::new()
     }
 
-    /// Builds what depends on the scene and the view; called once, before the first pass. `Err` if
-    /// it was cancelled: then it has to be called again before a pass.
+    /// Builds data that depends on the scene and the view; called once, before the first pass.
+    /// After an `Err` (cancelled) it has to be called again before a pass.
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled>;
 
     /// Does one pass, one sample per pixel, on the threads of rayon's current pool. A cancelled
-    /// pass ends within a few rays, and leaves some pixels with one sample less, for which their
-    /// weights account. A pass that lacks memory leaves the film as it was.
+    /// pass ends within a few rays, and leaves some pixels with one sample less and a smaller sum
+    /// of weights. A pass that runs out of memory leaves the film unchanged.
     fn pass(
         &mut self,
         pass: u32,
@@ -51,29 +51,29 @@ pub trait Integrator: Send {
         control: &Control,
     ) -> Result<RayStats, PassError>;
 
-    /// Films that the passes so far have filled beside the picture's, with their names. Their
-    /// pictures stand beside the main one and are called like it with the name added.
+    /// The additional films of the passes so far, with their names. Their pictures are saved beside
+    /// the main one, under its name with theirs appended.
     fn films(&self) -> Vec<(String, &Film)> {
         Vec::new()
     }
 
-    /// Goes on with films that [`films`](Self::films) has given; called before the first pass.
+    /// Continues with films from [`films`](Self::films); called before the first pass.
     fn set_films(&mut self, _films: Vec<(String, Film)>) {}
 
-    /// The files that were asked for, as far as the passes so far have made them.
+    /// The requested additional files, as far as they are complete.
     fn files(&self) -> Vec<OutputFile> {
         Vec::new()
     }
 
-    /// Facts about the passes so far, as names of one or two words and values.
+    /// Statistics of the passes so far: names of one or two words, and values.
     fn summary(&self) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 }
 
-/// A file that is made beside the picture.
+/// A file that is written beside the picture.
 pub struct OutputFile {
-    /// Where it goes.
+    /// Its path.
     pub path: PathBuf,
     /// Its contents.
     pub contents: Vec<u8>,

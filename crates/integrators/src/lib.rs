@@ -1,29 +1,29 @@
-//! The algorithms of light transport and the one driver that runs them.
+//! The algorithms of light transport and the session that runs them.
 //!
 //! An [`Integrator`] fills a film in passes; a [`Session`] runs the passes until a limit is reached
-//! or it is cancelled. An algorithm that only has to answer how much light comes along one ray is a
-//! [`RayIntegrator`], and [`PixelLoop`] makes an integrator of it. [`build`] chooses the algorithm
+//! or it is cancelled. An algorithm that only estimates the radiance along a ray is a
+//! [`RayIntegrator`], and [`PixelLoop`] turns it into an integrator. [`build`] builds the algorithm
 //! that a scene names.
 //!
-//! | algorithm | what it follows |
+//! | algorithm | what it traces |
 //! |---|---|
-//! | [`RayCasting`] | the camera's ray; lights shine through everything |
+//! | [`RayCasting`] | camera rays, without shadow rays |
 //! | [`Whitted`] | shadow rays, perfect mirrors and smooth glass |
-//! | [`AmbientOcclusion`] | how much of the sky each point sees |
-//! | [`RandomWalk`] | paths in uniform directions that meet light by chance |
-//! | [`SimplePath`] | paths by light sampling and BSDF sampling, each to be switched off |
-//! | [`Path`] | paths by both, weighed against each other, with Russian roulette |
+//! | [`AmbientOcclusion`] | rays over the hemisphere of the first surface, for its visibility |
+//! | [`RandomWalk`] | paths in uniform directions, without next-event estimation |
+//! | [`SimplePath`] | paths by light sampling and BSDF sampling, each optional |
+//! | [`Path`] | paths by both with multiple importance sampling, and Russian roulette |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
-//! | [`Bdpt`] | paths from both ends, connected in all ways |
-//! | [`Mlt`] | a walk through paths that lingers where they are bright |
-//! | [`PhotonMapping`] | photons from the lights, and camera rays that pick up the nearest |
+//! | [`Bdpt`] | paths from both ends, connected at all pairs of vertices |
+//! | [`Mlt`] | Markov chains of paths, distributed in proportion to their contribution |
+//! | [`PhotonMapping`] | photons from the lights, and camera rays that gather the nearest |
 //! | [`Sppm`] | paths to the first diffuse surface, and the photons there |
 //! | [`Vcm`] | paths from both ends, connected and merged |
-//! | [`Radiosity`] | light between diffuse patches, from the brightest first |
+//! | [`Radiosity`] | light between diffuse patches, the brightest shooting first |
 //!
-//! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the share of
-//! light at the end of a path that reaches the camera, and the depth of a path the number of its
-//! scattering events: depth 0 shows lights alone, depth 1 adds direct light.
+//! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the path
+//! throughput, and the depth of a path the number of its scattering events: depth 0 is emission,
+//! depth 1 adds direct light.
 
 mod bidirectional;
 mod build;

@@ -1,4 +1,4 @@
-//! Connects the ends of subpaths to whole paths: one function for each kind of strategy.
+//! Connects subpaths to complete paths: one function for each kind of strategy.
 
 use film::Splatter;
 use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
@@ -10,12 +10,12 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::{Bidirectional, LightVertex, Merges, Vertex, Walk, hero_only};
 use crate::transport::Tracer;
 
-/// What a strategy contributes.
+/// The contribution of a strategy.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
     /// The unweighted estimate.
     pub l: SampledSpectrum,
-    /// The weight of the strategy among all that find the path.
+    /// The MIS weight of the strategy.
     pub weight: f32,
     /// Vertices of the light subpath.
     pub s: u32,
@@ -30,7 +30,7 @@ impl Found {
     }
 }
 
-/// What a light subpath contributes, and where on the film.
+/// The contribution of a light subpath, and its film positions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnFilm {
     /// Positions in pixels.
@@ -146,8 +146,8 @@ impl Bidirectional<'_> {
         Some(self.found(l, hero, weight, light.depth + 1, camera.depth + 1))
     }
 
-    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses,
-    /// if what arrives there comes within the `reach` of the film's pixels.
+    /// t = 1: the vertex of a light subpath is connected to the point of the lens that `u` chooses;
+    /// `None` unless a film position lies within `reach`.
     pub fn connect_to_camera(
         &self,
         vertex: &Vertex,
@@ -173,7 +173,7 @@ impl Bidirectional<'_> {
         Some(OnFilm { places, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
     }
 
-    /// s, t ≥ 2: a photon is taken as if it had arrived at the vertex, near which it lies.
+    /// s, t ≥ 2: a photon near the vertex is merged with it, as if it had arrived there.
     pub fn merge(&self, camera: &Vertex, photon: &LightVertex) -> Found {
         let wi = photon.wo;
         let l = self.merged(camera, photon);
@@ -186,11 +186,11 @@ impl Bidirectional<'_> {
         Found { l, weight, s: photon.depth.into(), t: camera.depth + 1 }
     }
 
-    /// The light of [`Self::merge`] alone.
+    /// The unweighted contribution of [`Self::merge`].
     pub fn merged(&self, camera: &Vertex, photon: &LightVertex) -> SampledSpectrum {
         let wi = photon.wo;
-        // Power has been through the cosine of the surface, light is scattered by that of the
-        // shading.
+        // Power includes the cosine to the geometric normal; scattering has that to the shading
+        // normal.
         let cos_theta = camera.cos_theta(wi);
         let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
         let f = camera.bsdf.f(camera.wo, wi, camera.mode);
@@ -207,8 +207,8 @@ impl Bidirectional<'_> {
     }
 }
 
-/// The weight of a strategy beside which others have densities with these sums of ratios. Ratios
-/// beyond all numbers leave it none.
+/// The balance heuristic from the sums of the other strategies' density ratios. Infinite or NaN
+/// ratios give the weight 0.
 fn weight(of_light: f32, of_camera: f32) -> f32 {
     let sum = 1.0 + of_light + of_camera;
     if sum.is_nan() { 0.0 } else { 1.0 / sum }

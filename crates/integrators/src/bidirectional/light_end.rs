@@ -1,9 +1,10 @@
-//! The light's end of a path: with which densities the strategies find it.
+//! The light's end of a path: the densities with which the strategies sample it.
 //!
-//! A surface that looks for light chooses the point on it with the density `direct`; the light
-//! sends a ray from there to the surface with the density `emission`. The first is per solid angle
-//! at the surface, the second per area and solid angle at the light. A light at a point is chosen
-//! with a delta per area, which is d² per solid angle; deltas cancel in all ratios, and count as 1.
+//! Next-event estimation at a surface chooses the point on the light with the density `direct`;
+//! emission from the light chooses the ray from there to the surface with the density `emission`.
+//! The first is per solid angle at the surface, the second per area and solid angle at the light. A
+//! light at a point is chosen with a delta per area, which is d² per solid angle; deltas cancel in
+//! all ratios, and count as 1.
 
 use math::{Normal3, Point3, Ray, Vector3};
 use scene::light::{LightId, LightSampleContext};
@@ -16,8 +17,8 @@ use super::partial::LightEnd;
 pub(crate) type LightPoint = Option<(Point3, Normal3)>;
 
 impl Bidirectional<'_> {
-    /// The end at a light that is seen from a surface along the unit direction `wi`, chosen from
-    /// there with the density `direct`.
+    /// The end at a light in the unit direction `wi` from a surface, which next-event estimation
+    /// chooses with the density `direct`.
     pub fn light_end(
         &self,
         light: LightId,

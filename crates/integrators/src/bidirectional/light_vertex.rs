@@ -1,22 +1,20 @@
-//! The vertices of light subpaths that merging keeps.
+//! The vertices of light subpaths that are stored for merging.
 
 use math::{Point3, Vector3};
 use spectrum::SampledSpectrum;
 
 use super::{Partial, Vertex};
 
-/// A vertex of a light subpath, as far as merging needs it: a photon that knows its part of the
-/// weights.
+/// A vertex of a light subpath, stored for merging: a photon with its partial MIS weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LightVertex {
     /// Position.
     pub p: Point3,
     /// Unit direction to the previous vertex.
     pub wo: Vector3,
-    /// Power that arrives along `wo`, over the density of the subpath, if every ray hit the
-    /// surface.
+    /// Power that arrives along `wo`, over the density of the subpath and over alpha.
     pub beta: SampledSpectrum,
-    /// For the weights.
+    /// Partial MIS weights.
     pub partial: Partial,
     /// Scattering events on the subpath, that at the photon included.
     pub depth: u16,

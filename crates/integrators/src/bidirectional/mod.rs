@@ -1,9 +1,9 @@
 //! Bidirectional path tracing, and the subpaths that it shares with light tracing, Metropolis and
 //! photon methods.
 //!
-//! A path x₀ x₁ … x_k leads from a light to the camera. It can be made of a *light subpath* of s
+//! A path x₀ x₁ … x_k leads from a light to the camera. It can be built from a *light subpath* of s
 //! vertices and a *camera subpath* of t vertices whose ends are connected, for any s + t = k + 1;
-//! each (s, t) is a strategy of its own, good at other paths [Veach 1997 ch. 10]:
+//! each (s, t) is a strategy with a low variance for other paths [Veach 1997 ch. 10]:
 //!
 //! | s, t | strategy |
 //! |---|---|
@@ -14,9 +14,9 @@
 //!
 //! Vertices of the light subpath can also be *merged* with nearby vertices of camera subpaths:
 //! photon mapping. Every path is found by all strategies, so each is weighted by multiple
-//! importance sampling; [`Partial`] is what a subpath carries for that.
+//! importance sampling; [`Partial`] holds a subpath's part of the weights.
 //!
-//! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] makes paths of the
+//! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] builds paths from the
 //! vertices. The depth of a vertex is the number of scattering events on its subpath, its own
 //! included: 1 at the first surface. A path whose ends have the depths j and k has j + k scattering
 //! events when connected and j + k − 1 when merged, and the vertices s = j + 1, t = k + 1.
@@ -26,9 +26,9 @@
 //! refraction does not scale by η², and shading normals scale by |wo·ns||wi·ng| / |wo·ng||wi·ns|
 //! ([Veach 1997 §5.3]).
 //!
-//! Dispersion terminates all wavelengths but the first of a subpath. What two subpaths make
-//! together is then known at the first wavelength only; [`hero_only`] turns it into radiance at the
-//! wavelengths that both began with.
+//! Dispersion terminates the secondary wavelengths of a subpath. The contribution of a path is then
+//! known at the first wavelength only; [`hero_only`] converts it to radiance at the wavelengths
+//! that both subpaths began with.
 
 mod bdpt;
 mod connect;

@@ -1,4 +1,4 @@
-//! The context of paths that are made from both ends.
+//! The context of paths that are sampled from both ends.
 
 use description::LightSamplerDesc;
 use scene::light_sampler::{LightSampler, PowerLightSampler};
@@ -18,34 +18,34 @@ pub(crate) struct Lights {
 }
 
 impl Lights {
-    /// For no lights.
+    /// Samplers of no lights.
     pub fn none() -> Self {
         Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default() }
     }
 
-    /// For the lights of a scene.
+    /// Samplers of the lights of a scene.
     pub fn of(scene: &Scene, control: &Control) -> Result<Self, Cancelled> {
         let seen_from = scene.light_sampler(LightSamplerDesc::Bvh, &control.cancel).ok_or(Cancelled)?;
         Ok(Self { seen_from, emitting: PowerLightSampler::new(scene.lights()) })
     }
 }
 
-/// Samples subpaths and makes paths of them.
+/// Samples subpaths and builds paths from them.
 #[derive(Clone, Copy)]
 pub(crate) struct Bidirectional<'a> {
     pub scene: &'a Scene,
     pub view: &'a View,
     pub lights: &'a Lights,
-    /// How strategies are weighted.
+    /// The weighting of strategies.
     pub balance: Balance,
-    /// Most scattering events of a path.
+    /// Maximum number of scattering events of a path.
     pub max_depth: u32,
-    /// Roughen surfaces after the first rough one of each subpath.
+    /// Whether to roughen surfaces after the first rough one of each subpath.
     pub regularize: bool,
 }
 
-/// Radiance that is known at the first wavelength alone, as radiance at all wavelengths with the
-/// same mean.
+/// Radiance that is known at the first wavelength only, as radiance at all wavelengths with the
+/// same expected value.
 pub(crate) fn hero_only(l: SampledSpectrum) -> SampledSpectrum {
     let mut hero = SampledSpectrum::ZERO;
     hero[0] = l[0] * spectrum::N as f32;

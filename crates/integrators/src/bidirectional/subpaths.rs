@@ -1,4 +1,5 @@
-//! Whole subpaths, visited vertex by vertex, and the ends of subpaths of a given length.
+//! Complete subpaths, visited vertex by vertex, and the last vertices of subpaths of a given
+//! length.
 
 use scene::camera::CameraRayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -6,17 +7,17 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::{Bidirectional, Found, Vertex, Walk};
 use crate::transport::Tracer;
 
-/// What a camera subpath encounters.
+/// A vertex or light that a camera subpath hits.
 pub(crate) enum Encounter<'a> {
-    /// A light that it hit by chance.
+    /// A light that it hit.
     Light(Found),
     /// A vertex.
     Vertex(&'a Vertex),
 }
 
 impl Bidirectional<'_> {
-    /// Samples a light subpath, and visits the vertices that can be connected. After a cancellation
-    /// the rest of the subpath is missing.
+    /// Samples a light subpath, and visits the vertices that can be connected. A cancellation cuts
+    /// the subpath off.
     pub fn light_subpath(
         &self,
         time: f32,
@@ -48,7 +49,7 @@ impl Bidirectional<'_> {
         self.camera_subpath_to(|_| false, camera_ray, lambda, tracer, visit);
     }
 
-    /// The same, up to the first vertex that is an end.
+    /// The same, up to the first vertex at which `is_end` is true.
     pub fn camera_subpath_to(
         &self,
         is_end: impl Fn(&Vertex) -> bool,
@@ -105,8 +106,8 @@ impl Bidirectional<'_> {
         Some(walk.follow_to(depth, tracer)?.0)
     }
 
-    /// The weighted radiance of all lights that a camera subpath hits by chance after `depth`
-    /// scattering events, from 1.
+    /// The weighted radiance of all lights that a camera subpath hits after `depth` scattering
+    /// events, from 1.
     pub fn lights_met(
         &self,
         depth: u32,

@@ -1,4 +1,4 @@
-//! Weights from the recursion against weights from the densities of all strategies, path by path.
+//! MIS weights from the recursion equal those from the densities of all strategies.
 
 use std::sync::Arc;
 
@@ -21,8 +21,8 @@ use crate::{Control, Tracer};
 
 const LIGHT_PATHS: usize = 37;
 
-/// The inside of a cube whose walls are diffuse or rough metal, some of them there in part, with
-/// two lamps.
+/// The inside of a cube with two lamps, whose walls are diffuse or rough metal, some of them with
+/// an alpha below 1.
 fn room() -> (Scene, View) {
     let mut desc = SceneDesc::default();
     let rough = RoughnessDesc::isotropic(0.6);
@@ -72,7 +72,7 @@ struct Path<'a> {
     camera: Point3,
 }
 
-/// The density with which a step from one place to another is made, per area at the other.
+/// Converts a density per solid angle at `from` to one per area at `to`.
 fn per_area(pdf: f32, from: Point3, to: Point3, n: Normal3) -> f64 {
     let way = to - from;
     f64::from(pdf * n.dot(way.normalize()).abs() / way.length_squared())
@@ -84,14 +84,15 @@ impl Path<'_> {
         (vertex.p.p, vertex.n)
     }
 
-    /// The density of scattering at one surface, on the way from a place to another.
+    /// The density of scattering at a surface, for light or importance from `from` to `to`.
     fn scattered(&self, index: usize, from: Point3, to: (Point3, Normal3), mode: TransportMode) -> f64 {
         let vertex = self.surfaces[index];
         let (wo, wi) = ((from - vertex.p.p).normalize(), (to.0 - vertex.p.p).normalize());
         per_area(vertex.bsdf.pdf(wo, wi, mode, Directions::All), vertex.p.p, to.0, to.1)
     }
 
-    /// Where the step before or after a surface begins, seen from the light: index 0 is the light.
+    /// The position of the vertex before or after a surface, seen from the light: index 0 is the
+    /// light.
     fn before(&self, index: usize) -> Point3 {
         if index == 0 { self.light.1 } else { self.place(index - 1).0 }
     }
@@ -100,7 +101,7 @@ impl Path<'_> {
         if index + 1 == self.surfaces.len() { self.camera } else { self.place(index + 1).0 }
     }
 
-    /// The density, per area, with which a light subpath of `s` vertices makes the path's first
+    /// The density, per area, with which a light subpath of `s` vertices samples the path's first
     /// ones.
     fn light_density(&self, paths: &Bidirectional, s: usize) -> f64 {
         let (light, p, n) = self.light;
@@ -125,7 +126,8 @@ impl Path<'_> {
         density
     }
 
-    /// The same for a camera subpath, the lens counted, whose film position is one of a pixel.
+    /// The same for a camera subpath, including the lens, whose film position is uniform in a
+    /// pixel.
     fn camera_density(&self, paths: &Bidirectional, t: usize) -> f64 {
         if t == 1 {
             return LIGHT_PATHS as f64;
@@ -149,17 +151,17 @@ impl Path<'_> {
         let vertices = self.surfaces.len() + 2;
         match strategy {
             Strategy::Connect(s) => self.light_density(paths, s) * self.camera_density(paths, vertices - s),
-            // Beyond a diffuse surface, seen from the camera, nothing is merged.
+            // No merging beyond a diffuse surface, seen from the camera.
             Strategy::Merge(s) if self.surfaces[s - 1..].iter().any(|surface| surface.is_diffuse()) => 0.0,
             Strategy::Merge(s) => {
-                // Both subpaths have met the surface, where others have met it once.
+                // Both subpaths hit the surface, in other strategies only one does.
                 let eta = f64::from(paths.balance.merging * self.surfaces[s - 2].alpha);
                 eta * self.light_density(paths, s) * self.camera_density(paths, vertices + 1 - s)
             }
         }
     }
 
-    /// The weight of a strategy by the densities of all.
+    /// The weight of a strategy from the densities of all.
     fn weight(&self, paths: &Bidirectional, strategy: Strategy) -> f64 {
         let vertices = self.surfaces.len() + 2;
         let all = (0..vertices).map(Strategy::Connect).chain((3..vertices).map(Strategy::Merge));
@@ -167,22 +169,23 @@ impl Path<'_> {
     }
 }
 
-/// How a path is made of a light subpath and another, by the number of vertices of the first.
+/// How a path is built from a light subpath and a camera subpath, by the number of vertices of the
+/// first.
 #[derive(Clone, Copy, Debug)]
 enum Strategy {
-    /// An edge between the two.
+    /// By an edge between the two.
     Connect(usize),
-    /// One vertex is the last of both.
+    /// By a vertex that is the last of both.
     Merge(usize),
 }
 
 #[test]
-fn weights_are_those_of_the_densities_of_all_strategies() {
+fn weights_equal_the_balance_heuristic() {
     assert_weights(Balance::connecting(LIGHT_PATHS as f32), Balance::connecting(LIGHT_PATHS as f32));
 }
 
 #[test]
-fn weights_are_those_of_the_densities_of_all_strategies_when_some_merge() {
+fn weights_equal_the_balance_heuristic_with_merging() {
     for radius in [0.01, 0.1, 1.0] {
         let balance = Balance::merging(LIGHT_PATHS, 2 * LIGHT_PATHS, radius);
         assert_weights(balance, balance);
@@ -191,12 +194,12 @@ fn weights_are_those_of_the_densities_of_all_strategies_when_some_merge() {
 
 #[test]
 #[should_panic(expected = "Connect")]
-fn weights_for_another_radius_are_told_apart() {
+fn weights_for_another_radius_differ() {
     let of = |radius| Balance::merging(LIGHT_PATHS, LIGHT_PATHS, radius);
     assert_weights(of(0.2), of(0.201));
 }
 
-/// That the recursion with one balance gives the weights by the densities of another.
+/// Asserts that the recursion with `balance` gives the weights from the densities of `expected`.
 fn assert_weights(balance: Balance, expected: Balance) {
     let (scene, view) = room();
     let lights = Lights::of(&scene, &Control::default()).unwrap();
@@ -305,7 +308,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
     assert!(seen[..kinds].iter().all(|&count| count > 50), "{seen:?}");
 }
 
-/// The vertex of a camera subpath that goes on from `before` to the place of another's.
+/// The vertex of a camera subpath that continues from `before` to the position of `at`.
 fn stepped(balance: &Balance, before: &Vertex, at: &Vertex) -> Vertex {
     let way = at.p.p - before.p.p;
     let wi = way.normalize();

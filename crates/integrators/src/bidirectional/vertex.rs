@@ -19,7 +19,7 @@ pub(crate) struct Vertex {
     pub wo: Vector3,
     /// Time, in the scene's units.
     pub time: f32,
-    /// How it scatters.
+    /// The BSDF.
     pub bsdf: Bsdf,
     /// The probability with which a ray hits the surface there.
     pub alpha: f32,
@@ -28,13 +28,13 @@ pub(crate) struct Vertex {
     pub beta: SampledSpectrum,
     /// Whether all wavelengths but the first are terminated.
     pub hero_only: bool,
-    /// For the weights.
+    /// Partial MIS weights.
     pub partial: Partial,
     /// Scattering events on the subpath, this one included.
     pub depth: u32,
-    /// Whether the subpath has left a diffuse surface before.
+    /// Whether an earlier vertex of the subpath is diffuse.
     pub after_diffuse: bool,
-    /// What the subpath carries.
+    /// Whether the subpath carries radiance or importance.
     pub mode: TransportMode,
 }
 
@@ -52,8 +52,8 @@ impl Vertex {
         self.bsdf.flags().is_non_specular()
     }
 
-    /// Whether a vertex of the other kind could be merged with it: not the first vertex of a light
-    /// subpath, nor those of a camera subpath beyond a diffuse surface.
+    /// Whether it can be merged with a vertex of the other kind of subpath: not the first vertex of
+    /// a light subpath, nor those of a camera subpath beyond a diffuse surface.
     #[inline]
     pub fn can_merge(&self) -> bool {
         match self.mode {
@@ -69,23 +69,23 @@ impl Vertex {
         flags.is_diffuse() && !flags.is_specular()
     }
 
-    /// Where merging is possible at the vertex and before it, if it is possible beyond.
+    /// The merges at the vertex and before it on the subpath.
     #[inline]
     pub fn merges(&self) -> Merges {
         let before = self.mode == TransportMode::Radiance || !self.is_diffuse();
         Merges { here: if self.can_merge() { self.alpha } else { 0.0 }, before }
     }
 
-    /// The power of the photon that a light subpath leaves. Of all photons that arrive only the
-    /// part `alpha` stays, so each stands for those that have passed as well: the camera subpath
-    /// that looks for photons has hit the surface already.
+    /// The power of the photon of a light subpath, divided by `alpha`: only the share `alpha` of
+    /// light subpaths hits the surface, but the camera subpath with which the photon is merged has
+    /// hit it already.
     #[inline]
     pub fn photon_beta(&self) -> SampledSpectrum {
         self.beta / self.alpha
     }
 
-    /// What of `beta` leaves along `wi`, per solid angle: the BSDF times the cosine that belongs to
-    /// it.
+    /// `beta` times the BSDF and its cosine: the throughput that leaves along `wi`, per solid
+    /// angle.
     #[inline]
     pub fn scattered(&self, wi: Vector3) -> SampledSpectrum {
         self.beta * self.bsdf.f(self.wo, wi, self.mode) * self.cosine(wi)
@@ -105,14 +105,14 @@ impl Vertex {
         }
     }
 
-    /// Density per solid angle with which this subpath goes on along `wi`.
+    /// Density per solid angle with which this subpath continues along `wi`.
     #[inline]
     pub fn pdf(&self, wi: Vector3) -> f32 {
         self.bsdf.pdf(self.wo, wi, self.mode, scattering::Directions::All)
     }
 
-    /// Density per solid angle with which a subpath of the other kind that comes from `wi` goes on
-    /// along `wo`.
+    /// Density per solid angle with which a subpath of the other kind that comes from `wi`
+    /// continues along `wo`.
     #[inline]
     pub fn pdf_back(&self, wi: Vector3) -> f32 {
         self.bsdf.pdf(wi, self.wo, !self.mode, scattering::Directions::All)
@@ -124,7 +124,7 @@ impl Vertex {
         self.n.dot(w).abs()
     }
 
-    /// The ray to another point, with the normal of its surface if there is one; to be followed to
+    /// The ray to another point, with the normal of its surface if there is one; to be traced up to
     /// [`Ray::SHADOW_END`].
     #[inline]
     pub fn ray_to(&self, p: Point3Error, n: Normal3) -> Ray {

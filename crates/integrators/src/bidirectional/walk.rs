@@ -1,11 +1,10 @@
 //! Samples subpaths, vertex by vertex, from the camera or from a light.
 //!
-//! A walk follows its ray to a surface ([`Walk::intersect`]), which is a vertex ([`Walk::arrive`])
-//! unless it lets the ray pass, and leaves the vertex along a direction of its BSDF
-//! ([`Walk::leave`]). From the second vertex on it ends with probability 1 − q by Russian roulette,
-//! where q is the part of the initial throughput that is left, at most 1; the weights of strategies
-//! ignore it, which costs a little efficiency. For a vertex of one given depth there is no roulette
-//! ([`Walk::follow_to`]).
+//! A walk traces its ray to a surface ([`Walk::intersect`]), which is a vertex ([`Walk::arrive`])
+//! unless the ray passes it, and leaves the vertex along a direction of its BSDF ([`Walk::leave`]).
+//! From the second vertex on it ends with probability 1 − q by Russian roulette, where q is the
+//! throughput relative to the initial one, at most 1; the MIS weights ignore it, which costs a
+//! little efficiency. A walk to a vertex of a given depth has no roulette ([`Walk::follow_to`]).
 
 use math::RayDifferential;
 use sampling::Sampler;
@@ -26,9 +25,9 @@ pub(crate) struct Walk<'a> {
     paths: &'a Bidirectional<'a>,
     /// The ray to the next surface.
     pub ray: RayDifferential,
-    /// Throughput: what is carried along the ray, over the density of the subpath.
+    /// Path throughput: importance or power along the ray, over the density of the subpath.
     pub beta: SampledSpectrum,
-    /// For the weights, without the factors of the next surface.
+    /// Partial MIS weights, without the factors of the next surface.
     pub partial: Partial,
     /// The wavelengths, of which dispersion may have terminated all but the first.
     pub lambda: SampledWavelengths,
@@ -38,11 +37,11 @@ pub(crate) struct Walk<'a> {
     share: SampledSpectrum,
     /// Distance from the previous vertex.
     distance: f32,
-    /// The probability with which rays hit the surface that was hit.
+    /// Alpha of the surface that was hit.
     alpha: f32,
     rough_before: bool,
     after_diffuse: bool,
-    /// Whether an interface has stopped it.
+    /// Whether it was ended by an interface.
     is_stopped: bool,
     origin: Origin,
     mode: TransportMode,
@@ -60,7 +59,7 @@ enum Origin {
 }
 
 impl<'a> Walk<'a> {
-    /// From the camera along one of its rays.
+    /// Starts at the camera, along one of its rays.
     pub fn from_camera(
         paths: &'a Bidirectional,
         camera_ray: &CameraRayDifferential,
@@ -76,7 +75,7 @@ impl<'a> Walk<'a> {
         Self::new(paths, camera_ray.ray, (beta, partial), lambda, (origin, TransportMode::Radiance))
     }
 
-    /// From one of the lights, chosen by its power; `None` where no light leaves.
+    /// Starts at a light, chosen by power; `None` if the sampled ray has no radiance.
     pub fn from_light(
         paths: &'a Bidirectional,
         time: f32,
@@ -118,7 +117,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The surface that the ray hits; `None` if it leaves the scene, or was stopped.
+    /// The surface that the ray hits; `None` if it leaves the scene, or an interface ended the
+    /// subpath.
     pub fn intersect(&mut self, tracer: &mut Tracer) -> Option<SurfaceInteraction> {
         if self.is_stopped {
             return None;
@@ -131,7 +131,8 @@ impl<'a> Walk<'a> {
         Some(scene.interaction(&hit, surface))
     }
 
-    /// The vertex at a surface that was hit; `None` if the ray passes it and has to be followed on.
+    /// The vertex at a surface that was hit; `None` if the ray passes it and has to be traced
+    /// further.
     pub fn arrive(&mut self, surface: &mut SurfaceInteraction, tracer: &mut Tracer) -> Option<Vertex> {
         let Some(mut bsdf) = tracer.bsdf(surface, &self.ray, &mut self.lambda) else {
             let t = self.ray.ray.o.distance(surface.p());

@@ -1,9 +1,9 @@
-//! Ambient occlusion: how much of the sky each point sees.
+//! Ambient occlusion: the cosine-weighted share of the hemisphere that is not occluded.
 //!
 //! A = 1/π ∫ V(p, ω) (n·ω) dω over the hemisphere around the geometric normal n on the camera's
 //! side, where the visibility V is 0 for directions that hit a surface nearer than `max_distance`.
-//! A point with a free view is white (A = 1): the result is A times the illuminant of the film's
-//! colour space at unit luminance. Lights and materials do not matter; a camera ray that meets
+//! The result is A times the illuminant of the film's colour space at unit luminance, so that an
+//! unoccluded point is white (A = 1). Lights and materials are ignored; a camera ray that hits
 //! nothing is black. Sources: [Zhukov 1998], [Pharr 2023 §13].
 
 use description::AmbientOcclusionDesc;
@@ -25,7 +25,7 @@ pub struct AmbientOcclusion {
 }
 
 impl AmbientOcclusion {
-    /// Shows a free view as white of `color_space`.
+    /// With unoccluded points as the white of `color_space`.
     pub fn new(settings: AmbientOcclusionDesc, color_space: &RgbColorSpace) -> Self {
         let white = color_space.illuminant();
         let white_scale = 1.0 / white.to_photometric();

@@ -1,4 +1,4 @@
-//! Algorithms that follow rays from the camera alone.
+//! Algorithms that trace rays from the camera only.
 
 mod ambient_occlusion;
 mod path;

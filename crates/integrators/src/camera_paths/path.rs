@@ -1,8 +1,8 @@
 //! Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 //!
-//! At each vertex one ray goes to a light and one onwards, weighted by the power heuristic
-//! (`transport/direct.rs`); from the second vertex on Russian roulette ends paths that carry little
-//! (`transport/roulette.rs`).
+//! At each vertex a shadow ray goes to a light and a scattered ray continues the path, weighted by
+//! the power heuristic (`transport/direct.rs`); from the second vertex on Russian roulette ends
+//! paths of low throughput (`transport/roulette.rs`).
 //!
 //! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
 //! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
@@ -26,8 +26,8 @@ pub struct Path {
 }
 
 impl Path {
-    /// Knows no lights until it is prepared for a scene. `interfaces` says what interfaces do to
-    /// the light of delta lights.
+    /// Has no lights before [`prepare`](RayIntegrator::prepare). `interfaces` says whether
+    /// interfaces occlude delta lights.
     pub fn new(settings: PathDesc, interfaces: Interfaces) -> Self {
         Self { settings, interfaces, direct: DirectLighting::none() }
     }

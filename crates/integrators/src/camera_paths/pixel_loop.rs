@@ -1,4 +1,4 @@
-//! Camera rays for all pixels: makes an [`Integrator`] of a [`RayIntegrator`].
+//! Camera rays for all pixels: turns a [`RayIntegrator`] into an [`Integrator`].
 
 use film::Film;
 use geometry::RayStats;

@@ -1,9 +1,9 @@
 //! The simplest estimator of the light transport equation: a walk in uniform directions.
 //!
 //! L(p, ω_o) = L_e + ∫ f(ω_o, ω_i) L(p', −ω_i) |cos θ_i| dω_i over the whole sphere, estimated by
-//! one direction of density 1/4π at each surface. Unbiased up to its depth but very noisy; light in
-//! single directions (point and distant lights, smooth metal and glass) is never hit, and is
-//! missing. Source: [Pharr 2023 §1.3.6].
+//! one direction of density 1/4π at each surface. Unbiased up to its depth but very noisy; delta
+//! distributions (point and distant lights, smooth metal and glass) are never hit, and are missing.
+//! Source: [Pharr 2023 §1.3.6].
 
 use description::RandomWalkDesc;
 use math::RayDifferential;

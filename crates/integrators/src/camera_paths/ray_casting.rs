@@ -1,10 +1,10 @@
-//! Ray casting: camera rays alone, without shadow rays.
+//! Ray casting: camera rays only, without shadow rays.
 //!
-//! L = L_e + Σ f(ω_o, ω_i) L_i |cos θ_i| / p(ω_i), one direction ω_i for each light, as if nothing
-//! stood between the surface and the light. Shadows, reflections, refractions and indirect light
-//! are missing; smooth metal and glass are black. It shows what a picture lacks without secondary
-//! rays. Light is otherwise right: area lights are sampled over their surfaces. Source:
-//! [Appel 1968], without his shadows.
+//! L = L_e + Σ f(ω_o, ω_i) L_i |cos θ_i| / p(ω_i), one direction ω_i for each light, as if the
+//! light were not occluded. Shadows, reflections, refractions and indirect light are missing;
+//! smooth metal and glass are black. It shows what secondary rays add to a picture. Direct light is
+//! otherwise correct: area lights are sampled over their surfaces. Source: [Appel 1968], without
+//! his shadows.
 
 use math::RayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};

@@ -1,10 +1,10 @@
 //! Simple path tracing: light sampling and BSDF sampling, each of which can be switched off.
 //!
 //! At each surface, direct light comes either from one point on one light (chosen uniformly),
-//! divided by its density, or from the path hitting the light by chance: never from both, so that
-//! no weights are needed. Only what no light sample can find, seen directly or after a specular
-//! bounce, is always counted when hit. The path goes on in a direction of the BSDF's density, or a
-//! uniform one.
+//! divided by its density, or from the path hitting the light: never from both, so that no weights
+//! are needed. Lights that no light sample can find, seen directly or after a specular bounce,
+//! always count when hit. The path continues in a direction sampled from the BSDF, or a uniform
+//! one.
 //!
 //! Unbiased up to its depth, with two exceptions: without light sampling, point and distant lights
 //! are never hit; without BSDF sampling, smooth metal and glass are black. Source:
@@ -57,7 +57,7 @@ impl RayIntegrator for SimplePath {
             }
             let Some(bsdf) = tracer.bsdf(&mut surface, &ray, lambda) else {
                 ray = pass_through(&ray, &surface, t);
-                // Shadow rays stop here, so only the ray itself finds lights beyond.
+                // Interfaces occlude shadow rays here, so only the path itself finds lights beyond.
                 specular_bounce = true;
                 continue;
             };
@@ -108,7 +108,7 @@ fn one_light<B: Scatter>(
     l / (pmf * sample.pdf)
 }
 
-/// A direction sampled by the BSDF.
+/// A direction sampled from the BSDF.
 fn by_bsdf<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Option<Onward> {
     let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
     let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, Directions::All)?;
@@ -117,12 +117,12 @@ fn by_bsdf<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: 
     Some(Onward { wi: sample.wi, weight, specular: sample.flags.is_specular() })
 }
 
-/// A uniform direction, on those sides of the surface to which it scatters at all.
+/// A uniform direction, on the sides of the surface to which it scatters.
 fn uniform<B: Scatter>(tracer: &mut Tracer, surface: &SurfaceInteraction, bsdf: &Bsdf<B>) -> Onward {
     let (s, u) = (&surface.surface, tracer.sampler.get_2d());
     let (mut wi, mut pdf) = (warp::sample_uniform_sphere(u), warp::uniform_sphere_pdf());
     if !bsdf.flags().contains(BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION) {
-        // Directions on the other side are turned over: the density doubles.
+        // Directions on the other side are mirrored, which doubles the density.
         pdf *= 2.0;
         let same_side = s.wo.dot(s.n) * wi.dot(s.n) > 0.0;
         if same_side != bsdf.flags().is_reflective() {

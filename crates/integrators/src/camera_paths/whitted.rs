@@ -3,8 +3,8 @@
 //! At each surface, L = L_e + Σ_lights f L_i V |cos θ_i| / p + k_r L(reflected) + k_t L(refracted):
 //! a shadow ray to one point of every light (point lights need no more, area lights show soft
 //! shadows as samples grow), and both directions of a smooth mirror, metal or glass. Rough surfaces
-//! scatter light that comes straight from lights only, so that there is no indirect light and there
-//! are no caustics. The tree of rays grows as 2^depth in glass.
+//! scatter direct light only, so that indirect light and caustics are missing. The tree of rays
+//! grows as 2^depth in glass.
 //!
 //! With a `max_depth` of 1, mirrors are black. Source: [Whitted 1980].
 
@@ -21,7 +21,7 @@ use crate::{RayIntegrator, Tracer};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Whitted(pub WhittedDesc);
 
-/// A ray that is still to be traced.
+/// A ray to be traced.
 struct Pending {
     ray: RayDifferential,
     beta: SampledSpectrum,

@@ -1,28 +1,26 @@
-//! Light tracing: particles from the lights.
+//! Light tracing: light paths connected to the camera.
 //!
-//! A light subpath leaves a light, chosen in proportion to power, and is scattered from surface to
-//! surface as the BSDFs say. No ray of it would ever hit a pinhole, so each of its vertices x is
-//! connected to the camera: if it is visible, the pixel of the film position of x receives
+//! A light subpath starts at a light, chosen in proportion to power, and is scattered from surface
+//! to surface by BSDF sampling. As no ray can hit a pinhole, each of its vertices x is connected to
+//! the camera: if it is visible, the pixel of the film position of x receives
 //!
 //! ```text
 //! β·f(x)·|cos θ|·W_e / p_lens
 //! ```
 //!
 //! where β is the flux that arrived over the density of the subpath, W_e the importance of the
-//! camera and p_lens the density of the point on the lens. With n subpaths, 1/n of the sum over all
-//! is the picture.
+//! camera and p_lens the density of the point on the lens. The picture is the mean over all
+//! subpaths.
 //!
-//! It is at its best where light is focused: the caustic of a glass ball is where light subpaths go
-//! anyway. It fails where the camera looks into a mirror or through glass: no vertex can be
-//! connected through a specular surface, so mirrors and glass stay black. And most rays reach
-//! nothing that the camera sees, which is why tracing from the camera won; the summary says how
-//! many. Lights themselves, at depth 0, are found by one camera ray for each pixel, since those at
-//! infinity are no vertices of subpaths.
+//! Its strength is focused light: light subpaths sample the caustic of a glass ball well. Mirrors
+//! and glass stay black, as no vertex can be connected through a specular surface. Most rays do not
+//! contribute to the picture; the summary reports the share that does. Directly visible lights, of
+//! depth 0, are rendered by one camera ray per pixel, since infinite lights are not vertices of
+//! subpaths.
 //!
-//! Unbiased for what it can see. Surfaces without bounds are black where they lie beyond the
-//! scene's bounds and light comes from infinity (`endless.rs`). A light subpath that a cancellation
-//! cuts off has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993];
-//! [Veach 1997 §10.3.1].
+//! Unbiased for paths that it can sample. Unbounded surfaces are black beyond the scene's bounds
+//! where light comes from infinity (`unbounded.rs`). A light subpath that a cancellation cuts off
+//! has splatted its first vertices. Sources: [Arvo 1986]; [Dutré 1993]; [Veach 1997 §10.3.1].
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -34,7 +32,7 @@ use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights};
-use crate::light_paths::endless;
+use crate::light_paths::unbounded;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError};
 
@@ -47,12 +45,12 @@ pub struct LightTracing {
     lights: Lights,
     /// Rays of light subpaths, including those to the camera.
     rays: AtomicU64,
-    /// How many of these reached the film.
+    /// The number of these that reached the film.
     reached: AtomicU64,
 }
 
 impl LightTracing {
-    /// With a sampler for each end of a path.
+    /// `sampler` is for camera rays, `light_sampler` for light subpaths.
     pub fn new(settings: LightTracingDesc, sampler: Sampler, light_sampler: Sampler) -> Self {
         let [rays, reached] = [0; 2].map(AtomicU64::new);
         Self { settings, sampler, light_sampler, lights: Lights::none(), rays, reached }
@@ -69,7 +67,7 @@ impl Integrator for LightTracing {
     }
 
     fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
-        endless::warnings(scene, "light-tracing")
+        unbounded::warnings(scene, "light-tracing")
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
@@ -132,7 +130,7 @@ impl Integrator for LightTracing {
         let share = 100.0 * reached as f64 / rays.max(1) as f64;
         vec![(
             "reached",
-            format!("{share:.2} % of the rays from lights ended on the film, {reached} of {rays}"),
+            format!("{share:.2} % of the rays of light paths contributed to the film, {reached} of {rays}"),
         )]
     }
 }

@@ -1,6 +1,6 @@
-//! Algorithms that follow paths from the lights alone.
+//! Algorithms that trace paths from the lights only.
 
-pub(crate) mod endless;
 mod light_tracing;
+pub(crate) mod unbounded;
 
 pub use light_tracing::LightTracing;

@@ -1,58 +1,57 @@
-//! One Markov chain of Metropolis, which visits each point in proportion to a function c, and the
-//! weights of its states.
+//! One Metropolis Markov chain, whose stationary distribution is proportional to a function c, and
+//! the weights of its states.
 //!
-//! From x the walk proposes x', as likely as x from x', and accepts it with the probability a =
-//! min(1, c(x')/c(x)). Whatever the walk had to do with c before, it keeps; so a walk that starts
-//! in the distribution c/b, where b = ∫ c, is in it at every step [Veach 1997 §11.2]. What it finds
-//! is to be multiplied by b and divided by c.
+//! From x the chain proposes x', with the same density as x from x', and accepts it with the
+//! probability a = min(1, c(x')/c(x)). This keeps the density c/b, where b = ∫ c: a chain that
+//! starts in it has it at every step [Veach 1997 §11.2]. A contribution has the weight b/c.
 //!
-//! Nothing that was computed is wasted: x' counts for a of the step and x for 1 − a, which is what
-//! the choice between them would have given on average. And large steps are uniform samples of the
-//! cube, good ones where c is small and the walk seldom goes. A point y can come by both ways, and
-//! is weighed by the balance heuristic [Kelemen 2002]: with p the probability of a large step, the
-//! walk is at y with the density c/b and large steps arrive there with the density p, so that y is
-//! worth, as a state that counts for a share q of a step,
+//! Rejected proposals count as well: x' has the share a of the step and x the share 1 − a, the
+//! expected value of the choice between them. Large steps are also uniform samples of the cube,
+//! which are good where c is small. Both techniques can produce a point y, and are combined by the
+//! balance heuristic [Kelemen 2002]: with p the probability of a large step, the chain is at y with
+//! the density c/b and large steps arrive there with the density p, so that the weight of y, with a
+//! share q of a step, is
 //!
 //! ```text
 //! (q·b + [large step]·b₀) / (c(y) + p·b₀)
 //! ```
 //!
-//! The b₀ stands for b in the weights. They sum to one whatever it is, so the result is right if b₀
-//! knows nothing of the walk; the b outside them is that of the points among which the start was
-//! chosen.
+//! b₀ is an estimate of b in the MIS weights. They sum to one for any value, so the result is
+//! unbiased if b₀ is independent of the chain; the other b is the estimate from the candidates
+//! among which the start was chosen.
 
 use sampling::sampler::PrimarySample;
 use sampling::{Rng, Sampler};
 
-/// How chains move and what their states are worth.
+/// The parameters of steps and of the weights of states.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steps {
     /// Probability of a large step.
     pub large: f32,
-    /// The integral of c as estimated by the points among which starts were chosen.
+    /// The integral of c, estimated from the candidates among which starts were chosen.
     pub b: f32,
-    /// Another estimate, independent of that.
+    /// Another estimate, independent of the first.
     pub b0: f32,
 }
 
 impl Steps {
-    /// What a state of importance `c` is worth that counts for a share of a step.
-    fn worth(&self, share: f32, is_large: bool, c: f32) -> f32 {
+    /// The weight of a state of importance `c` that has the given share of a step.
+    fn weight(&self, share: f32, is_large: bool, c: f32) -> f32 {
         let density = c + self.large * self.b0;
         let of_large = if is_large { self.b0 } else { 0.0 };
         if density > 0.0 { (share * self.b + of_large) / density } else { 0.0 }
     }
 }
 
-/// A point, with what was found there.
+/// A point with its contribution, importance and weight.
 #[derive(Clone, Copy, Debug)]
 struct State<V> {
     value: V,
     c: f32,
-    worth: f32,
+    weight: f32,
 }
 
-/// How many steps were proposed and how many accepted, small ones and large ones.
+/// Numbers of proposed and of accepted steps, small and large.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Acceptance {
     pub proposed: [u64; 2],
@@ -68,8 +67,8 @@ impl std::ops::AddAssign for Acceptance {
     }
 }
 
-/// The samplers of a path, each a point of primary sample space; all together are the point that a
-/// chain moves.
+/// The samplers of a path, each a point of primary sample space; together they are the state of a
+/// chain.
 pub(super) type Streams = [Sampler; 3];
 
 fn each_sample(streams: &mut Streams, mut change: impl FnMut(&mut PrimarySample)) {
@@ -89,8 +88,8 @@ pub(super) struct Chain<V> {
 }
 
 impl<V> Chain<V> {
-    /// Starts where the streams have been set to, and goes on with random numbers of a sequence of
-    /// its own. `evaluate` tells what is found at a point and c there.
+    /// Starts at the point of the streams, and continues with random numbers of the given sequence.
+    /// `evaluate` returns the contribution of a point and its c.
     pub fn new(mut streams: Streams, sequence: u64, evaluate: impl FnOnce(&mut Streams) -> (V, f32)) -> Self {
         let (value, c) = evaluate(&mut streams);
         let mut rng = Rng::from_sequence(sequence);
@@ -98,29 +97,30 @@ impl<V> Chain<V> {
             sample.accept();
             sample.reseed(u64::from(rng.uniform_u32()) << 32 | u64::from(rng.uniform_u32()));
         });
-        Self { streams, rng, current: State { value, c, worth: 0.0 }, acceptance: Acceptance::default() }
+        Self { streams, rng, current: State { value, c, weight: 0.0 }, acceptance: Acceptance::default() }
     }
 
-    /// Takes a step, and leaves one of two points: gives what was found there and what it is worth.
+    /// Takes a step. Returns the contribution and the weight of the one of the two points that the
+    /// chain leaves.
     pub fn step(&mut self, steps: &Steps, evaluate: impl FnOnce(&mut Streams) -> (V, f32)) -> (V, f32) {
         let is_large = self.rng.uniform_f32() < steps.large;
         each_sample(&mut self.streams, |sample| sample.propose(is_large));
         let (value, c) = evaluate(&mut self.streams);
         let a = if c < self.current.c { c / self.current.c } else { 1.0 };
-        self.current.worth += steps.worth(1.0 - a, false, self.current.c);
-        let mut left = State { value, c, worth: steps.worth(a, is_large, c) };
+        self.current.weight += steps.weight(1.0 - a, false, self.current.c);
+        let mut left = State { value, c, weight: steps.weight(a, is_large, c) };
         self.acceptance.proposed[usize::from(is_large)] += 1;
         if self.rng.uniform_f32() < a {
             self.acceptance.accepted[usize::from(is_large)] += 1;
             each_sample(&mut self.streams, |sample| sample.accept());
             std::mem::swap(&mut self.current, &mut left);
         }
-        (left.value, left.worth)
+        (left.value, left.weight)
     }
 
-    /// Leaves the last point.
+    /// Ends the chain. Returns the contribution and the weight of its last point.
     pub fn end(self) -> ((V, f32), Acceptance) {
-        ((self.current.value, self.current.worth), self.acceptance)
+        ((self.current.value, self.current.weight), self.acceptance)
     }
 }
 
@@ -154,14 +154,14 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_that_starts_in_the_distribution_of_the_target_stays_in_it() {
+    fn a_chain_keeps_the_distribution_of_the_target() {
         let b = volume([[0.0, 1.0]; 2]);
         for (test, (large, sigma)) in [(0.0, 0.1), (0.3, 0.02), (1.0, 0.1)].into_iter().enumerate() {
             let steps = Steps { large, b: 1.0, b0: 1.0 };
             let mut candidate = 0;
             let chi2 = Chi2 { tests: 3, samples: 60_000, seed: test as u64, ..Chi2::default() };
             let end = |u: [f32; 2]| {
-                // Start by rejection.
+                // The start is chosen by rejection sampling.
                 let mut chain = loop {
                     candidate += 1;
                     let chain = Chain::new(streams(sigma, candidate), candidate as u64, evaluate);
@@ -179,10 +179,10 @@ mod tests {
         }
     }
 
-    /// What a region of the plane is worth by chains that start at one of a few candidates,
-    /// whatever else is taken for b.
+    /// The integral over a region of the plane, estimated by chains that start at one of a few
+    /// candidates, with any b₀.
     #[test]
-    fn what_is_found_on_the_way_is_worth_its_part_of_the_integral() {
+    fn weighted_states_estimate_the_integral() {
         const STEPS: u32 = 6;
         let regions = [[[0.0, 1.0], [0.0, 1.0]], [[0.2, 0.4], [0.8, 1.0]], [[0.6, 1.0], [0.0, 0.5]]];
         let cases = [(0.3, 0.05, 0.2), (0.3, 0.05, 1.0), (0.0, 0.05, 0.2), (1.0, 0.05, 0.2), (0.5, 0.3, 0.0)];
@@ -200,20 +200,20 @@ mod tests {
                 let start = candidates[chosen.unwrap_or(2)];
                 let steps = Steps { large, b: sum / 3.0, b0 };
                 let mut chain = Chain::new(streams(sigma, start), run as u64, evaluate);
-                let mut worth = [0.0; 3];
+                let mut weight = [0.0; 3];
                 let mut add = |(p, more): (Vec2, f32)| {
                     let c = hill(f64::from(p.x), f64::from(p.y));
-                    for (worth, [x, y]) in worth.iter_mut().zip(regions) {
+                    for (weight, [x, y]) in weight.iter_mut().zip(regions) {
                         let inside =
                             |range: [f64; 2], at: f32| range[0] <= at.into() && f64::from(at) < range[1];
                         if inside(x, p.x) && inside(y, p.y) {
-                            *worth += c * f64::from(more) / f64::from(STEPS);
+                            *weight += c * f64::from(more) / f64::from(STEPS);
                         }
                     }
                 };
                 (0..STEPS).for_each(|_| add(chain.step(&steps, evaluate)));
                 add(chain.end().0);
-                found.iter_mut().zip(worth).for_each(|(found, worth)| found.push(worth));
+                found.iter_mut().zip(weight).for_each(|(found, weight)| found.push(weight));
             }
             for (found, region) in found.iter().zip(regions) {
                 t_test(found, volume(region), 15)

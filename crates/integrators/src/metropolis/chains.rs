@@ -1,4 +1,4 @@
-//! The chains of a pass: where they start, and what all of them add to the film.
+//! The chains of a pass: their starts, and their contributions to the film.
 
 use description::MltDesc;
 use film::Splatter;
@@ -20,25 +20,25 @@ pub(super) struct Chains {
     seed: u32,
     b0: Option<f32>,
     passes: u32,
-    /// Sum of the b of these passes.
+    /// Sum of the estimates b of these passes.
     b_sum: f64,
-    /// Mutations of the last of them.
+    /// Mutations in the last pass.
     mutations: usize,
     acceptance: Acceptance,
 }
 
-/// The number of a pass whose candidates estimate b₀: no other pass has it.
-const BEFORE_ALL: u32 = u32::MAX;
+/// A number of no pass, for the candidates that estimate b₀.
+const B0_PASS: u32 = u32::MAX;
 
-/// Mutations for each candidate start, at least. With fewer candidates, chains start too often at
-/// the same one.
+/// Minimum number of mutations per candidate. A larger one leaves so few candidates that chains
+/// often start at the same one.
 const MUTATIONS_PER_CANDIDATE: usize = 4;
 
-/// Shorter chains than this move too little away from their start.
-const FEWEST_MUTATIONS: usize = 256;
+/// Minimum number of mutations per chain; shorter chains stay too close to their start.
+const MIN_MUTATIONS: usize = 256;
 
-/// Points that a thread evaluates in a row.
-const ROW: usize = 256;
+/// Number of candidates per parallel task.
+const CANDIDATES_PER_TASK: usize = 256;
 
 /// A target in a view of a scene.
 pub(super) struct Targeted<'a> {
@@ -48,7 +48,7 @@ pub(super) struct Targeted<'a> {
 }
 
 impl Targeted<'_> {
-    /// What is found at the point of primary sample space that the streams hold.
+    /// The contribution of the point of primary sample space in the streams.
     fn contribution(
         &self,
         [first, others @ ..]: &mut Streams,
@@ -73,14 +73,14 @@ impl Chains {
         }
     }
 
-    /// Among how many points the chains of a pass choose, and how many chains.
+    /// The numbers of candidates and of chains of a pass.
     fn starts(&self, mutations: usize) -> (usize, usize) {
         let MltDesc { bootstrap_samples, chains, .. } = self.settings;
         let candidates = (bootstrap_samples as usize).min(mutations / MUTATIONS_PER_CANDIDATE);
-        (candidates.max(1), (chains as usize).min(mutations / FEWEST_MUTATIONS).max(1))
+        (candidates.max(1), (chains as usize).min(mutations / MIN_MUTATIONS).max(1))
     }
 
-    /// Takes as many steps as `mutations` says, with the chains of a pass.
+    /// Runs the chains of a pass, for `mutations` steps in total.
     pub fn run(
         &mut self,
         pass: u32,
@@ -98,7 +98,7 @@ impl Chains {
         };
         let b0 = match self.b0 {
             Some(b0) => b0,
-            None => bootstrap(BEFORE_ALL)?.0,
+            None => bootstrap(B0_PASS)?.0,
         };
         let (b, candidates) = bootstrap(pass)?;
         self.b0 = Some(b0);
@@ -117,14 +117,14 @@ impl Chains {
             control.check()?;
             let length = mutations * (k + 1) / chains - mutations * k / chains;
             for _ in 0..length {
-                let (contribution, worth) = chain.step(&steps, &mut evaluate);
-                // Before what a cancelled path has found is splatted.
+                let (contribution, weight) = chain.step(&steps, &mut evaluate);
+                // Checked before splatting, as the contribution of a cancelled path is incomplete.
                 control.check()?;
-                contribution.splat(worth, splatter);
+                contribution.splat(weight, splatter);
                 splatter.add_paths(1);
             }
-            let ((contribution, worth), acceptance) = chain.end();
-            contribution.splat(worth, splatter);
+            let ((contribution, weight), acceptance) = chain.end();
+            contribution.splat(weight, splatter);
             control.count(&stats);
             Ok((stats, acceptance))
         };
@@ -143,7 +143,7 @@ impl Chains {
         Ok(stats)
     }
 
-    /// The importance of the points among which a pass chooses.
+    /// The importances of the candidates of a pass.
     fn bootstrap(
         &self,
         pass: u32,
@@ -155,14 +155,14 @@ impl Chains {
         let row = |(row, candidates): (usize, &mut [f32])| {
             let (mut streams, mut stats) = (self.streams(), RayStats::default());
             for (i, c) in candidates.iter_mut().enumerate() {
-                start_at(&mut streams, pass, (row * ROW + i) as u32);
+                start_at(&mut streams, pass, (row * CANDIDATES_PER_TASK + i) as u32);
                 *c = target.contribution(&mut streams, &mut stats, control).c();
                 control.check()?;
             }
             control.count(&stats);
             Ok(stats)
         };
-        let rows = candidates.par_chunks_mut(ROW).enumerate();
+        let rows = candidates.par_chunks_mut(CANDIDATES_PER_TASK).enumerate();
         let stats = rows.map(row).try_reduce(RayStats::default, |mut sum, stats| {
             sum += stats;
             Ok(sum)
@@ -178,7 +178,7 @@ impl Chains {
         })
     }
 
-    /// How the chains fared.
+    /// Statistics of the chains.
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         if self.passes == 0 {
             return Vec::new();
@@ -190,7 +190,10 @@ impl Chains {
         vec![
             (
                 "b",
-                format!("{:.6e}, the mean light of independent paths", self.b_sum / f64::from(self.passes)),
+                format!(
+                    "{:.6e}, the mean contribution of independent paths",
+                    self.b_sum / f64::from(self.passes)
+                ),
             ),
             ("accepted", format!("{:.1} % of small steps, {:.1} % of large ones", share(0), share(1))),
             ("starts", format!("{chains} of {candidates} paths in each pass, in {kib} KiB")),
@@ -207,9 +210,9 @@ fn mean(values: &[f32]) -> f32 {
     (values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len() as f64) as f32
 }
 
-/// Chooses `count` of the candidates in proportion to their weights, and evenly: they lie on a
-/// line, each as long as its weight, and places at equal distances choose, the first of them at `u`
-/// of the distance. If no weight is above 0 any will do.
+/// Systematic resampling: `count` candidates in proportion to their weights, chosen by equidistant
+/// points in the cumulative weights, the first at the fraction `u` of the distance. If all weights
+/// are 0, the choice is arbitrary.
 fn resample(weights: &[f32], count: usize, u: f32) -> Vec<u32> {
     let distance = weights.iter().map(|&weight| f64::from(weight)).sum::<f64>() / count as f64;
     let (mut end, mut place) = (0.0, f64::from(u) * distance);
@@ -230,7 +233,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn candidates_are_chosen_as_often_as_they_weigh() {
+    fn candidates_are_chosen_in_proportion_to_their_weights() {
         let weights = [0.0, 3.0, 0.5, 0.0, 1.5, 0.0];
         for u in [0.0, 0.3, 0.999] {
             let chosen = resample(&weights, 100, u);

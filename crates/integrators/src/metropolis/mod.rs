@@ -1,48 +1,45 @@
-//! Metropolis light transport in primary sample space: Markov chains of paths that visit paths in
-//! proportion to the light that they carry.
+//! Metropolis light transport in primary sample space: Markov chains of paths, distributed in
+//! proportion to their contribution.
 //!
-//! Where few paths carry light, independent samples find each of them by chance and forget it at
-//! once. A Markov chain goes from path to path, each a small mutation of the one before, and visits
-//! each in proportion to its contribution. So it explores the neighbourhood of what has been found:
-//! all the light that comes through the gap of a door, once one path has found the gap.
+//! Where few paths carry light, independent samples seldom find them. A Markov chain proceeds from
+//! path to path by small mutations, and visits each in proportion to its contribution. So it
+//! explores the neighbourhood of a path that carries light, such as one through the gap of a door.
 //!
-//! The states of the chain are not paths but the random numbers that they are made of, the *primary
-//! sample space* [Kelemen 2002]: the unit cube of all that a sampler may return. Each point u of it
-//! is a path that some other algorithm makes, of contribution f(u) (radiance over density) to the
-//! film position p(u). A pixel whose filter is h is then
+//! The states of the chain are not paths but the random numbers from which they are sampled, the
+//! *primary sample space* [Kelemen 2002]: the unit cube of a sampler's values. Another algorithm
+//! maps each point u of it to a path, of contribution f(u) (radiance over density) to the film
+//! position p(u). A pixel whose filter is h is then
 //!
 //! ```text
 //! I = ∫ f(u) h(p(u)) du = b · E[ f(u)/c(u) · h(p(u)) ],   u of the density c/b,   b = ∫ c(u) du
 //! ```
 //!
 //! for any number c(u) that is above 0 where f is; here it is the mean of f's X, Y and Z.
-//! `chain.rs` says how a chain comes to that density,
-//! [`PrimarySample`](sampling::sampler::PrimarySample) how it mutates. The algorithm that makes the
-//! paths, the `technique`, is
+//! `chain.rs` describes the chain, [`PrimarySample`](sampling::sampler::PrimarySample) its
+//! mutations. The algorithm that samples the paths, the `technique`, is
 //!
-//! - `path`: a camera path with all the light that it finds [Kelemen 2002];
-//! - `bdpt`: one path made by one strategy (s, t) of bidirectional path tracing, which u chooses as
-//!   well: multiplexed Metropolis [Hachisuka 2014]. What the strategy finds is weighted by the
-//!   balance heuristic and by the number of strategies, so a chain stays with those that are good
-//!   for the paths around it, and pays for one connection instead of all. The number of scattering
-//!   events, which is fixed for a chain in the paper, is one more dimension, and the greater the
-//!   less likely.
+//! - `path`: a camera path with all its contributions [Kelemen 2002];
+//! - `bdpt`: one path sampled by one strategy (s, t) of bidirectional path tracing, which u chooses
+//!   as well: multiplexed Metropolis [Hachisuka 2014]. The contribution is weighted by the balance
+//!   heuristic and by the number of strategies, so a chain prefers strategies that are good for the
+//!   paths around it, at the cost of one connection instead of all. The number of scattering
+//!   events, which is fixed for a chain in the paper, is one more dimension; greater numbers have
+//!   lower probabilities.
 //!
 //! Chains are many and short. Those of a pass start at points chosen in proportion to c among
 //! uniform candidates of that pass alone; the mean of c over the candidates is the b of the pass.
 //! Then b·(the mean of the chains) is unbiased, at every step and for any number of candidates,
-//! without a burn-in to be discarded: b makes up for what the choice of starts favours
-//! [Veach 1997 §11.3.1]. So passes are independent pictures, chains are independent of threads, and
-//! the error falls with the number of passes without limit.
+//! without burn-in: the factor b removes the start-up bias [Veach 1997 §11.3.1]. So passes are
+//! independent estimates of the picture, chains do not depend on threads, and the error converges
+//! to zero with the number of passes.
 //!
-//! Lights that the camera sees directly are left to one camera ray for each pixel and pass: they
-//! are found without chance, and so bright that chains would spend most of their time on them.
+//! Directly visible lights are rendered by one camera ray per pixel and pass: camera rays find them
+//! with little noise, and chains would spend most of their time on them.
 //!
-//! Unbiased up to `max_depth`, except with `regularize`. What it is bad at: noise is not that of
-//! independent samples but comes in blotches, where a chain stayed; the overall brightness is only
-//! as certain as b; open scenes, which every path sees, gain nothing; and what no large step ever
-//! finds stays black. Sources: [Veach 1997 ch. 11]; [Kelemen 2002]; [Hachisuka 2014];
-//! [Pharr 2016 §16.4].
+//! Unbiased up to `max_depth`, except with `regularize`. Its weaknesses: samples are correlated, so
+//! that noise appears as blotches; the overall brightness has the error of b; open scenes, where
+//! every path finds light, gain nothing; and paths that no large step finds are missing. Sources:
+//! [Veach 1997 ch. 11]; [Kelemen 2002]; [Hachisuka 2014]; [Pharr 2016 §16.4].
 
 mod chain;
 mod chains;
@@ -66,15 +63,15 @@ use crate::{Cancelled, Control, Integrator, PassError, Path, RayIntegrator};
 #[derive(Debug)]
 pub struct Mlt {
     settings: MltDesc,
-    /// Of the camera rays that see lights.
+    /// For the camera rays of directly visible lights.
     sampler: Sampler,
-    /// Paths that do not scatter.
+    /// Path tracing of depth 0, for directly visible lights.
     seen: Path,
     technique: Technique,
     chains: Chains,
 }
 
-/// What makes paths, prepared for the scene.
+/// The algorithm that samples paths, prepared for the scene.
 #[derive(Debug)]
 enum Technique {
     Path(Path),
@@ -82,7 +79,7 @@ enum Technique {
 }
 
 impl Mlt {
-    /// With a sampler of the camera rays that see lights.
+    /// `sampler` is for the camera rays of directly visible lights.
     pub fn new(settings: MltDesc, sampler: Sampler, seed: u32) -> Self {
         let path = |max_depth| {
             let regularize = settings.regularize;

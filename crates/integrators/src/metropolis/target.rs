@@ -1,4 +1,4 @@
-//! What chains look for: paths, as functions of a point of primary sample space.
+//! Target functions of chains: the contribution of the path at a point of primary sample space.
 
 use film::Splatter;
 use math::{Bounds2, Point2};
@@ -11,27 +11,26 @@ use crate::bidirectional::Bidirectional;
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::camera_ray;
 
-/// Light that arrives at a place on the film.
+/// A contribution to the film.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contribution {
     /// Positions in pixels.
     places: FilmPositions,
-    /// The light.
+    /// Radiance over the density of the point.
     l: SampledSpectrum,
-    /// At these wavelengths.
+    /// The wavelengths of `l`.
     lambda: SampledWavelengths,
 }
 
 impl Contribution {
-    /// Importance: the mean of the three numbers that an eye makes of the light, so that no colour
-    /// counts for nothing.
+    /// The scalar contribution function: the mean of X, Y and Z, which is positive for all colours.
     pub fn c(&self) -> f32 {
         let xyz = xyz_from(&self.l, &self.lambda);
         let c = (xyz.x + xyz.y + xyz.z) / 3.0;
         if c.is_finite() { c.max(0.0) } else { 0.0 }
     }
 
-    /// Adds the light, times a factor.
+    /// Splats the light, times a factor.
     pub fn splat(&self, factor: f32, splatter: &Splatter) {
         if factor > 0.0 && !self.l.is_black() {
             let l = self.l * factor;
@@ -40,7 +39,7 @@ impl Contribution {
     }
 }
 
-/// The film positions that reach a pixel: the pixels, and around them the filter's radius.
+/// The film positions that contribute to pixels: the pixels, extended by the filter's radius.
 #[derive(Clone, Copy)]
 pub(super) struct FilmDomain(Bounds2);
 
@@ -57,8 +56,7 @@ impl FilmDomain {
         Self(splatter.reach())
     }
 
-    /// The area of all positions, in pixels: what light of a path from the camera is worth, since
-    /// positions have one over it for density.
+    /// The area in pixels: one over the density of film positions.
     pub fn area(&self) -> f32 {
         self.0.area()
     }
@@ -80,14 +78,14 @@ impl FilmDomain {
     }
 }
 
-/// What a point of primary sample space stands for.
+/// Maps points of primary sample space to contributions.
 pub(super) trait Target: Sync {
-    /// The light that is found there; its mean over the cube is the picture. The tracer has the
+    /// The contribution of a point; its mean over the cube is the picture. The tracer holds the
     /// first stream of random numbers.
     fn contribution(&self, tracer: &mut Tracer, others: &mut [Sampler; 2]) -> Contribution;
 }
 
-/// Path tracing: the whole of a camera path with all the light that it finds.
+/// Path tracing: a camera path with all its contributions.
 pub(super) struct CameraPaths<'a> {
     pub film: FilmDomain,
     pub path: &'a Path,
@@ -104,12 +102,12 @@ impl Target for CameraPaths<'_> {
     }
 }
 
-/// Bidirectional path tracing: one path, made by one strategy.
+/// Bidirectional path tracing: one path, sampled by one strategy.
 ///
 /// The first dimensions choose the number of scattering events ([`Depths`]), and then one of the
-/// strategies, all with the same probability; what is found is divided by the probability of both.
-/// Camera subpath, light subpath and connection have streams of their own, lest a longer subpath of
-/// one kind shift the dimensions of the other.
+/// strategies, all with the same probability; the contribution is divided by the probability of
+/// both. Camera subpath, light subpath and connection have separate streams, so that the length of
+/// one subpath does not shift the dimensions of the other.
 pub(super) struct ConnectedPaths<'a> {
     pub film: FilmDomain,
     pub paths: Bidirectional<'a>,
@@ -131,7 +129,7 @@ impl Target for ConnectedPaths<'_> {
 }
 
 impl ConnectedPaths<'_> {
-    /// What the strategy (s, t) finds, and where it arrives on the film.
+    /// The contribution of the strategy (s, t), and its film positions.
     fn find(
         &self,
         s: u32,
@@ -169,23 +167,23 @@ impl ConnectedPaths<'_> {
     }
 }
 
-/// One of `count` numbers from 0 on, all as likely.
+/// One of the numbers 0 to `count` − 1, all with the same probability.
 fn choose(u: f32, count: u32) -> u32 {
     ((u * count as f32) as u32).min(count - 1)
 }
 
-/// How many scattering events a path has, from 1 to the greatest number d_max.
+/// The distribution of the number of scattering events of a path, from 1 to d_max.
 ///
-/// Light that is scattered often is faint, so paths are the less likely the longer they are. That
-/// there are d or more events has, if there may be any number of them, the probability
+/// Light that is scattered often is faint, so longer paths have lower probabilities. Without d_max,
+/// the probability of d or more events is
 ///
 /// ```text
 /// T(d) = (8/(7 + d))²        and so, up to d_max,   p(d) = (T(d) − T(d + 1)) / (1 − T(d_max + 1))
 /// ```
 ///
-/// The first few numbers are nearly as likely as each other. Because p falls as d⁻³, slower than
-/// light does in any room, what is found over p does not grow without bound; and yet a path has a
-/// length on average, of 8.5 events, whatever d_max is.
+/// The first few numbers have nearly the same probability. As p falls as d⁻³, more slowly than
+/// light does in any room, contributions over p are bounded; the mean number of events is still
+/// finite, at most 8.5 for any d_max.
 #[derive(Clone, Copy, Debug)]
 struct Depths {
     /// d_max, above 0.
@@ -195,12 +193,12 @@ struct Depths {
 impl Depths {
     const SCALE: f64 = 8.0;
 
-    /// The probability of `depth` or more events, if there may be any number.
+    /// The probability of `depth` or more events without d_max.
     fn at_least(depth: f64) -> f64 {
         (Self::SCALE / (Self::SCALE - 1.0 + depth)).powi(2)
     }
 
-    /// The number that `u` in [0, 1) chooses, and its probability.
+    /// The number sampled by `u` in [0, 1), and its probability.
     fn choose(self, u: f32) -> (u32, f32) {
         let greatest = f64::from(self.greatest);
         let all = 1.0 - Self::at_least(greatest + 1.0);
@@ -216,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depths_have_the_probability_that_is_claimed_for_them() {
+    fn depths_have_their_probability() {
         for greatest in [1, 2, 5, 100, 70_000, 2_000_000_000] {
             const CELLS: usize = 40;
             let (count, depths) = (100_000, Depths { greatest });
@@ -237,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn no_path_is_endless() {
+    fn depths_are_bounded() {
         for greatest in [1_000_000, u32::MAX - 2] {
             let (depth, probability) = Depths { greatest }.choose(math::ONE_MINUS_EPSILON);
             assert!(depth < 1 << 15 && probability > 0.0, "{depth} {probability}");

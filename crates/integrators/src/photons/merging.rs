@@ -1,5 +1,5 @@
-//! What methods that merge share: photons emitted anew in each pass, and a radius that shrinks from
-//! pass to pass.
+//! Progressive photon merging: new photons in each pass, and a radius that shrinks from pass to
+//! pass.
 //!
 //! The radiance that a surface at x scatters towards the camera is estimated from the n light
 //! subpaths of a pass by all their vertices within the radius r, as if they had arrived at x
@@ -9,24 +9,23 @@
 //! L ≈ 1/(n π r²) · Σ f(x, ωₒ, ω_p) Φ_p/α_p
 //! ```
 //!
-//! where α_p, mostly 1, is the probability with which a ray hits the surface at the photon's
-//! position. Of a surface with the alpha α only the part α of the photons stays, while x has been
-//! hit and receives all the light that arrives.
+//! where α_p, usually 1, is the alpha of the surface at the photon's position: only the share α_p
+//! of light subpaths hits the surface, while the camera subpath has hit it already.
 //!
-//! The estimate blurs light over the radius. The bias of the blur is proportional to r² (to r
-//! beside edges and thin walls, through which light leaks), the variance to 1/r²; both vanish if
-//! pass i has the radius of [Knaus 2011]
+//! The estimate blurs light over the radius. The bias is proportional to r² (to r at edges and thin
+//! walls, through which light leaks), the variance to 1/r²; both vanish if pass i has the radius of
+//! [Knaus 2011]
 //!
 //! ```text
 //! r_{i+1}² = r_i² · (i + α)/(i + 1)        so that r_i² ~ i^(α − 1)
 //! ```
 //!
 //! and the picture is the mean of all passes: after N passes the bias is about N^(α − 1) and the
-//! variance N^(−α) of that of the first. The radius depends on the number of the pass alone, so
-//! passes can be rendered in any order, anywhere, and again.
+//! variance N^(−α) of that of the first. The radius depends only on the number of the pass, so
+//! passes can be rendered in any order and on any machine.
 //!
-//! Photons can be merged with a camera path only if both have the same wavelengths and the same
-//! time. So all paths of a pass share one [`ShutterSample`].
+//! Photons and camera paths must have the same wavelengths and time to be merged. So all paths of a
+//! pass share one [`ShutterSample`].
 //!
 //! Sources: [Knaus 2011]; [Hachisuka 2009].
 
@@ -41,7 +40,7 @@ use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
-/// Light subpaths that one task samples.
+/// Number of light subpaths per parallel task.
 const BATCH: usize = 1024;
 
 /// The photons of passes, and their radius.
@@ -49,13 +48,13 @@ const BATCH: usize = 1024;
 pub(crate) struct Merging {
     /// The radius of the first pass, in scene units.
     radius: f32,
-    /// How slowly the radius shrinks, in (0, 1].
+    /// The α of the radius, in (0, 1]; 1 keeps it constant.
     alpha: f32,
     seed: u32,
     last: LastPass,
 }
 
-/// Facts for the summary.
+/// Statistics for the summary.
 #[derive(Clone, Debug, Default)]
 struct LastPass {
     passes: u32,
@@ -65,10 +64,10 @@ struct LastPass {
     bytes: usize,
 }
 
-/// What is kept of the vertices of light subpaths, in path order.
+/// Data stored for the vertices of light subpaths, in path order.
 #[derive(Clone, Debug)]
 pub(crate) struct LightSubpaths<V> {
-    /// Of all paths.
+    /// The vertices of all paths.
     pub vertices: Vec<V>,
     /// The end of each path in that list.
     ends: Vec<usize>,
@@ -81,7 +80,7 @@ impl<V> Default for LightSubpaths<V> {
 }
 
 impl<V> LightSubpaths<V> {
-    /// What is kept of one path; `None` beyond the last.
+    /// The data of one path; `None` beyond the last.
     pub fn get(&self, path: usize) -> Option<&[V]> {
         let &end = self.ends.get(path)?;
         let start = if path == 0 { 0 } else { self.ends[path - 1] };
@@ -95,7 +94,7 @@ impl<V> LightSubpaths<V> {
 }
 
 impl Merging {
-    /// With the radius of the first pass, in scene units.
+    /// `radius` is that of the first pass, in scene units.
     pub fn new(radius: f32, alpha: f32, seed: u32) -> Self {
         Self { radius, alpha, seed, last: LastPass::default() }
     }
@@ -105,12 +104,12 @@ impl Merging {
         self.radius = radius;
     }
 
-    /// The seed of wavelengths and times of passes.
+    /// The seed of the wavelengths and times of passes.
     pub fn seed(&self) -> u32 {
         self.seed
     }
 
-    /// The radius of a pass, which are counted from 0.
+    /// The radius of a pass, counted from 0.
     pub fn radius(&self, pass: u32) -> f32 {
         let alpha = f64::from(self.alpha);
         let shrunk: f64 = (1..=pass).map(|i| (f64::from(i) + alpha) / (f64::from(i) + 1.0)).product();
@@ -122,8 +121,8 @@ impl Merging {
         ShutterSample::of_pass(view, self.seed, pass)
     }
 
-    /// Samples the light subpaths of a pass and keeps of their vertices what `keep` makes of them.
-    /// `sampler` starts the sampler of a path.
+    /// Samples the light subpaths of a pass and stores the values that `keep` returns for their
+    /// vertices. `sampler` returns the sampler of a path.
     pub fn shoot<V: Send>(
         &self,
         paths: &Bidirectional,
@@ -166,8 +165,8 @@ impl Merging {
         Ok((all, stats))
     }
 
-    /// Sorts the photons of a pass into a grid; they are of so many light subpaths, whose vertices
-    /// take `bytes` besides.
+    /// Sorts the photons of the `paths` light subpaths of a pass into a grid; `bytes` is the memory
+    /// of their vertices.
     pub fn sort(&mut self, photons: Vec<LightVertex>, paths: usize, bytes: usize, pass: u32) -> PhotonGrid {
         let radius = self.radius(pass);
         let grid = PhotonGrid::new(photons, radius);
@@ -176,7 +175,7 @@ impl Merging {
         grid
     }
 
-    /// Facts for the summary of an integrator.
+    /// Statistics for the summary of an integrator.
     pub fn summary(&self) -> Vec<(&'static str, String)> {
         let &LastPass { passes, radius, paths, photons, bytes } = &self.last;
         if passes == 0 {

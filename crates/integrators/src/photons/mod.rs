@@ -1,5 +1,5 @@
-//! Photon methods: the vertices of light subpaths are kept, and looked up around the vertices of
-//! camera subpaths.
+//! Photon methods: vertices of light subpaths are stored, and looked up near vertices of camera
+//! subpaths.
 
 mod merging;
 mod photon;

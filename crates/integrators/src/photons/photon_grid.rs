@@ -1,35 +1,35 @@
-//! Photons, and all of them within a fixed distance of a point.
+//! A hash grid of photons, for queries within a fixed radius.
 //!
-//! Space is cut into cubes a little more than twice as wide as the distance r, so that the photons
-//! near a point lie in two of them along each axis, eight in all. Cubes have no end in any
-//! direction; a hash of a cube's place names one of as many buckets as there are photons. The
-//! photons are sorted by bucket, and a table says where each bucket begins: two arrays, without a
-//! pointer, and a query reads a few short pieces of them. Cubes that share a bucket are told apart
-//! by distance alone, and a bucket that two of the eight share is read once.
+//! Space is divided into cubic cells a little more than twice as wide as the radius r, so that the
+//! photons near a point lie in two cells along each axis, eight in all. The grid is unbounded:
+//! cells are hashed to as many buckets as there are photons. The photons are sorted by bucket, and
+//! a table holds the start of each bucket; a query reads a few short ranges of these two arrays.
+//! Photons of other cells in the same bucket are rejected by distance, and a bucket that two of the
+//! eight cells share is read once.
 //!
-//! Sorting is by bucket and then by the order in which the photons came, so that the sums of a
-//! query do not depend on threads.
+//! Within a bucket the order of the photons is kept, so that the sums of a query do not depend on
+//! threads.
 
 use math::Point3;
 use rayon::prelude::*;
 
 use crate::bidirectional::LightVertex;
 
-/// Photons in the order of a grid of cubes.
+/// Photons in the order of the grid's buckets.
 #[derive(Clone, Debug)]
 pub(crate) struct PhotonGrid {
     radius: f32,
     cells_per_length: f32,
     photons: Vec<LightVertex>,
-    /// Where each bucket's photons begin, and at the end how many there are.
+    /// The index of each bucket's first photon, and at the end the number of photons.
     starts: Vec<u32>,
 }
 
-/// A little more than 1, to cover what is lost in rounding.
+/// A little more than 1, to cover rounding errors.
 const MARGIN: f32 = 1.000_001;
 
 impl PhotonGrid {
-    /// Sorts photons to be found within `radius`, which is above 0.
+    /// Builds the grid for queries within `radius`, above 0.
     pub fn new(photons: Vec<LightVertex>, radius: f32) -> Self {
         let buckets = photons.len().next_power_of_two();
         let cells_per_length = 0.5 / (radius * MARGIN * MARGIN);
@@ -53,7 +53,7 @@ impl PhotonGrid {
         Self { radius, cells_per_length, photons, starts }
     }
 
-    /// How many photons there are.
+    /// The number of photons.
     pub fn len(&self) -> usize {
         self.photons.len()
     }
@@ -71,7 +71,7 @@ impl PhotonGrid {
             (self.cell(x - reach), self.cell(x + reach))
         });
         let [(x0, x1), (y0, y1), (z0, z1)] = range;
-        // Three along an axis only where rounding makes them.
+        // Two cells along an axis; three only by rounding.
         let mut seen = [u32::MAX; 27];
         let mut count = 0;
         for z in z0..=z1 {
@@ -95,7 +95,7 @@ impl PhotonGrid {
         }
     }
 
-    /// The cube that a coordinate lies in; the last one for whatever is beyond numbering.
+    /// The cell of a coordinate, clamped to the range of `i32`.
     fn cell(&self, x: f32) -> i32 {
         (x * self.cells_per_length).floor() as i32
     }
@@ -117,7 +117,7 @@ mod tests {
     use spectrum::SampledSpectrum;
     use testkit::Random;
 
-    /// Photons at these places, known again by their depth.
+    /// Photons at these positions, identified by their depth.
     fn photons(places: &[Point3]) -> Vec<LightVertex> {
         let photon = |(i, &p): (usize, &Point3)| LightVertex {
             p,
@@ -130,7 +130,7 @@ mod tests {
         places.iter().enumerate().map(photon).collect()
     }
 
-    /// That queries at all these places find what a look at every photon finds, each once.
+    /// Asserts that all queries find the same photons as brute force, each once.
     fn assert_all_are_found(places: &[Point3], queries: &[Point3], radius: f32) {
         let grid = PhotonGrid::new(photons(places), radius);
         assert_eq!(grid.len(), places.len());
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_query_finds_what_a_look_at_every_photon_finds() {
+    fn queries_find_the_same_photons_as_brute_force() {
         let mut random = Random::new(1);
         for (count, size, offset) in [
             (0, 1.0, 0.0),
@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn places_on_borders_and_beyond_numbers_do_no_harm() {
+    fn positions_on_cell_borders_and_out_of_range_are_found() {
         let odd = [0.0, -0.0, 1.0, -1.0, 2.0, 4.0, 1e-40, 1e9, -1e30, f32::MAX, f32::INFINITY, f32::NAN];
         let places: Vec<_> = odd.iter().flat_map(|&x| odd.map(|y| Point3::new(x, y, 1.0))).collect();
         for radius in [f32::MIN_POSITIVE, 1e-20, 0.5, 1.0, 2.0, 1e18] {
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn photons_of_one_place_are_found_in_the_order_in_which_they_came() {
+    fn photons_at_one_position_keep_their_order() {
         let grid = PhotonGrid::new(photons(&[Point3::ONE; 100]), 0.1);
         let mut found = Vec::new();
         grid.within(Point3::ONE, |photon| found.push(photon.depth));

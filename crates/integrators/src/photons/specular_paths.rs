@@ -1,23 +1,22 @@
-//! More camera rays for light that reaches the camera by specular surfaces alone.
+//! Additional camera rays for purely specular paths.
 //!
-//! No vertex of a specular path can be connected or merged, so it is found by camera rays alone.
-//! The image of a small light in a mirror may be much smaller than a pixel: one ray in thousands
-//! hits it, and makes its pixel as many times too bright. Only more rays help. They cost little
-//! compared with a sample of all strategies, because they end at the first surface that is not
-//! specular.
+//! No vertex of a specular path can be connected or merged, so it is found by camera rays only. The
+//! image of a small light in a mirror may be much smaller than a pixel: few rays hit it, and those
+//! are fireflies. Only more rays help. They cost little compared with a sample of all strategies,
+//! because they end at the first surface that is not specular.
 //!
 //! A pixel gets further rays if its own camera ray hits a specular surface first, and if there are
-//! lights that rays can hit. Let S₁ be the first event, and g₁ what the ray then finds by specular
-//! surfaces alone; S_i and g_i are those of the further rays, which are independent samples of the
+//! lights that rays can hit. Let S₁ be that first event, and g₁ the radiance of the ray's purely
+//! specular paths; S_i and g_i are those of the further rays, which are independent samples of the
 //! same pixel, and w their filter weights. The estimate for the pixel is
 //!
 //! ```text
 //! (w₁g₁ + Σ w_i·g_i·[S_i]) / (1 + Σ [S_i])   if S₁, else 0
 //! ```
 //!
-//! Further rays without S_i are discarded. Given S₁ and the number of the others that are left, all
-//! terms have the same mean E[w·g | S], and so has their average. As S₁ has the probability P(S),
-//! the estimate has the mean P(S)·E[w·g | S] = E[w·g·[S]], that of a single ray: it is unbiased.
+//! Further rays without S_i are discarded. Given S₁ and the number of the remaining rays, all terms
+//! have the same mean E[w·g | S], and so has their average. As S₁ has the probability P(S), the
+//! estimate has the mean P(S)·E[w·g | S] = E[w·g·[S]], that of a single ray: it is unbiased.
 
 use sampling::sampler::PaddedSobol;
 use sampling::{Randomize, Sampler};
@@ -32,7 +31,7 @@ use crate::transport::shutter_sample::ShutterSample;
 /// Further rays for a sample of a pixel that sees a specular surface.
 const FURTHER_RAYS: u32 = 4;
 
-/// The specular vertices that a camera subpath begins with, and the light found through them.
+/// The initial specular vertices of a camera subpath, and the light found through them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SpecularChain {
     /// Whether its first vertex is specular.
@@ -49,7 +48,8 @@ impl SpecularChain {
         self.is_specular |= !self.is_over;
     }
 
-    /// Adds light that the subpath has hit; `false` if it did not come through the chain alone.
+    /// Adds light that the subpath has hit; `false` if other vertices than those of the chain come
+    /// before it.
     pub fn add(&mut self, found: &Found) -> bool {
         let belongs = self.is_specular && !self.is_over;
         if belongs {
@@ -59,7 +59,7 @@ impl SpecularChain {
     }
 }
 
-/// Takes further rays.
+/// Traces the further rays.
 #[derive(Clone, Debug)]
 pub(crate) struct SpecularPaths {
     sampler: Sampler,
@@ -68,7 +68,7 @@ pub(crate) struct SpecularPaths {
 }
 
 impl SpecularPaths {
-    /// For so many samples per pixel, with a seed that differs from those of other samplers.
+    /// The seed must differ from those of other samplers.
     pub fn new(samples_per_pixel: u32, seed: u32) -> Self {
         let samples = samples_per_pixel.saturating_mul(FURTHER_RAYS);
         let sampler = Sampler::PaddedSobol(PaddedSobol::new(samples, Randomize::FastOwen, seed));
@@ -80,7 +80,7 @@ impl SpecularPaths {
         self.are_possible = scene.lights().iter().any(|light| !light.is_delta());
     }
 
-    /// The radiance by specular surfaces alone of a sample whose camera subpath began with `first`.
+    /// The radiance of purely specular paths of a sample whose camera subpath began with `first`.
     pub fn radiance(
         &self,
         first: &SpecularChain,

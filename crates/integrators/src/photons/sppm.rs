@@ -1,25 +1,25 @@
-//! Stochastic progressive photon mapping: new photons in every pass, within ever smaller radii.
+//! Stochastic progressive photon mapping: new photons in every pass, with a shrinking radius.
 //!
-//! A pass emits photons and keeps those that arrive at a diffuse surface after at least one
+//! A pass emits photons and stores those that arrive at a diffuse surface after at least one
 //! scattering event ([`merging`](crate::photons::merging)). Then each pixel samples a camera path
 //! through specular and glossy surfaces to the first diffuse one. There the path ends: direct light
-//! is found by next-event estimation, all other light by merging with the photons within the
-//! radius. On the way it looks for lights as path tracing does, by next-event estimation and by
-//! chance, weighted by the balance heuristic; at the end by next-event estimation alone, so that
-//! nothing counts twice. A surface with a specular lobe besides a diffuse one does not end the
-//! path.
+//! is estimated by next-event estimation, all other light by merging with the photons within the
+//! radius. Before its end the path samples lights like path tracing, by next-event estimation and
+//! by BSDF sampling, weighted by the balance heuristic; at its end by next-event estimation only,
+//! so that no light path counts twice. A surface with a specular lobe besides a diffuse one does
+//! not end the path.
 //!
-//! It is at its best on caustics seen through glass or in a mirror, which no path from the camera
-//! finds; all pixels share all photons. It is slow where photons are rare: in large scenes of which
-//! the camera sees a corner. Caustics on glossy surfaces are left to chance.
+//! Its strength is caustics seen through glass or in a mirror; all pixels share all photons. It is
+//! slow where photons are rare: in large scenes of which the camera sees a small part. Caustics on
+//! glossy surfaces are found only by paths that hit lights.
 //!
 //! How it differs from [Hachisuka 2009], and so from pbrt-v4, whose parameters it has: there every
-//! pixel has a radius of its own, which shrinks by what the pixel has found so far, as (N +
-//! γM)/(N + M) with γ = 2/3. Here all share the radius that [Knaus 2011] give a pass by its number,
-//! with α = γ, which is the same where photons are evenly distributed. What is lost is that radii
-//! adapt to the density of photons. What is won is that a pass depends on no pass before it: a
-//! render can be interrupted, resumed and merged from shards to the same bits, and neither threads
-//! nor order matter. `max_depth` holds for the sum of both ends, as everywhere.
+//! pixel has its own radius, which shrinks with the photons found so far, as (N + γM)/(N + M) with
+//! γ = 2/3. Here all pixels share the radius of [Knaus 2011] for the number of the pass, with α =
+//! γ, which is the same for a uniform density of photons. The disadvantage is that radii do not
+//! adapt to the density of photons. The advantage is that passes are independent: a render can be
+//! interrupted, resumed and merged from shards to the same bits, and neither threads nor order
+//! matter. `max_depth` limits the sum of both subpaths, as everywhere.
 //!
 //! Biased, as `merging` says; consistent. Sources: [Hachisuka 2009]; [Knaus 2011];
 //! [Pharr 2016 §16.2].
@@ -34,20 +34,20 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::LightVertex;
 use crate::bidirectional::{Balance, Bidirectional, Encounter, Lights, Vertex};
-use crate::light_paths::endless;
+use crate::light_paths::unbounded;
 use crate::photons::merging::Merging;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError};
 
-/// How slowly the radius shrinks.
+/// The α of the radius.
 const ALPHA: f32 = 2.0 / 3.0;
 
-/// The first radius, if it is not told, over that of the scene times √n for n light subpaths in a
-/// pass: the more photons, the nearer they are. About thirty count for a point of a room, so that
-/// few are black.
+/// The default radius of the first pass is this times that of the scene over √n, for n light
+/// subpaths in a pass. About thirty photons then lie within the radius of a point of a room, so
+/// that few points are black.
 const SPACING: f32 = 5.0;
 
-/// It is no larger part of the scene's than this.
+/// Limit on the default radius, as a fraction of that of the scene.
 const LARGEST_SHARE: f32 = 0.05;
 
 /// Stochastic progressive photon mapping.
@@ -60,7 +60,7 @@ pub struct Sppm {
 }
 
 impl Sppm {
-    /// With a sampler for what begins at the camera, and a seed for photons.
+    /// `sampler` is for camera paths, `photon_seed` for photons.
     pub fn new(settings: SppmDesc, sampler: Sampler, photon_seed: u32) -> Self {
         let merging = Merging::new(settings.radius.unwrap_or(1.0), ALPHA, photon_seed);
         Self { settings, sampler, lights: Lights::none(), merging }
@@ -73,7 +73,7 @@ impl Integrator for Sppm {
     }
 
     fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
-        endless::warnings(scene, "sppm")
+        unbounded::warnings(scene, "sppm")
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
@@ -106,8 +106,7 @@ impl Integrator for Sppm {
         let photon = |vertex: &Vertex, _: &mut Sampler| {
             (vertex.can_merge() && vertex.is_diffuse()).then(|| LightVertex::from(vertex))
         };
-        // Each path takes a sample of one sequence, so that all the photons of a pass are well
-        // spread.
+        // All paths take samples of one sequence, so that the photons of a pass are stratified.
         let sampler = PaddedSobol::new(photon_paths as u32, Randomize::FastOwen, self.merging.seed());
         let sampler = |path| {
             let mut sampler = Sampler::PaddedSobol(sampler.clone());

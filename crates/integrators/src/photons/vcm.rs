@@ -1,53 +1,52 @@
-//! Vertex connection and merging: bidirectional path tracing and progressive photon mapping in one.
+//! Vertex connection and merging: bidirectional path tracing combined with progressive photon
+//! mapping.
 //!
-//! A pass has two steps. First, light subpaths are sampled, one for each pixel, and leave their
-//! vertices as photons ([`merging`](crate::photons::merging)). Then every pixel samples a camera
-//! subpath and connects it to its light subpath in all ways, as [`Bdpt`](crate::Bdpt) does; and
-//! vertices of the camera subpath are merged with the photons within the radius. Merging is one
-//! more family of strategies: a path whose vertex x is made from both ends is found if the two ends
-//! lie within r of each other, so its density is that of the two subpaths, times π r² (the
-//! probability of being that near, if all is smooth), times the number n of photon paths. (Where
-//! alpha cuts x out in part, both ends must hit it, and alpha is one more factor of η.) The balance
-//! heuristic then weighs merging against connecting as it weighs connections against each other:
+//! A pass has two steps. First, light subpaths are sampled, one for each pixel, and their vertices
+//! are stored as photons ([`merging`](crate::photons::merging)). Then every pixel samples a camera
+//! subpath and connects it to its light subpath at all pairs of vertices, like
+//! [`Bdpt`](crate::Bdpt); vertices of the camera subpath are also merged with the photons within
+//! the radius. Merging is one more family of strategies: a path whose vertex x is sampled from both
+//! ends is found if the two ends lie within r of each other, so its density is that of the two
+//! subpaths, times π r² (the probability of that distance, for locally constant densities), times
+//! the number n of photon paths. (If x has an alpha below 1, both subpaths must hit it, and alpha
+//! is one more factor of η.) The balance heuristic weights merges and connections alike:
 //!
 //! ```text
 //! 1/w = 1 + [(d_vcm + p←·(d_vc + d_vm))_light + (d_vcm + p←·(d_vc + d_vm))_camera] / η
 //! η   = n π r²
 //! ```
 //!
-//! Merging finds what no connection can: a caustic seen through glass. Every pixel uses all
-//! photons, so the size of the light does not matter. Where connecting is good it is better, and
-//! gets the weight: η shrinks with the radius, and the weight of photons with it. Without merging
-//! (r → 0) this is `bdpt`; with nothing but merging it would be photon mapping. Photons that come
-//! straight from a light are not merged: next-event estimation finds the same paths with less
-//! noise.
+//! Merging finds paths that no connection can: a caustic seen through glass. Every pixel uses all
+//! photons, so that small lights are no problem. Where connections have a low variance they get
+//! most of the weight: η shrinks with the radius, and the weight of merges with it. Without merging
+//! (r → 0) this is `bdpt`; with merging only it would be photon mapping. Photons of direct light
+//! are not merged: next-event estimation finds the same paths with less noise.
 //!
-//! Nor is anything merged beyond the first diffuse surface of a camera subpath. From there it goes
-//! anywhere, and where it hits a bright spot by chance, such as the caustic on the far wall,
-//! merging would add all photons of the spot at once. They share one camera subpath, but the
-//! balance heuristic takes them for thousands of independent samples, gives merging nearly all the
-//! weight, and single pixels are too bright until very many passes are made. [Grittmann 2021]
-//! account for this correlation by a factor for each merge that depends on the densities of both
-//! subpaths; here the factor is 1 or 0, which the recursion of a subpath can know. What is left out
-//! is found all the same, by photons that the bright spot has sent to the first diffuse surface,
-//! and by connections. In the mirror room, at 300 × 200 pixels, the variance is half of what it is
-//! with merges everywhere.
+//! Nor are vertices beyond the first diffuse surface of a camera subpath merged. If such a vertex
+//! hits a bright spot, such as the caustic on the far wall, merging would add all photons of the
+//! spot at once. They share one camera subpath, but the balance heuristic treats them as thousands
+//! of independent samples and gives merging nearly all the weight, which makes fireflies.
+//! [Grittmann 2021] account for this correlation by a factor for each merge that depends on the
+//! densities of both subpaths; here the factor is 1 or 0, which the recursion of a subpath can
+//! compute. The other strategies find the same paths: photons scattered from the bright spot to the
+//! first diffuse surface, and connections. In the mirror room, at 300 × 200 pixels, the variance is
+//! half of what it is with merges everywhere.
 //!
-//! Light that reaches the camera by specular surfaces alone is found by camera rays alone, which
-//! get more samples ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at
-//! 96 × 64 pixels it made nine tenths of the error, and five rays instead of one take a third of it
-//! or more for a seventh more time.
+//! Purely specular paths are found by camera rays only, which get more samples
+//! ([`specular_paths`](crate::photons::specular_paths)). In the mirror room at 96 × 64 pixels they
+//! made nine tenths of the error, and five rays instead of one reduce it by a third or more for a
+//! seventh more time.
 //!
-//! What remains hard: choosing the radius. In the mirror room one three times the default leaves a
-//! third of the variance; behind a door, light then leaks under it.
+//! The choice of the radius remains difficult. In the mirror room one of three times the default
+//! leaves a third of the variance; behind a door, light then leaks under it.
 //!
-//! At most [`MAX_PHOTON_PATHS`] paths of a pass leave photons, which bounds memory: 180 bytes for
+//! At most [`MAX_PHOTON_PATHS`] paths of a pass store photons, which bounds memory: 180 bytes for
 //! each of at most `max_depth` vertices of a path, and 60 to 64 for its photon, 56 more while they
-//! are sorted. In larger pictures the other pixels sample their light subpaths when they need them.
+//! are sorted. In larger pictures the other pixels sample their light subpaths on demand.
 //!
-//! Biased: light that merging finds is blurred over the radius, which shrinks as `merging` says;
-//! consistent. Depth of field and motion are right, because all paths of a pass share one time.
-//! Sources: [Georgiev 2012]; [Georgiev 2012b]; [Hachisuka 2012]; [Grittmann 2021].
+//! Biased: merging blurs light over the radius, which shrinks as `merging` describes; consistent.
+//! Depth of field and motion blur are correct, because all paths of a pass share one time. Sources:
+//! [Georgiev 2012]; [Georgiev 2012b]; [Hachisuka 2012]; [Grittmann 2021].
 
 use description::VcmDesc;
 use film::Film;
@@ -63,12 +62,12 @@ use crate::photons::specular_paths::{SpecularChain, SpecularPaths};
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError};
 
-/// The first radius as a part of that of the scene, as in [Georgiev 2012]. Where photons come
-/// through a narrow gap, a larger one lets them seep far: behind a door 2.4 times this one has 70
-/// times the bias, squared, in 64 passes.
+/// The radius of the first pass as a fraction of that of the scene, as in [Georgiev 2012]. Light
+/// through a narrow gap leaks with a larger one: behind a door, 2.4 times this radius has 70 times
+/// the squared bias in 64 passes.
 const SHARE_OF_SCENE: f32 = 0.003;
 
-/// Most light subpaths of a pass that leave photons, which bounds memory.
+/// Maximum number of light subpaths of a pass that store photons, which bounds memory.
 pub const MAX_PHOTON_PATHS: usize = 1 << 19;
 
 /// Vertex connection and merging.
@@ -85,8 +84,9 @@ pub struct Vcm {
 }
 
 impl Vcm {
-    /// With a sampler for each end of what is connected, a seed for photons and glints, and the
-    /// most light subpaths of a pass that leave photons, above 0; [`MAX_PHOTON_PATHS`] is usual.
+    /// Takes the samplers of camera and light subpaths, the seed of photons and specular paths, and
+    /// the maximum number of light subpaths of a pass that store photons, above 0;
+    /// [`MAX_PHOTON_PATHS`] is usual.
     pub fn new(
         settings: VcmDesc,
         [sampler, light_sampler]: [Sampler; 2],
@@ -136,7 +136,7 @@ impl Integrator for Vcm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        // With each vertex a choice of the point on the lens that it will be connected to.
+        // Each vertex is stored with the sample value of the lens point that it is connected to.
         let keep = |vertex: &Vertex, sampler: &mut Sampler| Some((*vertex, sampler.get_2d()));
         let light_sampler = |pixel| {
             let mut sampler = self.light_sampler.clone();

@@ -1,26 +1,25 @@
-//! Light at fixed wavelengths.
+//! Spectra at fixed wavelengths.
 //!
-//! A radiosity solution is made once and looked at by every pixel, so that it has wavelengths of
-//! its own: [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which
-//! paths draw their wavelengths ([`SampledWavelengths::sample_visible`]). The sensor's integral ∫
-//! L(λ) c̄(λ) dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) /
-//! BANDS, which is good because the integrand vanishes at both ends. With 32 bands, what is left is
-//! mostly the steps of the sensor's tables, of a nanometre each, and depends on where the bands
-//! fall: 0.2 to 0.6 % for s = ½, a quarter of a per cent at most in X, Y and Z of daylight, of
-//! coloured daylight and of the lamp of the measured Cornell box for s = 0.65. With 16 bands it is
-//! 1 %, with 64 it is 0.2 %. Colours are then right in every single sample, without the noise of
-//! random wavelengths.
+//! A radiosity solution is computed once for all pixels, so that it has fixed wavelengths:
+//! [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which paths sample
+//! their wavelengths ([`SampledWavelengths::sample_visible`]). The sensor's integral ∫ L(λ) c̄(λ)
+//! dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS, which
+//! is accurate because the integrand vanishes at both ends. With 32 bands, the error is mostly due
+//! to the steps of the sensor's tables, of a nanometre each, and depends on s: 0.2 to 0.6 % for s =
+//! ½, a quarter of a per cent at most in X, Y and Z of daylight, of coloured daylight and of the
+//! lamp of the measured Cornell box for s = 0.65. With 16 bands it is 1 %, with 64 it is 0.2 %.
+//! Every sample then has all wavelengths, without the noise of random ones.
 
 use spectrum::{N, SampledSpectrum, SampledWavelengths, xyz_from};
 use std::ops::{Add, AddAssign, Mul};
 
-/// How often [`N`] wavelengths there are.
+/// Number of groups of [`N`] wavelengths.
 const GROUPS: usize = 8;
 
-/// How many wavelengths there are.
+/// Number of wavelengths.
 pub(crate) const BANDS: usize = GROUPS * N;
 
-/// Where in its part of the distribution a wavelength stands.
+/// The offset s of a wavelength in its stratum of the distribution.
 const PLACE: f32 = 0.65;
 
 /// A quantity at all wavelengths.
@@ -30,12 +29,12 @@ pub(crate) struct Bands([SampledSpectrum; GROUPS]);
 impl Bands {
     pub const ZERO: Self = Self([SampledSpectrum::ZERO; GROUPS]);
 
-    /// The same at all wavelengths.
+    /// The same value at all wavelengths.
     pub fn splat(value: f32) -> Self {
         Self([SampledSpectrum::splat(value); GROUPS])
     }
 
-    /// Whether there is nothing at any wavelength.
+    /// Whether it is zero at all wavelengths.
     pub fn is_black(&self) -> bool {
         self.0.iter().all(|group| group.is_black())
     }
@@ -60,8 +59,7 @@ impl Bands {
         self.zip(other, SampledSpectrum::max)
     }
 
-    /// What part of the whole it is at each wavelength, from 0 to 1; none where the whole is
-    /// nothing.
+    /// The quotient by `whole` at each wavelength, clamped to [0, 1]; 0 where `whole` is 0.
     pub fn part_of(self, whole: Self) -> Self {
         self.zip(whole, SampledSpectrum::safe_div).max(Self::ZERO).min(Self::splat(1.0))
     }
@@ -107,16 +105,16 @@ impl std::iter::Sum for Bands {
     }
 }
 
-/// The wavelengths themselves, in groups of as many as a path has.
+/// The wavelengths, in groups of as many as a path has.
 #[derive(Clone, Debug)]
 pub(crate) struct Wavelengths {
     groups: [SampledWavelengths; GROUPS],
-    /// What each value counts in X + Y + Z.
+    /// The weight of each value in X + Y + Z.
     weights: Bands,
 }
 
 impl Wavelengths {
-    /// All wavelengths; or, for scenes that ask for the same ones in every sample, those alone.
+    /// All wavelengths; without `jitter`, those that all samples of paths share.
     pub fn new(jitter: bool) -> Self {
         let place = |i: usize| if jitter { (i as f32 + PLACE) / BANDS as f32 } else { 0.5 };
         let groups = std::array::from_fn(|i| SampledWavelengths::sample_visible(place(i)));
@@ -135,12 +133,12 @@ impl Wavelengths {
         &self.groups
     }
 
-    /// Asks for a quantity at all wavelengths.
+    /// Evaluates a quantity at all wavelengths.
     pub fn sample(&self, mut f: impl FnMut(&SampledWavelengths) -> SampledSpectrum) -> Bands {
         Bands(self.groups.each_ref().map(&mut f))
     }
 
-    /// The same where there may be no answer, which then is the same for all.
+    /// The same for a pair of quantities; `None` if `f` returns `None`.
     pub fn sample_pair(
         &self,
         mut f: impl FnMut(&SampledWavelengths) -> Option<[SampledSpectrum; 2]>,
@@ -153,7 +151,7 @@ impl Wavelengths {
         Some(pair)
     }
 
-    /// X + Y + Z, up to a constant: how much light of any colour counts.
+    /// X + Y + Z, up to a constant: brightness that is positive for all colours.
     pub fn brightness(&self, bands: &Bands) -> f32 {
         (*bands * self.weights).0.iter().map(|group| group.average()).sum::<f32>() * N as f32
     }
@@ -175,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn bands_make_the_colours() {
+    fn bands_integrate_to_the_colours_of_spectra() {
         let srgb = RgbColorSpace::srgb();
         let lamp = [400.0, 0.0, 500.0, 8.0, 600.0, 15.6, 700.0, 18.4];
         let spectra = [
@@ -196,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn brightness_is_that_of_all_colours() {
+    fn brightness_is_proportional_to_the_sum_of_xyz() {
         let wavelengths = Wavelengths::new(true);
         let light = RgbColorSpace::srgb().illuminant();
         let bands = wavelengths.sample(|lambda| light.sample(lambda));

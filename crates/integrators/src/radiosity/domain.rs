@@ -1,9 +1,9 @@
-//! Parts of a primitive's parameters, and what lies where in them.
+//! Parts of a primitive's parameter domain.
 
 use geometry::{Geometry, Hit, Shape, World};
 use math::{Point3, Vec2};
 
-/// A triangle or rectangle of parameters, its corners in turn.
+/// A triangle or rectangle in parameter space, its corners in order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Domain {
     Triangle([Vec2; 3]),
@@ -27,7 +27,7 @@ impl Domain {
         }
     }
 
-    /// Three or four, in turn.
+    /// Three or four corners, in order.
     pub fn corners(&self) -> &[Vec2] {
         match self {
             Self::Triangle(corners) => corners,
@@ -35,7 +35,7 @@ impl Domain {
         }
     }
 
-    /// The area that it has on a surface: of a rectangle to second order.
+    /// Its area on the surface `position`; for a rectangle to second order.
     pub fn area(&self, position: impl Fn(Vec2) -> Point3) -> f32 {
         let p = |uv| position(uv).as_dvec3();
         let area = match *self {
@@ -56,7 +56,7 @@ impl Domain {
         }
     }
 
-    /// Four parts alike.
+    /// Its four congruent parts.
     pub fn quarters(&self) -> [Self; 4] {
         let mid = |a: Vec2, b: Vec2| (a + b) * 0.5;
         match *self {
@@ -71,8 +71,8 @@ impl Domain {
         }
     }
 
-    /// The weights of four values, one in the middle of each quarter, that make the value at a
-    /// point of the linear function that they determine best.
+    /// The weights with which values at the centres of the four quarters give their linear
+    /// least-squares fit at a point.
     pub fn weights(&self, uv: Vec2) -> [f32; 4] {
         match self {
             Self::Triangle([a, b, c]) => {
@@ -88,7 +88,7 @@ impl Domain {
         }
     }
 
-    /// Which of the quarters a point lies in.
+    /// The index of the quarter that contains a point.
     pub fn quarter_of(&self, uv: Vec2) -> usize {
         match self {
             Self::Triangle([a, b, c]) => {

@@ -1,9 +1,9 @@
 //! Elements, which receive light, and patches, which shoot it.
 //!
-//! A *patch* is a cell of the size that the settings ask for; what it receives and does not absorb
-//! it sends on from its whole area evenly. An *element* is a leaf of the mesh within a patch; it
-//! remembers how much light fell on each of its two sides. Elements may be much finer than patches:
-//! light is sent on coarsely and received finely [Cohen 1986].
+//! A *patch* is a cell of the size given by the settings; it shoots the light that it has received
+//! and scattered. An *element* is a leaf of the mesh within a patch; it stores the irradiance of
+//! its two sides. Elements may be much finer than patches, as light is shot coarsely and received
+//! finely [Cohen 1986].
 
 use geometry::{Hit, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, RayDifferential, Vec2};
@@ -25,7 +25,7 @@ pub(crate) struct Albedo {
 }
 
 impl Albedo {
-    /// The exitance of both sides for the irradiance of both sides.
+    /// The exitance of both sides for their irradiance.
     pub fn scatter(&self, sides: &[Bands; 2]) -> [Bands; 2] {
         [0, 1].map(|i| self.reflectance * sides[i] + self.transmittance * sides[1 - i])
     }
@@ -35,8 +35,7 @@ impl Albedo {
     }
 
     /// The albedo at a surface that `ray` has hit; of a BSDF that is not diffuse, its mean over all
-    /// directions. Perturbs the shading normal on the way. `None` for a mere interface between
-    /// media.
+    /// directions. Also applies the normal map. `None` for an interface between media.
     pub fn at(
         scene: &Scene,
         view: &View,
@@ -44,7 +43,7 @@ impl Albedo {
         ray: &RayDifferential,
         wavelengths: &Wavelengths,
     ) -> Option<Self> {
-        // Only scenes that force diffuse surfaces ask it anything.
+        // Only used by scenes that force diffuse surfaces.
         let mut sampler = Sampler::Independent(Independent::new(1, 0));
         let pair = wavelengths.sample_pair(|lambda| {
             let bsdf = scene.bsdf(view, interaction, ray, &mut lambda.clone(), &mut sampler)?;
@@ -58,7 +57,7 @@ impl Albedo {
     }
 }
 
-/// ρ_hh by fixed samples, apart for the two sides.
+/// ρ_hh by fixed samples, separately for reflection and transmission.
 fn mean_albedo(bsdf: &Bsdf) -> [SampledSpectrum; 2] {
     const STRATA: usize = 4;
     let mut shares = [SampledSpectrum::ZERO; 2];
@@ -77,7 +76,7 @@ fn mean_albedo(bsdf: &Bsdf) -> [SampledSpectrum; 2] {
     shares.map(|share| share.map(|x| (x / (STRATA * STRATA) as f32).min(1.0)))
 }
 
-/// The middle of a quarter of an element.
+/// A sample point at the centre of a quarter of an element.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SamplePoint {
     pub p: Point3Error,
@@ -86,7 +85,7 @@ pub(crate) struct SamplePoint {
     pub weight: f32,
 }
 
-/// Which part of a patch an element is.
+/// The position of an element in its patch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchPart {
     /// The patch that it is a part of.
@@ -97,10 +96,10 @@ pub(crate) struct PatchPart {
     pub level: u32,
 }
 
-/// A receiver of light.
+/// An element of the mesh, which receives light.
 #[derive(Clone, Debug)]
 pub(crate) struct Element {
-    /// Its leaf.
+    /// Its leaf cell.
     pub cell: u32,
     /// The patch that it is a part of.
     pub patch: u32,
@@ -111,14 +110,14 @@ pub(crate) struct Element {
     pub area: f32,
     pub points: [SamplePoint; 4],
     pub albedo: Albedo,
-    /// Irradiance of its outer and inner side, in each quarter.
+    /// Irradiance of the outer and the inner side, in each quarter.
     pub quarters: [[Bands; 2]; 4],
-    /// The part of that which may be scattered here for the last time.
+    /// The part of the irradiance whose scattering here is the last that `max_depth` allows.
     pub last: [Bands; 2],
 }
 
 impl Element {
-    /// A leaf without light.
+    /// An element with irradiance 0.
     pub fn new(
         scene: &Scene,
         view: &View,
@@ -151,13 +150,13 @@ impl Element {
         Self { cell, patch, quarter, level, area, points, albedo, quarters: [dark; 4], last: dark }
     }
 
-    /// Irradiance of its outer and inner side.
+    /// Mean irradiance of the outer and the inner side.
     pub fn irradiance(&self) -> [Bands; 2] {
         weighted(&self.quarters, self.points.each_ref().map(|point| point.weight))
     }
 
     /// Irradiance of its sides at a point, linear over the element. Beyond the centres of the
-    /// quarters it is extrapolated, but no further than it changes between them.
+    /// quarters it is extrapolated, by at most half of the range of their values.
     pub fn irradiance_at(&self, domain: &Domain, uv: Vec2) -> [Bands; 2] {
         let at = weighted(&self.quarters, domain.weights(uv));
         [0, 1].map(|i| {
@@ -168,7 +167,7 @@ impl Element {
         })
     }
 
-    /// Adds what a larger element, which it is a part of, received as a whole.
+    /// Adds the irradiance of a larger element that contains this one.
     pub fn inherit(&mut self, mesh: &Mesh, whole: &Self) {
         let domain = mesh.cell(whole.cell).domain();
         let quarters = mesh.cell(self.cell).domain().quarters();
@@ -181,13 +180,13 @@ impl Element {
         }
     }
 
-    /// Resets what it received.
-    pub fn darken(&mut self) {
+    /// Resets the irradiance to 0.
+    pub fn clear(&mut self) {
         (self.quarters, self.last) = ([[Bands::ZERO; 2]; 4], [Bands::ZERO; 2]);
     }
 
-    /// How light that leaves it is spread over the quarters of its patch, if this much arrived in
-    /// each of its own.
+    /// The distribution of scattered light of the given brightness over the quarters of its patch,
+    /// for the light `arrived` in its own quarters.
     pub fn spread(&self, brightness: f32, arrived: [f32; 4]) -> [f32; 4] {
         if self.level > 0 {
             return std::array::from_fn(|quarter| if quarter == self.quarter { brightness } else { 0.0 });
@@ -197,13 +196,14 @@ impl Element {
         parts.map(|part| if sum > 0.0 { brightness * part / sum } else { 0.0 })
     }
 
-    /// The part of what fell on its sides that may be scattered here for the last time.
+    /// The share of the irradiance of its sides whose scattering here is the last.
     pub fn last_part(&self) -> [Bands; 2] {
         let all = self.irradiance();
         [0, 1].map(|i| self.last[i].part_of(all[i]))
     }
 
-    /// What leaves its two sides in one quarter and may be scattered once more, emission apart.
+    /// The exitance of its two sides in one quarter, without emission, that may be scattered once
+    /// more.
     pub fn radiosity(&self, quarter: usize) -> [Bands; 2] {
         let last = self.last_part();
         let going_on = |i: usize| self.quarters[quarter][i] * (Bands::splat(1.0) + last[i] * -1.0);
@@ -215,7 +215,7 @@ fn weighted(quarters: &[[Bands; 2]; 4], weights: [f32; 4]) -> [Bands; 2] {
     [0, 1].map(|i| quarters.iter().zip(weights).map(|(sides, weight)| sides[i] * weight).sum())
 }
 
-/// The albedo of a primitive at a point, times alpha. `None` for a mere interface between media.
+/// The albedo of a primitive at a point, times alpha. `None` for an interface between media.
 pub(crate) fn albedo_at(
     scene: &Scene,
     view: &View,
@@ -229,27 +229,27 @@ pub(crate) fn albedo_at(
     Some(Albedo::at(scene, view, &mut interaction, &ray, wavelengths)?.scaled(coverage))
 }
 
-/// A sender of light.
+/// A patch of the mesh, which shoots light.
 #[derive(Clone, Debug)]
 pub(crate) struct Patch {
     pub cell: u32,
     pub area: f32,
     /// Emitted exitance of its two sides.
     pub emitted: [Bands; 2],
-    /// Light that has arrived and been scattered but not been sent on, as power from either side,
-    /// by how often it was scattered, as far as there is any.
+    /// Unshot power of either side, by number of scattering events; missing entries are 0.
     pub unshot: Vec<[Bands; 2]>,
-    /// How the brightness of that light is spread over the quarters.
+    /// Distribution of the brightness of unshot light over the quarters.
     pub spread: [[f32; 2]; 4],
-    /// Which sides have faced a patch that shot.
+    /// Which sides have received light.
     pub faced: [bool; 2],
-    /// If it is cut into elements: itself as one, with the faint light that it received as a whole.
+    /// If it is subdivided: the patch as a single element, with the faint light that it received as
+    /// a whole.
     pub whole: Option<Box<Element>>,
 }
 
 impl Patch {
-    /// A patch that has not sent out its own light yet; it sends light that was scattered less than
-    /// `depth` times.
+    /// A patch with all its emission unshot; it shoots light that was scattered less than `depth`
+    /// times.
     pub fn new(scene: &Scene, mesh: &Mesh, wavelengths: &Wavelengths, cell: u32, depth: u32) -> Self {
         let area = {
             let leaf = mesh.cell(cell);
@@ -262,7 +262,7 @@ impl Patch {
         Self { cell, area, emitted, unshot, spread: [even; 4], faced: [false; 2], whole: None }
     }
 
-    /// Adds light that was scattered so many times, as power from either side.
+    /// Adds unshot power of either side that was scattered `scattered` times.
     pub fn add_unshot(&mut self, scattered: usize, power: [Bands; 2]) {
         if self.unshot.len() <= scattered {
             self.unshot.resize(scattered + 1, [Bands::ZERO; 2]);
@@ -270,13 +270,13 @@ impl Patch {
         (0..2).for_each(|i| self.unshot[scattered][i] += power[i]);
     }
 
-    /// How much of what one side has to send comes from each quarter, in parts of the mean.
-    pub fn evenness(&self, side: usize) -> [f32; 4] {
+    /// The unshot light of one side in each quarter, relative to the mean.
+    pub fn quarter_factors(&self, side: usize) -> [f32; 4] {
         let sum = self.brightness(side);
         self.spread.map(|sides| if sum > 0.0 { 4.0 * sides[side] / sum } else { 1.0 })
     }
 
-    /// Brightness of all that one side has to shoot.
+    /// Brightness of the unshot power of one side.
     pub fn brightness(&self, side: usize) -> f32 {
         self.spread.iter().map(|sides| sides[side]).sum()
     }

@@ -1,29 +1,28 @@
-//! Form factors: how much of what leaves one surface reaches another.
+//! Form factors: the share of the light that leaves one surface and reaches another.
 //!
-//! F_ij = (1/A_i) ∫∫ cosθ_i cosθ_j / (π r²) · V dA_j dA_i is the share of the light that leaves
-//! surface i, of area A_i, evenly that arrives at surface j, where V is 1 or 0 as the two points
-//! see each other. Reciprocity: A_i F_ij = A_j F_ji.
+//! F_ij = (1/A_i) ∫∫ cosθ_i cosθ_j / (π r²) · V dA_j dA_i is the share of the light leaving surface
+//! i, of area A_i and uniform exitance, that arrives at surface j; V is the visibility of the two
+//! points. Reciprocity: A_i F_ij = A_j F_ji.
 //!
 //! **Unoccluded**, the inner integral over a polygon has a closed form (Lambert, 1760): from a
 //! point x with normal n,
 //!
 //! F_xj = 1/2π Σ_k Γ_k · n,
 //!
-//! where Γ_k is perpendicular to the plane through x and the polygon's k-th side, and as long as
-//! the angle in which x sees that side. What lies below the horizon of x is cut off before. The
-//! outer integral is the mean over four points of the receiver, the middles of its quarters.
-//! Because one polygon's factor is exact at each point, the factors of all that is seen from there
-//! sum to one exactly.
+//! where Γ_k is perpendicular to the plane through x and the polygon's k-th edge, and as long as
+//! the angle that the edge subtends at x. The polygon is clipped to the horizon of x first. The
+//! outer integral is the mean over four points of the receiver, the centres of its quarters. As the
+//! factor of a polygon is exact at each point, the factors of all polygons visible from there sum
+//! to one.
 //!
-//! **Occluded**, the closed form is multiplied by the share of light that gets through, Σ G V / Σ G
-//! over rays to points of the emitter, with G = cosθ_i cosθ_j / r². One ray for each of the four
-//! points tells whether anything is in the way; where they differ, there are four for each, one to
-//! each quarter of the emitter. Where quarters shine unevenly, as on a floor half below a block, G
-//! counts by the light of its quarter.
+//! **Occluded**, the closed form is multiplied by the visible share, Σ G V / Σ G over rays to
+//! points of the emitter, with G = cosθ_i cosθ_j / r². One ray is traced for each of the four
+//! points; if their visibilities differ, four are traced for each, one to each quarter of the
+//! emitter. G is weighted by the light of its quarter, which differs on a floor half below a block.
 //!
-//! Where a shot brings next to nothing, a single ray decides, each time to another point. A bent
-//! cell emits as the flat polygon of its corners, with the light of its whole area, and not to
-//! itself. Sources: [Baum 1989], [Cohen 1993].
+//! For faint light a single ray is traced, with each shot to another point. A curved cell emits
+//! like the flat polygon of its corners, with the light of its whole area, and not to itself.
+//! Sources: [Baum 1989], [Cohen 1993].
 
 use geometry::{RayStats, SurfacePoint};
 use math::{Normal3, Point3, Point3Error, Ray, Vector3};
@@ -34,11 +33,11 @@ use super::domain::Domain;
 use super::element::{Element, Patch, SamplePoint};
 use super::mesh::Mesh;
 
-/// The form factor from a point with unit normal `n` at the origin to a polygon that turns
-/// counter-clockwise about its emitting side, nothing between. The polygon lies anywhere; what is
-/// below the horizon does not count.
+/// The form factor from a point with unit normal `n` at the origin to a polygon that is
+/// counter-clockwise seen from its emitting side, without occlusion. The part below the horizon is
+/// clipped.
 pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
-    // Cutting adds one corner at most, and polygons have four.
+    // Clipping adds one corner at most, and polygons have four.
     let mut above = [Vector3::ZERO; 8];
     let mut len = 0;
     let mut push = |v: Vector3| {
@@ -62,37 +61,37 @@ pub(crate) fn point_to_polygon(n: Normal3, polygon: &[Vector3]) -> f32 {
         let (a, b) = (above[i], above[(i + 1) % len]);
         let cross = a.cross(b);
         let sin = cross.length();
-        // A side that is seen end-on, or has no length, adds nothing.
+        // An edge that is seen end-on, or has no length, contributes 0.
         if sin == 0.0 { 0.0 } else { n.dot(cross) / sin * sin.atan2(a.dot(b)) }
     };
-    // Seen from the emitting side, a counter-clockwise polygon turns clockwise about n.
+    // A polygon that is counter-clockwise seen from its emitting side is clockwise about n.
     (0..len).map(side).sum::<f32>() / -TAU
 }
 
-/// A quarter with less than this part of the mean light sends none.
+/// Quarters with less than this share of the mean light count as black.
 const DARK: f32 = 1e-3;
 
-/// A cell that sends light.
+/// A cell that emits or reflects light.
 #[derive(Clone)]
 pub(crate) struct Emitter {
-    /// Counter-clockwise about the emitting side.
+    /// Counter-clockwise seen from the emitting side.
     corners: Vec<Point3>,
     center: Point3,
     /// The mean normal of the emitting side.
     n: Normal3,
-    /// The middles of the quarters of its quarters.
+    /// The centres of the quarters of its quarters.
     points: [[(Point3Error, Normal3); 4]; 4],
-    /// The light of each quarter, in parts of the mean.
+    /// The light of each quarter, relative to the mean.
     light: [f32; 4],
-    /// Its area, in parts of that of the flat polygon.
+    /// Its area over that of the flat polygon.
     bulge: f32,
-    /// Where no more than this arrives, one ray decides, to the point of the receiver whose turn it
-    /// is.
+    /// For at most this irradiance a single ray is traced, to a point of the receiver chosen by
+    /// `turn`.
     faint: f32,
     turn: usize,
 }
 
-/// What an element receives of one shot of unit radiosity.
+/// The irradiance of an element by one shot of unit radiosity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Received {
     /// Irradiance on the outer and the inner side of each quarter.
@@ -108,7 +107,7 @@ impl Received {
 }
 
 impl Emitter {
-    /// A patch that emits to the side of its normal (0), or to the other one (1).
+    /// One side of a patch: that of its normal (0), or the other one (1).
     pub fn new(scene: &Scene, mesh: &Mesh, patch: &Patch, side: usize) -> Self {
         let world = scene.world();
         let cell = mesh.cell(patch.cell);
@@ -130,17 +129,17 @@ impl Emitter {
         }
         let flat = 0.5 * area.length();
         let bulge = if flat > 0.0 { patch.area / flat } else { 0.0 };
-        Self { corners, center, n, points, light: patch.evenness(side), bulge, faint: 0.0, turn: 0 }
+        Self { corners, center, n, points, light: patch.quarter_factors(side), bulge, faint: 0.0, turn: 0 }
     }
 
-    /// Where no more than the irradiance `faint` arrives of unit radiosity, one ray decides instead
-    /// of four or more; which one changes with `turn`.
-    pub fn hastily(self, faint: f32, turn: u32) -> Self {
+    /// Traces one ray instead of four or more for at most the irradiance `faint` from unit
+    /// radiosity; `turn` chooses the ray.
+    pub fn with_single_rays(self, faint: f32, turn: u32) -> Self {
         Self { faint, turn: turn as usize % 4, ..self }
     }
 
-    /// The form factors from the two sides of a point with unit normal `n` to the emitter, nothing
-    /// between.
+    /// The form factors from the two sides of a point with unit normal `n` to the emitter, without
+    /// occlusion.
     fn seen_from(&self, p: Point3, n: Normal3) -> [f32; 2] {
         let mut polygon = [Vector3::ZERO; 4];
         let polygon = &mut polygon[..self.corners.len()];
@@ -151,13 +150,13 @@ impl Emitter {
         })
     }
 
-    /// Whether it emits towards a point at all.
+    /// Whether a point lies on its emitting side.
     fn faces(&self, p: Point3) -> bool {
         self.n.dot(p - self.center) > 0.0
     }
 
-    /// cosθ cosθ / r² between a point and the `i`th point of a quarter, the side of the receiver on
-    /// which that is, and the ray between them; `None` where nothing passes between the two.
+    /// cosθ cosθ / r² between a point and the `i`th point of a quarter, the side of the receiver,
+    /// and the ray between them; `None` if they do not face each other.
     fn ray(&self, from: &SamplePoint, quarter: usize, i: usize, time: f32) -> Option<(f32, usize, Ray)> {
         let (to, to_n) = self.points[quarter][i];
         let way = to.p - from.p.p;
@@ -167,14 +166,14 @@ impl Emitter {
         (g > 0.0 && g.is_finite()).then(|| (g, usize::from(cos < 0.0), ray()))
     }
 
-    /// The most that arrives at a quarter of an element, if nothing is between.
+    /// The largest unoccluded irradiance of a quarter of an element.
     pub fn most_on(&self, element: &Element) -> f32 {
         let facing = element.points.iter().filter(|from| self.faces(from.p.p));
         facing.flat_map(|from| self.seen_from(from.p.p, from.n)).fold(0.0, f32::max)
     }
 
-    /// What an element receives.
-    pub fn shine(&self, scene: &Scene, element: &Element, time: f32, stats: &mut RayStats) -> Received {
+    /// The irradiance of an element.
+    pub fn irradiate(&self, scene: &Scene, element: &Element, time: f32, stats: &mut RayStats) -> Received {
         let mut seen = [[0.0; 2]; 4];
         for (seen, from) in seen.iter_mut().zip(&element.points) {
             if self.faces(from.p.p) {
@@ -185,7 +184,7 @@ impl Emitter {
             return Received::default();
         }
         let mut passes = |ray: &Ray| !scene.occluded(ray, Ray::SHADOW_END, Interfaces::Pass, stats);
-        // One ray for each point of the receiver, to a quarter that shines.
+        // One ray for each point of the receiver, to a quarter that is not black.
         let mut probes = [None; 4];
         let is_faint = seen.iter().flatten().all(|&factor| factor <= self.faint);
         let asked = if is_faint { self.turn..self.turn + 1 } else { 0..4 };
@@ -218,7 +217,7 @@ impl Emitter {
     }
 }
 
-/// How much of what leaves an emitter arrives, on each side of a receiver.
+/// The visible share of an emitter's light, for each side of a receiver.
 #[derive(Clone, Copy, Debug, Default)]
 struct Share {
     passed: [f32; 2],
@@ -238,7 +237,7 @@ impl Share {
         }
     }
 
-    /// The share on a side, if anything was sent there.
+    /// The share on a side; `None` if no ray was traced there.
     fn of(&self, side: usize) -> Option<f32> {
         (self.sent[side] > 0.0).then(|| self.passed[side] / self.sent[side])
     }
@@ -311,8 +310,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_below_the_horizon_does_not_count() {
-        // A wall that goes on below is the wall that ends at the horizon.
+    fn polygons_are_clipped_to_the_horizon() {
+        // A wall that extends below the horizon equals one that ends there.
         let wall = |low: f32| [v(1.0, -1.0, low), v(1.0, -1.0, 2.0), v(1.0, 1.0, 2.0), v(1.0, 1.0, low)];
         let (cut, whole) =
             (point_to_polygon(Normal3::Z, &wall(-3.0)), point_to_polygon(Normal3::Z, &wall(0.0)));

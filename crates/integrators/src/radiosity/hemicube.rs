@@ -1,19 +1,19 @@
-//! The hemicube: all form factors of a patch at once, from its middle.
+//! The hemicube: all form factors of a patch at once, from its centre.
 //!
-//! Around the middle of a patch stands half a cube of 2 × 2 × 1 with its faces cut into pixels.
-//! Through each pixel a ray looks for the element that is seen there; the element's form factor is
-//! the sum over its pixels of
+//! Half a cube of 2 × 2 × 1 is placed around the centre of a patch, and its faces are divided into
+//! pixels. A ray through each pixel finds the visible element; the element's form factor is the sum
+//! over its pixels of
 //!
 //! ΔF = ΔA / (π (x² + y² + 1)²) on the face above, ΔF = z ΔA / (π (y² + z² + 1)²) on the faces at
 //! the sides,
 //!
-//! cosθ dω/π of the pixel. Each shot turns the cube about the normal by another angle, so that the
-//! errors of different shots differ. All that leaves the patch arrives somewhere: where nothing is
-//! open, the factors sum to one, and energy is conserved without more ado.
+//! cosθ dω/π of the pixel. Each shot rotates the cube about the normal by another angle, so that
+//! the errors of different shots differ. In a closed scene the factors sum to one, so that energy
+//! is conserved exactly.
 //!
-//! It is biased by its resolution: what is smaller than a pixel is seen in excess or not at all,
-//! and near by, where the patch is no point, its middle is not the whole. Here the pixels are
-//! filled by rays instead of by a z-buffer; the factors are those of the original. Source:
+//! It is biased by its resolution, by which elements smaller than a pixel are overestimated or
+//! missed, and by taking the centre for the whole patch, which is wrong for near elements. Pixels
+//! are found by rays instead of by a z-buffer; the factors are those of the original. Source:
 //! [Cohen 1985].
 
 use geometry::RayStats;
@@ -29,20 +29,21 @@ use super::subdivide::Cut;
 use super::surfaces::{first_solid, seen_side};
 use crate::{Cancelled, Control};
 
-/// An element seen through this many pixels at least is cut by what they show.
+/// Elements that cover at least this many pixels are subdivided by differences between their
+/// pixels.
 const ENOUGH: u32 = 16;
 
 /// A hemicube of pixels.
 pub(crate) struct Hemicube {
     /// Pixels along an edge, an even number.
     resolution: u32,
-    /// The angle by which it is turned about the normal.
+    /// The angle of rotation about the normal.
     angle: f32,
 }
 
 /// What is visible through a pixel.
 struct Pixel {
-    /// The first cell of the primitive there, and where on it.
+    /// The root cell of the primitive there, and the parameters.
     root: u32,
     uv: Vec2,
     /// The side that is seen.
@@ -54,14 +55,14 @@ struct Pixel {
 pub(crate) struct VisiblePixels(Vec<Pixel>);
 
 impl Hemicube {
-    /// For the `shot`th shot.
+    /// The hemicube of the `shot`th shot.
     pub fn new(resolution: u32, shot: u32) -> Self {
         Self { resolution: resolution.max(2).next_multiple_of(2), angle: TAU * hash_float(&[shot]) }
     }
 
-    /// The directions of a row of pixels in a frame with the normal along +z, and their shares.
-    /// Rows of the face above come first, then those of the four at the sides, which have half as
-    /// many.
+    /// The directions of a row of pixels in a frame with the normal along +z, and their form
+    /// factors. Rows of the top face come first, then those of the four side faces, which have half
+    /// as many.
     fn row(&self, row: u32) -> impl Iterator<Item = (Vector3, f32)> {
         let n = self.resolution;
         let step = 2.0 / n as f32;
@@ -124,7 +125,7 @@ impl Hemicube {
 }
 
 impl VisiblePixels {
-    /// What the elements with these indices receive of unit radiosity from a patch of this area.
+    /// The irradiance of the elements `ids` by unit radiosity of a patch of the given area.
     pub fn received(&self, cut: &Cut, area: f32, ids: &[u32]) -> Vec<Received> {
         let mut all = vec![(Received::default(), 0); cut.elements.len()];
         for &Pixel { root, uv, side, factor } in &self.0 {

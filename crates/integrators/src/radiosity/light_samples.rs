@@ -1,4 +1,4 @@
-//! Light of lights, by samples of them.
+//! Irradiance from lights, by light sampling.
 
 use geometry::RayStats;
 use math::{Ray, Vec2};
@@ -9,7 +9,7 @@ use spectrum::SampledSpectrum;
 
 use super::bands::{Bands, Wavelengths};
 
-/// The irradiance of both sides of a point from a light, by samples of it.
+/// The irradiance of both sides of a point from a light, by light sampling.
 pub(crate) fn from_light(
     scene: &Scene,
     wavelengths: &Wavelengths,
@@ -21,7 +21,7 @@ pub(crate) fn from_light(
         Light::Point(_) | Light::Spot(_) | Light::Distant(_) => 1,
         Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) => LIGHT_STRATA,
     };
-    // Every point shifts the samples its own way, lest they all have the same shadows.
+    // A random shift for each point decorrelates their shadows.
     let place = context.p.p.to_array().map(f32::to_bits);
     let shift = Vec2::new(hash_float(&place), hash_float(&[place[2], place[0], place[1]]));
     let mut sides = [Bands::ZERO; 2];
@@ -37,10 +37,10 @@ pub(crate) fn from_light(
     sides
 }
 
-/// Samples of a light that has an extent, along each axis.
+/// Samples along each axis, of lights that are not delta lights.
 const LIGHT_STRATA: u32 = 8;
 
-/// A direction to a light, and its radiance there at all wavelengths.
+/// A direction to a light, and its radiance at all wavelengths.
 pub(crate) fn sample_light(
     scene: &Scene,
     wavelengths: &Wavelengths,
@@ -57,7 +57,7 @@ pub(crate) fn sample_light(
     found.map(|sample| (l, sample))
 }
 
-/// Whether a point sees the sample of a light.
+/// Whether the sample of a light is visible from a point.
 pub(crate) fn arrives(
     scene: &Scene,
     light: LightId,

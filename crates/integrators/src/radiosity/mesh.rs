@@ -1,17 +1,16 @@
-//! Surfaces cut into cells.
+//! The mesh of cells, into which surfaces are subdivided.
 //!
 //! A cell is a part of one primitive of the scene: a triangle or rectangle of the primitive's own
-//! parameters, with corners on the true surface. Its first cell is the whole primitive, and cutting
+//! parameters, with corners on the surface. The root cell is the whole primitive, and a split
 //! halves a cell across its longer side, so that the cells of a primitive are a binary tree and the
-//! leaf under a ray's hit is found by walking down it.
+//! leaf of a ray's hit is found by descending it.
 //!
-//! Vertices are shared: two corners that stand at one place with nearly one normal are one vertex,
-//! whichever primitives they belong to. Where a cell's neighbour is cut more finely, a vertex
-//! stands in the middle of the cell's side: a T-vertex. If the cell were drawn from its corners
-//! alone, light would jump across that side. So T-vertices are *anchored*: [`Mesh::outline`] gives
-//! the corners and all the vertices that neighbours have put on the sides between them, and
-//! whatever is interpolated over the fan of triangles between that outline and the cell's centre is
-//! continuous ([Cohen 1986]; [Baum 1991] for anchors).
+//! Vertices are shared: corners at one position with similar normals are one vertex, also across
+//! primitives. Where a cell's neighbour is subdivided further, there is a vertex in the middle of
+//! the cell's side: a T-vertex. Interpolation between corners only would be discontinuous across
+//! that side. So T-vertices are *anchored*: [`Mesh::outline`] returns the corners and all vertices
+//! of neighbours on the sides between them, and interpolation over the fan of triangles between
+//! that outline and the cell's centre is continuous ([Cohen 1986]; [Baum 1991] for anchors).
 
 use std::collections::{HashMap, HashSet};
 
@@ -41,7 +40,7 @@ pub(crate) struct Cell {
     sides: u8,
     /// The first of its two halves.
     children: Option<u32>,
-    /// What the owner of the mesh ties to a leaf.
+    /// The element of a leaf, set by the owner of the mesh.
     pub element: u32,
 }
 
@@ -52,19 +51,19 @@ impl Cell {
         Self { primitive, corners: all, sides: corners.len() as u8, children: None, element: u32::MAX }
     }
 
-    /// Three or four, in turn.
+    /// Three or four corners, in order.
     pub fn corners(&self) -> &[Corner] {
         &self.corners[..self.sides as usize]
     }
 
-    /// Its parameters.
+    /// Its parameter domain.
     pub fn domain(&self) -> Domain {
         let [a, b, c, d] = self.corners.map(|corner| corner.uv);
         if self.sides == 3 { Domain::Triangle([a, b, c]) } else { Domain::Rectangle([a, b, c, d]) }
     }
 }
 
-/// A place that corners share.
+/// A vertex, which corners share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex {
     pub p: Point3,
@@ -74,16 +73,17 @@ pub(crate) struct Vertex {
 /// Below this cosine between their normals, corners at one place are two vertices.
 const SMOOTH: f32 = 0.9;
 
-/// The sag of a side beside its length above which a cell is too bent to stand for its surface.
+/// The sag of a side, relative to its length, above which a cell is too curved to approximate its
+/// surface.
 const BENT: f32 = 0.05;
 
-/// Vertices, found again by their place.
+/// Vertices, with a hash grid of their positions.
 #[derive(Clone, Debug)]
 struct Vertices {
     all: Vec<Vertex>,
-    /// By squares of twice the tolerance.
+    /// Indices of vertices by grid cell, twice the tolerance wide.
     grid: HashMap<[i64; 3], Vec<u32>>,
-    /// How far corners of one vertex may be from each other.
+    /// Maximum distance between corners of one vertex.
     tolerance: f32,
 }
 
@@ -92,7 +92,7 @@ impl Vertices {
         p.to_array().map(|x| (f64::from(x) / f64::from(2.0 * self.tolerance) + shift).floor() as i64)
     }
 
-    /// The vertex at a place, if there is one.
+    /// The vertex with this position and a similar normal, if there is one.
     fn find(&self, vertex: &Vertex) -> Option<u32> {
         let low = self.square(vertex.p, -0.5);
         (0..8).find_map(|i| {
@@ -114,24 +114,24 @@ impl Vertices {
     }
 }
 
-/// All surfaces that can be cut.
+/// All surfaces that can be subdivided.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     primitives: Vec<Hit>,
     left_out: usize,
-    /// The first cells of primitives.
+    /// The root cells of primitives.
     roots: HashMap<(GeometryId, InstancePath, u32), u32>,
     cells: Vec<Cell>,
     vertices: Vertices,
-    /// Sides that were cut: both ends, the lower first, and the vertex between.
+    /// Sides that were split: both ends, the lower index first, and the vertex between.
     cut: HashSet<[u32; 3]>,
-    /// The time at which moving shapes are cut.
+    /// The time at which moving shapes are subdivided.
     time: f32,
 }
 
 impl Mesh {
-    /// One cell for each primitive of the scene that can be cut and is more than a change of
-    /// medium. Where there are more than `most`, for lights first and then for the largest.
+    /// One root cell for each primitive of the scene that can be subdivided and is not an
+    /// interface. If there are more than `most`, lights come first and then the largest primitives.
     pub fn new(scene: &Scene, time: f32, most: usize, control: &Control) -> Result<Self, Cancelled> {
         let sphere = scene.sphere();
         let size = sphere.center.abs().max_element() + sphere.radius;
@@ -154,7 +154,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Makes the first cell of a primitive, if it has sound corners.
+    /// Adds the root cell of a primitive, if its corners are valid.
     fn add_root(&mut self, world: &World, primitive: u32) {
         let hit = self.primitives[primitive as usize];
         let domain = Domain::of(world, &hit);
@@ -170,7 +170,7 @@ impl Mesh {
         self.cells.push(Cell::new(primitive, &corners));
     }
 
-    /// How many primitives have no cells because there are too many.
+    /// The number of primitives without cells because of the limit.
     pub fn left_out(&self) -> usize {
         self.left_out
     }
@@ -180,17 +180,17 @@ impl Mesh {
         &self.cells[cell as usize]
     }
 
-    /// Names what stands for a leaf.
+    /// Sets the element of a leaf.
     pub fn set_element(&mut self, cell: u32, element: u32) {
         self.cells[cell as usize].element = element;
     }
 
-    /// How many cells there are; their indices begin with 0.
+    /// The number of cells; their indices begin with 0.
     pub fn len(&self) -> usize {
         self.cells.len()
     }
 
-    /// The primitive of a cell, as a hit without a place.
+    /// The primitive of a cell, as a hit without a position.
     pub fn primitive(&self, cell: &Cell) -> &Hit {
         &self.primitives[cell.primitive as usize]
     }
@@ -200,7 +200,7 @@ impl Mesh {
         &self.vertices.all
     }
 
-    /// The time at which moving shapes are cut.
+    /// The time at which moving shapes are subdivided.
     pub fn time(&self) -> f32 {
         self.time
     }
@@ -211,7 +211,7 @@ impl Mesh {
         world.surface_at(hit.geometry, hit.primitive, hit.instance, uv, self.time)
     }
 
-    /// The position of the point with these parameters; the origin where there is none.
+    /// The position of the point with these parameters; the origin if there is none.
     fn position(&self, world: &World, cell: &Cell, uv: Vec2) -> Point3 {
         self.surface(world, cell.primitive, uv).map_or(Point3::ZERO, |surface| surface.p.p)
     }
@@ -221,14 +221,14 @@ impl Mesh {
         domain.area(|uv| self.position(world, cell, uv))
     }
 
-    /// The area of all surfaces, as long as nothing is cut.
+    /// The area of all surfaces, before any split.
     pub fn whole_area(&self, world: &World) -> f64 {
         let quarters = self.cells.iter().flat_map(|cell| cell.domain().quarters().map(|part| (cell, part)));
         quarters.map(|(cell, part)| f64::from(self.area(world, cell, &part))).sum()
     }
 
-    /// How long a cell is along its first side and, if it has four, along its second; through the
-    /// middle where that is another way.
+    /// The lengths of a cell along its first side and, if it has four, along its second; measured
+    /// through its centre if it is curved.
     fn lengths(&self, world: &World, cell: &Cell) -> [f32; 2] {
         let p = |uv| self.position(world, cell, uv);
         match cell.domain() {
@@ -246,13 +246,13 @@ impl Mesh {
         }
     }
 
-    /// How long a cell is.
+    /// The larger of a cell's lengths.
     pub fn size(&self, world: &World, cell: u32) -> f32 {
         let [a, b] = self.lengths(world, self.cell(cell));
         a.max(b)
     }
 
-    /// Whether the sides of a cell are too bent for it to stand for its surface.
+    /// Whether a cell is too curved to approximate its surface.
     pub fn is_bent(&self, world: &World, cell: u32) -> bool {
         let cell = self.cell(cell);
         let at = |corner: &Corner| self.vertices.all[corner.vertex as usize].p;
@@ -263,11 +263,11 @@ impl Mesh {
         })
     }
 
-    /// Halves a leaf; the first of the two halves, which follow each other.
+    /// Halves a leaf. Returns the first of the two halves, which have consecutive indices.
     pub fn split(&mut self, world: &World, leaf: u32) -> u32 {
         let cell = self.cells[leaf as usize];
         let mut corners = cell.corners().to_vec();
-        // Turned until the side to be cut is the first.
+        // Rotated so that the side to be split comes first.
         let turns = if let Domain::Triangle(uvs) = cell.domain() {
             let [a, b, c] = uvs.map(|uv| self.position(world, &cell, uv));
             let lengths = [a.distance(b), b.distance(c), c.distance(a)];
@@ -304,25 +304,26 @@ impl Mesh {
         (uv, surface.map_or(end, |surface| vertex_at(&surface)))
     }
 
-    /// The leaf that a ray has hit, and where on its primitive; `None` on what has no cells.
+    /// The leaf that a ray has hit, and the parameters of the hit; `None` on primitives without
+    /// cells.
     pub fn leaf(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(&Cell, Vec2)> {
         let (root, uv) = self.place(world, hit, surface)?;
         Some((self.leaf_in(root, uv), uv))
     }
 
-    /// The first cell of the primitive that a ray has hit, and where on the primitive; `None` on
-    /// what has no cells.
+    /// The root cell of the primitive that a ray has hit, and the parameters of the hit; `None` on
+    /// primitives without cells.
     pub fn place(&self, world: &World, hit: &Hit, surface: &SurfacePoint) -> Option<(u32, Vec2)> {
         let root = self.roots.get(&(hit.geometry, hit.instance, hit.primitive))?;
         let is_sphere = matches!(world.geometry(hit.geometry), Geometry::Spheres(_));
         Some((*root, if is_sphere { surface.uv } else { hit.uv }))
     }
 
-    /// The leaf within a cell at some parameters.
+    /// The leaf of a cell that contains the parameters `uv`.
     pub fn leaf_in(&self, cell: u32, uv: Vec2) -> &Cell {
         let mut cell = self.cell(cell);
         while let Some(first) = cell.children {
-            // The second and third corner of the first half are the ends of the cut.
+            // The second and third corner of the first half are the ends of the split.
             let half = self.cell(first);
             let [a, b] = [half.corners[1].uv, half.corners[2].uv];
             let inner = half.corners[0].uv;
@@ -332,7 +333,7 @@ impl Mesh {
         cell
     }
 
-    /// The corners of a leaf and all vertices that its neighbours have put between them, in turn.
+    /// The corners of a leaf and all vertices of its neighbours between them, in order.
     pub fn outline(&self, world: &World, cell: &Cell) -> Vec<Corner> {
         let mut outline = Vec::new();
         for side in sides(cell.corners()) {
@@ -342,8 +343,8 @@ impl Mesh {
         outline
     }
 
-    /// Whether the neighbour at a side of a leaf is cut more than once more: more than one vertex
-    /// then stands between its corners.
+    /// Whether a neighbour of a leaf is finer by more than one level, so that more than one vertex
+    /// lies on a side.
     pub fn is_beside_finer(&self, world: &World, leaf: &Cell) -> bool {
         sides(leaf.corners()).any(|side| {
             let mut between = Vec::new();
@@ -367,7 +368,7 @@ impl Mesh {
         self.anchors(world, cell, [middle, side[1]], outline);
     }
 
-    /// Bytes of memory that it takes, about.
+    /// Memory taken, in bytes, approximately.
     pub fn bytes(&self) -> usize {
         let roots = self.roots.capacity() * size_of::<((GeometryId, InstancePath, u32), u32)>();
         let hashed = roots + self.cut.capacity() * size_of::<[u32; 3]>() + self.vertices.all.len() * 56;
@@ -379,7 +380,7 @@ fn vertex_at(surface: &SurfacePoint) -> Vertex {
     Vertex { p: surface.p.p, n: surface.shading.n }
 }
 
-/// Each corner with the next.
+/// The sides, from each corner to the next.
 fn sides(corners: &[Corner]) -> impl Iterator<Item = [Corner; 2]> + '_ {
     (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]])
 }

@@ -1,38 +1,35 @@
-//! Radiosity: the light between diffuse surfaces as a balance of energy, found once for all views.
+//! Radiosity: interreflection of diffuse surfaces by finite elements, solved once for all views.
 //!
-//! Surfaces are cut into patches. What leaves patch i per area is its radiosity B_i = E_i + ρ_i Σ_j
-//! F_ij B_j: its own light, and its share of what comes from all others, F_ij being the
-//! [form factor](form_factor) from i to j. [Progressive shooting](shooting) solves this without
-//! ever holding the matrix: the brightest patch sends its light to all others, again and again.
-//! Each of the first `steps` passes sends light until a smaller share of it is left, the last one
-//! until `tolerance` is reached, and draws the picture anew, with an ambient term for what is
-//! missing. The passes after these, as many as there are samples a pixel, draw the finished
-//! solution.
+//! Surfaces are subdivided into patches. The exitance of patch i is its radiosity B_i = E_i + ρ_i
+//! Σ_j F_ij B_j: emission and reflected light of all patches, F_ij being the [form
+//! factor](form_factor) from i to j. [Progressive shooting](shooting) solves this without storing
+//! the matrix: repeatedly, the brightest patch shoots its light to all others. Each of the first
+//! `steps` passes shoots until a smaller share is unshot, the last one until `tolerance` is
+//! reached, and renders a new draft, with an ambient term for unshot light. The following passes,
+//! as many as there are samples per pixel, render the finished solution.
 //!
-//! Surfaces are [cut further](subdivide) where light changes fast, and [shown](show) by
-//! interpolation between vertices, or by a final gather. Light is carried at fixed
+//! Patches are [subdivided](subdivide) where irradiance changes fast. The solution is
+//! [rendered](show) by interpolation between vertices, or by a final gather. It has fixed
 //! [wavelengths](bands).
 //!
-//! Everything is diffuse here. A BSDF that is not is replaced by its mean albedo ρ_hh; glass
-//! becomes a sheet that transmits light diffusely. Surfaces reflect on both sides. Shading normals
-//! count in the final gather alone. Moving shapes stand where they are in the middle of the shutter
-//! time.
+//! All surfaces are diffuse. Other BSDFs are replaced by their mean albedo ρ_hh; glass becomes a
+//! diffusely transmitting sheet. Surfaces reflect on both sides. Shading normals are used in the
+//! final gather only. Moving shapes have their positions at the middle of the shutter interval.
 //!
-//! It has no noise but that of a final gather, and is biased: light is even over each quarter of a
-//! patch that sends it and of an element that receives it, and visibility is known from a few rays.
-//! In the Cornell box the mean of a gathered picture is right to 0.5 %, and single places in the
-//! shadow of the blocks to 2 %, with the settings' defaults; interpolated, shadows are as blurred
-//! as their elements are large. `max_depth` counts as in all algorithms: light that was scattered
-//! more often is missing.
+//! It has no noise but that of a final gather, and is biased: light is constant over each quarter
+//! of a shooting patch and of a receiving element, and visibility is sampled by a few rays. In the
+//! Cornell box the mean of a gathered picture has an error of 0.5 %, and single points in the
+//! shadow of the blocks 2 %, with the settings' defaults; interpolated, shadows are blurred over
+//! their elements. `max_depth` counts as in all algorithms: light that was scattered more often is
+//! missing.
 //!
-//! An element takes about 2 kB with its share of vertices, a patch 256 bytes for each scattering
-//! event more, and again 2 kB if it is cut. Where there are more primitives than half of
-//! `max_patches`, [lights and the largest](primitives) are cut; the rest is lit, as what has no
-//! patches is, but passes no light on. The time of a shot grows with the number of elements, and
-//! the number of shots with that of patches. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
+//! An element takes about 2 kB with its share of vertices, a patch 256 bytes more per scattering
+//! event, and again 2 kB if it is subdivided. If there are more primitives than half of
+//! `max_patches`, only [lights and the largest](primitives) have patches; the others receive light,
+//! but do not reflect it to other surfaces. The time of a shot grows with the number of elements,
+//! and the number of shots with that of patches. Sources: [Goral 1984], [Cohen 1988], [Cohen 1993].
 
 mod bands;
-mod described;
 mod domain;
 mod element;
 mod form_factor;
@@ -47,6 +44,7 @@ mod subdivide;
 mod surfaces;
 #[cfg(test)]
 mod tests;
+mod unsupported;
 
 use description::{Diagnostic, LightSamplerDesc, RadiosityDesc};
 use film::{Film, FilmTile, Sample};
@@ -71,25 +69,25 @@ pub struct Radiosity {
     sampler: Sampler,
     color_space: &'static RgbColorSpace,
     state: Option<State>,
-    /// Whether the last pass has put a draft on the film.
+    /// Whether the film holds a draft.
     draft_is_shown: bool,
 }
 
-/// What is known of a scene.
+/// The solution of a scene, and its display.
 struct State {
     solution: Solution,
     lights: LightSampler,
-    /// How many steps of sending are done.
+    /// The number of shooting steps done.
     sent: u32,
     interpolation: Interpolation,
-    /// The step after which the interpolation shows the solution.
+    /// The step of the solution in the interpolation.
     shown: Option<u32>,
-    /// The mesh to be saved.
+    /// The mesh file to be saved.
     mesh: Vec<u8>,
 }
 
 impl State {
-    /// Before light is sent.
+    /// The state before shooting.
     fn new(
         scene: &Scene,
         view: &View,
@@ -102,8 +100,8 @@ impl State {
         Ok(Self { solution, lights, sent: 0, interpolation, shown: None, mesh: Vec::new() })
     }
 
-    /// Sends light as a pass asks for. Steps that earlier passes have not done are done now, one by
-    /// one, so that the solution depends on the pass alone.
+    /// Shoots up to the step of a pass. Missing steps of earlier passes are done one by one, so
+    /// that the solution depends only on the pass.
     fn advance(
         &mut self,
         pass: u32,
@@ -134,7 +132,7 @@ impl State {
 }
 
 impl Radiosity {
-    /// With a mesh whose colours are those of `color_space`, if one is kept.
+    /// `color_space` is that of the colours of a saved mesh.
     pub fn new(settings: RadiosityDesc, sampler: Sampler, color_space: &'static RgbColorSpace) -> Self {
         Self { settings, sampler, color_space, state: None, draft_is_shown: false }
     }
@@ -150,7 +148,7 @@ impl Integrator for Radiosity {
     }
 
     fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
-        described::warnings(scene)
+        unsupported::warnings(scene)
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
@@ -196,7 +194,8 @@ impl Integrator for Radiosity {
             }
             Ok(stats)
         };
-        // A better solution makes a new picture, which takes the place of a draft when it is whole.
+        // A better solution is rendered to a new film, which replaces the draft when it is
+        // complete.
         let is_new = pass < steps || self.draft_is_shown;
         let mut better = is_new.then(|| film.blank()).transpose()?;
         let tiles = better.as_mut().unwrap_or(film).tiles_mut()?;
@@ -227,7 +226,7 @@ impl Integrator for Radiosity {
         ];
         let left_out = solution.cut.mesh.left_out();
         if left_out > 0 {
-            notes.push(("left out", format!("{left_out} small primitives, beyond what maxpatches allows")));
+            notes.push(("left out", format!("{left_out} small primitives, beyond the limit of maxpatches")));
         }
         notes
     }

@@ -1,11 +1,11 @@
 //! A solution as a mesh: elements with their radiosity as vertex colours, in the PLY format.
 //!
 //! Binary, little-endian. Every element is the fan of triangles between its centre and its outline,
-//! so that vertices stand at T-vertices, too, and nothing cracks. Positions are those of the world,
-//! in scene units. A vertex has the linear RGB of the radiosity around it as `radiosity_red`,
-//! `radiosity_green` and `radiosity_blue`, and what a screen shows of it as `red`, `green` and
-//! `blue`: encoded as sRGB, with the brightest that is not a light at 255. Each side that gets or
-//! gives light has vertices and triangles of its own; those of an inner side turn the other way.
+//! so that T-vertices are included and there are no cracks. Positions are in world space. A vertex
+//! has the linear RGB of its radiosity as `radiosity_red`, `radiosity_green` and `radiosity_blue`,
+//! and a display colour as `red`, `green` and `blue`: encoded as sRGB, with the brightest value
+//! that is not a light at 255. Each side that receives or emits light has its own vertices and
+//! triangles; those of an inner side have the opposite orientation.
 
 use math::DVec3;
 use scene::Scene;

@@ -1,8 +1,8 @@
-//! Which primitives are cut into patches.
+//! The choice of the primitives that have patches.
 //!
-//! Every patch takes memory, and light goes from every patch to every other. A scene of a million
-//! small triangles therefore gives patches to those that matter most: to what shines, and to what
-//! is large. The rest is lit, but passes no light on.
+//! Memory grows with the number of patches, and time with its square. In a scene of a million small
+//! triangles therefore only the most important ones have patches: lights, and large primitives. The
+//! others receive light, but do not reflect it to other surfaces.
 
 use std::cmp::Reverse;
 
@@ -14,20 +14,21 @@ use scene::Scene;
 use super::domain::Domain;
 use crate::{Cancelled, Control};
 
-/// A primitive that can be cut.
+/// A primitive that can be subdivided.
 struct Candidate {
     hit: Hit,
     shines: bool,
     area: f32,
-    /// Its place among all.
+    /// Its index among all candidates.
     order: usize,
 }
 
-/// How many primitives are looked at between two looks at the control.
+/// Number of primitives between two checks for cancellation.
 const BLOCK: u32 = 1 << 14;
 
-/// The primitives that can be cut and are more than a change of medium, as hits without places, and
-/// how many are left out because there are more than `most`: lights come first, then what is large.
+/// The primitives that can be subdivided and are not interfaces, as hits without positions, and the
+/// number of those left out because there are more than `most`: lights come first, then large
+/// primitives.
 pub(crate) fn choose(
     scene: &Scene,
     time: f32,
@@ -71,11 +72,11 @@ pub(crate) fn choose(
     Ok((chosen.into_iter().map(|candidate| candidate.hit).collect(), left_out))
 }
 
-/// Drops all but `most`, and tells how many.
+/// Keeps the first `most`, and returns the number of dropped ones.
 fn keep_largest(candidates: &mut Vec<Candidate>, most: usize) -> usize {
     let dropped = candidates.len().saturating_sub(most);
     if dropped > 0 {
-        // Areas are not negative, so that their bits are in their order.
+        // Areas are not negative, so that the order of their bits is that of their values.
         let rank = |c: &Candidate| (Reverse((c.shines, c.area.to_bits())), c.order);
         candidates.select_nth_unstable_by_key(most, rank);
         candidates.truncate(most);
@@ -83,7 +84,7 @@ fn keep_largest(candidates: &mut Vec<Candidate>, most: usize) -> usize {
     dropped
 }
 
-/// Whether a point of a surface has a place and a normal.
+/// Whether a surface point has a finite position and a normal.
 pub(crate) fn is_sound(surface: &SurfacePoint) -> bool {
     surface.p.p.is_finite() && surface.n.is_normalized()
 }

@@ -1,32 +1,31 @@
-//! Progressive shooting: light leaves the brightest patch first.
+//! Progressive shooting: the brightest patch shoots first.
 //!
-//! Of diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is what leaves an area,
-//! the exitance E what leaves it of its own accord. Instead of solving the system at once, the
-//! patch l that has most to send sends it: every other one receives
+//! For diffuse surfaces, B_i = E_i + ρ_i Σ_j F_ij B_j, where the radiosity B is the exitance and E
+//! its emitted part. The system is solved iteratively. The patch l with the most unshot power
+//! shoots it, by which every other patch receives
 //!
 //! ΔB_i = ρ_i B_l F_li A_l / A_i,
 //!
-//! keeps it, and has that much more to send itself. After each shot there is a picture, and each is
-//! better than the last: what is missing is the light that has not been sent yet. Until then an
-//! *ambient* term stands for it: the irradiance that unshot power would make if it were spread
-//! evenly and reflected with the mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It is shown, never
-//! sent, and goes to zero.
+//! and adds it to its unshot light. After each shot the solution is closer to the final one; unshot
+//! light is missing. An *ambient* term approximates it: the irradiance of unshot power if it were
+//! distributed uniformly and reflected with the mean reflectance ρ̄, Φ/A · (1 + ρ̄ + ρ̄² + …). It
+//! is displayed but never shot, and converges to zero.
 //!
-//! Unshot light is kept apart by how often it was scattered, so that `max_depth` counts the edges
-//! of a path as everywhere: a patch sends what was scattered less than `max_depth` times. One form
-//! factor serves for all of it. Lights that are not surfaces (points, distant ones, the
-//! environment) shine on every element once, before the first shot, by samples of the light.
+//! Unshot light is stored by number of scattering events, so that `max_depth` has the same meaning
+//! as everywhere: a patch shoots light that was scattered less than `max_depth` times. The same
+//! form factor applies to all of it. Irradiance from lights that are not surfaces (points, distant
+//! ones, the environment) is computed for every element before the first shot, by light sampling.
 //!
-//! Where what a shot brings changes by more than a share of the light that is there, elements are
-//! cut and the shot is received again: elements get fine at the edges of shadows, as those shots
-//! make them that cast the shadows. An edge may pass between the few points of a coarse element,
-//! though, and be missed. So where a shot has cut elements, those beside them are cut too, until
-//! neighbours differ by one cut at most, and each new element is asked again: edges that were found
-//! are followed to where they were missed ([Baum 1991]).
+//! If the irradiance of a shot varies over an element by more than a share of its total irradiance,
+//! the element is subdivided and receives the shot again: elements become fine at the edges of the
+//! shadows that the shot casts. The few points of a coarse element may miss an edge, though. So
+//! where a shot has subdivided elements, their neighbours are subdivided too, until the levels of
+//! neighbours differ by one at most, and each new element receives the shot again: this follows
+//! edges to where they were missed ([Baum 1991]).
 //!
-//! Most shots are faint, though, and most patches are far from them: what would bring much less to
-//! a patch than the change that is worth a cut, even if nothing were between, is received by the
-//! patch as a whole, as if it had not been cut, and handed to its elements later.
+//! Most shots are faint, and most patches are far from them. If the unoccluded irradiance of a
+//! patch is much less than the variation that causes a subdivision, the patch receives it as a
+//! single element, and distributes it to its elements later.
 //!
 //! Sources: [Cohen 1988], [Cohen 1986] for elements.
 
@@ -45,11 +44,11 @@ use super::light_samples::from_light;
 use super::subdivide::Cut;
 use crate::{Cancelled, Control};
 
-/// The part of all light, spread evenly, below which an irradiance is next to nothing.
+/// Irradiances below this share of the mean exitance of all light count as faint.
 const FAINT: f32 = 1e-3;
 
-/// The part of the change of light that is worth a cut, below which light comes to patches as if
-/// they were not cut.
+/// Patches receive irradiances as a single element below this share of the variation that causes a
+/// subdivision.
 const UNCUT: f32 = 0.04;
 
 /// The state of a solution.
@@ -57,16 +56,16 @@ pub(crate) struct Solution {
     pub wavelengths: Wavelengths,
     pub cut: Cut,
     pub settings: RadiosityDesc,
-    /// Whether the lights that are no surfaces have shone.
-    begun: bool,
-    /// Brightness of all light that there is to send.
+    /// Whether the irradiance from lights that are not surfaces has been added.
+    lights_received: bool,
+    /// Brightness of the power of all light to be shot.
     total: f32,
-    /// How often patches have shot.
+    /// Number of shots.
     pub shots: u32,
 }
 
 impl Solution {
-    /// Nothing has been sent yet.
+    /// The solution before the first shot.
     pub fn new(
         scene: &Scene,
         view: &View,
@@ -76,27 +75,26 @@ impl Solution {
         let wavelengths = Wavelengths::new(!view.options.disable_wavelength_jitter);
         let cut = Cut::new(scene, view, settings, &wavelengths, control)?;
         let settings = settings.clone();
-        let begun = settings.max_depth == 0;
-        let mut solution = Self { wavelengths, cut, settings, begun, total: 0.0, shots: 0 };
+        let lights_received = settings.max_depth == 0;
+        let mut solution = Self { wavelengths, cut, settings, lights_received, total: 0.0, shots: 0 };
         solution.total = solution.unshot_brightness();
         Ok(solution)
     }
 
-    /// The brightness of what is still to be sent, as a power.
+    /// The brightness of unshot power.
     fn unshot_brightness(&self) -> f32 {
         self.cut.patches.iter().map(|patch| patch.brightness(0) + patch.brightness(1)).sum()
     }
 
-    /// The share of all light that is still to be sent: all of it, as long as it is not known how
-    /// much there is.
+    /// The share of unshot power; 1 as long as the total is unknown.
     pub fn unshot_share(&self) -> f32 {
         match self.total > 0.0 {
             true => self.unshot_brightness() / self.total,
-            false => f32::from(u8::from(!self.begun)),
+            false => f32::from(u8::from(!self.lights_received)),
         }
     }
 
-    /// Shoots until no more than a share of all light is left to be sent.
+    /// Shoots until at most the given share of power is unshot.
     pub fn shoot(
         &mut self,
         scene: &Scene,
@@ -105,24 +103,24 @@ impl Solution {
         control: &Control,
     ) -> Result<RayStats, Cancelled> {
         let mut stats = RayStats::default();
-        if !self.begun {
+        if !self.lights_received {
             self.receive_lights(scene, view, control, &mut stats)?;
-            self.begun = true;
+            self.lights_received = true;
         }
         while self.total > 0.0 && self.unshot_share() > share {
             let Some((patch, side)) = self.brightest() else { break };
             self.shoot_from(scene, view, patch, side, control, &mut stats)?;
         }
-        self.cut.settle();
+        self.cut.push_wholes();
         Ok(stats)
     }
 
-    /// The brightness of all light there is to send, spread over all surfaces.
-    fn even(&self) -> f32 {
+    /// The mean exitance of all light to be shot, as brightness.
+    fn mean_exitance(&self) -> f32 {
         self.total / self.cut.patches.iter().map(|patch| patch.area).sum::<f32>()
     }
 
-    /// The side of a patch that has most to send.
+    /// The side of a patch with the most unshot power.
     fn brightest(&self) -> Option<(u32, usize)> {
         let mut best = (0.0, None);
         for (id, patch) in (0..).zip(&self.cut.patches) {
@@ -136,7 +134,7 @@ impl Solution {
         best.1
     }
 
-    /// Sends all that one side of a patch has to send.
+    /// Shoots all unshot power of one side of a patch.
     fn shoot_from(
         &mut self,
         scene: &Scene,
@@ -150,35 +148,37 @@ impl Solution {
         let Patch { cell, area, ref unshot, .. } = self.cut.patches[source as usize];
         let layers: Vec<Bands> = unshot.iter().map(|sides| sides[side] * area.recip()).collect();
         let all: Bands = layers.iter().copied().sum();
-        // What was scattered last before it is scattered for the last time is not sent on.
+        // Light that has `max_depth` scattering events after this shot is not shot again.
         let last_layer = self.settings.max_depth as usize - 1;
         let last = layers.get(last_layer).copied().unwrap_or_default();
         let sent_on: Bands = layers.iter().take(last_layer).copied().sum();
         let brightness = self.wavelengths.brightness(&all);
-        // What patches receive as wholes.
+        // The irradiances of patches that receive the shot as a single element.
         let mut wholes = Vec::new();
         let received = match self.settings.form_factors {
             FormFactorsDesc::Analytic => {
-                let careful = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[source as usize], side);
-                let unit = self.even() / brightness;
-                let hasty = careful.clone().hastily(FAINT * unit, self.shots);
+                let emitter = Emitter::new(scene, &self.cut.mesh, &self.cut.patches[source as usize], side);
+                let unit = self.mean_exitance() / brightness;
+                let single_rays = emitter.clone().with_single_rays(FAINT * unit, self.shots);
                 let too_little = UNCUT * self.settings.gradient * unit;
                 let on_whole = |patch: &Patch, stats: &mut RayStats| {
-                    let whole = patch.whole.as_ref().filter(|whole| careful.most_on(whole) <= too_little)?;
+                    let whole = patch.whole.as_ref().filter(|whole| emitter.most_on(whole) <= too_little)?;
                     let is_itself = whole.patch == source;
                     Some(if is_itself {
                         Received::default()
                     } else {
-                        careful.shine(scene, whole, time, stats)
+                        emitter.irradiate(scene, whole, time, stats)
                     })
                 };
-                wholes = each(&self.cut.patches, control, stats, on_whole)?;
+                wholes = par_map(&self.cut.patches, control, stats, on_whole)?;
                 self.receive(scene, view, brightness, &wholes, |cut, ids| {
-                    each_element(cut, ids, control, stats, |element, stats| match element.patch == source {
-                        // What is bent stands off its chord, and would see it: from behind, as if
-                        // it filled the sky.
-                        true => Received::default(),
-                        false => hasty.shine(scene, element, time, stats),
+                    par_map_elements(cut, ids, control, stats, |element, stats| {
+                        match element.patch == source {
+                            // A curved patch is offset from the polygon of its corners, which would
+                            // fill a hemisphere of its points.
+                            true => Received::default(),
+                            false => single_rays.irradiate(scene, element, time, stats),
+                        }
                     })
                 })?
             }
@@ -216,7 +216,7 @@ impl Solution {
         Ok(())
     }
 
-    /// Light from lights that are no surfaces, on all elements.
+    /// Adds the irradiance from lights that are not surfaces to all elements.
     fn receive_lights(
         &mut self,
         scene: &Scene,
@@ -243,16 +243,16 @@ impl Solution {
             }
             lit
         };
-        // Once to know how much light there is, and again to see where it changes fast.
+        // A first evaluation for the total, a second one with subdivision.
         let ids: Vec<u32> = (0..self.cut.elements.len() as u32).collect();
         let power = |element: &Element, stats: &mut RayStats| {
             let brightnesses = shine(element, stats).brightnesses(&wavelengths);
             let sum: f32 = brightnesses.iter().zip(&element.points).map(|(b, point)| b * point.weight).sum();
             element.area * sum
         };
-        self.total += each_element(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
-        let lit =
-            self.receive(scene, view, 1.0, &[], |cut, ids| each_element(cut, ids, control, stats, shine))?;
+        self.total += par_map_elements(&self.cut, &ids, control, stats, power)?.iter().sum::<f32>();
+        let lit = self
+            .receive(scene, view, 1.0, &[], |cut, ids| par_map_elements(cut, ids, control, stats, shine))?;
         for (element, lit) in self.cut.elements.iter_mut().zip(&lit) {
             element.quarters = lit.quarters;
             let sides = element.irradiance();
@@ -277,8 +277,8 @@ impl Solution {
         Ok(())
     }
 
-    /// Asks all elements what they receive of light of this brightness, and those again that are
-    /// cut because of it; but not those of patches that receive it as `wholes`.
+    /// Evaluates the light of this brightness that elements receive, and again for elements that
+    /// are subdivided because of it; except elements of patches that receive it as `wholes`.
     fn receive<T: Arrival>(
         &mut self,
         scene: &Scene,
@@ -287,12 +287,12 @@ impl Solution {
         wholes: &[Option<Received>],
         mut answer: impl FnMut(&Cut, &[u32]) -> Result<Vec<T>, Cancelled>,
     ) -> Result<Vec<T>, Cancelled> {
-        let even = self.even();
+        let mean_exitance = self.mean_exitance();
         let mut received = Vec::new();
-        let is_asked = |patch: u32| wholes.get(patch as usize).is_none_or(Option::is_none);
+        let is_included = |patch: u32| wholes.get(patch as usize).is_none_or(Option::is_none);
         let elements = (0..).zip(&self.cut.elements);
         let mut fresh: Vec<u32> =
-            elements.filter(|(_, element)| is_asked(element.patch)).map(|(id, _)| id).collect();
+            elements.filter(|(_, element)| is_included(element.patch)).map(|(id, _)| id).collect();
         let mut has_cut = false;
         while !fresh.is_empty() {
             received.resize_with(self.cut.elements.len(), T::default);
@@ -306,12 +306,12 @@ impl Solution {
                 let contrast = (most - least) * brightness;
                 let here = || self.wavelengths.brightness(&element.irradiance().into_iter().sum());
                 element.level < self.settings.subdivision
-                    && contrast > self.settings.gradient * even
+                    && contrast > self.settings.gradient * mean_exitance
                     && contrast > self.settings.gradient * here()
             };
             let mut coarse: Vec<u32> = fresh.iter().copied().filter(is_coarse).collect();
             if coarse.is_empty() && has_cut {
-                coarse = self.cut.lagging(scene, &self.settings, is_asked);
+                coarse = self.cut.unbalanced(scene, &self.settings, is_included);
             }
             has_cut |= !coarse.is_empty();
             fresh = self.cut.split(scene, view, &self.settings, &self.wavelengths, &coarse);
@@ -319,7 +319,7 @@ impl Solution {
         Ok(received)
     }
 
-    /// The irradiance that the light still to be sent will make, if it is spread evenly.
+    /// The irradiance of unshot light and its interreflection, if it is distributed uniformly.
     pub fn ambient(&self) -> Bands {
         let faced = |patch: &Patch| patch.faced.iter().filter(|&&faced| faced).count() as f32;
         let patches = &self.cut.patches;
@@ -334,8 +334,8 @@ impl Solution {
         }
         let rho = reflecting * area.recip();
         let mut ambient = Bands::ZERO;
-        // Light that was scattered last counts once; what was scattered less often, as often as it
-        // may be scattered yet.
+        // The series of reflections ends at the depth limit, so that it is shorter for light that
+        // was scattered more often.
         let mut series = Bands::splat(1.0);
         for layer in (0..self.settings.max_depth as usize).rev() {
             let of_layer = patches.iter().filter_map(|patch| patch.unshot.get(layer));
@@ -346,7 +346,7 @@ impl Solution {
         ambient
     }
 
-    /// Bytes of memory that patches, elements and the mesh take.
+    /// Memory of patches, elements and the mesh, in bytes.
     pub fn bytes(&self) -> usize {
         let patch = |patch: &Patch| {
             let whole = patch.whole.as_ref().map_or(0, |whole| size_of_val(&**whole));
@@ -357,19 +357,19 @@ impl Solution {
     }
 }
 
-/// The light of a shot, per area of the patch that it leaves.
+/// The radiosity of a shot.
 struct Shot<'a> {
     wavelengths: &'a Wavelengths,
     all: Bands,
-    /// That which may be scattered more than once.
+    /// The part that may be scattered more than once.
     sent_on: Bands,
-    /// That which may be scattered once.
+    /// The part that may be scattered once.
     last: Bands,
 }
 
 impl Shot<'_> {
-    /// Lets light arrive at an element of a patch, which has more to send then, and adds what is
-    /// scattered of light of unit radiosity.
+    /// Adds the light that an element of a patch receives to the element, and the scattered power
+    /// of a shot of unit radiosity to `sent`.
     fn arrive(&self, element: &mut Element, received: &Received, patch: &mut Patch, sent: &mut [Bands; 2]) {
         let sides = received.sides(element);
         if sides == [0.0; 2] {
@@ -399,9 +399,10 @@ impl Shot<'_> {
     }
 }
 
-/// What arrives at an element.
+/// The irradiance that an element receives.
 trait Arrival: Clone + Default {
-    /// At each quarter, on both sides; of a shot, in parts of its brightness.
+    /// Brightness of the irradiance of each quarter, summed over both sides; for a shot, relative
+    /// to its brightness.
     fn brightnesses(&self, wavelengths: &Wavelengths) -> [f32; 4];
 }
 
@@ -411,7 +412,7 @@ impl Arrival for Received {
     }
 }
 
-/// Irradiance from lights that are no surfaces, on both sides of each quarter.
+/// Irradiance from lights that are not surfaces, on both sides of each quarter.
 #[derive(Clone, Default)]
 struct Lit {
     quarters: [[Bands; 2]; 4],
@@ -423,19 +424,19 @@ impl Arrival for Lit {
     }
 }
 
-/// Asks elements by their indices.
-fn each_element<T: Send>(
+/// A parallel map over the elements with the given indices.
+fn par_map_elements<T: Send>(
     cut: &Cut,
     ids: &[u32],
     control: &Control,
     stats: &mut RayStats,
     answer: impl Fn(&Element, &mut RayStats) -> T + Sync,
 ) -> Result<Vec<T>, Cancelled> {
-    each(ids, control, stats, |&id, stats| answer(&cut.elements[id as usize], stats))
+    par_map(ids, control, stats, |&id, stats| answer(&cut.elements[id as usize], stats))
 }
 
-/// Asks all of them, on all threads.
-fn each<I: Sync, T: Send>(
+/// A parallel map, which can be cancelled.
+fn par_map<I: Sync, T: Send>(
     asked: &[I],
     control: &Control,
     stats: &mut RayStats,

@@ -1,18 +1,18 @@
-//! From a solution to a picture.
+//! Rendering of a solution.
 //!
-//! *Interpolated*: every vertex has the mean of the irradiances that the elements around it have
-//! there, as their quarters tell, and light changes linearly over the fan of triangles between an
-//! element's centre, which has the element's own irradiance, and its outline. What is seen is L =
-//! L_e + (ρ E + τ E′)/π with the albedo of the very point, so that textures are sharp, E being the
-//! irradiance of the side that is seen and E′ that of the other.
+//! *Interpolated*: the irradiance of a vertex is the mean of the elements around it, extrapolated
+//! from their quarters. It is interpolated linearly over the fan of triangles between an element's
+//! centre, which has the mean irradiance of the element, and its outline. Radiance is L = L_e + (ρ
+//! E + τ E′)/π with the albedo of the point, so that textures are sharp; E is the irradiance of the
+//! visible side and E′ that of the other.
 //!
-//! *Gathered*: direct light is sampled as by paths, one light a sample, and indirect light is what
-//! rays in random directions of the cosine's density find on the elements. Shadows are then as
-//! sharp as they are, and errors of the solution count only after one more diffuse reflection
-//! ([Lischinski 1993]; [Cohen 1993]). Surfaces that have no elements (planes without end, formulas,
-//! solids, curves, and the smallest where there are too many primitives) are always shown so; they
-//! take light but pass none on. What is gathered is scattered once more than what the elements
-//! show, so that of their light that part is left out which was scattered as often as it may be.
+//! *Gathered*: direct light is estimated by one light sample per sample of a pixel, as in path
+//! tracing, and indirect light from the elements that rays in cosine-distributed directions hit.
+//! Shadows are then sharp, and errors of the solution are visible only through one more diffuse
+//! reflection ([Lischinski 1993]; [Cohen 1993]). Surfaces without elements (infinite planes,
+//! formulas, solids, curves, and the smallest of too many primitives) are always gathered; they
+//! receive light but do not reflect it to other surfaces. Gathered light is scattered once more
+//! than the light of elements, so that the part of it at the depth limit is left out.
 
 use math::{Frame, Ray, RayDifferential, Vec2};
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ pub(crate) struct Interpolation {
     outlines: Vec<Vec<Corner>>,
     /// The irradiance of both sides at each vertex.
     vertices: Vec<[Bands; 2]>,
-    /// The irradiance that is still to come, evenly.
+    /// The ambient irradiance of unshot light.
     ambient: Bands,
     lights: LightSampler,
     /// Rays that gather light for each sample of a pixel; 0: interpolated.
@@ -44,7 +44,7 @@ pub(crate) struct Interpolation {
 }
 
 impl Interpolation {
-    /// Spreads the light of elements to their vertices.
+    /// Averages the irradiance of elements at their vertices.
     pub fn new(scene: &Scene, solution: &Solution, lights: &LightSampler, gather: u32) -> Self {
         let mesh = &solution.cut.mesh;
         let elements = &solution.cut.elements;
@@ -67,7 +67,7 @@ impl Interpolation {
         Self { outlines, vertices, ambient: solution.ambient(), lights: lights.clone(), gather }
     }
 
-    /// Bytes of memory that it takes.
+    /// Memory taken, in bytes.
     pub fn bytes(&self) -> usize {
         let outlines: usize = self.outlines.iter().map(|outline| size_of_val(&**outline)).sum();
         outlines + size_of_val(&*self.outlines) + size_of_val(&*self.vertices)
@@ -84,8 +84,8 @@ impl Interpolation {
             let whole = (a - center).perp_dot(b - center);
             let (wa, wb) =
                 ((uv - center).perp_dot(b - center) / whole, (a - center).perp_dot(uv - center) / whole);
-            // The one that holds the point, or nearly does: of its two outer weights none is
-            // negative.
+            // The triangle that contains the point: neither of its two outer weights is negative,
+            // up to rounding.
             let least = wa.min(wb);
             if least > best.0 {
                 best = (least, [1.0 - wa - wb, wa, wb], side);
@@ -145,7 +145,7 @@ impl SolutionRadiance<'_> {
         }
     }
 
-    /// What a surface scatters to where it is seen from, by samples.
+    /// Radiance of a surface from direct and gathered indirect light, by samples.
     fn gathered(&self, tracer: &mut Tracer, interaction: &SurfaceInteraction, albedo: &Albedo) -> Bands {
         let s = &interaction.surface;
         let ns = s.shading.n;
@@ -154,7 +154,7 @@ impl SolutionRadiance<'_> {
         let samples = self.interpolation.gather.max(1);
         let mut sum = Bands::ZERO;
         for _ in 0..samples {
-            if !tracer.goes_on() {
+            if !tracer.may_trace() {
                 return sum;
             }
             sum += self.direct(tracer, interaction, albedo);
@@ -177,7 +177,7 @@ impl SolutionRadiance<'_> {
         sum * (samples as f32).recip()
     }
 
-    /// What a surface scatters of direct light, by one sample of one light.
+    /// Radiance of a surface from direct light, by one sample of one light.
     fn direct(&self, tracer: &mut Tracer, interaction: &SurfaceInteraction, albedo: &Albedo) -> Bands {
         let &Self { interpolation, solution } = self;
         let s = &interaction.surface;
@@ -196,7 +196,7 @@ impl SolutionRadiance<'_> {
         share * l * (cos_theta.abs() * FRAC_1_PI / (pmf * sample.pdf))
     }
 
-    /// The radiance that elements send back along a ray to be scattered once more, emission apart.
+    /// The radiance of elements along a ray, without emission, that may be scattered once more.
     fn found(&self, tracer: &mut Tracer, ray: Ray) -> Bands {
         let (scene, cut) = (tracer.scene, &self.solution.cut);
         let Some((hit, surface)) = first_solid(scene, ray, tracer.stats) else { return Bands::ZERO };

@@ -1,5 +1,5 @@
-//! Cutting surfaces: first into patches of one size, then, where light changes fast, into smaller
-//! and smaller elements.
+//! Subdivision: first into patches of one size, then adaptively into elements, where irradiance
+//! changes fast.
 
 use description::RadiosityDesc;
 use rayon::prelude::*;
@@ -10,10 +10,10 @@ use super::element::{Element, Patch, PatchPart};
 use super::mesh::Mesh;
 use crate::{Cancelled, Control};
 
-/// How long patches are, unless the settings say so: the radius of the scene in patches.
+/// The default size of patches: the radius of the scene over this.
 const PATCHES_PER_RADIUS: f32 = 10.0;
 
-/// The scene cut into patches, each a single element yet.
+/// The scene subdivided into patches and elements.
 pub(crate) struct Cut {
     pub mesh: Mesh,
     pub patches: Vec<Patch>,
@@ -21,9 +21,9 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// Cuts until patches are not longer than `patch_size` and hardly bent. Where that makes more
-    /// than `max_patches`, they are twice as long, and so on. No more than half of `max_patches`
-    /// primitives are cut at all, so that large ones always can be.
+    /// Subdivides until patches are at most `patch_size` long and nearly flat; each is a single
+    /// element. If there are more than `max_patches`, the size is doubled, and so on. At most half
+    /// of `max_patches` primitives have patches, so that large ones can always be subdivided.
     pub fn new(
         scene: &Scene,
         view: &View,
@@ -35,7 +35,7 @@ impl Cut {
         let [open, close] = view.camera.shutter();
         let whole = Mesh::new(scene, 0.5 * (open + close), max_patches.div_ceil(2), control)?;
         let mut size = settings.patch_size.unwrap_or(scene.sphere().radius / PATCHES_PER_RADIUS);
-        // No patch is larger than a square with sides of this length.
+        // Patches are at most as large as a square with sides of this length.
         let area = whole.whole_area(scene.world());
         while f64::from(size).powi(2) * (max_patches as f64) < area {
             size *= 2.0;
@@ -60,8 +60,8 @@ impl Cut {
     }
 }
 
-/// The mesh cut into leaves of a size; `None` where there would be more than `most`, though some
-/// could be longer.
+/// Subdivides the mesh into leaves of a size; `None` if there would be more than `most` by
+/// splitting.
 fn cut(
     scene: &Scene,
     mut mesh: Mesh,
@@ -76,7 +76,7 @@ fn cut(
     while let Some(cell) = rest.pop() {
         control.check()?;
         let length = mesh.size(world, cell);
-        // Bent cells are cut as long as that makes patches, not dust.
+        // Curved cells are split down to a minimum size.
         let is_bent = length > size * BENT_PART && mesh.is_bent(world, cell);
         if length > size || is_bent {
             let first = mesh.split(world, cell);
@@ -92,41 +92,41 @@ fn cut(
     Ok(Some((mesh, leaves)))
 }
 
-/// The part of a patch's size below which bent cells are good enough.
+/// The minimum size of curved cells, as a share of the patch size.
 const BENT_PART: f32 = 0.05;
 
 impl Cut {
-    /// Hands what patches received as wholes to their elements.
-    pub fn settle(&mut self) {
+    /// Distributes the light that patches received as a single element to their elements.
+    pub fn push_wholes(&mut self) {
         let Self { mesh, patches, elements } = self;
         elements.par_iter_mut().for_each(|element| {
             if let Some(whole) = &patches[element.patch as usize].whole {
                 element.inherit(mesh, whole);
             }
         });
-        patches.iter_mut().filter_map(|patch| patch.whole.as_mut()).for_each(|whole| whole.darken());
+        patches.iter_mut().filter_map(|patch| patch.whole.as_mut()).for_each(|whole| whole.clear());
     }
 
-    /// Elements of these patches that have a side at which others are cut more than once more. What
-    /// made those fine, such as the edge of a shadow, may go on here and be missed by the few
-    /// points of a coarse element.
-    pub fn lagging(
+    /// Elements of these patches with neighbours that are finer by more than one level. The cause,
+    /// such as the edge of a shadow, may extend into the coarse element and be missed by its few
+    /// points.
+    pub fn unbalanced(
         &self,
         scene: &Scene,
         settings: &RadiosityDesc,
-        is_asked: impl Fn(u32) -> bool + Sync,
+        is_included: impl Fn(u32) -> bool + Sync,
     ) -> Vec<u32> {
         let lags = |&id: &u32| {
             let element = &self.elements[id as usize];
-            is_asked(element.patch)
+            is_included(element.patch)
                 && element.level < settings.subdivision
                 && self.mesh.is_beside_finer(scene.world(), self.mesh.cell(element.cell))
         };
         (0..self.elements.len() as u32).into_par_iter().filter(lags).collect()
     }
 
-    /// Halves elements twice, as long as there is room for more of them. The parts inherit the
-    /// light of the whole. Returns those that are new or have become smaller.
+    /// Halves elements twice, up to the maximum number of elements. The parts inherit the light of
+    /// the whole. Returns the parts.
     pub fn split(
         &mut self,
         scene: &Scene,
@@ -159,12 +159,12 @@ impl Cut {
         let made: Vec<Element> = parts.par_iter().map(make).collect();
         let mut changed = Vec::with_capacity(made.len());
         for (i, ((whole, cell), element)) in parts.into_iter().zip(made).enumerate() {
-            // The first part takes the place of the whole.
+            // The first part replaces the whole.
             let id = if i % 4 == 0 { whole } else { self.elements.len() as u32 };
             if i % 4 == 0 {
                 let mut whole = std::mem::replace(&mut self.elements[id as usize], element);
                 if whole.level == 0 {
-                    whole.darken();
+                    whole.clear();
                     let patch = &mut self.patches[whole.patch as usize];
                     patch.whole = Some(Box::new(whole));
                 }

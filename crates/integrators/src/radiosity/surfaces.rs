@@ -1,4 +1,4 @@
-//! What rays hit, apart from interfaces between media.
+//! The surfaces that rays hit, except interfaces between media.
 
 use geometry::{Hit, RayStats, SurfacePoint};
 use math::Ray;
@@ -9,7 +9,7 @@ pub(crate) fn seen_side(surface: &SurfacePoint) -> usize {
     usize::from(surface.wo.dot(surface.n) < 0.0)
 }
 
-/// The first hit of a ray that is no mere interface between media.
+/// The first hit of a ray that is not an interface between media.
 pub(crate) fn first_solid(scene: &Scene, mut ray: Ray, stats: &mut RayStats) -> Option<(Hit, SurfacePoint)> {
     loop {
         let hit = scene.hit(&ray, f32::INFINITY, stats)?;

@@ -1,5 +1,4 @@
-//! A solution from within: the matrix that nobody sees, the energy on its way, and the seams of the
-//! picture.
+//! Properties of a solution: form factors, conservation of energy, and continuity of the picture.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -91,7 +90,7 @@ fn interpolation(scene: &Scene, solution: &Solution) -> Interpolation {
 fn column(scene: &Scene, solution: &Solution, patch: &Patch) -> Vec<f32> {
     let (emitter, mut stats) = (Emitter::new(scene, &solution.cut.mesh, patch, 0), RayStats::default());
     let elements = solution.cut.elements.iter();
-    elements.map(|element| emitter.shine(scene, element, 0.0, &mut stats).sides(element)[0]).collect()
+    elements.map(|element| emitter.irradiate(scene, element, 0.0, &mut stats).sides(element)[0]).collect()
 }
 
 #[test]
@@ -111,7 +110,7 @@ fn the_rows_of_a_closed_room_sum_to_one() {
 }
 
 #[test]
-fn a_hemicube_agrees_within_its_resolution() {
+fn hemicube_form_factors_agree_within_the_resolution() {
     let scene = compile(&room(Point3::new(1.0, 1.5, 0.8), [0.5; 6]));
     let solution = unsolved(&scene, &settings(0.4));
     let ids: Vec<u32> = (0..solution.cut.elements.len() as u32).collect();
@@ -127,7 +126,8 @@ fn a_hemicube_agrees_within_its_resolution() {
         for ((received, element), exact) in received.iter().zip(&solution.cut.elements).zip(&exact) {
             let found = received.sides(element)[0];
             sum += found * element.area / patch.area;
-            // Elements are right to about the pixels along their rim; near by, a patch is no point.
+            // The error is about that of the pixels at the elements' edges; near elements see more
+            // than the patch's centre.
             let pixels = exact * element.area / patch.area * (resolution * resolution) as f32;
             let far = (element.points[0].p.p - solution.cut.elements[7].points[0].p.p).length() > 0.9;
             let bound = (1.5 / pixels.sqrt() + 0.03) * exact;
@@ -140,7 +140,7 @@ fn a_hemicube_agrees_within_its_resolution() {
     }
 }
 
-/// What was sent in the first place is on its way, or was absorbed.
+/// The initial power is unshot, or was absorbed.
 #[test]
 fn energy_is_conserved_while_shooting() {
     let reflectances = [0.7, 0.4, 0.6, 0.3, 0.5, 0.8];
@@ -175,7 +175,7 @@ fn energy_is_conserved_while_shooting() {
 }
 
 #[test]
-fn a_furnace_is_even() {
+fn irradiance_in_a_furnace_is_uniform() {
     let mut desc = room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]);
     let light = desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::Constant(1.0)));
     let kinds: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape.value.clone()).collect();
@@ -188,10 +188,10 @@ fn a_furnace_is_even() {
     let solution = solved(&scene, &settings);
     let emitted = solution.cut.patches[0].emitted[0].mean();
     for element in &solution.cut.elements {
-        // E = L_e / (1 − ρ), less the light that was not sent.
+        // E = L_e / (1 − ρ), less the unshot light.
         let found = element.irradiance()[0].mean() / emitted;
         assert!((found - 2.0).abs() < 2e-3, "{found}");
-        assert!(element.irradiance()[1].is_black(), "nothing gets out");
+        assert!(element.irradiance()[1].is_black(), "no light on the outer side");
     }
 }
 
@@ -214,9 +214,9 @@ fn the_sky_is_an_emitter() {
     assert!((area / (4.0 * std::f32::consts::PI) - 1.0).abs() < 3e-3, "{area}");
 }
 
-/// Where two elements meet, at corners and at T-vertices, both show the same light.
+/// At common corners and T-vertices of elements, their irradiances agree.
 #[test]
-fn there_are_no_cracks() {
+fn interpolation_is_continuous() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.7, 0.4, 0.6, 0.3, 0.5, 0.8]));
     let settings = RadiosityDesc { tolerance: 0.02, ..settings(0.5) };
     let solution = solved(&scene, &settings);
@@ -247,32 +247,36 @@ fn there_are_no_cracks() {
     }
 }
 
-/// What lies beside elements that were cut is cut until neighbours differ by one cut at most.
+/// Neighbours of subdivided elements are subdivided until levels differ by one at most.
 #[test]
-fn fine_elements_are_followed() {
+fn subdivision_is_balanced() {
     let scene = compile(&room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
     let settings = settings(0.5);
     let Solution { wavelengths, mut cut, .. } = unsolved(&scene, &settings);
     let mut divide = |ids: &[u32]| {
         let parts = cut.split(&scene, &view(), &settings, &wavelengths, ids);
-        let lagging = cut.lagging(&scene, &settings, |_| true);
-        assert_eq!(cut.lagging(&scene, &settings, |patch| patch == 0), [0; 0], "it is as fine as any");
-        (parts, lagging)
+        let unbalanced = cut.unbalanced(&scene, &settings, |_| true);
+        assert_eq!(
+            cut.unbalanced(&scene, &settings, |patch| patch == 0),
+            [0; 0],
+            "it has no finer neighbour"
+        );
+        (parts, unbalanced)
     };
-    let (parts, lagging) = divide(&[0]);
+    let (parts, unbalanced) = divide(&[0]);
     assert_eq!(parts.len(), 4);
-    assert!(lagging.is_empty(), "one cut more is no more than one cut");
-    let (_, mut lagging) = divide(&parts);
+    assert!(unbalanced.is_empty(), "levels differ by one");
+    let (_, mut unbalanced) = divide(&parts);
     // The two neighbours on the same wall, which has four patches.
-    assert_eq!(lagging.len(), 2);
-    while !lagging.is_empty() {
-        lagging = divide(&lagging).1;
+    assert_eq!(unbalanced.len(), 2);
+    while !unbalanced.is_empty() {
+        unbalanced = divide(&unbalanced).1;
     }
     assert_eq!(cut.elements.len(), 24 + 15 + 2 * 3);
 }
 
 #[test]
-fn every_point_has_its_leaf() {
+fn leaves_cover_all_points() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
     let solution = solved(&scene, &RadiosityDesc { tolerance: 0.1, ..settings(0.5) });
     let rng = &mut Rng::new(1, 0);
@@ -294,7 +298,7 @@ fn every_point_has_its_leaf() {
 }
 
 #[test]
-fn the_mesh_is_written_whole() {
+fn the_mesh_file_is_complete() {
     let scene = furnished(room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
     let solution = solved(&scene, &settings(0.5));
     let bytes =
@@ -313,7 +317,7 @@ fn the_mesh_is_written_whole() {
 }
 
 #[test]
-fn a_sky_that_nothing_has_received_is_all_to_be_sent() {
+fn light_is_unshot_before_the_sky_is_received() {
     let mut desc = SceneDesc::default();
     let radiance = InfiniteRadiance::Constant(SpectrumDesc::Constant(1.0));
     desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
@@ -321,9 +325,9 @@ fn a_sky_that_nothing_has_received_is_all_to_be_sent() {
     assert_eq!(unsolved(&compile(&desc), &settings(0.5)).unshot_share(), 1.0);
 }
 
-/// Of more primitives than there may be patches, the lights and the largest are cut.
+/// If there are more primitives than patches allowed, the lights and the largest are subdivided.
 #[test]
-fn many_primitives_do_not_make_more_patches_than_there_may_be() {
+fn patches_are_limited_for_many_primitives() {
     let dust = |i: u32| {
         let p = Point3::new(i as f32 / 400.0, 0.5, 0.2);
         [p, p + Point3::new(1e-3, 0.0, 0.0), p + Point3::new(0.0, 0.0, 1e-3)]
@@ -346,7 +350,7 @@ fn many_primitives_do_not_make_more_patches_than_there_may_be() {
 }
 
 #[test]
-fn cutting_can_be_stopped() {
+fn subdivision_can_be_cancelled() {
     let scene = compile(&room(Point3::new(1.0, 1.0, 1.0), [0.5; 6]));
     let control = Control::default();
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);

@@ -1,11 +1,11 @@
-//! Direct lighting: next-event estimation, and light that rays hit by chance.
+//! Direct lighting: next-event estimation, and emission that scattered rays hit.
 //!
-//! At a vertex one ray goes to a sampled point on a light and one onwards. Light that both can
-//! find, of densities p_l (of the choice of the light times that of its point) and p_b (of the
-//! BSDF) per solid angle, is counted by both with the weights of the power heuristic, w_l =
-//! p_l²/(p_l² + p_b²) and w_b = 1 − w_l [Veach 1997 §9.2]. What one alone can find (delta lights,
-//! specular scattering) counts fully. Lights may leave directions to the BSDF (`allow_incomplete`):
-//! their density is then zero there.
+//! At a vertex one ray goes to a sampled point on a light and one along a direction of the BSDF.
+//! Light that both can find, with densities p_l (of the choice of the light times that of its
+//! point) and p_b (of the BSDF) per solid angle, is counted by both with the weights of the power
+//! heuristic, w_l = p_l²/(p_l² + p_b²) and w_b = 1 − w_l [Veach 1997 §9.2]. Light that only one can
+//! find (delta lights, specular scattering) counts fully. Lights may leave directions to the BSDF
+//! (`allow_incomplete`): their density is then zero there.
 
 use description::LightSamplerDesc;
 use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
@@ -27,8 +27,8 @@ pub(crate) struct DirectLighting {
 }
 
 impl DirectLighting {
-    /// By the lights of a scene. `interfaces` is what surfaces of material `interface` do to the
-    /// light of delta lights; that of others passes them.
+    /// For the lights of a scene. `interfaces` says whether surfaces of material `interface`
+    /// occlude delta lights; they do not occlude other lights.
     pub fn new(
         scene: &Scene,
         desc: LightSamplerDesc,
@@ -39,13 +39,13 @@ impl DirectLighting {
         Ok(Self { lights, interfaces })
     }
 
-    /// By no lights.
+    /// For no lights.
     pub fn none() -> Self {
         Self { lights: LightSampler::default(), interfaces: Interfaces::Stop }
     }
 
-    /// The weight of light from `light` that a ray along `wi` hits. Without an `origin` no light
-    /// sample could have found it.
+    /// The MIS weight of light from `light` that a ray along `wi` hits; 1 without an `origin`,
+    /// where no light sample could have found it.
     fn weight(&self, scene: &Scene, origin: Option<&Origin>, light: LightId, wi: Vector3) -> f32 {
         let Some(Origin { context, pdf }) = origin else { return 1.0 };
         let pmf = self.lights.pmf(context, light);
@@ -66,7 +66,7 @@ impl DirectLighting {
             .sum()
     }
 
-    /// The weighted radiance that a surface itself sends back along a ray.
+    /// The weighted emission of a surface back along a ray.
     pub fn emitted(
         &self,
         scene: &Scene,
@@ -80,7 +80,7 @@ impl DirectLighting {
         if l.is_black() { l } else { l * self.weight(scene, origin, light, -wo) }
     }
 
-    /// Next-event estimation: what a surface scatters to `wo` of direct light.
+    /// Next-event estimation: direct light that a surface scatters to `wo`.
     #[doc(alias = "SampleLd")]
     pub fn sample<B: Scatter>(
         &self,
@@ -121,7 +121,7 @@ pub(crate) enum Shadows {
     Ignored,
 }
 
-/// What a surface scatters to `wo` of direct light, by one sample of every light.
+/// Direct light that a surface scatters to `wo`, by one sample of every light.
 pub(crate) fn all_lights(
     tracer: &mut Tracer,
     surface: &SurfaceInteraction,
@@ -151,7 +151,7 @@ pub(crate) fn all_lights(
     })
 }
 
-/// What a surface scatters to `wo` of the light of a light sample: f·|cos|·L, before visibility and
+/// The light of a light sample that a surface scatters to `wo`: f·|cos|·L, without visibility and
 /// density.
 pub(crate) fn scattered<B: Scatter>(
     surface: &SurfaceInteraction,
@@ -162,13 +162,13 @@ pub(crate) fn scattered<B: Scatter>(
     bsdf.f(surface.surface.wo, light.wi, TransportMode::Radiance) * light.l * cos_theta
 }
 
-/// The context for sampling lights from a surface that scatters as `flags` say.
+/// The context for sampling lights from a surface whose BSDF has the given flags.
 pub(crate) fn light_context(surface: &SurfaceInteraction, flags: BxdfFlags) -> LightSampleContext {
     on_its_side(surface.light_context(), surface.surface.wo, flags)
 }
 
-/// A point seen from `wo` that scatters to one side only is offset to that side by its error, lest
-/// a light that intersects its surface be sampled from behind.
+/// Offsets a point that scatters to one side only to the side of `wo` by its error, so that a light
+/// that intersects its surface is not sampled from behind.
 pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfFlags) -> LightSampleContext {
     let side = match (flags.is_reflective(), flags.is_transmissive()) {
         (true, false) => wo,
@@ -178,9 +178,10 @@ pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfF
     LightSampleContext { p: Point3Error::exact(offset_ray_origin(context.p, context.n, side)), ..context }
 }
 
-/// The weight of a sample of density `p` that another technique finds with density `other`.
+/// The power heuristic for a sample of density `p` that another technique finds with density
+/// `other`.
 fn power_heuristic(p: f32, other: f32) -> f32 {
-    // The ratio, because squares of large densities overflow.
+    // Computed from the ratio, because squares of large densities overflow.
     let ratio = other / p;
     if p == 0.0 { 0.0 } else { 1.0 / (1.0 + ratio * ratio) }
 }

@@ -1,4 +1,4 @@
-//! What a camera ray hits first, for the layers of the film.
+//! The first hit of a camera ray, for the AOVs of the film.
 
 use film::{FirstHit, id_of_name};
 use geometry::Hit;
@@ -8,14 +8,13 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 
-/// How many changes of medium a ray passes before it counts as hitting nothing.
+/// Maximum number of interfaces that a ray passes before it counts as a miss.
 const MAX_INTERFACES: u32 = 64;
 
 /// Directions that the albedo is averaged over.
 const ALBEDO_SAMPLES: u32 = 16;
 
-/// The first surface that a camera ray hits; changes of medium are none. The albedo is that at
-/// `lambda`.
+/// The first surface that a camera ray hits, except interfaces. The albedo is that at `lambda`.
 pub(crate) fn first_hit(
     tracer: &mut Tracer,
     ray: &RayDifferential,
@@ -45,7 +44,7 @@ pub(crate) fn first_hit(
             Projection::Spherical(_) => in_camera.length(),
             _ => in_camera.z,
         };
-        // Towards the camera, as compositing expects it.
+        // Towards the camera, as compositing software expects.
         let normal = surface.surface.shading.n;
         let normal = if normal.dot(wo) < 0.0 { -normal } else { normal };
         let names = tracer.scene.names();
@@ -69,8 +68,8 @@ pub(crate) fn first_hit(
     None
 }
 
-/// How far a point of a surface moves on the film while the shutter is open, in pixels; 0 where it
-/// is not in view all the time. Surfaces without parameters count as standing still.
+/// The displacement of a surface point on the film while the shutter is open, in pixels; 0 if it
+/// leaves the view. Surfaces without parameters count as static.
 fn motion(tracer: &Tracer, hit: &Hit, p: Vec3) -> Vec2 {
     let camera = &tracer.view.camera;
     let seen = |time: f32| {

@@ -1,10 +1,11 @@
-//! What algorithms share: following rays, the state of a path, direct lighting, Russian roulette.
+//! Common parts of the algorithms: tracing rays, the state of a path, direct lighting, Russian
+//! roulette.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `tracer` | scene, view, random numbers and statistics of a sample; cancellation |
 //! | `pixel_samples` | camera rays of all pixels of a pass |
-//! | `first_hit` | what a camera ray hits first, for the layers of the film |
+//! | `first_hit` | the first hit of a camera ray, for the AOVs of the film |
 //! | `shutter_sample` | wavelengths and time of a sample |
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |

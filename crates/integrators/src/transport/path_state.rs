@@ -9,7 +9,7 @@ use spectrum::SampledSpectrum;
 
 use super::roulette;
 
-/// A path from the camera on the way to its next vertex.
+/// The state of a camera path between two vertices.
 pub(crate) struct PathState {
     /// The ray to the next vertex.
     pub ray: RayDifferential,
@@ -19,11 +19,13 @@ pub(crate) struct PathState {
     pub depth: u32,
     /// The last scattering event, unless it was specular.
     pub origin: Option<Origin>,
-    /// The product of η² over the refractions: β times this has no compression of radiance.
+    /// The product of η² over the refractions: β times this is without the scaling of radiance by
+    /// refraction.
     eta_scale: f32,
 }
 
-/// The vertex that a ray comes from as light sampling sees it, and the density of its direction.
+/// The vertex that a ray starts at, as a context of light sampling, and the density of the ray's
+/// direction.
 pub(crate) struct Origin {
     /// The vertex.
     pub context: LightSampleContext,
@@ -31,7 +33,7 @@ pub(crate) struct Origin {
     pub pdf: f32,
 }
 
-/// A direction that a BSDF has chosen.
+/// A direction sampled from a BSDF.
 pub(crate) struct Scattered {
     pub sample: BsdfSample,
     /// Density per solid angle, also where that of the sample is only proportional to its value.
@@ -39,7 +41,7 @@ pub(crate) struct Scattered {
 }
 
 impl Scattered {
-    /// Samples the BSDF for the direction `surface` is seen from; `None` if it scatters nothing.
+    /// Samples the BSDF for the outgoing direction of `surface`; `None` without a sample.
     pub fn sample<B: Scatter>(
         surface: &SurfaceInteraction,
         bsdf: &Bsdf<B>,
@@ -58,7 +60,7 @@ impl Scattered {
 }
 
 impl PathState {
-    /// Along a ray of throughput 1 that leaves scattering event number `depth`; 0 is the camera.
+    /// A path of throughput 1 whose ray leaves scattering event number `depth`; 0 is the camera.
     pub fn new(ray: RayDifferential, depth: u32) -> Self {
         Self { ray, beta: SampledSpectrum::ONE, depth, origin: None, eta_scale: 1.0 }
     }
@@ -91,7 +93,7 @@ impl PathState {
     }
 }
 
-/// f·|cos|/p of a direction that a BSDF has chosen.
+/// f·|cos|/p of a direction sampled from a BSDF.
 pub(crate) fn throughput(surface: &SurfaceInteraction, sample: &BsdfSample) -> SampledSpectrum {
     sample.f * (sample.wi.dot(surface.surface.shading.n).abs() / sample.pdf)
 }

@@ -1,8 +1,8 @@
-//! One sample of every pixel: camera rays, and what comes along them, added to the film.
+//! One sample of every pixel: camera rays, whose radiance is added to the film.
 //!
 //! Pass i takes sample i of every pixel. The dimensions of the sampler are used in a fixed order:
 //! wavelengths (1), position in the pixel's filter (2), time (1), position on the lens (2), and
-//! then whatever the algorithm asks for. [Pharr 2023 §1.3.4, §5.4.1]
+//! then those of the algorithm. [Pharr 2023 §1.3.4, §5.4.1]
 
 use film::{FilmTile, Filter, FirstHit};
 use geometry::RayStats;
@@ -36,16 +36,16 @@ pub(crate) struct PixelSample {
     pub lambda: SampledWavelengths,
     /// The time, in the scene's units.
     pub time: f32,
-    /// The camera ray; `None` where no light reaches that point of the film.
+    /// The camera ray; `None` if no light reaches that point of the film.
     pub camera_ray: Option<CameraRayDifferential>,
     /// Weight in the pixel.
     pub filter_weight: f32,
 }
 
 impl PixelSamples<'_> {
-    /// Adds to each pixel of the tiles the radiance that `radiance` estimates, at the wavelengths
-    /// as it leaves them. The tracer's sampler continues after the dimensions of the camera sample.
-    /// After a cancellation the film has all samples that were finished, and no parts of others.
+    /// Adds the estimates of `radiance` to each pixel of the tiles, at the wavelengths that it
+    /// leaves in the sample. The tracer's sampler continues after the dimensions of the camera
+    /// sample. After a cancellation the film has all finished samples, and no parts of others.
     pub fn add(
         &self,
         tiles: Vec<FilmTile>,
@@ -90,8 +90,8 @@ impl PixelSamples<'_> {
         })
     }
 
-    /// What a sample hits first, if a layer of the film needs it. Radiance is estimated before, so
-    /// that the random numbers for this do not change it.
+    /// The first hit of a sample, if an AOV of the film needs it. It comes after the estimate of
+    /// radiance, so that its random numbers do not change the estimate.
     pub fn first_hit(
         &self,
         tile: &FilmTile,
@@ -103,7 +103,7 @@ impl PixelSamples<'_> {
         first_hit(tracer, &camera_ray.ray, lambda)
     }
 
-    /// Starts the sampler for a sample of a pixel and takes what the camera needs of it.
+    /// Starts the sampler for a sample of a pixel and takes the dimensions of the camera.
     pub fn begin(
         &self,
         shutter: Option<&ShutterSample>,
@@ -134,7 +134,7 @@ impl PixelSamples<'_> {
 }
 
 /// The camera ray of a sample, with differentials where something in the scene needs them; `None`
-/// where no light reaches that point of the film.
+/// if no light reaches that point of the film.
 pub(crate) fn camera_ray(scene: &Scene, view: &View, sample: &CameraSample) -> Option<CameraRayDifferential> {
     let camera = &view.camera;
     let camera_ray = if scene.needs_footprints(view) {

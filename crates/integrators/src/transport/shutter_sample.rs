@@ -4,12 +4,12 @@ use sampling::hash;
 use scene::View;
 use spectrum::SampledWavelengths;
 
-/// The wavelengths at which a path is followed, and its time.
+/// The wavelengths and the time of a path.
 #[derive(Clone, Copy)]
 pub(crate) struct ShutterSample {
     /// The wavelengths.
     pub lambda: SampledWavelengths,
-    /// Sample value in [0, 1) for the time within the shutter's.
+    /// Sample value in [0, 1) for the shutter time.
     pub u: f32,
 }
 
@@ -21,11 +21,11 @@ impl ShutterSample {
         Self { lambda: SampledWavelengths::sample_visible(wavelength), u }
     }
 
-    /// The one that all paths of a pass share. Over the passes both are spread evenly: each step
-    /// advances by an irrational part of the range. For wavelengths that is a quarter of the golden
-    /// ratio, because four of them, a quarter apart, are taken at once.
+    /// The sample that all paths of a pass share. Over the passes both are stratified by an
+    /// additive recurrence with an irrational step. For wavelengths the step is a quarter of the
+    /// golden ratio, because a path has four of them, a quarter of the range apart.
     pub fn of_pass(view: &View, seed: u32, pass: u32) -> Self {
-        // Parts of 2³²: a quarter of the golden ratio, and √2 − 1.
+        // As fractions of 2³²: a quarter of the golden ratio, and √2 − 1.
         const STEPS: [u32; 2] = [0x678d_de6e, 0x6a09_e667];
         let [wavelength, shutter] = [0, 1].map(|i| {
             let start = hash(&[seed, i]) as u32;

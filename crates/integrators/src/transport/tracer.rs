@@ -1,4 +1,4 @@
-//! What it takes to follow the rays of a sample.
+//! Tracing the rays of a sample.
 
 use geometry::{Hit, RayStats};
 use math::{Ray, RayDifferential};
@@ -9,11 +9,10 @@ use spectrum::SampledWavelengths;
 
 use crate::{Cancelled, Control};
 
-/// Follows the rays of a sample, on one thread.
+/// Traces the rays of a sample, on one thread.
 ///
-/// When the render is cancelled, rays hit nothing any more, so that every path ends at its next
-/// vertex, however long it could have become. What was found then is incomplete, and
-/// [`finish`](Self::finish) says so.
+/// After the render is cancelled rays hit nothing, so that every path ends at its next vertex. The
+/// estimate is then incomplete, which [`finish`](Self::finish) reports.
 pub struct Tracer<'a> {
     /// The scene.
     pub scene: &'a Scene,
@@ -28,7 +27,7 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    /// For the sample that `sampler` has been started for.
+    /// For the current sample of `sampler`.
     pub fn new(
         scene: &'a Scene,
         view: &'a View,
@@ -39,7 +38,7 @@ impl<'a> Tracer<'a> {
         Self { scene, view, sampler, stats, control, is_cancelled: false }
     }
 
-    /// Follows a part of the sample with random numbers of its own.
+    /// Traces a part of the sample with another sampler.
     pub fn with_sampler<T>(&mut self, sampler: &mut Sampler, trace: impl FnOnce(&mut Tracer) -> T) -> T {
         let Self { scene, view, control, is_cancelled, .. } = *self;
         let mut part = Tracer { scene, view, sampler, stats: self.stats, control, is_cancelled };
@@ -48,15 +47,15 @@ impl<'a> Tracer<'a> {
         found
     }
 
-    /// `Err` if rays of the sample were not traced because the render was cancelled: what was found
-    /// is to be discarded.
+    /// `Err` if rays of the sample were not traced because the render was cancelled: the estimate
+    /// has to be discarded.
     pub fn finish(&self) -> Result<(), Cancelled> {
         if self.is_cancelled { Err(Cancelled) } else { Ok(()) }
     }
 
-    /// Whether to trace another ray.
+    /// Whether to trace another ray: `false` after a cancellation.
     #[inline]
-    pub(crate) fn goes_on(&mut self) -> bool {
+    pub(crate) fn may_trace(&mut self) -> bool {
         self.is_cancelled |= self.control.check().is_err();
         !self.is_cancelled
     }
@@ -64,13 +63,13 @@ impl<'a> Tracer<'a> {
     /// The nearest surface that a ray hits, and its distance.
     #[inline]
     pub fn intersect(&mut self, ray: &Ray) -> Option<(SurfaceInteraction, f32)> {
-        if self.goes_on() { self.scene.intersect(ray, f32::INFINITY, self.stats) } else { None }
+        if self.may_trace() { self.scene.intersect(ray, f32::INFINITY, self.stats) } else { None }
     }
 
     /// The nearest hit of a ray.
     #[inline]
     pub fn hit(&mut self, ray: &Ray) -> Option<Hit> {
-        if self.goes_on() { self.scene.hit(ray, f32::INFINITY, self.stats) } else { None }
+        if self.may_trace() { self.scene.hit(ray, f32::INFINITY, self.stats) } else { None }
     }
 
     /// [`Scene::bsdf`] in this view.

@@ -1,8 +1,8 @@
 //! Shadow rays.
 //!
-//! A shadow ray asks whether anything stops light between two points. Surfaces of material
-//! `interface` may let it pass ([`Interfaces`]). There is nothing between surfaces that would
-//! attenuate light, so the answer is yes or no. After a cancellation everything is in shadow.
+//! A shadow ray tests whether a surface occludes one point from another. Surfaces of material
+//! `interface` may be ignored ([`Interfaces`]). There are no media that attenuate light, so
+//! visibility is 0 or 1. After a cancellation everything is in shadow.
 
 use geometry::SurfacePoint;
 use math::Ray;
@@ -12,10 +12,10 @@ use scene::light::LightLiSample;
 use super::Tracer;
 
 impl Tracer<'_> {
-    /// Whether a surface stops light at 0 < t < `t_max` along the ray.
+    /// Whether a surface occludes the ray at 0 < t < `t_max`.
     #[inline]
     pub(crate) fn occluded(&mut self, ray: &Ray, t_max: f32, interfaces: Interfaces) -> bool {
-        !self.goes_on() || self.scene.occluded(ray, t_max, interfaces, self.stats)
+        !self.may_trace() || self.scene.occluded(ray, t_max, interfaces, self.stats)
     }
 
     /// Whether the point or direction of a light sample is visible from a surface.
@@ -26,6 +26,6 @@ impl Tracer<'_> {
         sample: &LightLiSample,
         interfaces: Interfaces,
     ) -> bool {
-        self.goes_on() && self.scene.unoccluded(from, sample, interfaces, self.stats)
+        self.may_trace() && self.scene.unoccluded(from, sample, interfaces, self.stats)
     }
 }

@@ -1,4 +1,4 @@
-//! Algorithms that claim the same light, against each other.
+//! Algorithms that estimate the same radiance, against each other.
 
 use alhazen_integrators::{Path, SimplePath};
 use description::{LightKind, PathDesc, SceneDesc, ShapeDesc, SimplePathDesc, SpectrumDesc};
@@ -27,7 +27,7 @@ pub fn room() -> SceneDesc {
 }
 
 #[test]
-fn in_a_room_of_rough_walls_all_paths_agree() {
+fn path_algorithms_agree_in_a_room_of_rough_walls() {
     let scene = compile(&room());
     let (o, d) = (v(-0.7, -0.3, 0.0), v(0.7, 0.45, -0.95));
     let mut reference = Path::new(PathDesc { max_depth: 3, ..PathDesc::default() }, Interfaces::Stop);
@@ -77,7 +77,7 @@ fn bazaar() -> Scene {
 }
 
 #[test]
-fn light_samplers_find_the_same_light() {
+fn light_samplers_agree() {
     let scene = bazaar();
     let views = [v(0.2, 1.0, -0.6), v(0.0, 1.2, 0.3), v(0.05, 0.9, -0.35)];
     for d in views {

@@ -1,4 +1,4 @@
-//! Ambient occlusion of points whose view is known.
+//! Ambient occlusion of points with a known visibility.
 
 use alhazen_integrators::{AmbientOcclusion, Control, RayIntegrator, Tracer};
 use description::{AmbientOcclusionDesc, SceneDesc, ShapeKind};
@@ -12,7 +12,7 @@ use testkit::Moments;
 
 use crate::support::{assert_mean, compile, quad, v, viewed};
 
-/// A floor, and what stands on it.
+/// A floor with objects on it.
 fn on_a_floor(shapes: impl IntoIterator<Item = ShapeKind>) -> Scene {
     let mut desc = SceneDesc::default();
     desc.shapes.push(quad(v(-0.1, -0.1, 0.0), v(0.2, 0.0, 0.0), v(0.0, 0.2, 0.0)).into());
@@ -42,11 +42,10 @@ fn brightness(scene: &Scene, cos_sample: bool, max_distance: f32) -> Moments {
 }
 
 #[test]
-fn the_share_of_the_sky_that_is_seen() {
+fn ambient_occlusion_equals_the_closed_form() {
     let free = on_a_floor([]);
     let beside_a_wall = on_a_floor([quad(v(1e-3, -1e3, 1e-4), v(0.0, 2e3, 0.0), v(0.0, 0.0, 1e3))]);
-    // A ceiling at height 1 hides the directions with cos θ > 1/D from a point that looks as far as
-    // D.
+    // With the maximum distance D, a ceiling at height 1 occludes the directions with cos θ > 1/D.
     let under_a_ceiling = on_a_floor([quad(v(-50.0, -50.0, 1.0), v(100.0, 0.0, 0.0), v(0.0, 100.0, 0.0))]);
     let views = [
         ("free", &free, f32::INFINITY, 1.0),

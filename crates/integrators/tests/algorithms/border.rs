@@ -1,5 +1,4 @@
-//! Beyond the border of a film that shows all directions the picture goes on, also for light that
-//! comes from the other side.
+//! The film of a spherical camera is periodic, also for splats of light paths.
 
 use alhazen_integrators::build;
 use description::{
@@ -12,7 +11,7 @@ use crate::support::{diffuse, emission, finished, quad, v, walls};
 
 const RESOLUTION: [i32; 2] = [12, 8];
 
-/// A box of walls of all shades with a lamp, seen all around through a wide filter.
+/// A box with a lamp and walls of different albedos, seen by a spherical camera with a wide filter.
 fn all_around(mapping: SphericalMapping) -> SceneDesc {
     let mut desc = SceneDesc::default();
     for (wall, rho) in walls(1.0).into_iter().zip([0.7, 0.1, 0.5, 0.9, 0.2, 0.6]) {
@@ -42,7 +41,7 @@ fn borders(desc: &SceneDesc, integrator: &IntegratorDesc, samples: u32, seed: i3
 }
 
 #[test]
-fn light_reaches_the_border_from_both_sides_of_it() {
+fn pixels_at_the_border_receive_light_from_both_sides() {
     let light_sampler = LightSamplerDesc::Bvh;
     let path = IntegratorDesc::Path(PathDesc { max_depth: 2, regularize: false, light_sampler });
     let mlt = MltDesc {
@@ -80,7 +79,10 @@ fn light_reaches_the_border_from_both_sides_of_it() {
             let found = moments(integrator, *samples, 0);
             for (side, (found, expected)) in found.iter().zip(&expected).enumerate() {
                 let error = found.variance_of_mean().sqrt() / expected.mean;
-                assert!(error < 0.06, "{mapping:?}, {integrator:?}: {error} says nothing");
+                assert!(
+                    error < 0.06,
+                    "{mapping:?}, {integrator:?}: the error {error} is too large for a test"
+                );
                 welch_test(found, expected, 32)
                     .unwrap_or_else(|e| panic!("{mapping:?}, {integrator:?}, side {side}: {e}"));
             }

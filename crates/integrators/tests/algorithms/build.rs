@@ -1,4 +1,4 @@
-//! What becomes of each algorithm and sampler that can be described.
+//! Building each algorithm and sampler that can be described.
 
 use alhazen_integrators::build;
 use description::schema::Settings;
@@ -21,7 +21,7 @@ fn warnings(integrator: IntegratorDesc) -> Vec<Diagnostic> {
 }
 
 #[test]
-fn what_is_drawn_is_drawn_without_a_word() {
+fn supported_algorithms_build_without_warnings() {
     let light_sampler = LightSamplerDesc::Power;
     for integrator in [
         IntegratorDesc::RayCasting,
@@ -41,7 +41,7 @@ fn what_is_drawn_is_drawn_without_a_word() {
 }
 
 #[test]
-fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
+fn unsupported_algorithms_are_replaced_with_a_warning() {
     let found = warnings(IntegratorDesc::SimpleVolPath(SimpleVolPathDesc { max_depth: 5 }));
     assert_eq!(messages(&found), ["integrator `simple-vol-path` is not drawn yet; drawn as `path`"]);
     let light_sampler = LightSamplerDesc::Exhaustive;
@@ -50,7 +50,7 @@ fn what_is_not_drawn_yet_is_drawn_as_path_and_named() {
 }
 
 #[test]
-fn radiosity_tells_what_it_draws_otherwise() {
+fn radiosity_warns_of_unsupported_materials_and_shapes() {
     let mut desc = SceneDesc::default();
     desc.integrator.value = IntegratorDesc::Radiosity(RadiosityDesc::default());
     let (metal, paper, unused) = (mirror(&mut desc, 0.1), diffuse(&mut desc, 0.5), glass(&mut desc));
@@ -64,13 +64,13 @@ fn radiosity_tells_what_it_draws_otherwise() {
         messages(&told),
         [
             "this material is not diffuse; radiosity draws it by its albedo",
-            "shape `plane` cannot be cut into patches; radiosity lights it, but it passes no light on",
+            "shape `plane` cannot be cut into patches; in radiosity it receives light, but does not reflect it to others",
         ]
     );
 }
 
 #[test]
-fn light_from_infinity_tells_where_it_does_not_reach() {
+fn light_from_infinity_on_unbounded_shapes_gives_a_warning() {
     let mut desc = SceneDesc::default();
     let object = |shape: ShapeDesc| {
         let mut object = ObjectDesc::default();
@@ -108,7 +108,7 @@ fn light_from_infinity_tells_where_it_does_not_reach() {
         let found = told(&desc, integrator);
         let message = |what: &str| {
             format!(
-                "light from infinity does not reach {what} without end beyond the scene's bounds; {name} draws it too dark there"
+                "light from infinity does not reach {what} beyond the scene's bounds; {name} renders it too dark there"
             )
         };
         let found: Vec<_> =
@@ -120,7 +120,7 @@ fn light_from_infinity_tells_where_it_does_not_reach() {
 }
 
 #[test]
-fn radiosity_refuses_settings_without_sense() {
+fn invalid_radiosity_settings_are_errors() {
     let settings = RadiosityDesc {
         max_depth: 101,
         patch_size: Some(0.0),
@@ -152,7 +152,7 @@ fn with_sampler(kind: SamplerKind) -> SceneDesc {
 }
 
 #[test]
-fn samplers_decide_the_number_of_passes() {
+fn the_sampler_determines_the_number_of_passes() {
     for mut kind in SamplerKind::members() {
         kind.set_samples_per_pixel(6);
         let passes = match kind {
@@ -167,7 +167,7 @@ fn samplers_decide_the_number_of_passes() {
 }
 
 #[test]
-fn settings_without_sense_are_errors_at_their_place() {
+fn invalid_settings_are_errors_at_their_parameter() {
     let span = Span { start: 7, ..Span::NONE };
     let origin = Origin { span: Span::NONE, parameters: vec![("alpha", span), ("pixelsamples", span)] };
     let mut desc = with_sampler(SamplerKind::Independent { pixel_samples: 0 });
@@ -186,7 +186,7 @@ fn settings_without_sense_are_errors_at_their_place() {
 }
 
 #[test]
-fn photons_without_sense_are_errors_at_their_place() {
+fn invalid_photon_settings_are_errors_at_their_parameter() {
     let names = ["nearest", "radius"];
     let spans = names.map(|name| (name, Span { start: name.len() as u32, ..Span::NONE }));
     let origin = Origin { span: Span::NONE, parameters: spans.to_vec() };
@@ -201,7 +201,7 @@ fn photons_without_sense_are_errors_at_their_place() {
 }
 
 #[test]
-fn merging_needs_a_radius_a_rate_and_photons() {
+fn invalid_merging_settings_are_errors() {
     let span = Span { start: 7, ..Span::NONE };
     let parameters = ["radius", "alpha", "photonsperiteration"].map(|name| (name, span)).to_vec();
     let errors = |integrator: IntegratorDesc| {

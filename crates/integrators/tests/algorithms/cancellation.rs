@@ -1,4 +1,4 @@
-//! Renders are cancelled at once, also inside a path that would go on for hours.
+//! Renders are cancelled at once, also within very long paths.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -23,7 +23,7 @@ use crate::support::{at, diffuse, emission, sphere, v, viewed};
 
 const MAX_DEPTH: u32 = 1_000_000_000;
 
-/// The inside of a sphere that reflects all light: paths hardly ever end.
+/// The inside of a sphere of albedo 1: paths hardly ever end.
 fn white_furnace() -> (Scene, View, Film) {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [32, 32];
@@ -68,9 +68,9 @@ fn algorithms() -> [(&'static str, Box<dyn Integrator>); 9] {
     ]
 }
 
-/// If paths did not ask whether to go on, this test would not end.
+/// If paths did not check for cancellation, this test would not end.
 #[test]
-fn a_path_that_hardly_ends_is_cancelled() {
+fn a_very_long_path_is_cancelled() {
     let (scene, view, _) = white_furnace();
     for (name, mut integrator) in algorithms() {
         let (control, (_, _, mut film)) = (Control::default(), white_furnace());
@@ -88,7 +88,7 @@ fn a_path_that_hardly_ends_is_cancelled() {
     }
 }
 
-/// Traces a ray, and estimates 1; of sample 100 it cancels the render before.
+/// Traces a ray, and estimates 1; it cancels the render before sample 100.
 struct CancelsSample {
     samples: AtomicU64,
     cancel: Arc<AtomicBool>,
@@ -105,7 +105,7 @@ impl RayIntegrator for CancelsSample {
 }
 
 #[test]
-fn a_sample_that_was_cancelled_is_not_added_to_the_film() {
+fn a_cancelled_sample_is_not_added_to_the_film() {
     let (scene, view, mut film) = white_furnace();
     let control = Control::default();
     let rays = CancelsSample { samples: AtomicU64::new(0), cancel: Arc::clone(&control.cancel) };

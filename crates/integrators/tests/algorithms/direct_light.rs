@@ -1,4 +1,4 @@
-//! Light that comes straight from a light to a floor of reflectance ρ: L = ρ/π · E, and E is known.
+//! Direct light on a floor of reflectance ρ: L = ρ/π · E with a known E.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::support::{Unbiased, assert_mean, at, compile, diffuse, emission, quad
 
 const RHO: f32 = 0.8;
 
-/// A small floor at z = 0 that faces up, and what `add` adds.
+/// A small floor at z = 0 that faces up, with the objects of `add`.
 fn over_a_floor(add: impl FnOnce(&mut SceneDesc)) -> Scene {
     let mut desc = SceneDesc::default();
     let material = diffuse(&mut desc, RHO);
@@ -66,13 +66,13 @@ fn lamps() -> Vec<(&'static str, Scene, f64)> {
     ]
 }
 
-/// Looks at the floor's centre from the side, past the lamp.
+/// The radiance of the floor's centre, seen from the side, past the lamp.
 fn look(rays: &mut impl RayIntegrator, scene: &Scene, count: usize) -> testkit::Moments {
     radiance(rays, scene, v(1.0, 0.2, 0.5), v(-1.0, -0.2, -0.5), count)
 }
 
 #[test]
-fn lamps_of_known_form_factors() {
+fn irradiance_of_area_lights_equals_the_form_factor() {
     let lamps = lamps();
     let tests = lamps.len() * (Unbiased::all(0).len() + 2);
     for (lamp, scene, form_factor) in &lamps {
@@ -100,10 +100,10 @@ fn under_delta_lights(add: impl FnOnce(&mut SceneDesc)) -> Scene {
 }
 
 #[test]
-fn lights_at_a_point_and_far_away() {
+fn irradiance_of_point_and_distant_lights_is_exact() {
     let scene = under_delta_lights(|_| ());
     let expected = f64::from(RHO) / PI * (0.25 + 0.5);
-    // Whoever samples all lights has no noise at all.
+    // Algorithms that sample all lights have no noise.
     assert_mean(&look(&mut RayCasting, &scene, 10), expected, 1, "ray casting");
     assert_mean(&look(&mut Whitted::default(), &scene, 10), expected, 1, "Whitted");
     for (name, mut rays) in Unbiased::all(2).into_iter().take(5) {
@@ -112,7 +112,7 @@ fn lights_at_a_point_and_far_away() {
 }
 
 #[test]
-fn whitted_counts_scattering_events_as_all_do() {
+fn whitted_counts_scattering_events_like_path_tracing() {
     let scene = under_delta_lights(|_| ());
     assert_eq!(
         look(&mut Whitted(WhittedDesc { max_depth: 0 }), &scene, 10).mean,
@@ -126,7 +126,7 @@ fn whitted_counts_scattering_events_as_all_do() {
 #[test]
 fn only_ray_casting_ignores_shadows() {
     let (lit, shadowed) = (f64::from(RHO) / PI * 0.75, f64::from(RHO) / PI * 0.5);
-    // Delta lights throw the shadow of interfaces, too.
+    // Delta lights cast shadows of interfaces, too.
     for screen in [MaterialDesc::default(), MaterialKind::Interface.into()] {
         let scene = under_delta_lights(|desc| {
             let material = Some(desc.materials.push(screen));

@@ -1,4 +1,4 @@
-//! Furnaces: scenes whose radiance is known everywhere, however light goes.
+//! Furnace tests: scenes with the same known radiance everywhere.
 
 use alhazen_integrators::{Path, RayCasting, Whitted};
 use description::{MaterialKind, PathDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, WhittedDesc};
@@ -29,7 +29,7 @@ fn closed_box(rho: f32) -> Scene {
 }
 
 #[test]
-fn a_closed_furnace_shows_emission_over_absorption() {
+fn radiance_in_a_furnace_is_emission_over_absorption() {
     let tests = 2 * Unbiased::all(0).len();
     for (shape, scene) in [("sphere", closed_sphere(0.5)), ("box", closed_box(0.5))] {
         for (name, mut rays) in Unbiased::all(24) {
@@ -40,7 +40,7 @@ fn a_closed_furnace_shows_emission_over_absorption() {
 }
 
 #[test]
-fn without_indirect_light_a_furnace_shows_one_reflection() {
+fn direct_light_algorithms_show_one_reflection_in_a_furnace() {
     let scene = closed_box(0.5);
     let (o, d) = (v(0.0, 0.0, 0.0), v(0.3, -0.5, 0.7));
     assert_mean(&radiance(&mut RayCasting, &scene, o, d, 20_000), 1.5, 2, "ray casting");
@@ -52,7 +52,8 @@ fn without_indirect_light_a_furnace_shows_one_reflection() {
     );
 }
 
-/// The means of rays from all around to a thing at the origin, under a sky of radiance 1.
+/// The mean radiance of rays from all directions to an object at the origin, under a sky of
+/// radiance 1.
 fn under_white_sky(
     thing: ShapeKind,
     rays: &mut impl alhazen_integrators::RayIntegrator,
@@ -75,7 +76,7 @@ fn under_white_sky(
 type Make = fn(&mut SceneDesc) -> Option<description::Handle<description::MaterialDesc>>;
 
 #[test]
-fn what_absorbs_nothing_cannot_be_seen_under_a_white_sky() {
+fn objects_without_absorption_are_invisible_under_a_white_sky() {
     let materials: [(&str, Make); 4] = [
         ("glass", glass),
         ("metal", |desc| mirror(desc, 0.0)),
@@ -95,7 +96,7 @@ fn what_absorbs_nothing_cannot_be_seen_under_a_white_sky() {
 }
 
 #[test]
-fn whitted_follows_all_rays_in_glass() {
+fn whitted_traces_all_rays_in_glass() {
     let found = under_white_sky(sphere(1.0), &mut Whitted(WhittedDesc { max_depth: 12 }), glass);
     assert!((found.mean - 1.0).abs() < 2e-3 && found.variance() < 1e-4, "{found:?}");
 }

@@ -1,4 +1,4 @@
-//! The layers of the film: every algorithm fills them, and none of them changes the colours.
+//! AOVs of the film: every algorithm writes them, and they do not change the colours.
 
 use alhazen_integrators::build;
 use description::{
@@ -40,7 +40,7 @@ fn written(film: &Film) -> Image {
 }
 
 #[test]
-fn every_algorithm_fills_the_layers_and_keeps_its_colours() {
+fn every_algorithm_writes_aovs_without_changing_colours() {
     let path = PathDesc { max_depth: 2, ..PathDesc::default() };
     for integrator in [
         IntegratorDesc::Path(path),
@@ -79,7 +79,7 @@ fn every_algorithm_fills_the_layers_and_keeps_its_colours() {
         assert_eq!(at("CryptoMaterial00.r").to_bits(), id_of_name("material-0"), "{name}");
         near("CryptoObject00.g", 1.0, 0.0);
         near("CryptoObject00.a", 0.0, 0.0);
-        // The mean over all pixels; a pixel alone has the noise of its wavelengths.
+        // The mean over all pixels; a single pixel has the noise of its wavelengths.
         let albedo = |c| {
             let values = (0..24 * 24).map(|i| image.channel(i % 24, i / 24, c));
             values.map(f64::from).sum::<f64>() / f64::from(24 * 24)

@@ -1,4 +1,4 @@
-//! The algorithms against what is known: closed forms, each other, and the promises of the loop.
+//! The algorithms against closed forms and each other, and the contract of sessions.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

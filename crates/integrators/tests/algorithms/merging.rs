@@ -1,5 +1,4 @@
-//! Methods that merge photons, against closed forms of what they should find, and of how wrong they
-//! should be.
+//! Methods that merge photons, against closed forms of their results and of their bias.
 
 use std::f64::consts::PI;
 use std::sync::atomic::Ordering;
@@ -26,7 +25,7 @@ fn on_film(resolution: [i32; 2]) -> SceneDesc {
     desc
 }
 
-/// The mean of all values of the picture after each of these numbers of passes.
+/// The mean of all values of the picture after each of the numbers of passes.
 fn means<const N: usize>(
     desc: &SceneDesc,
     integrator: IntegratorDesc,
@@ -54,7 +53,7 @@ fn mean(film: &Film) -> f64 {
     picture.values().map(f64::from).sum::<f64>() / picture.values().count() as f64
 }
 
-/// What pictures show of radiance 1.
+/// The value of radiance 1 in a picture.
 fn one() -> f64 {
     let [one] = means(&furnace(0.0), IntegratorDesc::RayCasting, 0, [1]);
     one
@@ -78,10 +77,9 @@ fn furnace(rho: f32) -> SceneDesc {
     desc
 }
 
-/// A lamp throws light at a mirror above it, which throws it on the floor as from a point at the
-/// height `HEIGHT`. The camera sees the foot of that point in a second mirror: light that neither
-/// chance nor choice nor connections find. The floor is a chequerboard of these alphas, the first
-/// of them at the foot.
+/// A mirror above a lamp reflects its light to the floor, as from a point at the height `HEIGHT`.
+/// The camera sees the floor below that point, the foot, in a second mirror: by paths that only
+/// merging can find. The floor is a checkerboard of these alphas, the first of them at the foot.
 fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
     let mut desc = on_film([8, 8]);
     let (from, to) = (v(0.0, 0.0, 0.2), v(0.0, 0.0, 1.0));
@@ -101,7 +99,7 @@ fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
     desc.shapes.push(ShapeDesc { material, ..above.into() });
     let beside = quad(v(-3.0, 2.0, 0.0), v(6.0, 0.0, 0.0), v(0.0, 0.0, 3.0));
     desc.shapes.push(ShapeDesc { material, ..beside.into() });
-    // In the mirror the foot stands at y = 4.
+    // In the mirror the foot is at y = 4.
     desc.camera.kind =
         CameraKind::Perspective { fov: 0.01, screen: ScreenDesc::default(), lens: LensDesc::default() };
     let (eye, foot) = (DVec3::new(0.0, 1.5, 0.3), DVec3::new(0.0, 4.0, 0.0));
@@ -120,7 +118,7 @@ fn blurred(r: f64) -> f64 {
     0.5 / PI * 2.0 / (r * r) * (1.0 - HEIGHT / (HEIGHT * HEIGHT + r * r).sqrt())
 }
 
-/// The same, when the radius shrinks with α, as the mean of all passes.
+/// The same as the mean of all passes, with a radius that shrinks by α.
 fn progressively_blurred(radius: f64, alpha: f64, passes: u32) -> f64 {
     let mut square = radius * radius;
     let blurred_passes = (1..=passes).map(|i| {
@@ -132,7 +130,7 @@ fn progressively_blurred(radius: f64, alpha: f64, passes: u32) -> f64 {
 }
 
 #[test]
-fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
+fn bias_and_its_rate_equal_the_closed_form() {
     let (desc, one) = (between_mirrors([1.0; 2]), one());
     let sharp = 0.5 / PI / (HEIGHT * HEIGHT);
     let after = [1, 16, 128];
@@ -147,7 +145,7 @@ fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
             t_test(found, expected, 6)
                 .unwrap_or_else(|error| panic!("{integrator:?}, {passes} passes: {error}"));
         }
-        // The slope of the line through the last two on double logarithmic paper.
+        // The slope between the last two on a log–log scale.
         let [_, early, late] = found;
         let way = (128f64 / 16.0).ln();
         let slope = ((sharp - late.mean) / (sharp - early.mean)).ln() / way;
@@ -155,14 +153,14 @@ fn bias_is_what_the_radius_makes_it_and_goes_at_the_rate_of_theory() {
         let error = (relative(&early) + relative(&late)).sqrt() / way;
         let bias = |passes| sharp - progressively_blurred(0.6f32.into(), alpha, passes);
         z_test(slope, error, (bias(128) / bias(16)).ln() / way, 2).unwrap();
-        // And theory's own line has the slope α − 1 in the end.
+        // The slope of the closed form converges to α − 1.
         let in_the_end = (bias(1 << 20) / bias(1 << 18)).ln() / 4f64.ln();
         assert!((in_the_end - (alpha - 1.0)).abs() < 0.01, "{in_the_end}");
     }
 }
 
 #[test]
-fn a_surface_that_is_there_in_part_reflects_that_part_of_the_light() {
+fn reflected_light_is_proportional_to_alpha() {
     let one = one();
     for alphas in [[0.5, 0.5], [0.25, 0.25], [0.25, 0.75]] {
         let desc = between_mirrors(alphas);
@@ -176,7 +174,7 @@ fn a_surface_that_is_there_in_part_reflects_that_part_of_the_light() {
 }
 
 #[test]
-fn without_a_radius_nothing_is_merged_and_all_is_connected() {
+fn a_tiny_radius_gives_the_result_of_connections_only() {
     let mut desc = on_film([6, 6]);
     let (material, area_light) = (diffuse(&mut desc, 0.7), emission(&mut desc, 3.0));
     for wall in crate::support::walls(1.0) {
@@ -198,7 +196,7 @@ fn without_a_radius_nothing_is_merged_and_all_is_connected() {
 }
 
 #[test]
-fn pixels_whose_light_subpaths_leave_no_photons_see_the_same() {
+fn the_mean_does_not_depend_on_the_number_of_photon_paths() {
     let (one, rho, desc) = (one(), 0.6, furnace(0.6));
     let mut means = Moments::default();
     for seed in 0..16 {
@@ -213,7 +211,7 @@ fn pixels_whose_light_subpaths_leave_no_photons_see_the_same() {
 }
 
 #[test]
-fn a_pass_can_be_stopped_before_its_photons_are_shot() {
+fn a_pass_can_be_cancelled_before_photons_are_emitted() {
     for integrator in [sppm(5, 0.4, 500), vcm(5, 0.4, 0.75)] {
         let desc = SceneDesc { integrator: integrator.into(), ..furnace(0.5) };
         let ((scene, view), mut film) = (viewed(&desc), film::compile(&desc).unwrap().film);

@@ -1,4 +1,5 @@
-//! Metropolis finds the light that path tracing finds, on any number of threads, and pass by pass.
+//! Metropolis light transport agrees with path tracing, does not depend on threads, and has
+//! independent passes.
 
 use std::sync::atomic::Ordering;
 
@@ -110,7 +111,7 @@ fn sky() -> SceneDesc {
 }
 
 #[test]
-fn the_mean_is_that_of_path_tracing() {
+fn the_mean_agrees_with_path_tracing() {
     for (name, scene) in [("box", diffuse_box()), ("caustic", caustic()), ("sky", sky())] {
         let path = IntegratorDesc::VolPath(PathDesc {
             max_depth: 4,
@@ -123,14 +124,14 @@ fn the_mean_is_that_of_path_tracing() {
             let desc = |seed| with(&scene, IntegratorDesc::Mlt(desc), seed);
             let found: Moments = (0..8).map(|seed| mean(&desc(seed))).collect();
             let error = found.variance_of_mean().sqrt() / path.mean;
-            assert!(error < 0.015, "{name} {technique:?}: {error} says nothing");
+            assert!(error < 0.015, "{name} {technique:?}: the error {error} is too large for a test");
             welch_test(&found, &path, 6).unwrap_or_else(|e| panic!("{name} {technique:?}: {e}"));
         }
     }
 }
 
 #[test]
-fn long_paths_may_be_allowed() {
+fn long_paths_are_supported() {
     let scene = diffuse_box();
     let found = |max_depth| -> Moments {
         let desc = MltDesc { mutations_per_pixel: 40, ..mlt(MltTechnique::Bdpt, max_depth) };
@@ -138,14 +139,14 @@ fn long_paths_may_be_allowed() {
     };
     let expected = found(30);
     let error = expected.variance_of_mean().sqrt() / expected.mean;
-    assert!(error < 0.015, "{error} says nothing");
+    assert!(error < 0.015, "the error {error} is too large for a test");
     for max_depth in [1000, 70_000, 2_000_000_000] {
         welch_test(&found(max_depth), &expected, 3).unwrap_or_else(|e| panic!("depth {max_depth}: {e}"));
     }
 }
 
 #[test]
-fn threads_never_change_a_bit() {
+fn the_picture_does_not_depend_on_threads() {
     for technique in TECHNIQUES {
         let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(technique, 5)), 1);
         let on = |threads| {
@@ -157,7 +158,7 @@ fn threads_never_change_a_bit() {
 }
 
 #[test]
-fn a_pass_owes_nothing_to_those_before_it() {
+fn passes_are_independent() {
     for technique in TECHNIQUES {
         let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(technique, 5)), 2);
         let ((scene, view), mut film, mut integrator) = prepared(&desc);
@@ -177,7 +178,7 @@ fn a_pass_owes_nothing_to_those_before_it() {
 }
 
 #[test]
-fn chains_stop_when_told_to() {
+fn chains_can_be_cancelled() {
     let desc = with(&caustic(), IntegratorDesc::Mlt(mlt(MltTechnique::Bdpt, 5)), 3);
     let ((scene, view), mut film, mut integrator) = prepared(&desc);
     integrator.prepare(&scene, &view, &Control::default()).unwrap();
@@ -197,7 +198,7 @@ fn a_scene_without_light_is_black() {
 }
 
 #[test]
-fn settings_without_sense_are_errors_at_their_place() {
+fn invalid_settings_are_errors_at_their_parameter() {
     let names = ["bootstrapsamples", "chains", "mutationsperpixel", "largestepprobability", "sigma"];
     let spans = names.iter().enumerate().map(|(i, &name)| (name, Span { start: i as u32 + 1, ..Span::NONE }));
     let origin = Origin { span: Span::NONE, parameters: spans.collect() };

@@ -1,5 +1,4 @@
-//! Photon mapping against closed forms, against algorithms without bias, and as a picture of its
-//! photons.
+//! Photon mapping against closed forms and unbiased algorithms, and pictures of photons.
 
 use alhazen_integrators::{Control, build};
 use description::{
@@ -14,7 +13,7 @@ use crate::agreement::room;
 use crate::session::picture;
 use crate::support::{at, diffuse, emission, glass, quad, sphere, v, walls};
 
-/// The picture's luminances, row by row, of one thread's rendering with as many passes.
+/// The luminances of a picture, row by row, rendered by one thread.
 fn luminances(desc: &SceneDesc, integrator: &IntegratorDesc, seed: i32, passes: u32) -> Vec<f64> {
     let mut desc = SceneDesc { integrator: integrator.clone().into(), ..desc.clone() };
     desc.film.save_fp16 = false;
@@ -36,7 +35,7 @@ fn small(desc: &PhotonMappingDesc) -> PhotonMappingDesc {
     PhotonMappingDesc { photons: 1500, caustic_photons: 500, ..*desc }
 }
 
-/// The mean of a grey picture over that of what shines in it, for one seed after another.
+/// The mean of a grey picture relative to that of its emission, for successive seeds.
 fn brightness(desc: &SceneDesc, integrator: &PhotonMappingDesc, seeds: i32) -> Moments {
     let lamps = PhotonMappingDesc { max_depth: 0, photons: 0, caustic_photons: 0, ..*integrator };
     let ratio = |seed| {
@@ -47,7 +46,7 @@ fn brightness(desc: &SceneDesc, integrator: &PhotonMappingDesc, seeds: i32) -> M
     (0..seeds).map(ratio).collect()
 }
 
-/// Shapes that emit 1, reflect half and enclose the camera, seen in `resolution`² pixels.
+/// Shapes of emission 1 and albedo ½ that enclose the camera, seen in `resolution`² pixels.
 fn furnace(shapes: impl IntoIterator<Item = ShapeDesc>, resolution: i32) -> SceneDesc {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [resolution; 2];
@@ -59,10 +58,10 @@ fn furnace(shapes: impl IntoIterator<Item = ShapeDesc>, resolution: i32) -> Scen
 }
 
 #[test]
-fn in_a_sphere_that_shines_all_over_photons_make_no_difference() {
+fn photon_mapping_is_unbiased_in_an_emissive_sphere() {
     let ball = ShapeDesc { reverse_orientation: true, ..at(sphere(1.0), v(0.2, 0.1, 0.3)) };
     let desc = furnace([ball], 6);
-    // Within a larger distance the ball bends so much that light is lost below the horizon.
+    // With a larger radius, the curvature of the sphere loses light below the horizon.
     let radius = Some(0.1);
     let cases = [(1, 0, 5), (2, 0, 1000), (3, 0, 5), (24, 0, 5), (2, 3, 5), (24, 3, 5)];
     for (max_depth, gather, nearest) in cases {
@@ -78,7 +77,7 @@ fn in_a_sphere_that_shines_all_over_photons_make_no_difference() {
 }
 
 #[test]
-fn what_a_wall_lacks_is_the_part_of_the_disk_beyond_its_edges() {
+fn the_bias_of_a_wall_is_the_part_of_the_disk_beyond_its_edges() {
     let mut desc = furnace(walls(1.0).map(ShapeDesc::from), 24);
     desc.camera.kind = CameraKind::Orthographic { screen: ScreenDesc::default(), lens: LensDesc::default() };
     let radii = [0.48, 0.24, 0.12];
@@ -90,8 +89,8 @@ fn what_a_wall_lacks_is_the_part_of_the_disk_beyond_its_edges() {
             ..small(&PhotonMappingDesc::default())
         };
         let found = brightness(&desc, &integrator, 24);
-        // Of a disk that is moved by (x, y) against a square of side 2, (1 − |x|/2)(1 − |y|/2)
-        // remain in the mean; and the kernel has the means E|x| = 16r/15π and E|xy| = r²/3π.
+        // Of a square of side 2, the share (1 − |x|/2)(1 − |y|/2) overlaps with itself shifted by
+        // (x, y); and the kernel has the means E|x| = 16r/15π and E|xy| = r²/3π.
         let (r, pi) = (f64::from(radius), std::f64::consts::PI);
         let inside = 1.0 - 16.0 * r / (15.0 * pi) + r * r / (12.0 * pi);
         t_test(&found, 1.5 + 0.5 * inside, radii.len())
@@ -100,7 +99,7 @@ fn what_a_wall_lacks_is_the_part_of_the_disk_beyond_its_edges() {
     });
     // Of the order r: an edge is a line.
     let slope = (bias[0] / bias[2]).log2() / 2.0;
-    assert!((slope - 1.0).abs() < 0.15, "the error goes with the power {slope} of the radius: {bias:?}");
+    assert!((slope - 1.0).abs() < 0.15, "the bias is of order {slope} in the radius: {bias:?}");
 }
 
 /// Looks down on the square [-s, s]².
@@ -115,10 +114,10 @@ fn path(max_depth: u32) -> IntegratorDesc {
     IntegratorDesc::Path(PathDesc { max_depth, regularize: false, light_sampler: LightSamplerDesc::Bvh })
 }
 
-/// The part of a room's indirect light that photon mapping finds, seen from above.
+/// The share of a room's indirect light that photon mapping finds, seen from above.
 fn indirect(integrator: &PhotonMappingDesc) -> f64 {
     let mut desc = room();
-    // Everything is grey: the same wavelengths for all spare noise.
+    // As everything is grey, fixed wavelengths avoid colour noise.
     desc.options.disable_wavelength_jitter = true;
     from_above(&mut desc, 1.0, 16);
     let [direct, all] = [1, 4].map(|max_depth| mean(&luminances(&desc, &path(max_depth), 1, 1024)));
@@ -127,30 +126,29 @@ fn indirect(integrator: &PhotonMappingDesc) -> f64 {
         let integrator = PhotonMappingDesc { photons, caustic_photons: 0, ..default };
         mean(&luminances(&desc, &IntegratorDesc::PhotonMapping(integrator), 2, 16))
     };
-    // Without photons it finds the same direct light.
+    // Direct light is the same without photons.
     (find(integrator.photons) - find(0)) / (all - direct)
 }
 
 #[test]
-fn with_more_photons_a_room_comes_closer_to_what_path_finds() {
+fn photon_mapping_converges_to_path_tracing() {
     let errors = [1000, 4000, 16_000].map(|photons| {
         1.0 - indirect(&PhotonMappingDesc { photons, nearest: 40, ..PhotonMappingDesc::default() })
     });
     // Four times the photons halve the radius, and with it the dark edges.
     let slope = (errors[0] / errors[1]).log2();
-    assert!((slope - 1.0).abs() < 0.3, "the error goes with the power {slope} of the radius: {errors:?}");
+    assert!((slope - 1.0).abs() < 0.3, "the error is of order {slope} in the radius: {errors:?}");
     assert!(errors[2].abs() < 0.6 * errors[1], "{errors:?}");
 }
 
 #[test]
-fn a_final_gather_sees_less_of_edges() {
+fn a_final_gather_reduces_the_bias_at_edges() {
     let integrator = PhotonMappingDesc { photons: 4000, nearest: 40, ..PhotonMappingDesc::default() };
     let found = [0, 4].map(|gather| indirect(&PhotonMappingDesc { gather, ..integrator }));
     assert!(1.0 - found[1] < 0.6 * (1.0 - found[0]), "{found:?}");
 }
 
-/// A ball of glass over a floor that is there with the probability alpha, in the beam of a lamp at
-/// a point.
+/// A ball of glass over a floor with the given alpha, in the beam of a spot light.
 fn ball_in_a_beam(alpha: f32) -> SceneDesc {
     let mut desc = SceneDesc::default();
     from_above(&mut desc, 2.0, 32);
@@ -171,7 +169,7 @@ fn ball_in_a_beam(alpha: f32) -> SceneDesc {
     desc
 }
 
-/// The mean over the caustic, beside the ball, of each seed's picture.
+/// The mean over the caustic, beside the ball, for each seed.
 fn caustic(desc: &SceneDesc, integrator: &IntegratorDesc, passes: u32) -> Moments {
     let of_region = |seed| {
         let picture = luminances(desc, integrator, seed, passes);
@@ -182,7 +180,7 @@ fn caustic(desc: &SceneDesc, integrator: &IntegratorDesc, passes: u32) -> Moment
 }
 
 #[test]
-fn a_caustic_holds_the_light_that_light_tracing_finds() {
+fn caustics_agree_with_light_tracing() {
     let photons = PhotonMappingDesc {
         max_depth: 4,
         photons: 0,
@@ -200,8 +198,7 @@ fn a_caustic_holds_the_light_that_light_tracing_finds() {
     }
 }
 
-/// Looks up at a ceiling that has its light from a floor, there with the probability alpha, in the
-/// beam of a lamp.
+/// A view up to a ceiling, lit by a floor with the given alpha in the beam of a lamp.
 fn ceiling_over_a_beam(alpha: f32) -> SceneDesc {
     let mut desc = SceneDesc::default();
     desc.film.resolution = [8, 8];
@@ -225,7 +222,7 @@ fn ceiling_over_a_beam(alpha: f32) -> SceneDesc {
 }
 
 #[test]
-fn a_final_gather_finds_surfaces_that_are_there_in_part() {
+fn a_final_gather_accounts_for_alpha() {
     let integrator = PhotonMappingDesc {
         max_depth: 2,
         photons: 1000,
@@ -246,7 +243,7 @@ fn a_final_gather_finds_surfaces_that_are_there_in_part() {
 }
 
 #[test]
-fn photons_that_are_shown_are_dots() {
+fn displayed_photons_are_dots() {
     let mut desc = room();
     from_above(&mut desc, 1.0, 64);
     let show = PhotonMappingShow::Photons;
@@ -258,7 +255,7 @@ fn photons_that_are_shown_are_dots() {
 }
 
 #[test]
-fn without_lights_it_is_dark_and_without_photons_there_is_direct_light_alone() {
+fn no_lights_give_black_and_no_photons_give_direct_light() {
     let dark = SceneDesc { lights: Default::default(), ..ball_in_a_beam(1.0) };
     let none = PhotonMappingDesc { photons: 0, caustic_photons: 0, ..PhotonMappingDesc::default() };
     for gather in [0, 2] {
@@ -277,7 +274,7 @@ fn without_lights_it_is_dark_and_without_photons_there_is_direct_light_alone() {
 }
 
 #[test]
-fn it_tells_of_its_photons_and_stops_when_told_to() {
+fn photons_are_in_the_summary_and_passes_can_be_cancelled() {
     let mut desc = room();
     from_above(&mut desc, 1.0, 16);
     desc.integrator = IntegratorDesc::PhotonMapping(small(&PhotonMappingDesc::default())).into();
@@ -288,10 +285,7 @@ fn it_tells_of_its_photons_and_stops_when_told_to() {
     let control = Control::default();
     integrator.pass(0, &scene, &view, &mut film, &control).unwrap();
     let summary = integrator.summary();
-    assert!(
-        summary[0].1.contains("in the global map") && summary[1].1.contains("in the mean"),
-        "{summary:?}"
-    );
+    assert!(summary[0].1.contains("in the global map") && summary[1].1.contains("on average"), "{summary:?}");
     control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(integrator.pass(1, &scene, &view, &mut film, &control).is_err());
 }

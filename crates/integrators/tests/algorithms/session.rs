@@ -1,4 +1,4 @@
-//! The promises of the driver: the same bits on any number of threads and for any split of passes,
+//! The contract of sessions: the same bits on any number of threads and for any split of passes,
 //! limits, valid pictures when cancelled, fixed samples.
 
 use std::collections::HashSet;
@@ -52,7 +52,7 @@ fn begun(desc: &SceneDesc) -> Session {
     session(desc, build(desc).unwrap().integrator)
 }
 
-/// The film of all passes, rendered on so many threads, and the rays that it took.
+/// The film of all passes, rendered on `threads` threads, and the number of rays.
 pub fn picture(desc: &SceneDesc, threads: usize) -> (Film, RayStats) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let session = pool.install(|| finished(desc, build(desc).unwrap().integrator));
@@ -61,7 +61,7 @@ pub fn picture(desc: &SceneDesc, threads: usize) -> (Film, RayStats) {
 }
 
 #[test]
-fn threads_never_change_a_bit() {
+fn the_picture_does_not_depend_on_threads() {
     let photons = PhotonMappingDesc { photons: 9000, caustic_photons: 9000, ..PhotonMappingDesc::default() };
     let integrators = [
         balls().integrator.value,
@@ -91,8 +91,8 @@ fn threads_never_change_a_bit() {
 }
 
 #[test]
-fn progress_is_known_after_each_pass() {
-    // Each look at the clock takes a second.
+fn progress_is_updated_after_each_pass() {
+    // Each reading of the clock takes a second.
     let now = AtomicU32::new(0);
     let clock = Arc::new(move || Duration::from_secs(now.fetch_add(1, Ordering::Relaxed).into()));
     let control = Control::new(Arc::default(), clock);
@@ -107,7 +107,7 @@ fn progress_is_known_after_each_pass() {
 }
 
 #[test]
-fn no_pass_is_begun_that_would_end_after_the_time() {
+fn passes_that_would_exceed_the_time_limit_are_not_started() {
     let seconds = Arc::new(AtomicU32::new(0));
     let clock = {
         let seconds = Arc::clone(&seconds);
@@ -124,13 +124,13 @@ fn no_pass_is_begun_that_would_end_after_the_time() {
         let stop = session.run(0..4, &limits, &control, &mut |_| ()).unwrap();
         (session.state().done.count(), stop)
     };
-    assert_eq!(passes_within(1), (1, Stop::Time), "one pass at least");
+    assert_eq!(passes_within(1), (1, Stop::Time), "at least one pass");
     assert_eq!(passes_within(19), (1, Stop::Time));
     assert_eq!(passes_within(35), (3, Stop::Time));
     assert_eq!(passes_within(100), (4, Stop::Passes));
 }
 
-/// Takes ten seconds of its own clock for 40 × 24 rays.
+/// An integrator that takes ten seconds of its own clock for 40 × 24 rays.
 struct Slow {
     seconds: Arc<AtomicU32>,
     rays: AtomicU32,
@@ -163,8 +163,8 @@ fn passes_can_be_done_in_any_order_and_in_parts() {
             parts.run(passes, &Limits::default(), &control, &mut |_| ()).unwrap();
         }
         assert_eq!(parts.state().done, PassSet::from(0..4));
-        // Another session goes on, with a second film for an estimate of noise that is never low
-        // enough.
+        // Another session continues, with a second film for a noise estimate that never reaches its
+        // limit.
         let mut first = begun(&desc);
         first.run(0..1, &Limits::default(), &control, &mut |_| ()).unwrap();
         let mut second = begun(&desc);
@@ -179,8 +179,8 @@ fn passes_can_be_done_in_any_order_and_in_parts() {
     }
 }
 
-/// The estimate is the difference to the picture without noise, for samples of pixels, for splats
-/// and for chains.
+/// The noise estimate equals the error of the picture, for samples of pixels, for splats and for
+/// chains.
 #[test]
 fn noise_is_the_relative_standard_error() {
     let mut desc = balls();
@@ -213,14 +213,14 @@ fn noise_is_the_relative_standard_error() {
         IntegratorDesc::Mlt(MltDesc::default()),
     ] {
         let (noise, error) = error(integrator.clone(), &reference);
-        // Both are roots of means of squares over a thousand values, of which neighbours and
-        // colours have much in common; the reference has an eighth of the noise.
+        // Both are root mean squares over a thousand correlated values; the reference has an eighth
+        // of the noise.
         assert!((noise / error).ln().abs() < 0.3, "{integrator:?}: {noise}, not {error}");
     }
 }
 
 #[test]
-fn noise_ends_a_render_at_the_first_estimate_that_is_low_enough() {
+fn a_render_ends_at_the_first_noise_estimate_below_the_limit() {
     let mut session = begun(&balls());
     let limits = Limits { noise: Some(0.15), time: None };
     let mut estimates = Vec::new();
@@ -229,24 +229,24 @@ fn noise_ends_a_render_at_the_first_estimate_that_is_low_enough() {
     let last = session.progress();
     assert!(last.noise.is_some_and(|noise| noise <= 0.15) && last.pass >= 16, "{last:?}");
     assert!(estimates.iter().all(|&noise| noise > 0.15), "{estimates:?}");
-    // What is done is done.
+    // Another run does nothing.
     assert_eq!(session.run(0..u32::MAX, &limits, &Control::default(), &mut |_| ()), Ok(Stop::Noise));
     assert_eq!(session.progress().pass, last.pass);
 }
 
 #[test]
-fn a_render_stopped_between_passes_is_one_of_fewer_passes() {
+fn a_render_stopped_between_passes_equals_one_of_fewer_passes() {
     let control = Control::default();
     let mut session = begun(&balls());
     let mut sink = |session: &Session| control.cancel.store(session.progress().pass == 2, Ordering::Relaxed);
     assert_eq!(session.run(0..4, &Limits::default(), &control, &mut sink), Err(PassError::Cancelled));
     let mut short = balls();
     short.sampler.kind.set_samples_per_pixel(2);
-    // Differentials follow the number of samples; without textures they do not matter.
+    // Differentials depend on the number of samples; without textures they have no effect.
     assert!(bits(&session.state().film) == bits(&picture(&short, 2).0));
 }
 
-/// Answers 1 for everything, and pulls the brake at the 700th ray.
+/// Estimates 1 everywhere, and cancels the render at the 700th ray.
 struct Brake {
     rays: AtomicU32,
     control: Arc<AtomicBool>,
@@ -288,7 +288,7 @@ fn a_render_stopped_within_a_pass_is_valid() {
 }
 
 #[test]
-fn what_has_not_begun_has_nothing_to_tell() {
+fn a_session_without_passes_has_no_summary() {
     let mut desc = balls();
     for integrator in [
         IntegratorDesc::Sppm(SppmDesc::default()),
@@ -302,7 +302,7 @@ fn what_has_not_begun_has_nothing_to_tell() {
 }
 
 #[test]
-fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
+fn light_tracing_reports_the_share_of_rays_that_contribute() {
     let mut desc = balls();
     desc.integrator = IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 3 }).into();
     let session = finished(&desc, build(&desc).unwrap().integrator);
@@ -312,7 +312,7 @@ fn light_tracing_tells_which_share_of_its_own_rays_was_of_use() {
     assert_eq!(rays, session.progress().stats.rays - of_camera, "all but the camera's rays: {note}");
 }
 
-/// Remembers the directions and wavelengths that it is asked about.
+/// Records the directions and wavelengths of its rays.
 #[derive(Default)]
 struct Recorder(Mutex<Vec<[u32; 4]>>);
 
@@ -325,7 +325,7 @@ impl RayIntegrator for &'static Recorder {
 }
 
 #[test]
-fn jitter_can_be_switched_off() {
+fn jitter_can_be_disabled() {
     let distinct = |pixel: bool, wavelength: bool| {
         let mut desc = SceneDesc::default();
         desc.film.resolution = [1, 1];

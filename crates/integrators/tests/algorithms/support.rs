@@ -1,5 +1,5 @@
-//! Scenes made by hand, and means of radiance along a ray. Everything is grey, and radiance counts
-//! in units of a light of scale 1.
+//! Scenes built by hand, and means of radiance along a ray. Everything is grey, and radiance is in
+//! units of a light of scale 1.
 
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub fn compile(desc: &SceneDesc) -> Scene {
     scene::compile(desc).unwrap().scene
 }
 
-/// A description in which nothing is wrong, as its camera views it.
+/// The compiled scene and view of a valid description.
 pub fn viewed(desc: &SceneDesc) -> (Scene, View) {
     (compile(desc), View::compile(desc, scene::world_from_render(desc)).unwrap().view)
 }
@@ -39,7 +39,7 @@ pub fn session(desc: &SceneDesc, integrator: Box<dyn Integrator>) -> Session {
     Session::new(Arc::new(scene), view, integrator, SessionState::new(film))
 }
 
-/// A session that has done all its passes.
+/// A session after all its passes.
 pub fn finished(desc: &SceneDesc, integrator: Box<dyn Integrator>) -> Session {
     let mut session = session(desc, integrator);
     let passes = 0..session.integrator().passes();
@@ -56,7 +56,7 @@ pub fn glass(desc: &mut SceneDesc) -> Option<Handle<MaterialDesc>> {
     Some(desc.materials.push(MaterialKind::Dielectric { eta, roughness: RoughnessDesc::default() }.into()))
 }
 
-/// Metal that absorbs next to nothing.
+/// Metal that absorbs almost nothing.
 pub fn mirror(desc: &mut SceneDesc, roughness: f32) -> Option<Handle<MaterialDesc>> {
     let reflectance = ConductorReflectance::Index { eta: 1.0.into(), k: 1e4.into() };
     let conductor = ConductorDesc { reflectance, roughness: RoughnessDesc::isotropic(roughness) };
@@ -129,8 +129,7 @@ pub fn radiance(
     samples.collect()
 }
 
-/// That a mean is what it should be, as one of `tests` tests; beyond chance, single precision may
-/// be off by 3e-5.
+/// Asserts a mean by a t-test, one of `tests`, with a tolerance of 3e-5 for single precision.
 #[track_caller]
 pub fn assert_mean(found: &Moments, expected: f64, tests: usize, what: &str) {
     if (found.mean - expected).abs() > 3e-5 * expected {
@@ -141,8 +140,7 @@ pub fn assert_mean(found: &Moments, expected: f64, tests: usize, what: &str) {
 pub const LIGHT_SAMPLERS: [LightSamplerDesc; 3] =
     [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh];
 
-/// The algorithms that find all light between rough surfaces, and settings of theirs that find the
-/// same light.
+/// The algorithms that are complete for rough surfaces, with settings that give the same result.
 pub enum Unbiased {
     Path(Path),
     SimplePath(SimplePath),

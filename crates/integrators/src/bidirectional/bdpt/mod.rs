@@ -1,20 +1,19 @@
 //! Bidirectional path tracing: paths from both ends, connected in all ways.
 //!
-//! For each sample of a pixel a light subpath and a camera subpath are made. Every vertex of the
-//! one is connected to every vertex of the other; the camera subpath also looks for lights, by
-//! chance and by choice, and the light subpath for the camera. A path of k edges is thus found by
-//! up to k + 1 strategies, each of which makes other paths likely: light that is focused by glass,
-//! light that comes around a door, light that a mirror shows. Their estimates are weighted by the
-//! balance heuristic, so that each path counts once, and where a strategy is bad another is good.
-//! How the weights are found without a second look is said in `bidirectional/partial.rs`.
+//! For each sample of a pixel a light subpath and a camera subpath are sampled. Every vertex of the
+//! one is connected to every vertex of the other; camera subpaths may also hit lights or end in
+//! next-event estimation, and light subpaths are connected to the camera. A path of k edges is thus
+//! found by up to k + 1 strategies, each with a low variance for other paths: caustics, light
+//! through a gap, reflections in mirrors. Their estimates are weighted by the balance heuristic;
+//! `bidirectional/partial.rs` describes how the weights are computed along the subpaths.
 //!
-//! What remains hard is light that passes specular surfaces on both sides of the only vertex that
-//! could be connected: a caustic seen in a mirror, the ground under water. Small lights make it
-//! noisy, lights at a point make it black; merging helps there (`vcm`).
+//! Paths with specular surfaces on both sides of the only vertex that could be connected remain
+//! difficult: a caustic seen in a mirror, the ground under water. They are noisy with small lights
+//! and black with lights at a point; merging finds them (`vcm`).
 //!
-//! With `techniques` there is a picture for each strategy: what it finds unweighted, and what it
-//! contributes. Arranged by the length of paths they are the pyramid of [Veach 1997 fig. 10.3]. Of
-//! paths with more than 8 scattering events there are none.
+//! With `techniques` there is a picture for each strategy: its unweighted estimate, and its
+//! weighted contribution. Arranged by path length they are the pyramid of [Veach 1997 fig. 10.3].
+//! Paths with more than 8 scattering events are left out of them.
 //!
 //! Unbiased up to `max_depth`, except with `regularize`. Sources: [Veach 1997 ch. 10];
 //! [Lafortune 1993].
@@ -45,14 +44,14 @@ pub struct Bdpt {
 }
 
 impl Bdpt {
-    /// With a sampler for each end.
+    /// `sampler` is for camera subpaths, `light_sampler` for light subpaths.
     pub fn new(settings: BdptDesc, sampler: Sampler, light_sampler: Sampler) -> Self {
         let techniques =
             Techniques::new(settings.max_depth, settings.visualize_strategies, settings.visualize_weights);
         Self { settings, sampler, light_sampler, lights: Lights::none(), techniques }
     }
 
-    /// What the strategies' pictures of so many pixels take beside the main one, in bytes.
+    /// Memory of the strategies' pictures of `pixels` pixels, in bytes.
     pub fn technique_bytes(&self, pixels: usize) -> usize {
         self.techniques.bytes(pixels)
     }
@@ -93,7 +92,7 @@ impl Integrator for Bdpt {
         let techniques = self.techniques.open(film)?;
         let (tiles, splatter) = film.tiles_and_splatter()?;
         let pixels = PixelSamples { index: pass, scene, view, filter: &filter, sampler: &self.sampler };
-        // On films of splats a sample of a pixel counts as one of all paths.
+        // On films of splats, the sample of a pixel is one of as many paths as there are pixels.
         let per_sample = pixel_count as f32 / filter.integral();
         let stats = pixels.add(tiles, control, |sample, tracer| {
             let lambda = &sample.lambda;

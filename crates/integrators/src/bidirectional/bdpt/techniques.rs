@@ -1,10 +1,9 @@
-//! The strategies of bidirectional path tracing seen apart: a film for each, unweighted, weighted,
-//! or both.
+//! A film for each strategy of bidirectional path tracing, unweighted, weighted, or both.
 //!
-//! All of them are films of splats, on which the light of one path of n counts 1/n; a sample of a
-//! pixel, one of as many as there are pixels, is added to its pixel alone. Each takes 36 bytes for
-//! each pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events, are 1.8
-//! KiB for each pixel. More than 2 GiB are refused.
+//! All of them are films of splats, on which each of n paths has the weight 1/n; the sample of a
+//! pixel is one of as many paths as there are pixels, and is added to that pixel. Each film takes
+//! 36 bytes per pixel; 52 of them, weighted and unweighted for paths of up to 5 scattering events,
+//! are 1.8 KiB per pixel. More than 2 GiB are refused.
 
 use film::{Film, SPLAT_BYTES, Splatter};
 use image::ImageError;
@@ -12,11 +11,10 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::Found;
 
-/// Paths of more scattering events are not seen apart: the number of strategies grows with the
-/// square.
+/// Longer paths have no films, as the number of strategies grows with the square of the depth.
 pub(crate) const MAX_DEPTH: u32 = 8;
 
-/// What the films may take together.
+/// Limit on the memory of all films.
 pub(crate) const MAX_BYTES: usize = 2 << 30;
 
 /// The films.
@@ -28,20 +26,20 @@ pub(super) struct Techniques {
 }
 
 impl Techniques {
-    /// Those of paths with up to `max_depth` scattering events, as far as they are wanted.
+    /// The requested films of paths with up to `max_depth` scattering events.
     pub fn new(max_depth: u32, unweighted: bool, weighted: bool) -> Self {
         let max_depth = max_depth.min(MAX_DEPTH);
         Self { max_depth, unweighted: unweighted.then(Vec::new), weighted: weighted.then(Vec::new) }
     }
 
-    /// What the films of so many pixels take, in bytes.
+    /// Memory of the films of `pixels` pixels, in bytes.
     pub fn bytes(&self, pixels: usize) -> usize {
         let kinds = self.unweighted.iter().chain(&self.weighted).count();
         (kinds * strategies(self.max_depth).count()).saturating_mul(pixels.saturating_mul(SPLAT_BYTES))
     }
 
-    /// To be added to; each film is made like `film` when there is none yet.
-    /// Refused where there is no memory for them.
+    /// Opens the films for splatting; missing ones are created with the size and settings of
+    /// `film`. An error if there is no memory for them.
     pub fn open(&mut self, film: &Film) -> Result<Splatters<'_>, ImageError> {
         let count = strategies(self.max_depth).count();
         Ok(Splatters {
@@ -50,7 +48,7 @@ impl Techniques {
         })
     }
 
-    /// The films with their names, once there are any.
+    /// The films with their names; none before the first pass.
     pub fn films(&self) -> impl Iterator<Item = (String, &Film)> {
         let kinds = [(&self.unweighted, ""), (&self.weighted, "-weighted")];
         kinds.into_iter().flat_map(|(films, suffix)| {
@@ -59,7 +57,7 @@ impl Techniques {
         })
     }
 
-    /// Goes on with these films, which [`films`](Self::films) has given.
+    /// Continues with films from [`films`](Self::films).
     pub fn set_films(&mut self, films: Vec<(String, Film)>) {
         let mut films = films.into_iter().map(|(_, film)| film);
         let count = strategies(self.max_depth).count();
@@ -81,14 +79,14 @@ fn splatters<'film>(
     films.iter_mut().map(|film| Ok(film.tiles_and_splatter()?.1)).collect()
 }
 
-/// The films, while a pass adds to them.
+/// The films during a pass.
 pub(super) struct Splatters<'film> {
     unweighted: Vec<Splatter<'film>>,
     weighted: Vec<Splatter<'film>>,
 }
 
 impl Splatters<'_> {
-    /// Has light added to the films of the strategy that has found it.
+    /// Adds light to the films of the strategy that found it.
     pub fn add(&self, found: &Found, add: impl Fn(&Splatter, &SampledSpectrum)) {
         let index = index(found.s, found.t);
         if let Some(splatter) = self.unweighted.get(index) {
@@ -105,8 +103,8 @@ impl Splatters<'_> {
     }
 }
 
-/// All (s, t) of paths with up to `max_depth` scattering events, the shortest paths first. A path
-/// needs a vertex on the camera; the lights themselves are only met by chance.
+/// All (s, t) of paths with up to `max_depth` scattering events, the shortest paths first. Every
+/// path has a vertex on the camera. Direct views of lights have one strategy only.
 fn strategies(max_depth: u32) -> impl Iterator<Item = (u32, u32)> {
     (0..=max_depth).flat_map(|depth| {
         let most = if depth == 0 { 0 } else { depth + 1 };
@@ -114,7 +112,7 @@ fn strategies(max_depth: u32) -> impl Iterator<Item = (u32, u32)> {
     })
 }
 
-/// The place of a strategy among all.
+/// The index of a strategy.
 fn index(s: u32, t: u32) -> usize {
     let depth = s + t - 2;
     let shorter = if depth == 0 { 0 } else { 1 + (depth - 1) * (depth + 4) / 2 };
@@ -126,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_strategy_has_its_place() {
+    fn indices_of_strategies_are_consecutive() {
         let all: Vec<_> = strategies(4).collect();
         assert_eq!(all[..5], [(0, 2), (0, 3), (1, 2), (2, 1), (0, 4)]);
         for (place, &(s, t)) in all.iter().enumerate() {
@@ -135,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn each_film_takes_36_bytes_for_a_pixel() {
+    fn each_film_takes_36_bytes_per_pixel() {
         for (max_depth, films) in [(0, 1), (1, 4), (5, 26), (8, 53), (100, 53)] {
             assert_eq!(Techniques::new(max_depth, true, false).bytes(10), films * 360);
             assert_eq!(Techniques::new(max_depth, true, true).bytes(10), 2 * films * 360);

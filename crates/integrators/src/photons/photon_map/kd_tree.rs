@@ -1,14 +1,14 @@
-//! A balanced kd-tree of points, for the nearest ones to a place.
+//! A balanced kd-tree of points, for nearest-neighbour queries.
 //!
-//! The tree has no pointers: its points are one array, and the node of a range of it is the range's
-//! middle. All points before it lie on one side of it along the node's axis, all behind it on the
-//! other; both halves are ranges again, down to short ones that are looked through in order. Each
-//! range is cut across the longest side of its bounds. Halves are built in parallel; ties are
-//! broken by the points' order, so that the tree depends on the points alone.
+//! The tree is implicit in the order of one array: the node of a range is its middle point. All
+//! points before it lie on one side of it along the node's axis, all after it on the other; both
+//! halves are ranges again, down to short leaves, which are searched linearly. Each range is split
+//! along the longest axis of its bounds. Halves are built in parallel; ties are broken by the
+//! points' order, so that the tree depends on the points only.
 //!
-//! The search goes to the nearer half first, and to the other one if its cell is not beyond the
-//! farthest of the neighbours that are kept, whose distance the heap has at its top. A cell's
-//! distance is known from the planes that were crossed to get there. [Bentley 1975], [Arya 1993]
+//! The search visits the nearer half first, and the other one if its cell is not farther away than
+//! the farthest neighbour found, which is at the top of a heap. The distance of a cell is updated
+//! incrementally from the planes that were crossed. [Bentley 1975], [Arya 1993]
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -18,26 +18,26 @@ use math::{Bounds3, Point3, Vec3};
 
 use crate::{Cancelled, Control};
 
-/// Ranges of no more points have no node.
+/// Ranges of at most this many points are leaves.
 const LEAF: usize = 8;
 
 /// Ranges of more points are built in parallel.
 const PARALLEL: usize = 4096;
 
-/// Points, arranged to be found.
+/// Points in the order of a kd-tree.
 #[derive(Debug, Default)]
 pub(crate) struct KdTree {
     points: Vec<Point3>,
-    /// For each point the axis that it cuts its range across, if it is a node.
+    /// The split axis of each point that is a node.
     axes: Vec<u8>,
 }
 
-/// A point near the one that was asked about.
+/// A neighbour of the query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Neighbour {
     /// Square of the distance.
     pub distance_squared: f32,
-    /// Which of the tree's points.
+    /// Index into the tree's points.
     pub index: u32,
 }
 
@@ -57,7 +57,8 @@ impl Ord for Neighbour {
 }
 
 impl KdTree {
-    /// Of the points that are finite; and, in the order of the tree's points, which ones they were.
+    /// Builds a tree of the finite points. Also returns their original indices, in the order of the
+    /// tree's points.
     pub fn build(
         points: impl Iterator<Item = Point3>,
         control: &Control,
@@ -69,13 +70,13 @@ impl KdTree {
         Ok((Self { points, axes }, order))
     }
 
-    /// Bytes that it takes.
+    /// Memory taken, in bytes.
     pub fn memory(&self) -> usize {
         size_of_val(&*self.points) + size_of_val(&*self.axes)
     }
 
-    /// The nearest points to `p` that are no farther than `radius` and that `accept` takes, at most
-    /// `count`, in no order.
+    /// The nearest points to `p` within `radius` for which `accept` is true, at most `count`, in no
+    /// particular order.
     pub fn nearest(
         &self,
         p: Point3,
@@ -93,7 +94,7 @@ impl KdTree {
     }
 }
 
-/// Puts the range's node into its middle, and what is on its sides to its sides.
+/// Moves the node of a range to its middle and partitions the other points by it.
 fn arrange(entries: &mut [(Point3, u32)], axes: &mut [u8], control: &Control) -> Result<(), Cancelled> {
     if entries.len() <= LEAF {
         return Ok(());
@@ -116,20 +117,20 @@ fn arrange(entries: &mut [(Point3, u32)], axes: &mut [u8], control: &Control) ->
     before.and(behind)
 }
 
-/// A search on its way.
+/// The state of a search.
 struct Search<'a, A> {
     tree: &'a KdTree,
     p: Point3,
     count: usize,
-    /// Square of the distance beyond which nothing counts.
+    /// Square of the search radius, which shrinks once `count` points are found.
     limit: f32,
-    /// The nearest so far, the farthest of them on top.
+    /// The nearest points so far, the farthest of them on top.
     found: BinaryHeap<Neighbour>,
     accept: A,
 }
 
 impl<A: Fn(u32) -> bool> Search<'_, A> {
-    /// Looks through a range whose cell is `away` from the point along each axis.
+    /// Searches a range whose cell is at the distance `away` from the point along each axis.
     fn visit(&mut self, range: Range<usize>, away: Vec3) {
         if range.len() <= LEAF {
             range.for_each(|i| self.consider(i));
@@ -179,7 +180,7 @@ mod tests {
         KdTree::build(points.iter().copied(), &Control::default()).expect("nobody cancels it")
     }
 
-    /// Sets of points that trees find hard, and easy ones.
+    /// Typical and degenerate sets of points.
     fn clouds() -> Vec<(&'static str, Vec<Point3>)> {
         let mut random = Random::new(3);
         let mut next = move || random.get_1d();
@@ -215,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_are_those_that_a_search_through_all_finds() {
+    fn queries_find_the_same_points_as_brute_force() {
         let mut random = Random::new(8);
         for (name, points) in clouds() {
             let (tree, order) = tree(&points);
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tree_depends_on_its_points_alone() {
+    fn the_tree_does_not_depend_on_threads() {
         let (_, points) = clouds().swap_remove(3);
         let build = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -258,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn building_stops_when_it_is_told_to() {
+    fn building_can_be_cancelled() {
         let (_, points) = clouds().swap_remove(3);
         let control = Control::default();
         control.cancel.store(true, std::sync::atomic::Ordering::Relaxed);

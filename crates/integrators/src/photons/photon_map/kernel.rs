@@ -1,4 +1,4 @@
-//! Kernels: how much a photon counts at a distance.
+//! Kernels: the weight of a photon at a distance.
 //!
 //! On the disk of radius 1, at the distance d from its centre,
 //!
@@ -7,9 +7,9 @@
 //! Epanechnikov  K(d) = 2/π · (1 − d²)
 //! ```
 //!
-//! both with the integral 1; K(d/r)/r² has it on the disk of radius r. Of all kernels
-//! Epanechnikov's makes the least mean square error of a density; the cone is sharper in the
-//! middle. [Silverman 1986 §3.3], [Jensen 2001a §7.2]
+//! both with the integral 1; K(d/r)/r² has it on the disk of radius r. Epanechnikov's kernel
+//! minimizes the mean squared error of a density; the cone is sharper. [Silverman 1986 §3.3],
+//! [Jensen 2001a §7.2]
 
 use description::PhotonKernel;
 

@@ -1,22 +1,20 @@
-//! Photons where they have arrived, and how densely they lie around a point.
+//! The photon map, and the density of photons around a point.
 //!
-//! What n subpaths have left on a surface estimates the flux that arrives there: the density of
-//! flux at a point is
+//! The photons of n subpaths estimate the flux that arrives at a surface: its density at a point is
 //!
 //! ```text
 //! 1/n Σ K(dᵢ/r)/r² · βᵢ
 //! ```
 //!
 //! over the photons i at the distances dᵢ < r, K being a [`PhotonKernel`]. The radius r is the
-//! distance of the photon that comes after the `nearest` nearest, so that where photons lie densely
-//! little is blurred; but at most `radius`.
+//! distance of the photon after the `nearest` nearest ones, so that the blur is small where photons
+//! are dense; it is at most `radius`.
 //!
-//! A given radius has a bias, that of the blur: on a plane inside which the density is linear there
-//! is none, elsewhere it falls with r². At edges of surfaces the disk hangs over and finds too
-//! little; corners are darkened within r of them. Neighbours that count do not include the one that
-//! makes the radius: on an even density of photons that fell independently (k − 1)/πr² with the
-//! k-th photon's distance has the right mean, where k/πr² has too much by 1/(k − 1), and the
-//! largest radius changes nothing about that.
+//! The estimate is biased: it is exact for a linear density on a plane, and elsewhere the bias is
+//! proportional to r². At edges the disk extends beyond the surface, which darkens corners within
+//! r. The photon that determines the radius does not count: for independent photons of uniform
+//! density, (k − 1)/πr² with the k-th photon's distance is unbiased, while k/πr² is too large by
+//! 1/(k − 1); the largest radius does not change this.
 //!
 //! Sources: [Jensen 2001a ch. 6, 7]; [Silverman 1986 §5.2].
 
@@ -38,23 +36,23 @@ pub(crate) struct PhotonMap {
     tree: KdTree,
     /// In the order of the tree's points.
     photons: Vec<Photon>,
-    /// Subpaths that left them.
+    /// The number of light subpaths.
     paths: u32,
 }
 
-/// Which photons make an estimate, and how.
+/// The parameters of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Neighbourhood {
-    /// How many of the nearest.
+    /// Maximum number of photons.
     pub nearest: usize,
-    /// The farthest that they may be away.
+    /// Maximum distance.
     pub radius: f32,
-    /// How they are weighed.
+    /// Their weights by distance.
     pub kernel: PhotonKernel,
 }
 
 impl PhotonMap {
-    /// Of photons that so many subpaths have left; those that are not finite are left out.
+    /// Builds the map of the photons of `paths` subpaths; photons that are not finite are left out.
     pub fn build(photons: Vec<Photon>, paths: u32, control: &Control) -> Result<Self, Cancelled> {
         let places = photons.iter().map(|photon| if photon.is_finite() { photon.p } else { Point3::NAN });
         let (tree, order) = KdTree::build(places, control)?;
@@ -62,18 +60,18 @@ impl PhotonMap {
         Ok(Self { tree, photons, paths })
     }
 
-    /// How many photons there are.
+    /// The number of photons.
     pub fn len(&self) -> usize {
         self.photons.len()
     }
 
-    /// Bytes that it takes.
+    /// Memory taken, in bytes.
     pub fn memory(&self) -> usize {
         self.tree.memory() + size_of_val(&*self.photons)
     }
 
-    /// The density at `p` of what `weigh` makes of the photons that `accept` takes, and the radius
-    /// within which they were; `None` where there are none, or all of them lie in one point.
+    /// The density at `p` of the values `weigh` of the photons for which `accept` is true, and the
+    /// radius of the estimate; `None` if there are none, or all of them are at one point.
     pub fn density(
         &self,
         p: Point3,
@@ -105,8 +103,8 @@ mod tests {
     use math::Vec3;
     use testkit::{Moments, Random, t_test};
 
-    /// Photons of power 1 on the square [-1, 1]² as two paths have left them, so many or those of
-    /// them that `stays`.
+    /// `count` photons of power 1 on the square [-1, 1]² from two paths, of which those with
+    /// `stays` are kept.
     fn photons(count: usize, seed: u64, stays: impl Fn(Point3, f32) -> bool) -> PhotonMap {
         let mut random = Random::new(seed);
         let photons = (0..count).filter_map(|_| {
@@ -128,9 +126,9 @@ mod tests {
     }
 
     #[test]
-    fn an_even_density_is_found_without_bias_however_many_photons_count() {
+    fn estimates_of_a_uniform_density_are_unbiased() {
         for kernel in [PhotonKernel::Cone, PhotonKernel::Epanechnikov] {
-            // The nearest k alone, the radius alone, and now the one and now the other.
+            // Limited by the nearest k, by the radius, and by either.
             for (nearest, radius) in [(3, 0.9), (5, 0.9), (1000, 0.5), (12, 0.35)] {
                 let neighbourhood = Neighbourhood { nearest, radius, kernel };
                 let found: Moments =
@@ -142,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn where_the_density_bends_the_error_goes_with_the_square_of_the_radius() {
+    fn the_bias_of_a_quadratic_density_is_proportional_to_the_squared_radius() {
         // Of (1 + x²)/2 the kernel finds (1 + r² E[x²])/2 at x = 0, E[x²] being its second moment.
         for (kernel, moment) in [(PhotonKernel::Cone, 0.15), (PhotonKernel::Epanechnikov, 1.0 / 6.0)] {
             for radius in [0.9f32, 0.45] {
@@ -157,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_found_where_nothing_is_or_all_is_in_one_point() {
+    fn no_photons_or_coincident_photons_give_no_estimate() {
         let neighbourhood = Neighbourhood { nearest: 5, radius: 0.1, kernel: PhotonKernel::Epanechnikov };
         assert_eq!(density(&PhotonMap::default(), &neighbourhood), 0.0);
         let mut photon = square(1, 1).photons[0];
@@ -167,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn photons_that_are_no_numbers_are_left_out() {
+    fn photons_that_are_not_finite_are_left_out() {
         let mut photons = square(40, 2).photons;
         photons[3].p.y = f32::NAN;
         photons[8].beta[2] = f32::INFINITY;

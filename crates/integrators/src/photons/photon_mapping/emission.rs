@@ -1,10 +1,9 @@
 //! Emission of photons.
 //!
-//! Light subpaths start at lights in proportion to their power and are scattered as the BSDFs say,
-//! so that all photons carry about the same power and lie where there is light. The first surface
-//! of a subpath that is not purely specular decides what its photons are: direct light if it is the
-//! first surface of all, a caustic if only specular surfaces come before it; and indirect light
-//! from there on.
+//! Light subpaths start at lights in proportion to their power and are scattered by BSDF sampling,
+//! so that all photons carry about the same power and are dense where light is bright. The photon
+//! at the first surface that is not purely specular is direct light if no surface comes before it,
+//! and a caustic if specular surfaces do; later photons are indirect light.
 
 use geometry::RayStats;
 use rayon::prelude::*;
@@ -16,15 +15,15 @@ use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control};
 
-/// Subpaths that one task samples.
+/// Number of subpaths per parallel task.
 const CHUNK: u32 = 2048;
 
-/// Which photons a map keeps.
+/// The photons that a map stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Those that came by specular surfaces alone, and at least one.
+    /// Those scattered by specular surfaces only, at least one.
     Caustic,
-    /// Those that have been scattered by a surface that is not specular.
+    /// Those scattered by a surface that is not specular.
     Indirect,
     /// All.
     All,
@@ -54,12 +53,12 @@ pub(super) struct Emission<'a> {
     pub paths: &'a Bidirectional<'a>,
     pub shutter: ShutterSample,
     pub seed: u32,
-    /// The index of these photons among all of the seed.
+    /// The number of the pass among all of the seed.
     pub generation: u32,
 }
 
 impl Emission<'_> {
-    /// What `keep` makes of the photons of so many subpaths, in path order.
+    /// The values of `keep` for the photons of `paths` subpaths, in path order.
     pub fn emit<T: Send>(
         &self,
         kind: Kind,
@@ -96,7 +95,7 @@ impl Emission<'_> {
         Ok((all, sum))
     }
 
-    /// Samples a subpath as far as it may leave photons.
+    /// Samples a subpath as far as it may have photons of the kind.
     fn follow(&self, kind: Kind, tracer: &mut Tracer, mut visit: impl FnMut(&Vertex, &mut Tracer)) {
         let time = self.shutter.time(self.paths.view);
         let Some(mut walk) = Walk::from_light(self.paths, time, self.shutter.lambda, tracer) else {
@@ -134,7 +133,7 @@ mod tests {
     use spectrum::SampledWavelengths;
     use testkit::{Moments, t_test, welch_test};
 
-    /// The inside of a ball that shines and reflects half, and perhaps a ball of glass in it.
+    /// The inside of an emissive ball of albedo ½, optionally with a ball of glass in it.
     fn furnace(with_glass: bool) -> (Scene, View) {
         let mut desc = SceneDesc::default();
         let ball = |radius: f32| {
@@ -166,8 +165,8 @@ mod tests {
         emission.emit(kind, PATHS, &Control::default(), keep).expect("nobody cancels it").0
     }
 
-    /// What each subpath has left of `photons`, of which it has left one at most, over the power of
-    /// the lights.
+    /// The power of `photons` over the power of the lights; each subpath has at most one of the
+    /// photons.
     fn shares<'a>((scene, _): &(Scene, View), photons: impl Iterator<Item = &'a Photon>) -> Moments {
         let power = scene.light(scene::light::LightId(0)).phi(&SampledWavelengths::sample_visible(0.3))[0];
         let mut shares: Vec<f64> = photons.map(|photon| f64::from(photon.beta[0] / power)).collect();
@@ -176,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_receive_what_surfaces_have_left_of_the_power_of_lights() {
+    fn photon_power_falls_with_depth_by_the_albedo() {
         let furnace = furnace(false);
         let photons = emit(&furnace, Kind::All, 6);
         assert!(photons.iter().all(|photon| (1..=6).contains(&photon.depth)));
@@ -191,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn photons_are_direct_or_of_a_caustic_or_indirect() {
+    fn photon_kinds_are_disjoint_and_complete() {
         let furnace = furnace(true);
         let [all, indirect, caustic] =
             [Kind::All, Kind::Indirect, Kind::Caustic].map(|kind| emit(&furnace, kind, 8));

@@ -1,21 +1,21 @@
-//! What camera paths gather from the photon maps.
+//! Radiance of camera paths, gathered from the photon maps.
 //!
 //! At a surface that is not purely specular, incident light has three parts:
 //!
-//! | incident light | is found |
+//! | incident light | estimated |
 //! |---|---|
 //! | direct | by next-event estimation, weighted against the scattered ray ([`DirectLighting`]) |
 //! | from a light through specular surfaces alone | in the caustic map |
 //! | from other surfaces that are not purely specular | in the global map if there is a diffuse lobe; else by the scattered ray |
 //!
-//! A ray is scattered in any case, along a direction of the BSDF. What it may find follows from the
-//! table: after a diffuse surface only a light that it hits at once; after a glossy one everything
-//! but lights behind specular surfaces; after a specular one whatever was still sought before. So
+//! A ray is scattered in any case, along a direction of the BSDF. The table determines the light
+//! that it may contribute: after a diffuse surface only emission at the next hit; after a glossy
+//! one everything but lights behind specular surfaces; after a specular one the same as before. So
 //! each light path is counted once.
 //!
 //! With a final gather, the global map holds photons of all kinds and is looked up one surface
-//! later: rays leave the diffuse surface along directions of its BSDF, and where each hits a
-//! surface that is not purely specular the map gives all that it reflects.
+//! later: rays leave the diffuse surface along directions of its BSDF, and at the next surface that
+//! is not purely specular the map estimates all reflected radiance.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -32,7 +32,7 @@ use crate::transport::Tracer;
 use crate::transport::direct::{DirectLighting, light_context};
 use crate::transport::path_state::{PathState, Scattered, throughput};
 
-/// Photons count where the cosine between their surface's normal and the point's is at least this.
+/// Photons count if the cosine between their normal and that of the gather point is at least this.
 const SAME_SURFACE: f32 = 0.7;
 
 /// The photons of a pass.
@@ -51,7 +51,7 @@ pub(super) struct MeanRadius {
 }
 
 impl MeanRadius {
-    /// A unit in parts of the largest radius: sums of integers do not depend on their order.
+    /// The unit as a fraction of the largest radius. Sums of integers do not depend on their order.
     const UNIT: f32 = 1.0 / 4096.0;
 
     pub fn new(largest: f32) -> Self {
@@ -71,7 +71,7 @@ impl MeanRadius {
 
 /// Gathers light along rays.
 pub(super) struct Gather<'a> {
-    /// What finds direct light.
+    /// Next-event estimation.
     pub direct: &'a DirectLighting,
     pub maps: &'a PhotonMaps,
     pub settings: &'a PhotonMappingDesc,
@@ -79,14 +79,14 @@ pub(super) struct Gather<'a> {
     pub mean_radius: &'a MeanRadius,
 }
 
-/// What is still sought along a ray.
+/// The light that a ray may still contribute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Sought {
     /// All radiance.
     Radiance,
-    /// What the next surface with photons reflects, from the global map.
+    /// Reflected radiance of the next surface with photons, from the global map.
     Reflected,
-    /// The emission of lights that it hits at once.
+    /// Emission at the next hit.
     Emission,
 }
 
@@ -95,7 +95,7 @@ enum Sought {
 struct GatherPoint<'a> {
     surface: &'a SurfaceInteraction,
     bsdf: &'a Bsdf,
-    /// Scattering events from the camera, the one here included.
+    /// Scattering events from the camera, this one included.
     depth: u32,
     lambda: &'a SampledWavelengths,
 }
@@ -122,8 +122,7 @@ impl Gather<'_> {
         let (scene, direct) = (tracer.scene, self.direct);
         let mut l = SampledSpectrum::ZERO;
         let mut path = PathState::new(ray, depth);
-        // Whether a caustic map has the light of emitters that the ray hits, unless it hits them at
-        // once.
+        // Whether the caustic map has the emission that the ray finds beyond specular surfaces.
         let mut emission_is_known = sought == Sought::Reflected;
         loop {
             let counts_emission = !emission_is_known || path.origin.is_some();
@@ -172,7 +171,7 @@ impl Gather<'_> {
 
             let Some(scattered) = scattered else { return l };
             if scattered.sample.flags.is_specular() {
-                // What comes along a specular lobe is in no map of the surface.
+                // The photon maps do not include light for specular lobes.
                 emission_is_known &= !flags.is_non_specular();
             } else {
                 if sought == Sought::Reflected {
@@ -190,7 +189,7 @@ impl Gather<'_> {
         }
     }
 
-    /// What is reflected of indirect light.
+    /// Reflected indirect light.
     fn indirect(&self, ray: &RayDifferential, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
         let count = self.settings.gather;
         if point.depth == self.settings.max_depth {
@@ -203,7 +202,7 @@ impl Gather<'_> {
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
-            // A randomly shifted rank-1 lattice: evenly spread in both coordinates.
+            // A randomly shifted rank-1 lattice.
             let step = i as f32 * GOLDEN;
             let u = Vec2::new((i as f32 + u.x) / count as f32, (u.y + step).fract());
             let uc = (uc + step).fract();
@@ -221,7 +220,7 @@ impl Gather<'_> {
         sum / count as f32
     }
 
-    /// What is reflected of the light of the photons of a map.
+    /// Reflected light of the photons of a map.
     fn reflected(&self, map: &PhotonMap, point: &GatherPoint) -> SampledSpectrum {
         let &GatherPoint { surface, bsdf, depth, lambda } = point;
         let s = &surface.surface;
@@ -235,8 +234,8 @@ impl Gather<'_> {
         };
         let terminated = lambda.secondary_terminated();
         let weigh = |photon: &Photon| {
-            // Power has been through the cosine of the surface, light is scattered by that of the
-            // shading.
+            // Power includes the cosine to the geometric normal; scattering has that to the shading
+            // normal.
             let cosines = (photon.wi.dot(s.shading.n) / photon.wi.dot(s.n)).abs();
             let l = bsdf.f(s.wo, photon.wi, TransportMode::Radiance) * photon.beta * cosines;
             if terminated || photon.hero_only { hero_only(l) } else { l }
@@ -252,8 +251,8 @@ impl Gather<'_> {
 /// The fractional part of the golden ratio.
 const GOLDEN: f32 = 0.618_034;
 
-/// Light as it is at all wavelengths that the ray began with, of which dispersion may have left the
-/// first.
+/// Radiance at all wavelengths that the ray began with, of which dispersion may have terminated all
+/// but the first.
 fn known(l: SampledSpectrum, lambda: &SampledWavelengths) -> SampledSpectrum {
     if lambda.secondary_terminated() { hero_only(l) } else { l }
 }

@@ -1,33 +1,33 @@
-//! Photon mapping: light is shot into the scene, stays where it falls, and is picked up by the
-//! camera's rays.
+//! Photon mapping: photons from the lights are stored where they hit surfaces, and gathered by
+//! camera rays.
 //!
-//! Photons leave the lights and are scattered by surfaces as the BSDFs say. At each surface that is
-//! not purely specular they leave their power Φ, direction and place in a *photon map*. The
-//! radiance that such a surface at x reflects is then, over the photons near x,
+//! Photons leave the lights and are scattered by BSDF sampling. At each surface that is not purely
+//! specular their power Φ, direction and position are stored in a *photon map*. The radiance that
+//! such a surface at x reflects is then, over the photons near x,
 //!
 //! ```text
 //! L(x, ωₒ) = ∫ f(x, ωₒ, ωᵢ) L(x, ωᵢ) |cos θᵢ| dωᵢ = ∫ f d²Φ/dA ≈ Σ f(x, ωₒ, ω_p) Φ_p · K(d_p/r)/r²
 //! ```
 //!
-//! Two maps are kept. The *caustic map* has light that came through mirrors and glass alone; the
-//! *global map* that which other surfaces have scattered. Direct light is found by shadow rays,
-//! since the eye sees its edges best. `gather.rs` says how all light is found once. With `gather`
-//! rays of a final gather the global map is not seen itself but through the reflection of a diffuse
-//! surface, which evens its blotches out.
+//! There are two maps. The *caustic map* has light from lights through specular surfaces only; the
+//! *global map* has light that other surfaces have scattered. Direct light is estimated by shadow
+//! rays, since its edges should be sharp. `gather.rs` describes how each light path is counted
+//! once. With `gather` rays of a final gather the global map is not seen directly but through the
+//! reflection of a diffuse surface, which averages its noise.
 //!
-//! It is at its best on caustics, also those seen in a mirror, and those of lights at a point,
-//! which no path from the camera finds. It is *biased*: photons are spread over the radius r of the
-//! nearest ones. The rims of caustics are soft; corners are a little dark, as the disk reaches
-//! beyond the surface; light seeps under doors and around things thinner than r, and on what bends
-//! within r a little is lost below the horizon. Each pass emits photons of its own, so noise falls
-//! with the number of passes as in path tracing, while the bias stays. It goes with r² in the
-//! middle of surfaces and with r in the mean over a room with corners, r² with 1/`photons`: the
+//! Its strength is caustics, also those seen in a mirror, and those of lights at a point, which no
+//! path from the camera finds. It is *biased*: photons are spread over the radius r of the nearest
+//! ones. The edges of caustics are soft; corners are a little dark, as the disk extends beyond the
+//! surface; light leaks under doors and around objects thinner than r, and on surfaces that curve
+//! within r a little is lost below the horizon. Each pass emits new photons, so noise falls with
+//! the number of passes as in path tracing, while the bias stays. It is proportional to r² in the
+//! middle of surfaces and to r in the mean over a room with corners, and r² to 1/`photons`: the
 //! Cornell box is too dark by 0.8 % with 50 000 of them, by 0.4 % with 200 000 and by 0.2 % with
-//! 800 000, where the radius has no other bound. Narrow glossy surfaces are noisy in light that
-//! comes through glass.
+//! 800 000, without another limit on the radius. Narrow glossy lobes are noisy in light through
+//! glass.
 //!
-//! Memory is taken for the photons of one pass: no more than the subpaths asked for times their
-//! mean length, 73 bytes each, and again as much while the tree is built.
+//! Memory holds the photons of one pass: at most the number of subpaths times their mean length, 73
+//! bytes each, and twice as much while the tree is built.
 //!
 //! Sources: [Jensen 1996]; [Jensen 2001a].
 
@@ -44,7 +44,7 @@ use scene::{Interfaces, Scene, View};
 use spectrum::{CIE_Y_INTEGRAL, SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights, Vertex, hero_only};
-use crate::light_paths::endless;
+use crate::light_paths::unbounded;
 use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap};
 use crate::transport::Tracer;
@@ -69,7 +69,7 @@ pub struct PhotonMapping {
     mean_radius: MeanRadius,
 }
 
-/// What the maps have held.
+/// Statistics of the maps.
 #[derive(Debug, Default)]
 struct Tally {
     passes: u64,
@@ -94,14 +94,14 @@ impl AddAssign for Tally {
 }
 
 impl PhotonMapping {
-    /// With a sampler for the camera's rays, and a seed for photons.
+    /// `sampler` is for camera rays, `photon_seed` for photons.
     pub fn new(settings: PhotonMappingDesc, sampler: Sampler, photon_seed: u32) -> Self {
         let (lights, direct) = (Lights::none(), DirectLighting::none());
         let (tally, mean_radius) = (Tally::default(), MeanRadius::new(1.0));
         Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, mean_radius }
     }
 
-    /// How the global map's photons are used tells which ones it needs.
+    /// The kind of photons of the global map, which depends on its use.
     fn global_kind(&self) -> Kind {
         if self.settings.gather > 0 { Kind::All } else { Kind::Indirect }
     }
@@ -118,7 +118,7 @@ impl PhotonMapping {
         Ok((PhotonMaps { caustic, global }, stats))
     }
 
-    /// Draws the photons as dots, a white one that has lost nothing at white.
+    /// Draws the photons as dots; one with all its initial power is white.
     fn draw(
         &self,
         emission: &Emission,
@@ -159,7 +159,7 @@ impl Integrator for PhotonMapping {
     }
 
     fn warnings(&self, scene: &Scene) -> Vec<Diagnostic> {
-        endless::warnings(scene, "photon-mapping")
+        unbounded::warnings(scene, "photon-mapping")
     }
 
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
@@ -188,7 +188,8 @@ impl Integrator for PhotonMapping {
             regularize: false,
         };
         let shutter = ShutterSample::of_pass(view, self.photon_seed, pass);
-        // Photons that are shown stay, and their colours become right over the passes.
+        // Positions of displayed photons are those of the first pass; wavelengths change from pass
+        // to pass.
         let generation = if settings.show == PhotonMappingShow::Photons { 0 } else { pass };
         let emission = Emission { paths: &paths, shutter, seed: self.photon_seed, generation };
         if settings.show == PhotonMappingShow::Photons {
@@ -229,7 +230,7 @@ impl Integrator for PhotonMapping {
         let (mean, largest) = (self.mean_radius.mean(), self.mean_radius.largest);
         vec![
             ("photons", format!("{photons}; {mebibytes:.1} MiB")),
-            ("radius", format!("{mean:.3} in the mean, {largest:.3} at most")),
+            ("radius", format!("{mean:.3} on average, {largest:.3} at most")),
         ]
     }
 }

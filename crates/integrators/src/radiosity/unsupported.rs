@@ -1,9 +1,10 @@
-//! Warnings of what radiosity draws otherwise than described.
+//! Warnings of materials and shapes that radiosity does not support.
 
 use description::Diagnostic;
 use scene::{Occurrence, Scene};
 
-/// Tells of the materials that are not diffuse, and of the shapes that cannot be cut into patches.
+/// Warnings of materials that are not diffuse, and of shapes that cannot be subdivided into
+/// patches.
 pub(crate) fn warnings(scene: &Scene) -> Vec<Diagnostic> {
     let traits = scene.traits();
     let of_material = |&Occurrence { first, count, .. }: &Occurrence| {
@@ -12,7 +13,7 @@ pub(crate) fn warnings(scene: &Scene) -> Vec<Diagnostic> {
     };
     let of_shape = |&Occurrence { kind, first, count }: &Occurrence| {
         let message = format!(
-            "shape `{kind}` cannot be cut into patches; radiosity lights it, but it passes no light on"
+            "shape `{kind}` cannot be cut into patches; in radiosity it receives light, but does not reflect it to others"
         );
         Diagnostic { count, ..Diagnostic::warning("no-patches", message, first) }
     };
