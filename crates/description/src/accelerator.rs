@@ -1,4 +1,4 @@
-//! Structures that find what a ray hits. They do not change the picture.
+//! Acceleration structures for ray intersection. They do not change the picture.
 
 use crate::schema::{at_least, choices, from, settings};
 
@@ -36,11 +36,11 @@ settings! {
     pub enum AcceleratorDesc = Bvh {
         /// A bounding volume hierarchy.
         Bvh = "bvh" {
-            /// Most primitives in a leaf. Has no effect: the format's setting.
+            /// Maximum number of primitives in a leaf. Part of the format; has no effect.
             max_node_prims: i32 = 4 => ["maxnodeprims": from(1.0, 255.0)];
-            /// How nodes are split. `hlbvh` asks for the quality `fast`, all others for `balanced`.
+            /// How nodes are split. `hlbvh` selects the quality `fast`, all others `balanced`.
             split: BvhSplit = BvhSplit::Sah => ["splitmethod"];
-            /// How much time the build may take. If absent, what `splitmethod` asks for.
+            /// How much time the build may take. If absent, `splitmethod` selects it.
             quality: Option<BuildQualityDesc> = None => ["quality"];
         },
         /// A k-d tree. A bounding volume hierarchy is built in its place.
@@ -49,13 +49,13 @@ settings! {
             intersect_cost: i32 = 5 => ["intersectcost": at_least(0.0)];
             /// Cost of a step down.
             traversal_cost: i32 = 1 => ["traversalcost": at_least(0.0)];
-            /// Part of the cost saved where one side is empty.
+            /// Share of the cost that is saved where one side is empty.
             empty_bonus: f32 = 0.5 => ["emptybonus"];
-            /// Most primitives in a leaf.
+            /// Maximum number of primitives in a leaf.
             max_prims: i32 = 1 => ["maxprims": at_least(1.0)];
-            /// Greatest depth. −1 chooses it by the number of primitives.
+            /// Maximum depth. −1 chooses it by the number of primitives.
             max_depth: i32 = -1 => ["maxdepth": at_least(-1.0)];
-            /// How much time the build of the hierarchy in its place may take.
+            /// How much time the build of the hierarchy that replaces it may take.
             quality: Option<BuildQualityDesc> = None => ["quality"];
         },
         /// None: every ray is tested against every primitive, for comparison.
@@ -64,8 +64,7 @@ settings! {
 }
 
 impl AcceleratorDesc {
-    /// How much time the build may take: as stated, or as long as what was asked for takes in other
-    /// programs.
+    /// How much time the build may take: as described, or as the described structure usually takes.
     pub fn quality(&self) -> BuildQualityDesc {
         match self {
             Self::Bvh { quality: Some(quality), .. } | Self::KdTree { quality: Some(quality), .. } => {

@@ -1,4 +1,4 @@
-//! Typed tables, and the memory of where each thing in them was said.
+//! Typed tables, whose items have source locations.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
@@ -7,45 +7,45 @@ use std::ops::{Deref, DerefMut, Index, IndexMut};
 
 use crate::Span;
 
-/// Where a thing was said: the whole statement, and each of its parameters.
+/// The source location of a statement and of its parameters.
 #[derive(Clone, Debug, Default)]
 pub struct Origin {
-    /// The statement as a whole; [`Span::NONE`] for what was built by hand.
+    /// The whole statement; [`Span::NONE`] for items built by a program.
     pub span: Span,
-    /// Spans of the parameters that the author gave, by the format's name for them.
+    /// Spans of the given parameters, by their names in the format.
     pub parameters: Vec<(&'static str, Span)>,
 }
 
 impl Origin {
-    /// The origin of a statement whose parameters are not known one by one.
+    /// The origin of a statement without the spans of its parameters.
     pub fn new(span: Span) -> Self {
         Self { span, parameters: Vec::new() }
     }
 
-    /// Says where a parameter was given, whatever was said of it before.
+    /// Sets the span of a parameter, and replaces an earlier one.
     pub fn set_parameter(&mut self, name: &'static str, span: Span) {
         self.parameters.retain(|(given, _)| *given != name);
         self.parameters.push((name, span));
     }
 
-    /// Whether the author gave a parameter.
+    /// Whether a parameter was given.
     pub fn states(&self, name: &str) -> bool {
         self.parameters.iter().any(|(given, _)| *given == name)
     }
 
-    /// The place to blame for a parameter: where it was given, or the whole statement if it was
-    /// left out.
+    /// The span for diagnostics of a parameter: its own, or that of the whole statement if it was
+    /// not given.
     pub fn parameter(&self, name: &str) -> Span {
         self.parameters.iter().find(|(given, _)| *given == name).map_or(self.span, |&(_, span)| span)
     }
 }
 
-/// A value together with where it was said. Reads and writes like the value itself.
+/// A value with its source location. Dereferences to the value.
 #[derive(Clone, Debug, Default)]
 pub struct Stated<T> {
-    /// What was said.
+    /// The value.
     pub value: T,
-    /// Where it was said.
+    /// Its source location.
     pub origin: Origin,
 }
 
@@ -75,7 +75,7 @@ impl<T> DerefMut for Stated<T> {
     }
 }
 
-/// A table that only grows; its items are named by [`Handle`]s and remember their [`Origin`].
+/// An append-only table. Its items have [`Handle`]s and an [`Origin`].
 #[derive(Clone, Debug)]
 pub struct Arena<T> {
     items: Vec<Stated<T>>,
@@ -88,7 +88,7 @@ impl<T> Default for Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// Adds an item that was said nowhere: one built by hand.
+    /// Adds an item without an origin: one built by a program.
     pub fn push(&mut self, item: T) -> Handle<T> {
         self.push_stated(item.into())
     }
@@ -100,7 +100,7 @@ impl<T> Arena<T> {
         Handle::new(index)
     }
 
-    /// Where the item was said.
+    /// The source location of an item.
     pub fn origin(&self, handle: Handle<T>) -> &Origin {
         &self.items[handle.index()].origin
     }
@@ -145,7 +145,7 @@ impl<T> FromIterator<Stated<T>> for Arena<T> {
     }
 }
 
-/// The name of an item in an [`Arena`] of the same type.
+/// The index of an item in an [`Arena`] of the same type.
 pub struct Handle<T> {
     index: u32,
     item: PhantomData<fn() -> T>,
@@ -157,7 +157,7 @@ impl<T> Handle<T> {
         Self { index, item: PhantomData }
     }
 
-    /// The place of the item in order of addition.
+    /// The index of the item in order of addition.
     pub fn index(self) -> usize {
         self.index as usize
     }
@@ -192,7 +192,7 @@ mod tests {
     use crate::FileId;
 
     #[test]
-    fn handles_name_what_was_pushed() {
+    fn handles_index_items_in_order() {
         let mut arena = Arena::default();
         let a = arena.push("a");
         let b = arena.push_stated(Stated::new("b", Origin::new(Span::new(FileId(0), 3, 4))));
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parameter_left_out_blames_the_statement() {
+    fn a_missing_parameter_has_the_span_of_the_statement() {
         let whole = Span::new(FileId(0), 0, 9);
         let part = Span::new(FileId(0), 4, 6);
         let origin = Origin { span: whole, parameters: vec![("radius", part)] };

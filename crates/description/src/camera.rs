@@ -44,7 +44,7 @@ settings! {
         },
         /// All directions at once.
         Spherical = "spherical" {
-            /// How directions fill the image.
+            /// The mapping from the image to directions.
             mapping: SphericalMapping = SphericalMapping::EqualArea => ["mapping"];
         },
         /// Rays refracted through lens elements.
@@ -76,7 +76,7 @@ settings! {
 }
 
 choices! {
-    /// How a spherical camera's directions fill its image.
+    /// The mapping from the image of a spherical camera to directions.
     pub enum SphericalMapping {
         /// The equal-area octahedral mapping.
         #[default]

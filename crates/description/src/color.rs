@@ -1,4 +1,4 @@
-//! Spectra and colour spaces as the author named them.
+//! Descriptions of spectra and colour spaces.
 
 use std::sync::Arc;
 
@@ -29,13 +29,13 @@ pub enum SpectrumDesc {
         /// The space they are in.
         space: ColorSpaceDesc,
     },
-    /// A spectrum of the format's own table, such as `metal-Cu-eta` or `stdillum-D65`.
+    /// A predefined spectrum of the format, such as `metal-Cu-eta` or `stdillum-D65`.
     Named(String),
     /// Values at wavelengths in nanometres, increasing; linear between them and zero outside.
     Samples(Arc<[(f32, f32)]>),
     /// Emission of a black body at a temperature in kelvin, scaled to a maximum of one.
     Blackbody(f32),
-    /// The standard illuminant of a colour space: light that its author would call white.
+    /// The standard illuminant of a colour space, its white.
     Illuminant(ColorSpaceDesc),
 }
 

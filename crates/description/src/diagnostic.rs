@@ -18,21 +18,21 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How serious it is.
     pub severity: Severity,
-    /// A short fixed name of this kind of message, such as `unknown-parameter`.
+    /// A short constant name of this kind of message, such as `unknown-parameter`.
     pub code: &'static str,
     /// What is wrong, in one sentence without a full stop.
     pub message: String,
     /// The spans that it is about with a text for each, which may be empty; the first is the
     /// primary one.
     pub labels: Vec<(Span, String)>,
-    /// What to do about it.
+    /// Advice on how to resolve it.
     pub help: Option<String>,
-    /// In how many places the same was found; the labels show the first.
+    /// The number of occurrences; the labels show the first.
     pub count: usize,
 }
 
 impl Diagnostic {
-    /// An error at a span. What a long message quotes from the scene is shortened.
+    /// An error at a span. Long quotes from the scene are shortened.
     pub fn error(code: &'static str, message: impl Into<String>, span: Span) -> Self {
         Self {
             severity: Severity::Error,
@@ -44,12 +44,12 @@ impl Diagnostic {
         }
     }
 
-    /// A warning at a span. What a long message quotes from the scene is shortened.
+    /// A warning at a span. Long quotes from the scene are shortened.
     pub fn warning(code: &'static str, message: impl Into<String>, span: Span) -> Self {
         Self { severity: Severity::Warning, ..Self::error(code, message, span) }
     }
 
-    /// Adds what to do about it.
+    /// Adds advice on how to resolve it.
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(shortened(help.into()));
         self
@@ -72,12 +72,12 @@ impl Diagnostic {
     }
 }
 
-/// Diagnostics to be shown: warnings of the same message are one with a count, and of each severity
-/// at most [`DiagnosticList::LIMIT`] are kept.
+/// Diagnostics to be displayed: warnings with the same message are combined to one with a count,
+/// and at most [`DiagnosticList::LIMIT`] of each severity are stored.
 #[derive(Clone, Debug, Default)]
 pub struct DiagnosticList {
     kept: Vec<Diagnostic>,
-    /// Where the warning of a code and message is among those kept.
+    /// Indices of stored warnings, by code and message.
     warnings: HashMap<(&'static str, String), usize>,
     errors: usize,
     errors_left_out: usize,
@@ -85,10 +85,10 @@ pub struct DiagnosticList {
 }
 
 impl DiagnosticList {
-    /// Most errors, and most different warnings, that are kept.
+    /// Maximum number of stored errors, and of different warnings.
     pub const LIMIT: usize = 100;
 
-    /// Adds a diagnostic. Takes the same time however many there are.
+    /// Adds a diagnostic, in constant time.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         if diagnostic.is_error() {
             if self.errors < Self::LIMIT {
@@ -120,7 +120,7 @@ impl DiagnosticList {
         self.errors_left_out > 0
     }
 
-    /// The diagnostics in the order of the text; at the end how many were left out.
+    /// The diagnostics in the order of the source text; at the end the numbers of those left out.
     pub fn finish(mut self) -> Vec<Diagnostic> {
         self.kept.sort_by_key(position);
         let left_out = [
@@ -149,8 +149,8 @@ fn position(diagnostic: &Diagnostic) -> (crate::FileId, u32) {
     (span.file, span.start)
 }
 
-/// A message whose parts in backticks, and then itself, have a length that can be read. Names and
-/// values of scenes may have any length.
+/// Shortens the parts in backticks of a message, and then the message. Names and values of scenes
+/// may have any length.
 fn shortened(message: String) -> String {
     const LONGEST: usize = 1000;
     const LONGEST_QUOTE: usize = 200;
@@ -163,7 +163,7 @@ fn shortened(message: String) -> String {
     cut(&parts.collect::<Vec<_>>().join("`"), LONGEST)
 }
 
-/// A text of so many characters at most, with an ellipsis for what is missing.
+/// Cuts a text to `longest` characters, with an ellipsis if it is cut.
 fn cut(text: &str, longest: usize) -> String {
     match text.char_indices().nth(longest) {
         Some((end, _)) => format!("{}…", &text[..end]),
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn warnings_of_the_same_message_are_one() {
+    fn warnings_of_the_same_message_are_combined() {
         let mut list = DiagnosticList::default();
         for start in (0..40_000).rev() {
             list.push(Diagnostic::warning("not-drawn", "hair", at(2 * start)));
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn of_too_many_the_number_is_told() {
+    fn the_number_of_omitted_diagnostics_is_reported() {
         let mut list = DiagnosticList::default();
         for i in 0..250 {
             list.push(Diagnostic::warning("w", format!("warning {i}"), at(i)));
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn messages_quote_a_part_of_what_is_long() {
+    fn long_quotes_in_messages_are_shortened() {
         let long = "ä".repeat(10_000_000);
         for message in [format!("there is no material `{long}` here"), long.clone(), "`".repeat(100_000)] {
             let diagnostic = Diagnostic::error("e", message, Span::NONE).with_help(format!("`{long}`"));

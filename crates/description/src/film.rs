@@ -1,4 +1,4 @@
-//! The film: what is stored of the light that arrives.
+//! The film: resolution, sensor and output file.
 
 use crate::schema::{above, choices, from, one_of, settings};
 use crate::{ColorSpaceDesc, Spanned};
@@ -56,7 +56,7 @@ settings! {
         sensor: SensorDesc = SensorDesc::default() => ..;
         /// The colour space of the image.
         color_space: ColorSpaceDesc = ColorSpaceDesc::Srgb;
-        /// The names of layers beside the colour.
+        /// The names of additional layers (AOVs).
         layers: Vec<Spanned<String>> = Vec::new();
     }
 }
@@ -96,7 +96,7 @@ choices! {
 }
 
 settings! {
-    /// How light becomes sensor values. The imaging ratio is exposure time × ISO / 100; the
+    /// Conversion of light to sensor values. The imaging ratio is exposure time × ISO / 100; the
     /// exposure time is that of the camera's shutter.
     #[derive(Clone, Debug, PartialEq)]
     pub struct SensorDesc {
@@ -104,8 +104,8 @@ settings! {
         name: String = "cie1931".to_owned() => ["sensor": one_of(SENSORS)];
         /// Sensitivity.
         iso: f32 = 100.0 => ["iso": above(0.0).unit("ISO")];
-        /// Temperature of the light that is to look white. 0 leaves colours as they are (`cie1931`)
-        /// or takes 6500 (measured cameras).
+        /// Colour temperature of the light that becomes white. 0 does not change colours
+        /// (`cie1931`) or means 6500 (measured cameras).
         white_balance: f32 = 0.0 => ["whitebalance": from(0.0, 1e5).unit("K")];
     }
 }

@@ -1,4 +1,4 @@
-//! Images as the author named them, decoded.
+//! Decoded images.
 
 use std::sync::Arc;
 

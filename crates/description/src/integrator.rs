@@ -13,15 +13,15 @@ settings! {
         RayCasting = "ray-casting" | "raycasting",
         /// Primary and shadow rays, mirror reflection and refraction.
         Whitted(WhittedDesc) = "whitted",
-        /// How much of the sky each point sees.
+        /// The unoccluded share of the hemisphere over each point.
         AmbientOcclusion(AmbientOcclusionDesc) = "ambient-occlusion" | "ambientocclusion",
-        /// Paths that find light only by chance, with uniform directions.
+        /// Paths in uniform directions, without next-event estimation.
         RandomWalk(RandomWalkDesc) = "random-walk" | "randomwalk",
         /// Paths that sample lights or the BSDF, without weighting one against the other.
         SimplePath(SimplePathDesc) = "simple-path" | "simplepath",
         /// Path tracing with next-event estimation and multiple importance sampling.
         Path(PathDesc) = "path",
-        /// As `path`, and light of point lights passes interfaces between media: the format's
+        /// Like `path`, but interfaces between media do not occlude point lights: the format's
         /// default.
         VolPath(PathDesc) = "vol-path" | "volpath",
         /// Paths from lights, each vertex connected to the camera.
@@ -38,7 +38,7 @@ settings! {
         Vcm(VcmDesc) = "vcm",
         /// Radiosity by progressive shooting.
         Radiosity(RadiosityDesc) = "radiosity",
-        /// Paths through media that find light only by chance.
+        /// Paths through media, without next-event estimation.
         SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath" (not drawn),
         /// The integral of an analytic function over the unit square instead of a scene, for the
         /// study of samplers.
@@ -50,7 +50,7 @@ settings! {
     /// Settings of Whitted's ray tracing.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WhittedDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
     }
 }
@@ -61,7 +61,7 @@ settings! {
     pub struct AmbientOcclusionDesc {
         /// Sample directions by the cosine (less noise) instead of uniformly.
         cos_sample: bool = true => ["cossample"];
-        /// Surfaces farther away than this do not hide the sky.
+        /// Surfaces farther away than this do not occlude.
         max_distance: f32 = f32::INFINITY
             => ["maxdistance": above(0.0).at_most(f64::INFINITY).unit("scene units")];
     }
@@ -71,7 +71,7 @@ settings! {
     /// Settings of the random walk.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct RandomWalkDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
     }
 }
@@ -80,7 +80,7 @@ settings! {
     /// Settings of the simple path tracer.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SimplePathDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
         /// Sample lights at each vertex.
         sample_lights: bool = true => ["samplelights"];
@@ -92,14 +92,14 @@ settings! {
 choices! {
     /// How a light is chosen among many.
     pub enum LightSamplerDesc {
-        /// All alike.
+        /// With equal probability.
         Uniform = "uniform",
         /// By power.
         Power = "power",
         /// By a tree of bounds on emission.
         #[default]
         Bvh = "bvh",
-        /// Every light in turn.
+        /// Every light is sampled.
         Exhaustive = "exhaustive",
     }
 }
@@ -108,7 +108,7 @@ settings! {
     /// Settings of path tracing.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PathDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
         /// Roughen surfaces after the first bounce that is not specular.
         regularize: bool = false => ["regularize"];
@@ -121,7 +121,7 @@ settings! {
     /// Settings of the simple path tracer for media.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SimpleVolPathDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
     }
 }
@@ -130,7 +130,7 @@ settings! {
     /// Settings of light tracing.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct LightTracingDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
     }
 }
@@ -139,12 +139,12 @@ settings! {
     /// Settings of bidirectional path tracing.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct BdptDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
         /// Roughen surfaces after the first bounce that is not specular.
         regularize: bool = false => ["regularize"];
         /// Write a picture of each strategy of up to 8 scattering events. All of them take 2.4 KiB
-        /// a pixel at a depth of 5.
+        /// per pixel at a depth of 5.
         visualize_strategies: bool = false => ["visualizestrategies" | "techniques"];
         /// Write a weighted picture of each strategy of up to 8 scattering events.
         visualize_weights: bool = false => ["visualizeweights" | "techniques"];
@@ -168,11 +168,12 @@ settings! {
     pub struct MltDesc {
         /// The sampling technique whose paths the chains mutate.
         technique: MltTechnique = MltTechnique::Bdpt => ["technique"];
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
-        /// Most paths among which the chains of a pass choose where to start.
+        /// Maximum number of candidate paths for the starts of the chains of a pass.
         bootstrap_samples: u32 = 100_000 => ["bootstrapsamples": at_least(1.0)];
-        /// Most Markov chains of a pass, which has as many mutations as there are pixels.
+        /// Maximum number of Markov chains of a pass, which has as many mutations as there are
+        /// pixels.
         chains: u32 = 1000 => ["chains": at_least(1.0)];
         /// Mutations per pixel on average. `--spp` sets it, too.
         mutations_per_pixel: u32 = 100 => ["mutationsperpixel": at_least(1.0)];
@@ -188,16 +189,16 @@ settings! {
 choices! {
     /// How photons are weighted by their distance.
     pub enum PhotonKernel {
-        /// Linearly to zero at the greatest distance.
+        /// Linear, zero at the maximum distance.
         Cone = "cone",
-        /// Quadratically to zero at the greatest distance.
+        /// Quadratic, zero at the maximum distance.
         #[default]
         Epanechnikov = "epanechnikov",
     }
 }
 
 choices! {
-    /// What photon mapping shows.
+    /// The output of photon mapping.
     pub enum PhotonMappingShow {
         /// Radiance.
         #[default]
@@ -211,15 +212,15 @@ settings! {
     /// Settings of photon mapping.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PhotonMappingDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
         /// Light paths for the global map in each pass.
         photons: u32 = 200_000 => ["photons"];
         /// Light paths for the caustic map in each pass.
         caustic_photons: u32 = 100_000 => ["causticphotons"];
-        /// How many of the nearest photons make an estimate.
+        /// Maximum number of photons in an estimate, the nearest ones.
         nearest: u32 = 50 => ["nearest": at_least(1.0)];
-        /// The greatest distance of a photon that counts. If absent, a share of the scene's size.
+        /// Maximum distance of photons in an estimate. If absent, a share of the scene's size.
         radius: Option<f32> = None => ["radius": above(0.0).unit("scene units")];
         /// How photons are weighted by their distance.
         kernel: PhotonKernel = PhotonKernel::Epanechnikov => ["kernel"];
@@ -234,12 +235,12 @@ settings! {
     /// Settings of stochastic progressive photon mapping.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SppmDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
         /// Light paths in each pass. If absent, as many as pixels.
         photons_per_iteration: Option<u32> = None => ["photonsperiteration" | "photons": at_least(1.0)];
-        /// The greatest distance of a photon that counts in the first pass. If absent, 5/√n of the
-        /// radius of a scene with n light paths, at most 0.05 of it (in pbrt-v4: 1).
+        /// Maximum distance of photons in the first pass. If absent, 5/√n of the radius of a scene
+        /// with n light paths, at most 0.05 of it (in pbrt-v4: 1).
         radius: Option<f32> = None => ["radius": above(0.0).unit("scene units")];
         /// Seed of the photons. If absent, that of the sampler.
         seed: Option<i32> = None => ["seed"];
@@ -250,13 +251,13 @@ settings! {
     /// Settings of vertex connection and merging.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct VcmDesc {
-        /// Most scattering events of a path.
+        /// Maximum number of scattering events of a path.
         max_depth: u32 = 5 => ["maxdepth"];
         /// The distance within which vertices are merged in the first pass. If absent, 0.003 of the
         /// scene's radius.
         radius: Option<f32> = None => ["radius": above(0.0).unit("scene units")];
-        /// How slowly the radius shrinks: after i passes its square is about i^(α − 1) of what it
-        /// was.
+        /// The α by which the radius shrinks: after i passes its square is about i^(α − 1) times
+        /// the initial one.
         alpha: f32 = 0.75 => ["alpha": above(0.0).at_most(1.0)];
     }
 }
@@ -276,7 +277,7 @@ settings! {
     /// Settings of radiosity.
     #[derive(Clone, Debug, PartialEq)]
     pub struct RadiosityDesc {
-        /// Most scattering events of light.
+        /// Maximum number of scattering events of light.
         max_depth: u32 = 5 => ["maxdepth": from(0.0, 100.0)];
         /// How form factors are computed.
         form_factors: FormFactorsDesc = FormFactorsDesc::Analytic => ["formfactors"];
@@ -284,13 +285,13 @@ settings! {
         hemicube_resolution: u32 = 128 => ["hemicuberesolution": from(2.0, 1024.0).unit("pixels")];
         /// Longest side of a patch. If absent, a tenth of the scene's radius.
         patch_size: Option<f32> = None => ["patchsize": above(0.0).unit("scene units")];
-        /// How often an element may be quartered.
+        /// Maximum number of subdivisions of an element, into quarters.
         subdivision: u32 = 3 => ["subdivision": from(0.0, 10.0)];
-        /// The relative change of radiosity across an element above which it is quartered.
+        /// The relative change of radiosity across an element above which it is subdivided.
         gradient: f32 = 0.1 => ["gradient": above(0.0)];
-        /// Most elements; more do not fit into the memory of a large machine.
+        /// Maximum number of elements, which limits memory.
         max_patches: u32 = 50_000 => ["maxpatches": from(1.0, 1e6)];
-        /// Share of the light that need not be shot.
+        /// Share of the light that may remain unshot.
         tolerance: f32 = 0.002 => ["tolerance": between(0.0, 1.0)];
         /// Passes in which light is shot.
         steps: u32 = 8 => ["steps": at_least(1.0)];
@@ -307,9 +308,9 @@ settings! {
     pub struct FunctionDesc {
         /// The function's name.
         function: String = "step".to_owned() => ["function"];
-        /// Leave out sample counts for which the sampler is not made.
+        /// Omit sample counts that the sampler does not support.
         skip_bad: bool = true => ["skipbad"];
-        /// A picture to integrate instead.
+        /// An image to integrate instead.
         image_filename: Option<String> = None => ["imagefilename"];
     }
 }

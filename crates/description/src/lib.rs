@@ -1,14 +1,13 @@
-//! What the author of a scene said: plain typed data, nothing derived.
+//! The description of a scene: plain typed data as given by its author, without derived data.
 //!
-//! A [`SceneDesc`] is what importers fill from files, and equally what tests and other programs
-//! build by hand: [`SceneDesc::default`] is a valid empty scene, and everything else is pushed into
-//! its arenas.
+//! Importers fill a [`SceneDesc`] from files; tests and other programs can build one directly:
+//! [`SceneDesc::default`] is a valid empty scene, and everything else is pushed into its arenas.
 //!
-//! One rule for all families: `XDesc` holds what all members share, and its field `kind`, an
-//! `XKind`, says which member it is and holds that member's own parameters. Defaults are those of
-//! the pbrt-v4 format.
+//! All families have the same structure: `XDesc` holds the parameters that all members share, and
+//! its field `kind`, an `XKind`, is the member with its own parameters. Defaults are those of the
+//! pbrt-v4 format.
 //!
-//! Everything the format can say is described here, whether or not a renderer can draw it yet.
+//! All of the format can be described, including features that are not supported yet.
 
 mod accelerator;
 mod arena;

@@ -1,4 +1,4 @@
-//! Lights. A light whose colour the author left out shines with its colour space's white.
+//! Lights. The default colour of a light is the white of its colour space.
 
 use math::Point3;
 
@@ -14,7 +14,7 @@ pub struct LightDesc {
     pub world_from_light: TransformDesc,
     /// Factor on what it emits.
     pub scale: f32,
-    /// The medium it stands in.
+    /// The medium around it.
     pub medium: Option<Handle<MediumDesc>>,
 }
 
@@ -27,13 +27,13 @@ impl From<LightKind> for LightDesc {
 /// The lights of the format. `power` (in watts) replaces the brightness that the colour would give.
 #[derive(Clone, Debug)]
 pub enum LightKind {
-    /// From a point to all sides.
+    /// From a point in all directions.
     Point {
         /// Radiant intensity.
         intensity: SpectrumDesc,
         /// Total power.
         power: Option<f32>,
-        /// Its place in light space.
+        /// Its position in light space.
         from: Point3,
     },
     /// From a point into a cone.
@@ -55,23 +55,23 @@ pub enum LightKind {
     Distant {
         /// Radiance.
         radiance: SpectrumDesc,
-        /// Illuminance in lux on a surface that faces it; replaces the brightness of `radiance`.
+        /// Illuminance in lux on a perpendicular surface; replaces the brightness of `radiance`.
         illuminance: Option<f32>,
         /// Light travels from here …
         from: Point3,
         /// … towards here.
         to: Point3,
     },
-    /// From a point, as an image in equal-area octahedral form says.
+    /// From a point, with a distribution given by an image in the equal-area octahedral projection.
     Goniometric {
-        /// Radiant intensity that the image scales.
+        /// Radiant intensity, multiplied by the image.
         intensity: SpectrumDesc,
         /// Total power.
         power: Option<f32>,
         /// The image; a constant 1 if absent.
         image: Option<Handle<ImageDesc>>,
     },
-    /// From a point, an image thrown along +z.
+    /// From a point, projecting an image along +z.
     Projection {
         /// The image.
         image: Handle<ImageDesc>,
@@ -82,11 +82,11 @@ pub enum LightKind {
     },
     /// From all directions.
     Infinite {
-        /// What shines.
+        /// The radiance.
         radiance: InfiniteRadiance,
         /// Illuminance in lux on an upward surface; replaces the brightness.
         illuminance: Option<f32>,
-        /// The corners of a rectangle in world space through which alone it shines.
+        /// The corners of a rectangle in world space (portal) through which all light passes.
         portal: Option<[Point3; 4]>,
     },
 }
@@ -104,7 +104,7 @@ names! {
 }
 
 impl LightKind {
-    /// Whether its light comes from infinitely far away.
+    /// Whether it is infinitely far away.
     pub fn is_distant(&self) -> bool {
         match self {
             Self::Distant { .. } | Self::Infinite { .. } => true,
@@ -115,16 +115,16 @@ impl LightKind {
     }
 }
 
-/// What an infinite light shines with.
+/// The radiance of an infinite light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InfiniteRadiance {
-    /// The same from everywhere.
+    /// The same in all directions.
     Constant(SpectrumDesc),
-    /// An image in equal-area octahedral form.
+    /// An image in the equal-area octahedral projection.
     Image(Handle<ImageDesc>),
 }
 
-/// A surface that shines; the shapes it is on refer to it.
+/// The emission of surfaces; shapes refer to it.
 #[derive(Clone, Debug)]
 pub struct AreaLightDesc {
     /// Radiance.
@@ -135,12 +135,12 @@ pub struct AreaLightDesc {
     pub scale: f32,
     /// Total power in watts; replaces the brightness of `radiance`.
     pub power: Option<f32>,
-    /// Shine to both sides.
+    /// Whether both sides emit.
     pub two_sided: bool,
 }
 
 impl AreaLightDesc {
-    /// One colour, one side.
+    /// Constant radiance on one side.
     pub fn new(radiance: SpectrumDesc) -> Self {
         Self { radiance, image: None, scale: 1.0, power: None, two_sided: false }
     }

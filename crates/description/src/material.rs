@@ -6,13 +6,13 @@ use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
 /// A material.
 #[derive(Clone, Debug)]
 pub struct MaterialDesc {
-    /// The name it was given; empty for one without.
+    /// Its name; may be empty.
     pub name: String,
     /// Which one.
     pub kind: MaterialKind,
     /// A tangent-space normal map.
     pub normal_map: Option<Handle<ImageDesc>>,
-    /// A height that bends normals (on meshes cut finely enough: that moves the surface).
+    /// Displacement: a bump map, or geometry on finely tessellated meshes.
     pub displacement: Option<FloatParameter>,
 }
 
@@ -52,7 +52,7 @@ impl Default for RoughnessDesc {
     }
 }
 
-/// What a conductor reflects.
+/// Reflectance of a conductor.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConductorReflectance {
     /// By its complex index of refraction.
@@ -62,7 +62,7 @@ pub enum ConductorReflectance {
         /// Imaginary part.
         k: SpectrumParameter,
     },
-    /// By its colour at normal incidence.
+    /// By its reflectance at normal incidence.
     Reflectance(SpectrumParameter),
 }
 
@@ -85,9 +85,9 @@ pub enum MaterialKind {
     },
     /// Lambertian reflection and transmission.
     DiffuseTransmission {
-        /// Part reflected.
+        /// Reflected share.
         reflectance: SpectrumParameter,
-        /// Part transmitted.
+        /// Transmitted share.
         transmittance: SpectrumParameter,
         /// Factor on both.
         scale: f32,
@@ -101,7 +101,7 @@ pub enum MaterialKind {
         /// Roughness of the interface.
         roughness: RoughnessDesc,
     },
-    /// A thin sheet of glass, both interfaces at once.
+    /// A thin sheet of glass, both interfaces in one surface.
     ThinDielectric {
         /// Index of refraction.
         eta: SpectrumDesc,
@@ -112,7 +112,7 @@ pub enum MaterialKind {
     CoatedConductor(CoatedConductorDesc),
     /// A fibre.
     Hair {
-        /// Its absorption, said in one of three ways.
+        /// Its absorption, given in one of three ways.
         color: HairColor,
         /// Index of refraction.
         eta: FloatParameter,
@@ -123,9 +123,9 @@ pub enum MaterialKind {
         /// Angle of the scales in degrees.
         alpha: FloatParameter,
     },
-    /// A dielectric surface over a scattering inside.
+    /// A dielectric surface with subsurface scattering.
     Subsurface {
-        /// What is inside, said in one of three ways.
+        /// The scattering inside, given in one of three ways.
         scattering: SubsurfaceScattering,
         /// Factor on the coefficients (1/scene unit for coefficients in 1/mm).
         scale: f32,
@@ -143,12 +143,12 @@ pub enum MaterialKind {
     },
     /// One of two materials, chosen at random.
     Mix {
-        /// The two.
+        /// The two materials.
         materials: [Handle<MaterialDesc>; 2],
         /// Probability of the second.
         amount: FloatParameter,
     },
-    /// No surface at all: only a change of medium.
+    /// An interface between media, which does not scatter.
     Interface,
 }
 
@@ -171,8 +171,8 @@ names! {
 }
 
 impl MaterialKind {
-    /// Whether it scatters as a diffuse surface does, or not at all. A mix leaves that to its
-    /// parts.
+    /// Whether it scatters diffusely or not at all. Also true for a mix, whose parts have to be
+    /// checked.
     pub fn is_diffuse(&self) -> bool {
         match self {
             Self::Diffuse { .. } | Self::DiffuseTransmission { .. } | Self::Mix { .. } | Self::Interface => {
@@ -193,13 +193,13 @@ impl MaterialKind {
 /// A metal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConductorDesc {
-    /// What it reflects.
+    /// Its reflectance.
     pub reflectance: ConductorReflectance,
     /// Its roughness.
     pub roughness: RoughnessDesc,
 }
 
-/// How the inside of a layered material is simulated.
+/// Simulation of the layers of a coated material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayersDesc {
     /// Thickness of the coat.
@@ -208,7 +208,7 @@ pub struct LayersDesc {
     pub albedo: SpectrumParameter,
     /// Henyey–Greenstein asymmetry of that medium.
     pub g: FloatParameter,
-    /// Most events of a random walk.
+    /// Maximum number of events of a random walk.
     pub max_depth: i32,
     /// Random walks averaged per evaluation.
     pub samples: i32,
@@ -273,7 +273,7 @@ impl Default for CoatedConductorDesc {
 pub enum HairColor {
     /// Coefficient per fibre diameter.
     SigmaA(SpectrumParameter),
-    /// The colour that a mass of such hair has.
+    /// The colour of a volume of hair.
     Reflectance(SpectrumParameter),
     /// Concentrations of pigment.
     Melanin {
@@ -287,7 +287,7 @@ pub enum HairColor {
 /// The scattering inside a subsurface material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SubsurfaceScattering {
-    /// A measured substance of the format's table.
+    /// A predefined measured substance of the format.
     Named(String),
     /// Coefficients in 1/mm.
     Coefficients {
@@ -296,7 +296,7 @@ pub enum SubsurfaceScattering {
         /// Scattering.
         sigma_s: SpectrumParameter,
     },
-    /// The colour it shall have.
+    /// Effective reflectance.
     Reflectance {
         /// The colour.
         reflectance: SpectrumParameter,

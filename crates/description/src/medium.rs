@@ -9,7 +9,7 @@ use crate::{ColorSpaceDesc, Handle, SpectrumDesc, TransformDesc};
 /// A medium.
 #[derive(Clone, Debug)]
 pub struct MediumDesc {
-    /// The name it was given.
+    /// Its name.
     pub name: String,
     /// Which one.
     pub kind: MediumKind,
@@ -31,14 +31,14 @@ pub struct MediumInterface {
 /// Absorption and scattering per unit of length.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CoefficientsDesc {
-    /// A measured substance of the format's table, in 1/mm.
+    /// A predefined measured substance of the format, in 1/mm.
     Preset {
         /// Its name.
         name: String,
         /// Factor on both.
         scale: f32,
     },
-    /// Given.
+    /// Explicit coefficients.
     Given {
         /// Absorption.
         sigma_a: SpectrumDesc,
@@ -82,7 +82,7 @@ impl Default for TemperatureDesc {
 /// The media of the format.
 #[derive(Clone, Debug)]
 pub enum MediumKind {
-    /// The same everywhere.
+    /// Constant coefficients.
     Homogeneous {
         /// Absorption and scattering.
         coefficients: CoefficientsDesc,
@@ -101,7 +101,7 @@ pub enum MediumKind {
         density: GridDesc<f32>,
         /// Temperatures that make it emit.
         temperature: Option<GridDesc<f32>>,
-        /// How they are read.
+        /// Their conversion to kelvin.
         temperature_scale: TemperatureDesc,
         /// Emission, if not by temperature.
         le: Option<SpectrumDesc>,
@@ -127,7 +127,7 @@ pub enum MediumKind {
         /// The space of the colours.
         space: ColorSpaceDesc,
     },
-    /// A cloud made of noise.
+    /// A procedural cloud.
     Cloud {
         /// Corners of the box.
         bounds: [Point3; 2],
@@ -135,9 +135,9 @@ pub enum MediumKind {
         coefficients: CoefficientsDesc,
         /// Factor on the density.
         density: f32,
-        /// How much its shape is disturbed.
+        /// Amount of noise on its shape.
         wispiness: f32,
-        /// How finely.
+        /// Frequency of the noise.
         frequency: f32,
     },
     /// A NanoVDB file, not decoded here.
@@ -146,7 +146,7 @@ pub enum MediumKind {
         filename: String,
         /// Absorption and scattering at density one.
         coefficients: CoefficientsDesc,
-        /// How temperatures are read.
+        /// Conversion of temperatures to kelvin.
         temperature_scale: TemperatureDesc,
         /// Factor on the emission.
         le_scale: f32,

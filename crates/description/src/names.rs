@@ -1,8 +1,8 @@
-//! The names that the format has for the members of a closed set.
+//! The format's names of the members of a closed set.
 
 /// Declares the names of all variants of an enum: `$type` is the enum without the variants' fields,
-/// by which a reader can match every name, and `$set::name` gives the name of a value. A variant
-/// without a name, and a reader without its arm, do not compile.
+/// over which importers match, and `$set::name` returns the name of a value. A variant without a
+/// name, or a match without its arm, does not compile.
 macro_rules! names {
     ($(#[$doc:meta])* $type:ident of $set:ident { $($variant:ident = $name:literal,)* }) => {
         $(#[$doc])*

@@ -7,7 +7,7 @@ choices! {
     pub enum RenderSpace {
         /// The camera's.
         Camera = "camera",
-        /// The world's, moved so that the camera stands at the origin.
+        /// The world's, translated so that the camera is at the origin.
         #[default]
         CameraWorld = "cameraworld",
         /// The world's.
@@ -21,13 +21,13 @@ settings! {
     pub struct OptionsDesc {
         /// Sample every pixel at its centre only.
         disable_pixel_jitter: bool = false => ["disablepixeljitter"];
-        /// Look textures up at points, without filtering.
+        /// Evaluate textures at points, without filtering.
         disable_texture_filtering: bool = false => ["disabletexturefiltering"];
         /// Use the same wavelengths for every sample.
         disable_wavelength_jitter: bool = false => ["disablewavelengthjitter"];
-        /// Factor on the edge length to which displaced surfaces are cut.
+        /// Factor on the edge length to which displaced surfaces are tessellated.
         displacement_edge_scale: f32 = 1.0 => ["displacementedgescale": above(0.0)];
-        /// Draw every surface as if it were diffuse.
+        /// Replace every BSDF by a diffuse one of the same albedo.
         force_diffuse: bool = false => ["forcediffuse"];
         /// Image to measure the error against after each pass.
         mse_reference_image: Option<String> = None => ["msereferenceimage"];
@@ -37,9 +37,9 @@ settings! {
         pixel_stats: bool = false => ["pixelstats"];
         /// The coordinate system in which rays are traced.
         render_space: RenderSpace = RenderSpace::CameraWorld => ["rendercoordsys"];
-        /// Seed of samplers that do not name their own.
+        /// Default seed of samplers.
         seed: i32 = 0 => ["seed"];
-        /// Ask for the wavefront renderer.
+        /// Select the wavefront renderer.
         wavefront: bool = false => ["wavefront"];
     }
 }

@@ -1,4 +1,4 @@
-//! Samplers: which points of the unit square a pixel's samples take.
+//! Samplers: the sample points of pixels.
 
 use crate::schema::{at_least, choices, from, settings};
 

@@ -6,7 +6,7 @@ use crate::{
     ShapeDesc, SpectrumTextureDesc, Stated,
 };
 
-/// Everything that the author of a scene said. The default is a valid empty scene with the format's
+/// The complete description of a scene. The default is a valid empty scene with the format's
 /// default camera, film and algorithm.
 ///
 /// ```
@@ -43,7 +43,8 @@ pub struct SceneDesc {
     pub float_textures: Arena<FloatTextureDesc>,
     /// Textures of spectra. A texture refers only to textures before it.
     pub spectrum_textures: Arena<SpectrumTextureDesc>,
-    /// Materials. A `Mix` may refer to any other, but never to itself by any way.
+    /// Materials. A `Mix` may refer to any other material, but not to itself, directly or
+    /// indirectly.
     pub materials: Arena<MaterialDesc>,
     /// Participating media.
     pub media: Arena<MediumDesc>,

@@ -10,20 +10,20 @@ use crate::{
     TransformDesc,
 };
 
-/// A shape with everything that holds for it.
+/// A shape with its transform, material, emission and media.
 #[derive(Clone, Debug)]
 pub struct ShapeDesc {
     /// Which one.
     pub kind: ShapeKind,
     /// From the shape's space to the world (for a shape of an object: to the object's space).
     pub world_from_object: TransformDesc,
-    /// Turn its normals round.
+    /// Flip its normals.
     pub reverse_orientation: bool,
     /// Its material; the format's default (grey, diffuse) if absent.
     pub material: Option<Handle<MaterialDesc>>,
     /// Its emission.
     pub area_light: Option<Handle<AreaLightDesc>>,
-    /// Where it is there: 0 not, 1 entirely.
+    /// Alpha: 0 cuts the surface out, 1 is opaque.
     pub alpha: Option<FloatParameter>,
     /// The media on its two sides; the camera's side if absent.
     pub medium_interface: Option<MediumInterface>,
@@ -89,7 +89,7 @@ pub enum ShapeKind {
         /// Sweep about z.
         phi_max: f32,
     },
-    /// What a line sweeps about the z axis.
+    /// The surface of revolution of a line about the z axis.
     Hyperboloid {
         /// The ends of the line, of different z.
         ends: [Point3; 2],
@@ -115,15 +115,15 @@ pub enum ShapeKind {
     Implicit {
         /// The formula, of x, y and z.
         formula: Spanned<String>,
-        /// Two corners of the box that the surface is cut off at.
+        /// Two corners of the box to which the surface is clipped.
         bounds: [Point3; 2],
     },
-    /// What bodies make together. Every shape of an operand is a body, closed where it is cut off;
-    /// several are one body.
+    /// Constructive solid geometry. Every shape of an operand is a body, closed where it is
+    /// clipped; several shapes are their union.
     Solid {
         /// How they are combined.
         operation: SolidOperation,
-        /// The bodies. Those of a shape in an object are objects before it, so that no solid is a
+        /// The bodies. A solid in an object refers only to earlier objects, so that no solid is a
         /// part of itself.
         operands: Vec<Spanned<Handle<ObjectDesc>>>,
     },
@@ -131,17 +131,17 @@ pub enum ShapeKind {
     Triangles(MeshDesc),
     /// Bilinear patches.
     Patches(PatchMeshDesc),
-    /// What a mesh file holds: triangles and quadrilaterals (drawn as bilinear patches), which
-    /// share vertices. There may be none of either, not of both.
+    /// The contents of a mesh file: triangles and quadrilaterals (rendered as bilinear patches),
+    /// which share vertices. One of the two may be empty.
     PlyMesh {
-        /// Its triangles (and larger polygons, cut).
+        /// Its triangles (and triangulated larger polygons).
         triangles: MeshDesc,
         /// Its quadrilaterals.
         patches: PatchMeshDesc,
-        /// A height along the normal by which the surface is moved.
+        /// Displacement along the normal.
         displacement: Option<FloatParameter>,
-        /// Before it is moved, the surface is cut until its edges are shorter than this, in the
-        /// world.
+        /// Before displacement, the surface is tessellated until its edges are shorter than this,
+        /// in world space.
         edge_length: f32,
     },
     /// A curve.
@@ -150,7 +150,7 @@ pub enum ShapeKind {
     LoopSubdivision {
         /// The coarse mesh.
         mesh: MeshDesc,
-        /// Times that it is divided.
+        /// Number of subdivisions.
         levels: i32,
     },
 }
@@ -176,17 +176,17 @@ names! {
     }
 }
 
-/// What renderers need to know of a kind of shape.
+/// Properties of a kind of shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShapeTraits {
-    /// It may be an area light.
+    /// Whether it may be an area light.
     pub can_emit: bool,
-    /// It can be cut into patches, over which radiosity is computed.
+    /// Whether it can be subdivided into patches, as radiosity requires.
     pub has_patches: bool,
 }
 
 impl ShapeKind {
-    /// What holds for all shapes of its kind.
+    /// The properties of its kind.
     pub fn traits(&self) -> ShapeTraits {
         let (can_emit, has_patches) = match self {
             Self::Implicit { .. } | Self::Solid { .. } => (false, false),
@@ -219,11 +219,11 @@ pub struct SpheresDesc {
 /// How bodies are combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SolidOperation {
-    /// What is in any of them.
+    /// Points in any of the bodies.
     Union,
-    /// What is in all of them.
+    /// Points in all of the bodies.
     Intersection,
-    /// What is in the first and in no other.
+    /// Points in the first body and in no other.
     Difference,
 }
 
@@ -240,14 +240,14 @@ pub struct MeshDesc {
     pub tangents: Arc<[Vector3]>,
     /// Vertex texture coordinates.
     pub uvs: Arc<[Point2]>,
-    /// A number per triangle, as the file gave it; or empty.
+    /// A face index per triangle, from the file; or empty.
     pub face_indices: Arc<[i32]>,
-    /// Where the vertices are later on, at moments evenly spread from the first to the last time of
-    /// the shape's transform (`positions` are those at the first); empty where no vertex moves.
+    /// The vertices at later keys, at uniform intervals from the first to the last time of the
+    /// shape's transform (`positions` are those at the first); empty if no vertex moves.
     pub later: Vec<MeshKey>,
 }
 
-/// The vertices of a mesh at a later moment.
+/// The vertices of a mesh at a later key.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshKey {
     /// Vertex positions, as many as at the start.
@@ -267,9 +267,9 @@ pub struct PatchMeshDesc {
     pub normals: Arc<[Normal3]>,
     /// Vertex texture coordinates.
     pub uvs: Arc<[Point2]>,
-    /// A number per patch, as the file gave it; or empty.
+    /// A face index per patch, from the file; or empty.
     pub face_indices: Arc<[i32]>,
-    /// An image that says where on the patch light is sampled.
+    /// An image by whose brightness points of the patch are sampled as a light.
     pub emission_image: Option<Handle<ImageDesc>>,
 }
 
@@ -282,13 +282,13 @@ pub struct CurveDesc {
     pub degree: i32,
     /// Basis of the control points.
     pub basis: CurveBasis,
-    /// What is swept.
+    /// The profile.
     pub profile: CurveProfile,
     /// Normals at the ends of segments, for ribbons; else empty.
     pub normals: Arc<[Normal3]>,
     /// Width at the start and at the end.
     pub width: [f32; 2],
-    /// Each segment is cut into 2^depth parts.
+    /// Each segment is split into 2^depth parts.
     pub split_depth: i32,
 }
 
@@ -302,7 +302,7 @@ pub enum CurveBasis {
     BSpline,
 }
 
-/// What a curve sweeps.
+/// The profile of a curve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CurveProfile {
     /// A line that always faces the ray.
@@ -310,11 +310,11 @@ pub enum CurveProfile {
     Flat,
     /// A line shaded as a round fibre.
     Cylinder,
-    /// A line turned by normals.
+    /// A line oriented by normals.
     Ribbon,
 }
 
-/// Shapes under a name, drawn where instances say.
+/// A named group of shapes, rendered by its instances.
 #[derive(Clone, Debug, Default)]
 pub struct ObjectDesc {
     /// Its name.
@@ -325,7 +325,7 @@ pub struct ObjectDesc {
     pub instances: Arena<InstanceDesc>,
 }
 
-/// An object, drawn.
+/// An instance of an object.
 #[derive(Clone, Debug)]
 pub struct InstanceDesc {
     /// Which one.

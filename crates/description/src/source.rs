@@ -1,4 +1,4 @@
-//! Source files by number, spans of them, and the lines and columns of spans.
+//! Source files, spans of them, and the lines and columns of spans.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -9,8 +9,8 @@ use std::sync::{Arc, OnceLock};
 pub struct FileId(pub u32);
 
 impl FileId {
-    /// Of values that the caller gives, as on a command line, rather than a file. Their spans
-    /// number these values.
+    /// The pseudo-file of values from the caller, such as a command line. The start of a span is
+    /// the index of a value.
     pub const CALLER: Self = Self(u32::MAX - 1);
 }
 
@@ -26,7 +26,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The span of what stands in no file.
+    /// The span of items that are not in a file.
     pub const NONE: Self = Self { file: FileId(u32::MAX), start: 0, end: 0 };
 
     /// The bytes `start..end` of a file.
@@ -34,12 +34,12 @@ impl Span {
         Self { file, start, end }
     }
 
-    /// Whether it lies in no file: it is [`Span::NONE`], or the [caller's](FileId::CALLER).
+    /// Whether it is in no file: it is [`Span::NONE`], or the [caller's](FileId::CALLER).
     pub fn is_none(self) -> bool {
         self == Self::NONE || self.file == FileId::CALLER
     }
 
-    /// The smallest span that holds both; `self` if they lie in different files.
+    /// The smallest span that contains both; `self` if they are in different files.
     pub fn to(self, other: Self) -> Self {
         if self.file != other.file {
             return self;
@@ -54,12 +54,12 @@ impl Default for Span {
     }
 }
 
-/// A value and where it is given.
+/// A value with its source location.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Where it is given.
+    /// Its source location.
     pub span: Span,
 }
 
@@ -81,7 +81,7 @@ pub struct Position {
 
 /// All files that were read as text, with their content.
 ///
-/// Texts are bytes: comments may be in any encoding. Of compressed files the unpacked text is kept.
+/// Texts are bytes, as comments may be in any encoding. Compressed files are stored decompressed.
 #[derive(Clone, Debug, Default)]
 pub struct SourceMap {
     files: Vec<SourceFile>,
@@ -91,7 +91,7 @@ pub struct SourceMap {
 struct SourceFile {
     name: String,
     text: Arc<[u8]>,
-    /// Where lines begin; found when the first position is asked for.
+    /// Starts of lines, computed at the first use.
     line_starts: OnceLock<Vec<u32>>,
 }
 
@@ -105,7 +105,7 @@ impl SourceFile {
 }
 
 impl SourceMap {
-    /// Adds a file under the name that messages will show.
+    /// Adds a file; `name` is displayed in messages.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<[u8]>>) -> FileId {
         let line_starts = OnceLock::new();
         self.files.push(SourceFile { name: name.into(), text: text.into(), line_starts });
@@ -144,12 +144,12 @@ impl SourceMap {
         )
     }
 
-    /// Where a span begins.
+    /// The line and column at which a span begins.
     pub fn position(&self, span: Span) -> Position {
         let text = self.text(span.file);
         let at = text.len().min(span.start as usize);
         let (number, start) = self.line_start(span.file, at);
-        // Every character but its first byte is continuation bytes; so is a stray one no character.
+        // Characters are counted by bytes that are not UTF-8 continuation bytes.
         let characters = text[start..at].iter().filter(|&&byte| byte & 0xc0 != 0x80).count();
         Position { line: 1 + number, column: 1 + characters }
     }
@@ -170,7 +170,7 @@ impl SourceMap {
         String::from_utf8_lossy(&self.text(span.file)[self.line_range(span)])
     }
 
-    /// The number of the line that a byte is in, from 0, and where it starts.
+    /// The number of the line that contains a byte, from 0, and its start.
     fn line_start(&self, file: FileId, at: usize) -> (usize, usize) {
         let Some(file) = self.files.get(file.0 as usize) else { return (0, 0) };
         let starts = file.line_starts();

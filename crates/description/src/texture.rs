@@ -5,12 +5,12 @@ use math::{DMat4, Vec3};
 
 use crate::{Handle, ImageDesc, SpectrumDesc};
 
-/// A value, or a texture that gives one.
+/// A constant value or a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Parameter<V> {
     /// A constant.
     Value(V),
-    /// The value of a texture at the point that is shaded.
+    /// The value of a texture at the shading point.
     Texture(Handle<TextureDesc<V>>),
 }
 
@@ -62,7 +62,7 @@ impl<V> From<Handle<TextureDesc<V>>> for Parameter<V> {
 pub struct TextureDesc<V> {
     /// Its name; empty for a texture that was built by hand.
     pub name: String,
-    /// Its kind and the parameters of that.
+    /// Its kind, with parameters.
     pub kind: TextureKind<V>,
     /// From texture space to world space: the current transformation where the texture was
     /// defined. Mappings and patterns that are functions of position use it.
@@ -151,7 +151,7 @@ pub enum TextureKind<V> {
         roughness: f32,
         /// Scale of the pattern.
         scale: f32,
-        /// How far the noise moves the veins.
+        /// Displacement of the veins by noise.
         variation: f32,
     },
     /// A Ptex file: described, never decoded.
@@ -165,16 +165,16 @@ pub enum TextureKind<V> {
     },
 }
 
-/// An image as a texture. The importer has decoded it with the encoding that the author named.
+/// An image as a texture, already decoded.
 #[derive(Clone, Debug)]
 pub struct ImageTextureDesc {
     /// The image.
     pub image: Handle<ImageDesc>,
     /// Texture coordinates of a point.
     pub mapping: MappingDesc,
-    /// Which channel gives the numbers of a texture of numbers. `None`: with the filters `Bilinear`
-    /// and `Trilinear` the opacity, or the mean of red, green and blue where the image is opaque;
-    /// with `Point` and `Ewa` the first channel.
+    /// The channel of a texture of numbers. `None`: with the filters `Bilinear` and `Trilinear` the
+    /// opacity, or the mean of red, green and blue where the image is opaque; with `Point` and
+    /// `Ewa` the first channel.
     pub channel: Option<ImageChannel>,
     /// How texels are filtered.
     pub filter: TextureFilter,
@@ -227,7 +227,7 @@ pub enum TextureFilter {
     Bilinear,
     /// Bilinear interpolation in two levels, and linear between them.
     Trilinear,
-    /// The elliptically weighted average: a Gaussian over the footprint.
+    /// Elliptically weighted average: a Gaussian over the footprint.
     Ewa,
 }
 
@@ -256,7 +256,7 @@ pub enum EncodingDesc {
     Gamma(f32),
 }
 
-/// Map from points of a surface to texture coordinates (s, t).
+/// The mapping from surface points to texture coordinates (s, t).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MappingDesc {
     /// `(scale · uv + delta)` of the surface's own parameters.

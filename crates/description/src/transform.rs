@@ -9,7 +9,7 @@ pub struct TransformDesc {
     pub start: DMat4,
     /// The transform at `times[1]`.
     pub end: DMat4,
-    /// The two times; before and after them nothing moves.
+    /// The two times; the transform is constant before and after them.
     pub times: [f32; 2],
 }
 
@@ -35,7 +35,7 @@ impl TransformDesc {
         self.start != self.end
     }
 
-    /// The transform the other way, at both times.
+    /// The inverse transform, at both times.
     pub fn inverse(&self) -> Self {
         Self { start: self.start.inverse(), end: self.end.inverse(), times: self.times }
     }

@@ -167,7 +167,7 @@ macro_rules! settings {
     (@members $members:ident $field:ident $type:ty, $names:tt) => {};
 }
 
-/// Declares an `enum` whose values have the names by which a setting of this type is written.
+/// Declares an `enum` as the type of a setting, with a name for each value.
 macro_rules! choices {
     ($(#[$meta:meta])* pub enum $name:ident {
         $($(#[$attribute:meta])* $variant:ident = $spelling:literal,)+

@@ -28,22 +28,22 @@ pub(crate) const fn above(least: f64) -> Domain {
     Domain { least, ..Domain::ANY }
 }
 
-/// Numbers between two others, without these.
+/// Numbers between two others, exclusive.
 pub(crate) const fn between(least: f64, most: f64) -> Domain {
     Domain { least, most, ..Domain::ANY }
 }
 
-/// Numbers from `least` to `most`.
+/// Numbers from `least` to `most`, inclusive.
 pub(crate) const fn from(least: f64, most: f64) -> Domain {
     at_least(least).at_most(most)
 }
 
-/// Some texts.
+/// The given texts.
 pub(crate) const fn one_of(names: &'static [&'static str]) -> Domain {
     Domain { names, ..Domain::ANY }
 }
 
-/// Names of files with an extension, which is given with its dot.
+/// Names of files with an extension, including the dot.
 pub(crate) const fn with_extension(extension: &'static str) -> Domain {
     Domain { extension, ..Domain::ANY }
 }
@@ -60,17 +60,17 @@ impl Domain {
         extension: "",
     };
 
-    /// No number above `most`, which may be infinity.
+    /// Excludes numbers above `most`, which may be infinity.
     pub(crate) const fn at_most(self, most: f64) -> Self {
         Self { most, has_most: true, ..self }
     }
 
-    /// With the unit of the numbers.
+    /// Sets the unit of the numbers.
     pub(crate) const fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// Whether a value is one of the domain. What is left to the renderer always is.
+    /// Whether the domain contains a value; always true for [`Value::Automatic`].
     pub fn contains(&self, value: &Value) -> bool {
         match value {
             Value::Integer(value) => self.contains_number(*value as f64),
@@ -89,7 +89,7 @@ impl Domain {
         least && (value < self.most || (self.has_most && value == self.most))
     }
 
-    /// What the values are, as in “a number above 0”.
+    /// A description of the values, as in “a number above 0”.
     pub fn describe(&self, kind: Kind) -> String {
         let range = self.range(kind);
         let range = if range.is_empty() { range } else { format!(" {range}") };
@@ -103,7 +103,7 @@ impl Domain {
             Kind::Text if !self.extension.is_empty() => format!("a name that ends in {}", self.extension),
             Kind::Text => "a text".into(),
             Kind::List(kind, count) => {
-                format!("{count} values parted by commas, each {}", self.describe(*kind))
+                format!("{count} values separated by commas, each {}", self.describe(*kind))
             }
         }
     }

@@ -1,6 +1,6 @@
-//! The schema of settings. A setting is declared once, by `settings!`, with its field,
-//! type, default, names, range, unit and help. Whoever reads, checks, lists or changes settings
-//! does so through [`Settings::visit`], and knows no setting by itself.
+//! The schema of settings. A setting is declared once, by `settings!`, with its field, type,
+//! default, names, range, unit and help. All code that reads, checks, lists or changes settings
+//! uses [`Settings::visit`], independent of the individual settings.
 
 mod declare;
 mod domain;
@@ -13,26 +13,26 @@ pub use value::{Kind, SettingType, Slot, Value};
 
 use crate::{Diagnostic, Origin};
 
-/// What is known of a setting, besides its type and value.
+/// The declaration of a setting, without its type and value.
 #[derive(Debug, PartialEq)]
 pub struct Field {
-    /// Its name, which is the one that the pbrt-v4 format has for it where it has one.
+    /// Its name; that of the pbrt-v4 format, if the format has the setting.
     pub name: &'static str,
     /// Further names by which a user can set it. Several settings may share one.
     pub aliases: &'static [&'static str],
-    /// What it means, in whole sentences.
+    /// Its meaning, in complete sentences.
     pub help: &'static str,
-    /// The values it can have.
+    /// The allowed values.
     pub domain: Domain,
 }
 
 impl Field {
-    /// Whether it is set by that name.
+    /// Whether the name or an alias equals `name`.
     pub fn is_called(&self, name: &str) -> bool {
         self.name == name || self.aliases.contains(&name)
     }
 
-    /// Sets the value, or says what the values of this setting are.
+    /// Sets the value. The error describes the allowed values.
     pub fn assign(&self, slot: &mut dyn Slot, value: &Value) -> Result<(), String> {
         if self.domain.contains(value) && slot.set(value) {
             return Ok(());
@@ -40,7 +40,7 @@ impl Field {
         Err(self.domain.describe(slot.kind()))
     }
 
-    /// Sets the value by text, or says what the values of this setting are.
+    /// Sets the value from text. The error describes the allowed values.
     pub fn assign_text(&self, slot: &mut dyn Slot, text: &str) -> Result<(), String> {
         match slot.kind().parse(text) {
             Some(value) => self.assign(slot, &value),
@@ -52,7 +52,7 @@ impl Field {
 /// A setting with its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// What is known of it.
+    /// Its declaration.
     pub field: &'static Field,
     /// Its type.
     pub kind: Kind,
@@ -63,16 +63,15 @@ pub struct Setting {
 /// A member of a closed set, such as one of the integrators.
 #[derive(Debug)]
 pub struct Member {
-    /// Its names; the first is the one that is shown.
+    /// Its names; the first is displayed.
     pub names: &'static [&'static str],
-    /// What it is, in whole sentences.
+    /// A description, in complete sentences.
     pub help: &'static str,
-    /// Whether it can be chosen. Others can be described, but something else is drawn in their
-    /// place.
+    /// Whether it is supported. Others can be described, but are replaced when rendering.
     pub is_drawn: bool,
 }
 
-/// What [`Settings::visit`] calls for each setting.
+/// The callback of [`Settings::visit`].
 pub type Visitor<'a> = &'a mut dyn FnMut(&'static Field, &mut dyn Slot);
 
 /// A part of a scene's description that consists of settings.
@@ -80,10 +79,10 @@ pub trait Settings {
     /// Calls `visitor` for each setting, in the order of their declaration.
     fn visit(&mut self, visitor: Visitor);
 
-    /// Which member of its set it is; `None` of what is no set.
+    /// The member of the set; `None` if the type is not a set.
     fn member(&self) -> Option<&'static Member>;
 
-    /// Every member of the set with default settings; one value of what is no set.
+    /// Every member of the set with default settings; one default value if the type is not a set.
     fn members() -> Vec<Self>
     where
         Self: Sized;
@@ -98,7 +97,7 @@ pub trait Settings {
             .find(|desc| desc.member().is_some_and(|member| member.names.contains(&name)))
     }
 
-    /// The name that is shown for the member of the set; empty for what is no set.
+    /// The displayed name of the member of the set; empty if the type is not a set.
     fn name(&self) -> &'static str {
         self.member().map_or("", |member| member.names[0])
     }
@@ -115,8 +114,8 @@ pub trait Settings {
         settings
     }
 
-    /// Sets every setting of that name by text and returns their [`Field::name`]s, none if there is
-    /// no such setting. The error says what the values of the setting are.
+    /// Sets every setting of that name from text and returns their [`Field::name`]s, none if there
+    /// is no such setting. The error describes the allowed values.
     fn set_text(&mut self, name: &str, text: &str) -> Result<Vec<&'static str>, String> {
         let mut results = Vec::new();
         self.visit(&mut |field, slot| {
@@ -127,7 +126,7 @@ pub trait Settings {
         results.into_iter().collect()
     }
 
-    /// An error for every value outside its domain, at the place of the parameter.
+    /// An error for every value outside its domain, at the span of the parameter.
     fn check(&self, origin: &Origin) -> Vec<Diagnostic>
     where
         Self: Clone,

@@ -1,4 +1,4 @@
-//! A part of a scene that has all that the macros can declare.
+//! A test declaration that uses all features of the macros.
 
 use super::*;
 use crate::{FileId, Severity, Span};
@@ -99,7 +99,7 @@ fn settings_are_set_by_text() {
         ("height", "1.5", "a whole number of 0 or more"),
         ("radius", "inf", "a number above 0"),
         ("radius", "NaN", "a number above 0"),
-        ("axis", "1", "2 values parted by commas, each a whole number"),
+        ("axis", "1", "2 values separated by commas, each a whole number"),
         ("colour", "green", "one of red, blue"),
     ] {
         assert_eq!(pen.set_text(name, text), Err(values.to_owned()), "{name}={text}");
@@ -108,7 +108,7 @@ fn settings_are_set_by_text() {
 }
 
 #[test]
-fn a_value_outside_its_domain_is_an_error_at_its_place() {
+fn a_value_outside_its_domain_is_an_error_at_its_parameter() {
     let span = |start| Span::new(FileId(0), start, start + 1);
     let origin = Origin { span: span(1), parameters: vec![("width", span(2))] };
     let mut pen = Pen { tip: Tip::Brush { stiffness: f32::NAN }, size: [0, 0], ..Pen::default() };

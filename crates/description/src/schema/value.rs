@@ -1,4 +1,4 @@
-//! Values of settings, whatever their type, and the types that settings have.
+//! Values of settings, and their types.
 
 use std::fmt;
 
@@ -15,12 +15,12 @@ pub enum Value {
     Text(String),
     /// Several values.
     List(Vec<Value>),
-    /// Left to the renderer.
+    /// Chosen by the renderer.
     Automatic,
 }
 
 impl fmt::Display for Value {
-    /// As [`Kind::parse`] reads it; `automatic` for what is left to the renderer.
+    /// In the syntax of [`Kind::parse`]; `automatic` for values chosen by the renderer.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bool(value) => value.fmt(f),
@@ -56,7 +56,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Reads a value of this type, as users write it: the values of a list are parted by commas.
+    /// Parses a value of this type from user input; the values of a list are separated by commas.
     pub fn parse(self, text: &str) -> Option<Value> {
         let text = text.trim();
         match self {
@@ -78,14 +78,14 @@ pub trait SettingType: Sized {
     /// The type.
     const KIND: Kind;
 
-    /// The value as one of any type.
+    /// Converts the value to a [`Value`].
     fn to_value(&self) -> Value;
 
-    /// The value if it is one of this type.
+    /// Converts from a [`Value`]; `None` if it has another type.
     fn from_value(value: &Value) -> Option<Self>;
 }
 
-/// The place of a setting's value.
+/// A setting's value, independent of its type.
 pub trait Slot {
     /// The type of the setting.
     fn kind(&self) -> Kind;
@@ -93,7 +93,7 @@ pub trait Slot {
     /// The value.
     fn get(&self) -> Value;
 
-    /// Replaces the value if the new one is of the type; says whether it is.
+    /// Replaces the value if the new one has the right type; returns whether it has.
     fn set(&mut self, value: &Value) -> bool;
 }
 

@@ -112,7 +112,7 @@ fn between_mirrors(alphas: [f32; 2]) -> SceneDesc {
 
 const HEIGHT: f64 = 0.8;
 
-/// What is seen there when blurred over the radius r: ρ/π times the mean of h/(h² + x²)^{3/2} over
+/// The radiance there, blurred over the radius r: ρ/π times the mean of h/(h² + x²)^{3/2} over
 /// |x| < r.
 fn blurred(r: f64) -> f64 {
     0.5 / PI * 2.0 / (r * r) * (1.0 - HEIGHT / (HEIGHT * HEIGHT + r * r).sqrt())
