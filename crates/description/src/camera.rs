@@ -70,7 +70,7 @@ settings! {
     pub struct LensDesc {
         /// Radius of the lens. 0 is a pinhole.
         radius: f32 = 0.0 => ["lensradius": at_least(0.0).unit("scene units")];
-        /// Distance to what is in focus.
+        /// Distance to the plane of focus.
         focal_distance: f32 = 1e6 => ["focaldistance": above(0.0).unit("scene units")];
     }
 }
@@ -94,7 +94,7 @@ settings! {
         lenses: Arc<[LensElement]> = Arc::from([]);
         /// Diameter of the aperture stop.
         aperture_diameter: f32 = 1.0 => ["aperturediameter": above(0.0).unit("mm")];
-        /// Distance to what is in focus.
+        /// Distance to the plane of focus.
         focus_distance: f32 = 10.0 => ["focusdistance": above(0.0).unit("m")];
         /// Shape of the aperture stop.
         aperture: ApertureDesc = ApertureDesc::Circular;

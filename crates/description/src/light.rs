@@ -12,7 +12,7 @@ pub struct LightDesc {
     pub kind: LightKind,
     /// From the light's space to the world.
     pub world_from_light: TransformDesc,
-    /// Factor on what it emits.
+    /// Factor on its emission.
     pub scale: f32,
     /// The medium around it.
     pub medium: Option<Handle<MediumDesc>>,
@@ -131,7 +131,7 @@ pub struct AreaLightDesc {
     pub radiance: SpectrumDesc,
     /// An image over (u, v) instead of one colour.
     pub image: Option<Handle<ImageDesc>>,
-    /// Factor on what it emits.
+    /// Factor on its emission.
     pub scale: f32,
     /// Total power in watts; replaces the brightness of `radiance`.
     pub power: Option<f32>,

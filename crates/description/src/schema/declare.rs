@@ -13,7 +13,7 @@
 ///         array: [Type; 2] = default => ["first"[0], "second"[1]];
 ///         /// Settings of their own, among those of this struct.
 ///         part: OtherSettings = default => ..;
-///         /// What is no setting.
+///         /// A field that is not a setting.
 ///         other: Type = default;
 ///     }
 /// }

@@ -14,7 +14,7 @@ pub struct Domain {
     pub unit: &'static str,
     /// Texts that are allowed; empty if all are.
     pub names: &'static [&'static str],
-    /// What a text ends in.
+    /// The ending of texts.
     extension: &'static str,
 }
 

@@ -7,7 +7,7 @@
 //!
 //! | s, t | strategy |
 //! |---|---|
-//! | 0, t | the camera subpath hits a light by chance |
+//! | 0, t | the camera subpath hits a light |
 //! | 1, t | next-event estimation: a point on a light is sampled for the end of the camera subpath |
 //! | s, 1 | the end of the light subpath is connected to a point on the lens |
 //! | s, t | two surface vertices are connected |

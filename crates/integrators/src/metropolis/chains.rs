@@ -27,7 +27,7 @@ pub(super) struct Chains {
     acceptance: Acceptance,
 }
 
-/// A number of no pass, for the candidates that estimate b₀.
+/// A number beyond those of passes, for the candidates that estimate b₀.
 const B0_PASS: u32 = u32::MAX;
 
 /// Minimum number of mutations per candidate. A larger one leaves so few candidates that chains

@@ -31,7 +31,7 @@ use crate::{Cancelled, Control};
 
 /// Elements that cover at least this many pixels are subdivided by differences between their
 /// pixels.
-const ENOUGH: u32 = 16;
+const MIN_PIXELS: u32 = 16;
 
 /// A hemicube of pixels.
 pub(crate) struct Hemicube {
@@ -41,7 +41,7 @@ pub(crate) struct Hemicube {
     angle: f32,
 }
 
-/// What is visible through a pixel.
+/// The visible surface in a pixel.
 struct Pixel {
     /// The root cell of the primitive there, and the parameters.
     root: u32,
@@ -51,7 +51,7 @@ struct Pixel {
     factor: f32,
 }
 
-/// What is visible from a patch.
+/// The surfaces visible from a patch.
 pub(crate) struct VisiblePixels(Vec<Pixel>);
 
 impl Hemicube {
@@ -140,7 +140,7 @@ impl VisiblePixels {
         let answer = |&id: &u32| {
             let (received, pixels) = all[id as usize];
             let even = received.sides(&cut.elements[id as usize]);
-            if pixels < ENOUGH { Received { quarters: [even; 4] } } else { received }
+            if pixels < MIN_PIXELS { Received { quarters: [even; 4] } } else { received }
         };
         ids.iter().map(answer).collect()
     }

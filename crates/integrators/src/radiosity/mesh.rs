@@ -227,8 +227,8 @@ impl Mesh {
         quarters.map(|(cell, part)| f64::from(self.area(world, cell, &part))).sum()
     }
 
-    /// The lengths of a cell along its first side and, if it has four, along its second; measured
-    /// through its centre if it is curved.
+    /// The lengths of a cell in two directions: of a triangle, its first side and the longer one of
+    /// the others; of a rectangle, its midlines through the surface point at the centre.
     fn lengths(&self, world: &World, cell: &Cell) -> [f32; 2] {
         let p = |uv| self.position(world, cell, uv);
         match cell.domain() {
