@@ -20,8 +20,8 @@
 //! are the densities of a given ray, 0 for a delta: bidirectional methods use them to weight paths
 //! that hit the light from the camera ([Pharr 2016 §16.1.2]).
 //!
-//! All functions depend on the shutter time: a sample at time t is on the light as it is placed at
-//! t, and so are densities.
+//! All functions depend on the shutter time: samples and densities at time t are those of the light
+//! as it is placed at t.
 //!
 //! Each kind of light implements [`LightModel`]. A row of the scene's table of lights is a
 //! [`Light`]; the row of an emitting geometry holds one light per primitive. A [`LightRef`] is one
