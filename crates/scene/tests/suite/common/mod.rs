@@ -15,7 +15,7 @@ use testkit::Random;
 pub fn scene(desc: &SceneDesc) -> Scene {
     let compiled = alhazen_scene::compile(desc).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
     // Many scenes of tests need no light.
-    let is_dark = |code: &str| matches!(code, "empty-scene" | "no-light");
+    let is_dark = |code: &str| matches!(code, "empty-scene" | "no-light" | "black-light");
     assert!(compiled.warnings.iter().all(|warning| is_dark(warning.code)), "{:?}", compiled.warnings);
     compiled.scene
 }
