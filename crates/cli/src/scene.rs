@@ -16,7 +16,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     let mut imported = import(&arguments.scene, &Files);
     // A scene with errors is compiled too, as far as it was understood: its author wants to see all
     // errors in one run.
-    let (found, wrong) = match Job::compile(&imported.desc) {
+    let (found, wrong) = match Job::compile(std::mem::take(&mut imported.desc)) {
         Ok(compiled) => (compiled.warnings, false),
         Err(errors) => (errors, true),
     };

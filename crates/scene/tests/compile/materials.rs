@@ -69,7 +69,7 @@ fn an_interface_does_not_emit() {
         desc.shapes.push_stated(stated(ShapeDesc { area_light, material, ..sphere(1.0).into() }, 2));
     });
     check(&desc, Severity::Warning, "light-ignored", "a shape of material `interface` does not emit", 2);
-    assert!(compile(&desc).unwrap().scene.lights().is_empty());
+    assert!(compile(desc).unwrap().scene.lights().is_empty());
 }
 
 #[test]
