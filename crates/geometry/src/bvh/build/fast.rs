@@ -15,7 +15,6 @@ use super::tree::{BinaryTree, Blocks, InnerNode, Subtree};
 use super::widen::{Boxes, Built, Leaves, Wide, widen};
 use math::Vec4;
 use rayon::prelude::*;
-use std::mem::MaybeUninit;
 
 /// Bits of a code, a third of them for each axis.
 const BITS: u32 = 30;
@@ -71,8 +70,10 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
 struct Made;
 
 impl Leaves<Reference, ()> for Made {
-    fn write(&self, items: &[Reference], len: usize, _: usize, _: &mut [MaybeUninit<()>]) -> Boxes {
-        Boxes::of(items[..len].iter().map(Reference::extent))
+    fn block(&self, _: &[Reference], _: usize, _: usize) {}
+
+    fn boxes(&self, blocks: &[Reference]) -> Boxes {
+        Boxes::of(blocks.iter().map(Reference::extent))
     }
 }
 

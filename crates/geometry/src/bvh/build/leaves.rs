@@ -4,7 +4,6 @@ use super::overflow::Overflow;
 use super::primitives::{MAX_WIDTH, PREFETCH_DISTANCE, Primitives};
 use super::reference::{Extent, Ids, Reference};
 use super::widen::{Boxes, Leaves};
-use std::mem::MaybeUninit;
 
 /// A primitive of a leaf, or a part of one.
 pub(super) trait Item: Sync {
@@ -44,23 +43,22 @@ pub(super) struct BlockMaker<'a, P: Primitives> {
 
 impl<P: Primitives, T: Item> Leaves<T, P::Block> for BlockMaker<'_, P> {
     #[inline(always)]
-    fn write(&self, items: &[T], len: usize, first: usize, blocks: &mut [MaybeUninit<P::Block>]) -> Boxes {
+    fn block(&self, items: &[T], len: usize, index: usize) -> P::Block {
         let &Self { primitives, overflow } = self;
         let width = primitives.width();
+        let ahead = |blocks: usize| items.iter().skip(blocks * width).take(width).map(Item::ids);
+        ahead(2 * PREFETCH_DISTANCE).for_each(|[g, p]| primitives.prefetch_indices(g, p));
+        ahead(PREFETCH_DISTANCE).for_each(|[g, p]| primitives.prefetch(g, p));
         let mut references = [Reference::none(); MAX_WIDTH];
-        for (i, block) in blocks.iter_mut().enumerate() {
-            let start = i * width;
-            let ahead = |blocks: usize| items.iter().skip(start + blocks * width).take(width).map(Item::ids);
-            ahead(2 * PREFETCH_DISTANCE).for_each(|[g, p]| primitives.prefetch_indices(g, p));
-            ahead(PREFETCH_DISTANCE).for_each(|[g, p]| primitives.prefetch(g, p));
-            let members = &items[start..len.min(start + width)];
-            for (reference, item) in references.iter_mut().zip(members) {
-                let [geometry, primitive] = item.ids();
-                *reference = Reference::new(Extent::EMPTY, geometry, primitive);
-            }
-            let (made, _) = overflow.block(primitives, first + i, &references[..members.len()]);
-            block.write(made);
+        for (reference, item) in references.iter_mut().zip(&items[..len]) {
+            let [geometry, primitive] = item.ids();
+            *reference = Reference::new(Extent::EMPTY, geometry, primitive);
         }
-        Boxes::of(items[..len].iter().map(|item| item.extent(primitives)))
+        overflow.block(primitives, index, &references[..len]).0
+    }
+
+    #[inline(always)]
+    fn boxes(&self, items: &[T]) -> Boxes {
+        Boxes::of(items.iter().map(|item| item.extent(self.primitives)))
     }
 }

@@ -42,11 +42,14 @@ pub(super) struct Wide {
     pub depth: usize,
 }
 
-/// What makes the blocks of leaves.
+/// What makes the blocks of leaves. Of `items`, the first `len` are meant; more may follow, of which
+/// the next blocks will be made.
 pub(super) trait Leaves<T, B>: Sync {
-    /// Makes all `blocks` of a leaf, whose first has the index `first`, of the first `len` items.
-    /// More may follow, of which the next leaves will be made.
-    fn write(&self, items: &[T], len: usize, first: usize, blocks: &mut [MaybeUninit<B>]) -> Boxes;
+    /// Makes the block with this index.
+    fn block(&self, items: &[T], len: usize, index: usize) -> B;
+
+    /// The boxes of primitives of a leaf.
+    fn boxes(&self, items: &[T]) -> Boxes;
 }
 
 /// The boxes of a leaf's primitives: the box around them, and the sum of half their areas.
@@ -85,7 +88,8 @@ pub(super) fn widen<T: Zeroable + Send + Sync, B: Send>(
     let binary = Binary { items: &mut items, inner: &mut inner, first: 0 };
     let Summary { extent, depth, .. } =
         Writer { blocks, leaves, of: PhantomData }.write(&whole, binary, part);
-    // SAFETY: each node has shared out its part among leaves, which have written all of theirs.
+    // SAFETY: all are written: a node shares all of its blocks out ([`finish`] asserts it) among
+    // nodes and leaves, and a leaf writes each of its own.
     unsafe { list.set_len(size.blocks as usize) };
     Wide { nodes, extent, depth }
 }
@@ -281,7 +285,7 @@ impl<L: Leaves<T, B>, T: Zeroable + Send + Sync, B: Send> Writer<'_, L, T, B> {
             .for_each(|(written, branch, tree, mine)| *written = self.write(branch, tree, mine));
         pages::release(tree.items);
         pages::release(tree.inner);
-        finish(here, children)
+        finish(here, children, &part)
     }
 
     fn write_serially(&self, node: &Branch, tree: &View<T>, mut part: Part<B>) -> Summary {
@@ -298,7 +302,7 @@ impl<L: Leaves<T, B>, T: Zeroable + Send + Sync, B: Send> Writer<'_, L, T, B> {
                 *written = self.write_serially(branch, tree, mine);
             }
         }
-        finish(here, children)
+        finish(here, children, &part)
     }
 
     /// Writes the blocks of a leaf.
@@ -306,14 +310,19 @@ impl<L: Leaves<T, B>, T: Zeroable + Send + Sync, B: Send> Writer<'_, L, T, B> {
         let count = self.blocks.count(leaf.len());
         let mine = part.take(Size { nodes: 0, blocks: count });
         let items = &tree.items[(leaf.range.start - tree.first) as usize..];
-        let first = mine.first_block as usize;
-        let boxes = self.leaves.write(items, leaf.len() as usize, first, mine.blocks);
+        let (len, width, first) = (leaf.len() as usize, self.blocks.width(), mine.first_block as usize);
+        for (i, block) in mine.blocks.iter_mut().enumerate() {
+            let start = i * width;
+            block.write(self.leaves.block(&items[start..], width.min(len - start), first + i));
+        }
+        let boxes = self.leaves.boxes(&items[..len]);
         (Summary::leaf(boxes, self.blocks.cost(count)), Child::leaf(first, count as usize))
     }
 }
 
-/// Writes a node over children.
-fn finish(here: Part<impl Sized>, children: &mut [(Summary, Child)]) -> Summary {
+/// Writes a node over children. `rest` is what these have left of its part: nothing.
+fn finish<B>(here: Part<B>, children: &mut [(Summary, Child)], rest: &Part<B>) -> Summary {
+    assert!(rest.blocks.is_empty(), "each block belongs to a leaf");
     children.sort_by(|(a, _), (b, _)| a.priority().total_cmp(&b.priority()));
     let mut wide = WideNode::EMPTY;
     children.iter().for_each(|(below, child)| wide.push(&below.extent.bounds(), *child));
