@@ -42,10 +42,10 @@ pub(super) struct Wide {
     pub depth: usize,
 }
 
-/// What makes the blocks of leaves. Of `items`, the first `len` are meant; more may follow, of which
-/// the next blocks will be made.
+/// What makes the blocks of leaves.
 pub(super) trait Leaves<T, B>: Sync {
-    /// Makes the block with this index.
+    /// Makes the block with this index of the first `len` items. More may follow, of which the next
+    /// blocks will be made.
     fn block(&self, items: &[T], len: usize, index: usize) -> B;
 
     /// The boxes of primitives of a leaf.
