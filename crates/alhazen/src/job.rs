@@ -35,9 +35,12 @@ pub struct CompiledJob {
 impl Job {
     /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with
     /// it.
-    pub fn compile(desc: &SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
-        let view = View::compile(desc, scene::world_from_render(desc));
-        let parts = (scene::compile(desc), view, film::compile(desc), integrators::build(desc));
+    pub fn compile(desc: SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
+        let view = View::compile(&desc, scene::world_from_render(&desc));
+        let (film, integrator) = (film::compile(&desc), integrators::build(&desc));
+        let settings = desc.settings();
+        let parts = (scene::compile(desc), view, film, integrator);
+        let desc = &settings;
         let of_algorithm = match &parts {
             (Ok(scene), _, _, Ok(built)) => built.integrator.warnings(&scene.scene),
             _ => Vec::new(),
@@ -140,7 +143,8 @@ fn is_arranged(desc: &SceneDesc, needs_footprints: bool) -> bool {
 /// Why [`render_file`] gives no picture.
 #[derive(Debug)]
 pub enum RenderError {
-    /// The scene has errors; with all diagnostics.
+    /// The scene has errors; with all diagnostics. A description that could not be compiled is
+    /// empty.
     Scene(Box<Imported>),
     /// A change to the scene is not valid.
     Override(OverrideError),
@@ -171,7 +175,8 @@ pub fn render_file(
         return Err(RenderError::Scene(Box::new(imported)));
     }
     overrides.apply(&mut imported.desc).map_err(RenderError::Override)?;
-    let compiled = Job::compile(&imported.desc).map_err(|errors| match overrides.blamed(&errors) {
+    let desc = std::mem::take(&mut imported.desc);
+    let compiled = Job::compile(desc).map_err(|errors| match overrides.blamed(&errors) {
         Some(error) => RenderError::Override(error),
         None => {
             imported.diagnostics.extend(errors);

@@ -39,15 +39,7 @@ impl Sketch {
         }
         let n = (2..i32::MAX).find(|&n| coarse(&bounds, n).area() <= MOST_PIXELS)?;
         let Bounds2i { min, max } = coarse(&bounds, n);
-        let mut small = SceneDesc {
-            options: desc.options.clone(),
-            film: desc.film.clone(),
-            camera: desc.camera.clone(),
-            filter: desc.filter.clone(),
-            sampler: desc.sampler.clone(),
-            integrator: desc.integrator.clone(),
-            ..SceneDesc::default()
-        };
+        let mut small = desc.settings();
         small.film.resolution = desc.film.resolution.map(|side| div_ceil(side, n));
         small.film.crop_window = None;
         small.film.pixel_bounds = Some([min[0], max[0], min[1], max[1]]);

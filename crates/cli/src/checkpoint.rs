@@ -51,9 +51,9 @@ impl Checkpoint {
         &self.path
     }
 
-    /// Saves the render after a pass, if the pass took much longer than saving does, or if more time
-    /// than the interval would go by until the end of the next one. Tells whether all passes that
-    /// are done are saved. A failure is reported by [`finish`](Self::finish), if it lasts until
+    /// Saves the render after a pass that took much longer than saving does, or if more time than
+    /// the interval would go by until the end of the next one. Tells whether all passes that are
+    /// done are saved. A failure is reported by [`finish`](Self::finish), if it lasts until
     /// then.
     pub fn after_pass(&mut self, session: &Session) -> bool {
         let now = Instant::now();

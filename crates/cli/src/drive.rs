@@ -73,10 +73,10 @@ impl Prepared {
 
     /// Compiles the scene.
     pub fn compile(mut self) -> Result<(Job, Compiled), Failure> {
-        match Job::compile(&self.imported.desc) {
+        let integrator = self.imported.desc.integrator.name();
+        match Job::compile(std::mem::take(&mut self.imported.desc)) {
             Ok(compiled) => {
                 self.imported.diagnostics.extend(compiled.warnings);
-                let integrator = self.imported.desc.integrator.name();
                 let Self { imported, begin, imported_at, .. } = self;
                 let compiled_at = Instant::now();
                 Ok((compiled.job, Compiled { imported, integrator, begin, imported_at, compiled_at }))

@@ -59,3 +59,19 @@ pub struct SceneDesc {
     /// Instances of objects.
     pub instances: Arena<InstanceDesc>,
 }
+
+impl SceneDesc {
+    /// The same settings, with nothing in the world.
+    pub fn settings(&self) -> Self {
+        Self {
+            options: self.options.clone(),
+            film: self.film.clone(),
+            camera: self.camera.clone(),
+            filter: self.filter.clone(),
+            sampler: self.sampler.clone(),
+            integrator: self.integrator.clone(),
+            accelerator: self.accelerator.clone(),
+            ..Self::default()
+        }
+    }
+}

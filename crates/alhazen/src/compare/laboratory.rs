@@ -81,7 +81,7 @@ impl Laboratory {
         let view = View::compile(&first.desc, scene::world_from_render(&first.desc));
         let view = view.map_err(|errors| first.error(errors))?;
         warnings.extend(view.warnings);
-        let compiled = scene::compile(&first.desc).map_err(|errors| first.error(errors))?;
+        let compiled = scene::compile(first.desc.clone()).map_err(|errors| first.error(errors))?;
         warnings.extend(compiled.warnings);
         let film = film::compile(&first.desc).map_err(|errors| first.error(errors))?.film;
         let (bounds, desc) = (film.pixel_bounds(), &first.desc);

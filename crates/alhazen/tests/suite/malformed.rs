@@ -19,7 +19,7 @@ fn draws(path: &Path, assets: &dyn AssetSource) -> bool {
     }
     let small = Overrides { resolution: Some([8, 8]), samples_per_pixel: Some(1), ..Overrides::default() };
     small.apply(&mut imported.desc).expect("the changes make sense");
-    let Ok(compiled) = Job::compile(&imported.desc) else { return false };
+    let Ok(compiled) = Job::compile(imported.desc) else { return false };
     let mut job = compiled.job;
     job.render(&Control::default()).is_ok() && job.session.state().film.sample_count() > 0
 }

@@ -43,7 +43,7 @@ fn means(image: &Image, side: usize) -> (f64, Vec<f64>) {
 fn job(name: &str, overrides: &Overrides) -> Job {
     let mut desc = import(scene(name), &Files).desc;
     overrides.apply(&mut desc).unwrap();
-    Job::compile(&desc).unwrap().job
+    Job::compile(desc).unwrap().job
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn a_pass_depends_on_its_number_alone() {
     let settings = [("tolerance", "0.5"), ("steps", "2"), ("patchsize", "3"), ("subdivision", "1")];
     let mut desc = import(scene("radiosity-room.pbrt"), &Files).desc;
     overrides("radiosity", 16, 2, &settings).apply(&mut desc).unwrap();
-    let scene = alhazen::scene::compile(&desc).unwrap().scene;
+    let scene = alhazen::scene::compile(desc.clone()).unwrap().scene;
     let view = View::compile(&desc, scene.world_from_render()).unwrap().view;
     let picture = |passes: &[u32]| {
         let mut integrator = alhazen::integrators::build(&desc).ok().unwrap().integrator;

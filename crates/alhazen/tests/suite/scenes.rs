@@ -40,7 +40,7 @@ fn every_scene_renders_without_diagnostics() {
         silent(name, &diagnostics);
         assert_eq!(desc.film.filename, format!("{name}.png"));
         small.apply(&mut desc).expect("changes that every scene can take");
-        let CompiledJob { mut job, warnings } = match Job::compile(&desc) {
+        let CompiledJob { mut job, warnings } = match Job::compile(desc.clone()) {
             Ok(compiled) => compiled,
             Err(errors) => return silent(name, &errors),
         };
@@ -57,7 +57,7 @@ fn every_scene_renders_without_diagnostics() {
 /// The picture of a scene where every ray is tested against every primitive.
 fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
     desc.accelerator = AcceleratorDesc::None.into();
-    let mut job = Job::compile(&desc).expect("a scene").job;
+    let mut job = Job::compile(desc).expect("a scene").job;
     job.render(&Control::default()).expect("nobody cancels it");
     assert_eq!(job.session.progress().stats.extents, 0);
     job.picture().expect("a picture").values().collect()

@@ -17,7 +17,7 @@ fn job(integrator: &str, overrides: Overrides) -> Job {
     let overrides =
         Overrides { integrator: Some(integrator.into()), samples_per_pixel: Some(1), ..overrides };
     overrides.apply(&mut desc).unwrap();
-    Job::compile(&desc).unwrap().job
+    Job::compile(desc).unwrap().job
 }
 
 /// A picture whose sides are not multiples of the sketch's pixel size.

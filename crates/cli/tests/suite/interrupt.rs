@@ -160,10 +160,8 @@ fn all_passes_before_an_interrupt_are_saved() {
             (code, &json["status"], &json["checkpoint"]),
             (Some(130), &"interrupted".into(), &"a.film".into())
         );
-        // Nothing is left to be done for as many passes, whose picture it was.
         let passes = json["passes"].to_string();
-        folder.alhazen(&["resume", "a.film", "--spp", &passes, "-o", "b.exr"]).expect(0);
-        let read = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
-        assert!(read("a.exr") == read("b.exr"));
+        let resumed = folder.alhazen(&["resume", "a.film", "--spp", &passes, "-o", "b.exr"]).expect(0);
+        assert!(resumed.out.contains(&format!("all {passes} are done already")), "{resumed:?}");
     }
 }

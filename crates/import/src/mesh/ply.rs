@@ -140,7 +140,7 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), MeshError> {
 }
 
 /// The values after the header.
-trait Body {
+trait Body: Copy {
     /// The minimal number of bytes of a value of a type.
     fn least_size(scalar: Scalar) -> usize;
 
@@ -151,6 +151,7 @@ trait Body {
     fn read(&mut self, scalar: Scalar) -> Result<f64, MeshError>;
 }
 
+#[derive(Clone, Copy)]
 struct Binary<'a, const BIG: bool> {
     bytes: &'a [u8],
 }
@@ -186,6 +187,7 @@ impl<const BIG: bool> Body for Binary<'_, BIG> {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Ascii<'a> {
     text: &'a [u8],
 }
@@ -220,26 +222,23 @@ fn too_short<T>() -> Result<T, MeshError> {
 
 fn read_body<B: Body>(header: &Header, mut body: B) -> Result<Mesh, MeshError> {
     let mut mesh = Mesh::default();
-    let mut faces = Faces::default();
+    // Faces that stand before the vertices, which nearly no file has, are read after them.
+    let mut early_faces = None;
     for element in &header.elements {
         check_size::<B>(element, body.left())?;
+        let has_faces = early_faces.is_some() || !mesh.triangles.is_empty() || !mesh.quads.is_empty();
         match element.name.as_str() {
             "vertex" if mesh.positions.is_empty() => read_vertices(element, &mut body, &mut mesh)?,
-            "face" if faces.corners.is_empty() => faces = read_faces(element, &mut body)?,
-            "tristrips" if faces.corners.is_empty() => faces = read_strips(element, &mut body)?,
+            "face" | "tristrips" if !has_faces && mesh.positions.is_empty() => {
+                early_faces = Some((element, body));
+                skip(element, &mut body)?;
+            }
+            "face" | "tristrips" if !has_faces => read_faces(element, &mut body, &mut mesh)?,
             _ => skip(element, &mut body)?,
         }
     }
-    let vertices = mesh.positions.len();
-    if let Some(bad) = faces.corners.iter().find(|&&corner| corner as usize >= vertices) {
-        return invalid(format!("a face has vertex {bad} of {vertices}"));
-    }
-    let mut start = 0;
-    mesh.triangles.reserve_exact(faces.lengths.iter().filter(|&&corners| corners == 3).count());
-    for (face, &corners) in faces.lengths.iter().enumerate() {
-        let end = start + corners as usize;
-        mesh.push_face(&faces.corners[start..end], faces.numbers.get(face).copied());
-        start = end;
+    if let Some((element, mut body)) = early_faces {
+        read_faces(element, &mut body, &mut mesh)?;
     }
     if mesh.triangles.is_empty() && mesh.quads.is_empty() {
         return Err(MeshError::Unsupported("it has no faces".into()));
@@ -354,31 +353,34 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
     Ok(())
 }
 
-/// Faces as in the file.
-#[derive(Default)]
-struct Faces {
-    /// The corners of all faces.
-    corners: Vec<u32>,
-    /// How many corners each face has.
-    lengths: Vec<u32>,
-    /// Their numbers, if the file has any.
-    numbers: Vec<i32>,
+fn read_faces<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Result<(), MeshError> {
+    match element.name.as_str() {
+        "tristrips" => read_strips(element, body, mesh),
+        _ => read_polygons(element, body, mesh),
+    }
 }
 
-fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
-    let mut faces = Faces::default();
-    if !element.properties.is_empty() {
-        // Nearly all meshes are of triangles: what they need at once, as growing would copy it.
-        faces.lengths.reserve_exact(element.count);
-        faces.corners.reserve_exact(3 * element.count);
+/// The vertex that a corner names.
+fn vertex(corner: f64, mesh: &Mesh) -> Result<u32, MeshError> {
+    let vertices = mesh.positions.len();
+    match corner >= 0.0 && corner.fract() == 0.0 && corner < vertices as f64 {
+        true => Ok(corner as u32),
+        false => invalid(format!("a face has vertex {corner} of {vertices}")),
     }
+}
+
+fn read_polygons<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Result<(), MeshError> {
     let is_corners =
         |property: &Property| matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
     if !element.properties.iter().any(is_corners) {
         return invalid("the faces have no list property `vertex_indices`");
     }
+    // Nearly all meshes are of triangles: what they need at once, as growing would copy it.
+    mesh.triangles.reserve_exact(element.count);
+    let mut corners = Vec::new();
     for _ in 0..element.count {
-        let before = faces.corners.len();
+        corners.clear();
+        let mut number = None;
         for property in &element.properties {
             match property.kind {
                 PropertyKind::List { count, item } if is_corners(property) => {
@@ -387,29 +389,24 @@ fn read_faces<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshErr
                         return invalid("`vertex_indices` of the faces are not integers");
                     }
                     for _ in 0..list_length(body, count, item)? {
-                        let corner = body.read(item)?;
-                        if corner < 0.0 || corner.fract() != 0.0 || corner > f64::from(u32::MAX) {
-                            return invalid(format!("a face has vertex {corner}"));
-                        }
-                        faces.corners.push(corner as u32);
+                        corners.push(vertex(body.read(item)?, mesh)?);
                     }
                 }
                 PropertyKind::Scalar(_) if is_corners(property) => {
                     return invalid("`vertex_indices` of the faces is not a list");
                 }
                 PropertyKind::Scalar(scalar) if property.name == "face_indices" => {
-                    faces.numbers.push(body.read(scalar)? as i32);
+                    number = Some(body.read(scalar)? as i32);
                 }
                 _ => skip_property(property, body)?,
             }
         }
-        faces.lengths.push((faces.corners.len() - before) as u32);
+        mesh.push_face(&corners, number);
     }
-    Ok(faces)
+    Ok(())
 }
 
-fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshError> {
-    let mut faces = Faces::default();
+fn read_strips<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Result<(), MeshError> {
     let rows = if element.properties.is_empty() { 0 } else { element.count };
     for property in std::iter::repeat_n(&element.properties, rows).flatten() {
         let PropertyKind::List { count, item } = property.kind else {
@@ -423,19 +420,15 @@ fn read_strips<B: Body>(element: &Element, body: &mut B) -> Result<Faces, MeshEr
                 length = 0;
                 continue;
             }
-            if corner < 0.0 || corner.fract() != 0.0 || corner > f64::from(u32::MAX) {
-                return invalid(format!("a strip has vertex {corner}"));
-            }
-            let corner = corner as u32;
+            let corner = vertex(corner, mesh)?;
             if length >= 2 {
                 // Every second triangle of a strip has the opposite winding.
                 let [a, b] = if length % 2 == 0 { last } else { [last[1], last[0]] };
-                faces.corners.extend([a, b, corner]);
-                faces.lengths.push(3);
+                mesh.push_face(&[a, b, corner], None);
             }
             last = [last[1], corner];
             length += 1;
         }
     }
-    Ok(faces)
+    Ok(())
 }

@@ -110,6 +110,27 @@ fn strips_turn_one_way() {
 }
 
 #[test]
+fn faces_may_stand_before_the_vertices() {
+    let vertices = [
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n",
+        "0 0 0\n1 0 0\n1 1 0\n0 1 0\n",
+    ];
+    let faces = ["element face 2\nproperty list uchar int vertex_indices\n", "4 0 1 2 3\n3 0 1 CORNER\n"];
+    let read = |[a, b]: [[&str; 2]; 2], corner: &str| {
+        let text = format!("ply\nformat ascii 1.0\n{}{}end_header\n{}{}", a[0], b[0], a[1], b[1]);
+        read_ply(text.replace("CORNER", corner).as_bytes())
+    };
+    let mesh = read([faces, vertices], "2").unwrap();
+    assert_eq!((mesh.triangles.as_slice(), mesh.quads.as_slice()), (&[[0, 1, 2]][..], &[[0, 1, 2, 3]][..]));
+    assert_eq!(Ok(mesh), read([vertices, faces], "2"));
+    for corner in ["4", "-1", "0.5"] {
+        let message = MeshError::Invalid(format!("a face has vertex {corner} of 4"));
+        assert_eq!(read([faces, vertices], corner), Err(message.clone()));
+        assert_eq!(read([vertices, faces], corner), Err(message));
+    }
+}
+
+#[test]
 fn packed_files_are_read_wherever_they_are_named() {
     let pack = |bytes: &[u8]| {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());

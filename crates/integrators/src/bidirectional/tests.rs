@@ -60,7 +60,7 @@ fn room() -> (Scene, View) {
     desc.camera.kind =
         CameraKind::Perspective { fov: 80.0, screen: ScreenDesc::default(), lens: LensDesc::default() };
     desc.camera.camera_from_world = TransformDesc::translation(0.0, 0.0, 0.9);
-    let scene = scene::compile(&desc).expect("a scene").scene;
+    let scene = scene::compile(desc.clone()).expect("a scene").scene;
     let view = View::compile(&desc, scene.world_from_render()).expect("a view").view;
     (scene, view)
 }

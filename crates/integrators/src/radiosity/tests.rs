@@ -60,7 +60,7 @@ fn furnished(mut desc: SceneDesc) -> Scene {
 }
 
 fn compile(desc: &SceneDesc) -> Scene {
-    scene::compile(desc).unwrap().scene
+    scene::compile(desc.clone()).unwrap().scene
 }
 
 fn view() -> View {

@@ -25,7 +25,7 @@ pub fn v(x: f32, y: f32, z: f32) -> Vec3 {
 }
 
 pub fn compile(desc: &SceneDesc) -> Scene {
-    scene::compile(desc).unwrap().scene
+    scene::compile(desc.clone()).unwrap().scene
 }
 
 /// The compiled scene and view of a valid description.

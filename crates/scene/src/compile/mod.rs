@@ -23,11 +23,13 @@ use crate::traits::SceneTraits;
 use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
-    AcceleratorDesc, BuildQualityDesc, Diagnostic, FloatParameter, IntegratorDesc, SceneDesc, Span,
-    SpectrumParameter,
+    AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, IntegratorDesc, ObjectDesc,
+    SceneDesc, Span, SpectrumParameter,
 };
 use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
+use std::mem::take;
+use std::sync::Arc;
 
 /// A scene, and what had to be left out of it.
 #[derive(Debug)]
@@ -40,13 +42,20 @@ pub struct Compiled {
 
 /// Compiles a description, apart from camera, film, sampler and integrator. Its camera chooses
 /// render space ([`world_from_render`]). Returns all errors and warnings if there is an error.
-pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
+///
+/// Arrays of shapes become those of the scene where they stay the same, and are dropped before
+/// trees are built where they do not, unless the caller keeps another reference to them.
+pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
-    let world_from_render = world_from_render(desc);
+    let world_from_render = world_from_render(&desc);
     let render_from_world = world_from_render.inverse();
-    let textures = TextureCompiler::new(desc, &render_from_world, &mut diagnostics);
+    let textures = TextureCompiler::new(&desc, &render_from_world, &mut diagnostics);
+    let names = Names::new(&desc);
+    let (shapes, instances) = (take(&mut desc.shapes), take(&mut desc.instances));
+    let objects = Arc::new(take(&mut desc.objects));
     let mut compiler = Compiler {
-        desc,
+        desc: &desc,
+        objects,
         render_from_world,
         diagnostics,
         textures,
@@ -58,7 +67,7 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
             })
             .extents(*desc.accelerator != AcceleratorDesc::None),
         entries: Vec::new(),
-        names: Names::new(desc),
+        names,
         instances: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),
@@ -67,10 +76,12 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     };
     compiler.materials();
     compiler.area_emissions();
-    compiler.shapes();
+    compiler.shapes(&shapes);
+    compiler.instances(&instances);
     compiler.material_traits();
     compiler.media();
-    let world = std::mem::take(&mut compiler.world).build();
+    drop((shapes, instances, take(&mut compiler.objects)));
+    let world = take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
     let lights = compiler.light_table(&world, sphere);
     if !compiler.diagnostics.iter().any(Diagnostic::is_error) {
@@ -100,7 +111,9 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
 
 /// A scene under construction.
 struct Compiler<'a> {
+    /// The description without shapes, objects and instances.
     desc: &'a SceneDesc,
+    objects: Arc<Arena<ObjectDesc>>,
     render_from_world: DMat4,
     diagnostics: Vec<Diagnostic>,
     textures: TextureCompiler,

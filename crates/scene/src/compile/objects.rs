@@ -6,10 +6,11 @@
 
 use super::Compiler;
 use super::curves::are_strands;
-use description::{Handle, InstanceDesc, ObjectDesc, Stated, TransformDesc};
+use description::{Arena, Handle, InstanceDesc, ObjectDesc, Stated, TransformDesc};
 use geometry::{GroupId, Instance, InstancePath};
 use math::{AnimatedTransform, Transform};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// An object as a group.
 #[derive(Clone, Copy)]
@@ -28,10 +29,9 @@ struct Objects {
 
 impl Compiler<'_> {
     /// All instances, and the objects that they show.
-    pub(super) fn instances(&mut self) {
-        let desc = self.desc;
+    pub(super) fn instances(&mut self, instances: &Arena<InstanceDesc>) {
         let mut objects = Objects::default();
-        for (_, desc) in desc.instances.iter() {
+        for (_, desc) in instances.iter() {
             let span = desc.origin.span;
             if let Some((instance, _)) = self.instance(desc, &mut objects) {
                 self.add_instance(GroupId::TOP, instance, span);
@@ -48,8 +48,8 @@ impl Compiler<'_> {
     ) -> Option<(Instance, usize)> {
         let span = instance.origin.span;
         if objects.open.contains(&instance.object.index()) {
-            let name = &self.desc.objects[instance.object].name;
-            self.error("endless-instances", format!("the object `{name}` is within itself"), span);
+            let message = format!("the object `{}` is within itself", self.objects[instance.object].name);
+            self.error("endless-instances", message, span);
             return None;
         }
         let built =
@@ -82,7 +82,8 @@ impl Compiler<'_> {
         if let Some(built) = objects.built.get(&handle.index()) {
             return *built;
         }
-        let object = &self.desc.objects[handle];
+        let described = Arc::clone(&self.objects);
+        let object = &described[handle];
         let mut inner = Vec::new();
         objects.open.push(handle.index());
         for (_, instance) in object.instances.iter() {

@@ -7,8 +7,8 @@ use crate::scene::GeometryEntry;
 use crate::texture::FloatTextureId;
 use crate::traits::Occurrence;
 use description::{
-    Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind, Span, Spanned,
-    Stated, TransformDesc,
+    Arena, Diagnostic, Handle, ImageDesc, MeshDesc, Origin, PatchMeshDesc, ShapeDesc, ShapeKind, Span,
+    Spanned, Stated, TransformDesc,
 };
 use geometry::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
@@ -20,17 +20,15 @@ use spectrum::Rgb;
 use std::sync::Arc;
 
 impl Compiler<'_> {
-    /// Everything that can be hit.
-    pub(super) fn shapes(&mut self) {
-        let desc = self.desc;
-        let shapes: Vec<_> = desc.shapes.iter().map(|(_, shape)| shape).collect();
+    /// The shapes of the world.
+    pub(super) fn shapes(&mut self, shapes: &Arena<ShapeDesc>) {
+        let shapes: Vec<_> = shapes.iter().map(|(_, shape)| shape).collect();
         let mut index = 0;
         for run in shapes.chunk_by(|a, b| are_strands(a, b)) {
             self.shape(run);
             self.names.add_shape(index, self.entries.len(), self.instances.len());
             index += run.len();
         }
-        self.instances();
     }
 
     /// A shape of the world (or strands): in render space where it rests, in a group of its own

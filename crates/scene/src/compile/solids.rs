@@ -4,6 +4,7 @@ use super::Compiler;
 use description::{Diagnostic, ShapeDesc, ShapeKind, SolidOperation, Span, Stated};
 use geometry::{Operation, Solid};
 use math::{Bounds3, DMat4, Transform};
+use std::sync::Arc;
 
 /// The most bodies of a solid.
 const MAX_PARTS: usize = 1024;
@@ -96,10 +97,10 @@ impl Compiler<'_> {
             self.error("too-large", message, assembly.whole);
             return None;
         }
-        let desc = self.desc;
+        let objects = Arc::clone(&self.objects);
         let mut bodies = Vec::new();
         for operand in operands {
-            let object = &desc.objects[operand.value];
+            let object = &objects[operand.value];
             if let Some((_, instance)) = object.instances.iter().next() {
                 let message = "instances of objects are no bodies that a solid can be made of";
                 self.error("not-closed", message, instance.origin.span);

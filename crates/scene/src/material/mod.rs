@@ -85,11 +85,25 @@ pub(crate) fn resolve<'a>(
     interaction: &SurfaceInteraction,
     textures: &Textures,
 ) -> &'a MaterialEntry {
-    let mut entry = &materials[interaction.material.0 as usize];
-    while let Material::Mix(mix) = &entry.material {
-        entry = &materials[mix.choose(interaction, textures).0 as usize];
+    let entry = &materials[interaction.material.0 as usize];
+    match &entry.material {
+        Material::Mix(mix) => chosen(mix, materials, interaction, textures),
+        _ => entry,
     }
-    entry
+}
+
+/// The material that a mix has at a point.
+fn chosen<'a>(
+    mut mix: &'a MixMaterial,
+    materials: &'a [MaterialEntry],
+    interaction: &SurfaceInteraction,
+    textures: &Textures,
+) -> &'a MaterialEntry {
+    loop {
+        let entry = &materials[mix.choose(interaction, textures).0 as usize];
+        let Material::Mix(inner) = &entry.material else { return entry };
+        mix = inner;
+    }
 }
 
 /// An index of refraction at the first wavelength. Where it varies, the secondary wavelengths are

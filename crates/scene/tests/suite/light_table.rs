@@ -17,7 +17,7 @@ fn with<T>(change: impl FnOnce(&mut SceneDesc) -> T) -> SceneDesc {
 }
 
 fn diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
-    compile(desc).map_or_else(|errors| errors, |scene| scene.warnings)
+    compile(desc.clone()).map_or_else(|errors| errors, |scene| scene.warnings)
 }
 
 #[test]

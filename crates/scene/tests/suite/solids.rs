@@ -33,7 +33,7 @@ fn solid(operation: SolidOperation, operands: Vec<Spanned<Handle<ObjectDesc>>>) 
 /// The only diagnostic of a shape.
 fn message(mut desc: SceneDesc, shape: ShapeDesc) -> Diagnostic {
     desc.shapes.push_stated(Stated::new(shape, Origin::new(span(0, 10))));
-    let mut all = match compile(&desc) {
+    let mut all = match compile(desc) {
         Ok(compiled) => compiled.warnings,
         Err(errors) => errors,
     };
@@ -45,7 +45,7 @@ fn message(mut desc: SceneDesc, shape: ShapeDesc) -> Diagnostic {
 /// The distance along z at which a scene of one shape is hit from below.
 fn met(mut desc: SceneDesc, shape: ShapeDesc) -> Option<f32> {
     desc.shapes.push(shape);
-    let compiled = compile(&desc).expect("a scene");
+    let compiled = compile(desc).expect("a scene");
     assert!(compiled.warnings.iter().all(|warning| warning.code == "no-light"), "{:?}", compiled.warnings);
     let ray = Ray::new(Vec3::new(0.0, 0.0, -5.0), Vec3::Z, 0.0);
     let (hit, _) = compiled.scene.intersect(&ray, f32::INFINITY, &mut RayStats::default())?;

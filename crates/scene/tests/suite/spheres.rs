@@ -71,7 +71,7 @@ fn invalid_sphere_arrays_are_errors() {
         (&[Vec3::ZERO; 2], &[1.0, 0.0], "radius 1 is 0; it must be finite and above zero"),
         (&[Vec3::NAN], &[1.0], "the centre of sphere 0 is not finite"),
     ] {
-        let errors = compile(&desc([spheres(centers, radii).into()])).expect_err("errors");
+        let errors = compile(desc([spheres(centers, radii).into()])).expect_err("errors");
         assert!(errors.len() == 1 && errors[0].code == "invalid-spheres", "{errors:?}");
         assert_eq!(errors[0].message, message);
     }

@@ -3,7 +3,7 @@
 use super::bins::{ObjectSplit, centroids};
 use super::pages;
 use super::partition::partition;
-use super::reference::{Extent, Reference};
+use super::reference::{Extent, Ids, Reference};
 use super::tree::{BinaryTree, Blocks, InnerNode, Subtree};
 
 /// Below this depth, which only extremely uneven sets reach, sets are split at the median.
@@ -12,19 +12,23 @@ pub(super) const DEEPEST: usize = 48;
 pub(super) const PARALLEL: usize = 4096;
 
 /// Sorts references and builds a tree over them.
-pub(super) fn build(mut references: Vec<Reference>, blocks: Blocks) -> BinaryTree {
-    let mut inner = pages::filled(InnerNode::default(), references.len());
+///
+/// References of finished subtrees are given back while ids and inner nodes, which take as much
+/// memory, fill up.
+pub(super) fn build(mut references: Vec<Reference>, blocks: Blocks) -> BinaryTree<Ids> {
+    let mut ids = pages::zeroed(references.len());
+    let mut inner = pages::zeroed(references.len());
     let extent = Extent::around(&references);
-    let tree = grow(&mut references, &mut inner, 0, extent, blocks, 0);
+    let tree = grow(&mut references, (&mut ids, &mut inner), 0, extent, blocks, 0);
     let size = tree.as_node(&inner);
-    BinaryTree { references, inner, root: tree.root, size }
+    BinaryTree { items: ids, inner, root: tree.root, size }
 }
 
-/// Sorts references and fills in `inner`, which is as long. `first` is the index of the first
-/// reference.
+/// Sorts references and fills in their ids and inner nodes, which are as many. `first` is the index
+/// of the first reference.
 fn grow(
     references: &mut [Reference],
-    inner: &mut [InnerNode],
+    (ids, inner): (&mut [Ids], &mut [InnerNode]),
     first: usize,
     extent: Extent,
     blocks: Blocks,
@@ -32,15 +36,20 @@ fn grow(
 ) -> Subtree {
     let n = references.len();
     if n <= blocks.width() {
+        ids.iter_mut().zip(references).for_each(|(ids, r)| *ids = r.ids());
         return Subtree::leaf(extent, n as u32, blocks);
     }
     let (middle, halves) = divide(references, &extent, blocks, depth);
     let (left, right) = references.split_at_mut(middle);
+    let (left_ids, right_ids) = ids.split_at_mut(middle);
     let (left_inner, right_inner) = inner.split_at_mut(middle);
     let [l, r] = halves;
-    let mut left = || grow(left, left_inner, first, l, blocks, depth + 1);
-    let mut right = || grow(right, right_inner, first + middle, r, blocks, depth + 1);
+    let mut left = || grow(left, (left_ids, left_inner), first, l, blocks, depth + 1);
+    let mut right = || grow(right, (right_ids, right_inner), first + middle, r, blocks, depth + 1);
     let (left, right) = if n > PARALLEL { rayon::join(left, right) } else { (left(), right()) };
+    if n > PARALLEL {
+        pages::release(references);
+    }
     let (subtree, node) = Subtree::join(&left, &right, first + middle, blocks);
     inner[middle] = node;
     subtree

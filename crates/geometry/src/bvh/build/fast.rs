@@ -12,7 +12,7 @@ use super::pages;
 use super::primitives::{MAX_WIDTH, Numbering, PREFETCH_DISTANCE, Primitives};
 use super::reference::{Extent, Reference};
 use super::tree::{BinaryTree, Blocks, InnerNode, Subtree};
-use super::widen::{Built, Wide, widen};
+use super::widen::{Boxes, Built, Leaves, Wide, widen};
 use math::Vec4;
 use rayon::prelude::*;
 
@@ -56,14 +56,25 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
     let made = (0..starts.len()).into_par_iter().with_min_len(PARALLEL / 4).map(block);
     made.unzip_into_vecs(&mut references, &mut blocks);
     let codes: Vec<_> = starts.iter().map(|&start| code(keys[start as usize])).collect();
-    let mut inner = pages::filled(InnerNode::default(), references.len());
+    let mut inner = pages::zeroed(references.len());
     let single = Blocks::of(1, P::COST);
     let tree = grow(&codes, &references, &mut inner, 0, single);
     let size = tree.as_node(&inner);
-    let tree = BinaryTree { references, inner, root: tree.root, size };
-    let Wide { mut nodes, extent, depth, .. } = widen(&tree, single);
+    let tree = BinaryTree { items: references, inner, root: tree.root, size };
+    let Wide { mut nodes, extent, depth } = widen(tree, single, &mut Vec::new(), &Made);
     let blocks = overflow.resolve(blocks, &mut nodes);
     Built { nodes, bounds: extent.bounds(), depth, blocks }
+}
+
+/// Leaves whose blocks are made: each reference is one.
+struct Made;
+
+impl Leaves<Reference, ()> for Made {
+    fn block(&self, _: &[Reference], _: usize, _: usize) {}
+
+    fn boxes(&self, blocks: &[Reference]) -> Boxes {
+        Boxes::of(blocks.iter().map(Reference::extent))
+    }
 }
 
 /// The code of a key.

@@ -19,20 +19,24 @@ use super::tree::{BinaryTree, Blocks, InnerNode, Subtree};
 const OVERLAP: f32 = 1e-5;
 
 /// Sorts references, some of them duplicated, and builds a tree over them.
-pub(super) fn build(mut references: Vec<Reference>, corners: &impl Corners, blocks: Blocks) -> BinaryTree {
+pub(super) fn build(
+    mut references: Vec<Reference>,
+    corners: &impl Corners,
+    blocks: Blocks,
+) -> BinaryTree<Reference> {
     let count = references.len();
     let extent = Extent::around(&references);
     references.resize((2 * count).min(u32::MAX as usize), Reference::none());
-    let mut inner = pages::filled(InnerNode::default(), references.len());
+    let mut inner = pages::zeroed(references.len());
     let builder = Builder { corners, blocks, least_overlap: OVERLAP * extent.half_area() };
     let tree = builder.grow(Set { references: &mut references, count, extent }, &mut inner, 0, 0);
     let size = tree.as_node(&inner);
-    close_gaps(BinaryTree { references, inner, root: tree.root, size })
+    close_gaps(BinaryTree { items: references, inner, root: tree.root, size })
 }
 
 /// Removes unused references.
-fn close_gaps(tree: BinaryTree) -> BinaryTree {
-    let BinaryTree { mut references, inner, root, size } = tree;
+fn close_gaps(tree: BinaryTree<Reference>) -> BinaryTree<Reference> {
+    let BinaryTree { items: mut references, inner, root, size } = tree;
     let mut used = 0;
     let place = |r: &Reference| {
         let here = used;
@@ -41,14 +45,14 @@ fn close_gaps(tree: BinaryTree) -> BinaryTree {
     };
     let places: Vec<u32> = references.iter().map(place).collect();
     let place = |border: u32| places[border as usize];
-    let mut closed = pages::filled(InnerNode::default(), used as usize);
+    let mut closed = pages::zeroed::<InnerNode>(used as usize);
     for (mut node, &border) in inner.into_iter().zip(&places).filter(|(node, _)| node.is_used()) {
         node.halves = node.halves.map(place);
         closed[border as usize] = node;
     }
     let root = if root > 0 { place(root) } else { 0 };
     references.retain(|r| !r.is_none());
-    BinaryTree { references, inner: closed, root, size }
+    BinaryTree { items: references, inner: closed, root, size }
 }
 
 /// The first `count` references of a slice, which has spare capacity, and the box around them.

@@ -3,14 +3,17 @@
 //! Every builder sorts references to primitives and builds a binary tree over them ([`tree`]),
 //! which is then collapsed into wide nodes ([`widen`]).
 //!
-//! Temporary memory for n primitives: 32 n bytes of references and 24 n of binary nodes while the
-//! tree is built, then 8 n of ids while the blocks are made; `high` takes twice as much. `fast` has
-//! one reference and one binary node per block, and takes 16 n bytes to sort.
+//! Temporary memory for n primitives: 32 n bytes. `balanced` has 32 n of references, which are
+//! given back part by part as 8 n of ids and 24 n of binary nodes take their place; these are given
+//! back in turn while nodes and blocks are written. `high` keeps its references, and has up to
+//! twice as many. `fast` has one reference and one binary node per block, and takes 16 n bytes to
+//! sort.
 
 mod balanced;
 mod bins;
 mod fast;
 mod high;
+mod leaves;
 mod overflow;
 mod pages;
 mod partition;
@@ -23,13 +26,14 @@ mod tests;
 mod tree;
 mod widen;
 
-use rayon::prelude::*;
-use tree::Blocks;
+use leaves::{BlockMaker, Item};
+use overflow::Overflow;
+use pages::Zeroable;
+use primitives::Numbering;
+use tree::{BinaryTree, Blocks};
 use widen::Wide;
 
-use overflow::Overflow;
 pub(crate) use primitives::Primitives;
-use primitives::{MAX_WIDTH, Numbering, PREFETCH_DISTANCE};
 pub(crate) use reference::{Extent, Reference};
 pub(super) use refit::refit;
 pub(crate) use widen::Built;
@@ -61,40 +65,27 @@ pub(crate) fn build<P: Primitives>(primitives: &P, quality: BuildQuality) -> Bui
                 references.retain(|r| !r.is_none());
             }
             let blocks = Blocks::of(primitives.width(), P::COST);
-            let tree = match quality {
-                BuildQuality::High => high::build(
-                    references,
-                    &|r: &Reference| primitives.corners(r.geometry(), r.primitive()),
-                    blocks,
-                ),
-                _ => balanced::build(references, blocks),
-            };
-            let Wide { mut nodes, blocks, extent, depth } = widen::widen(&tree, blocks);
-            // Blocks are made from ids alone: a quarter of the memory of references.
-            let id = |r: &Reference| [r.geometry(), r.primitive()];
-            let ids: Vec<[u32; 2]> = tree.references.par_iter().map(id).collect();
-            drop(tree);
-            let members = |block: usize| {
-                let range = blocks.get(block).cloned().unwrap_or_default();
-                &ids[range.start as usize..range.end as usize]
-            };
-            let overflow = Overflow::new();
-            let block = |block: usize| {
-                let far = members(block + 2 * PREFETCH_DISTANCE);
-                far.iter().for_each(|&[g, p]| primitives.prefetch_indices(g, p));
-                let near = members(block + PREFETCH_DISTANCE);
-                near.iter().for_each(|&[g, p]| primitives.prefetch(g, p));
-                let mut references = [Reference::none(); MAX_WIDTH];
-                let ids = members(block);
-                for (reference, &[geometry, primitive]) in references.iter_mut().zip(ids) {
-                    *reference = Reference::new(Extent::EMPTY, geometry, primitive);
+            match quality {
+                BuildQuality::High => {
+                    let corners = |r: &Reference| primitives.corners(r.geometry(), r.primitive());
+                    collapse(primitives, high::build(references, &corners, blocks), blocks)
                 }
-                overflow.block(primitives, block, &references[..ids.len()]).0
-            };
-            let mut made = overflow.with_capacity(blocks.len());
-            made.par_extend((0..blocks.len()).into_par_iter().map(block));
-            let blocks = overflow.resolve(made, &mut nodes);
-            Built { nodes, bounds: extent.bounds(), depth, blocks }
+                _ => collapse(primitives, balanced::build(references, blocks), blocks),
+            }
         }
     }
+}
+
+/// Makes wide nodes and blocks of a binary tree.
+fn collapse<P: Primitives, T: Item + Zeroable + Send>(
+    primitives: &P,
+    tree: BinaryTree<T>,
+    blocks: Blocks,
+) -> Built<P::Block> {
+    let overflow = Overflow::new();
+    let mut list = overflow.with_capacity(tree.size.blocks as usize);
+    let leaves = BlockMaker { primitives, overflow: &overflow };
+    let Wide { mut nodes, extent, depth } = widen::widen(tree, blocks, &mut list, &leaves);
+    let blocks = overflow.resolve(list, &mut nodes);
+    Built { nodes, bounds: extent.bounds(), depth, blocks }
 }

@@ -1,4 +1,4 @@
-//! Long arrays in huge pages.
+//! Long arrays in huge pages, and how they are given back part by part.
 //!
 //! The first write to a page faults, which costs about a microsecond: with pages of 4 KiB, a
 //! quarter of the build time at [`super::BuildQuality::Fast`]. Traversal then misses the TLB more
@@ -6,11 +6,12 @@
 
 #![allow(unsafe_code)]
 
+use std::alloc::{Layout, alloc_zeroed, handle_alloc_error};
+
 /// An empty vector of a capacity, in huge pages.
 pub(super) fn with_capacity<T>(capacity: usize) -> Vec<T> {
     let list = Vec::with_capacity(capacity);
-    #[cfg(target_os = "linux")]
-    request_huge_pages(&list);
+    advise(list.as_ptr(), list.capacity(), Advice::MakeHuge);
     list
 }
 
@@ -21,21 +22,70 @@ pub(super) fn filled<T: Clone>(value: T, len: usize) -> Vec<T> {
     list
 }
 
-/// Requests huge pages where whole ones lie in the vector's capacity, so that no more memory is
-/// used.
+/// What is a value when all of its bits are zero.
+///
+/// # Safety
+/// It must be so.
+pub(super) unsafe trait Zeroable: Copy {}
+
+// SAFETY: they are integers.
+unsafe impl Zeroable for [u32; 2] {}
+
+/// A vector of values whose bits are zero, in huge pages. A page takes memory from when it is
+/// first written to.
+pub(super) fn zeroed<T: Zeroable>(len: usize) -> Vec<T> {
+    let layout = Layout::array::<T>(len).expect("invariant: arrays fit in the address space");
+    if layout.size() == 0 {
+        return Vec::new();
+    }
+    // SAFETY: the layout is that of a vector of this capacity, and not empty. Zero bits are values.
+    let list = unsafe {
+        let first = alloc_zeroed(layout);
+        if first.is_null() {
+            handle_alloc_error(layout);
+        }
+        Vec::from_raw_parts(first.cast(), len, len)
+    };
+    advise(list.as_ptr(), len, Advice::MakeHuge);
+    list
+}
+
+/// Gives the memory of values that are no longer needed back to the system; some of them become
+/// zero. A short list, which is not worth a system call, is kept.
+pub(super) fn release<T: Zeroable>(list: &mut [T]) {
+    const SHORT: usize = 512 << 10;
+    if size_of_val(list) >= SHORT {
+        advise(list.as_ptr(), list.len(), Advice::Release);
+    }
+}
+
+/// What Linux is asked to do with pages.
+enum Advice {
+    MakeHuge,
+    Release,
+}
+
+/// Advises Linux about the pages that lie wholly among `len` values.
 #[cfg(target_os = "linux")]
-fn request_huge_pages<T>(list: &Vec<T>) {
-    const PAGE: usize = 2 << 20;
-    let bytes = list.capacity() * size_of::<T>();
-    let before = list.as_ptr().addr().wrapping_neg() % PAGE;
-    if bytes < before + PAGE {
+fn advise<T>(first: *const T, len: usize, advice: Advice) {
+    // Small pages have 64 KiB at most.
+    let (page, advice) = match advice {
+        Advice::MakeHuge => (2 << 20, libc::MADV_HUGEPAGE),
+        Advice::Release => (64 << 10, libc::MADV_DONTNEED),
+    };
+    let bytes = len * size_of::<T>();
+    let before = first.addr().wrapping_neg() % page;
+    if bytes < before + page {
         return;
     }
-    let first = list.as_ptr().wrapping_byte_add(before).cast_mut().cast();
-    // SAFETY: these bytes belong to the vector, and the advice does not change them. An error means
-    // that the system gives small pages, which is fine.
-    unsafe { libc::madvise(first, (bytes - before) / PAGE * PAGE, libc::MADV_HUGEPAGE) };
+    let first = first.wrapping_byte_add(before).cast_mut().cast();
+    // SAFETY: callers own these bytes. To ask for huge pages does not change them, and what is
+    // released may become zero. An error means that the advice is not taken, which is fine.
+    unsafe { libc::madvise(first, (bytes - before) / page * page, advice) };
 }
+
+#[cfg(not(target_os = "linux"))]
+fn advise<T>(_: *const T, _: usize, _: Advice) {}
 
 #[cfg(test)]
 mod tests {
@@ -49,5 +99,18 @@ mod tests {
             assert!(list.iter().all(|&at| at == [1, 2, 3]));
             assert!(with_capacity::<u64>(len).capacity() >= len);
         }
+    }
+
+    #[test]
+    fn what_is_released_is_zero_and_the_rest_stays() {
+        let mut list = zeroed::<[u32; 2]>(3 << 20);
+        assert!(list.iter().all(|&at| at == [0; 2]));
+        list.fill([1, 2]);
+        let (released, kept) = list.split_at_mut(2 << 20);
+        release(released);
+        assert!(released.iter().all(|&at| at == [0; 2] || at == [1, 2]));
+        assert!(kept.iter().all(|&at| at == [1, 2]));
+        #[cfg(target_os = "linux")]
+        assert!(released.contains(&[0; 2]));
     }
 }

@@ -1,5 +1,8 @@
 //! Boxes and references to primitives.
 
+#![allow(unsafe_code)]
+
+use super::pages::Zeroable;
 use math::{Bounds3, Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -123,6 +126,9 @@ impl From<&Bounds3> for Extent {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reference(Extent);
 
+// SAFETY: all fields are floats.
+unsafe impl Zeroable for Reference {}
+
 impl Reference {
     /// [`Reference::primitive`] of an unused reference.
     const UNUSED: u32 = u32::MAX;
@@ -161,10 +167,18 @@ impl Reference {
     }
 
     #[inline]
+    pub fn ids(&self) -> Ids {
+        [self.geometry(), self.primitive()]
+    }
+
+    #[inline]
     pub fn is_none(&self) -> bool {
         self.primitive() == Self::UNUSED
     }
 }
+
+/// A primitive by the ids of geometry and primitive.
+pub(super) type Ids = [u32; 2];
 
 /// Sets of this size and larger are processed in parallel, in parts of a quarter of this.
 pub(super) const PARALLEL_SET: usize = 1 << 16;

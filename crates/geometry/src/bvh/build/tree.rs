@@ -11,7 +11,10 @@
 //! 1), min_k C(l, k) + C(r, i − k)) with the area A of its box and the cost c of a block, where the
 //! test of a wide node costs 1 ([Ylitie et al. 2017 §3.1]).
 
-use super::reference::{Extent, Reference};
+#![allow(unsafe_code)]
+
+use super::pages::Zeroable;
+use super::reference::Extent;
 use crate::bvh::node::WIDTH;
 
 /// The most blocks of a leaf.
@@ -58,6 +61,9 @@ pub(super) struct InnerNode {
     /// What there is below this if it becomes a wide node.
     pub below: Size,
 }
+
+// SAFETY: all fields are integers.
+unsafe impl Zeroable for InnerNode {}
 
 /// The size of a collapsed tree.
 #[derive(Clone, Copy, Debug, Default)]
@@ -112,9 +118,10 @@ impl InnerNode {
     }
 }
 
-/// Sorted references, and the binary tree over them.
-pub(super) struct BinaryTree {
-    pub references: Vec<Reference>,
+/// Sorted primitives, and the binary tree over them.
+pub(super) struct BinaryTree<T> {
+    /// References, or ids alone.
+    pub items: Vec<T>,
     pub inner: Vec<InnerNode>,
     /// ObjectSplit of the root; 0 for a leaf.
     pub root: u32,

@@ -9,12 +9,16 @@
 //! the primitives' boxes and of its own, and the cost that of its blocks; for a node both follow
 //! from the children, each of which is entered with the probability of the ratio of areas.
 
-use super::pages;
-use super::reference::{Extent, Reference};
+#![allow(unsafe_code)]
+
+use super::pages::{self, Zeroable};
+use super::reference::Extent;
 use super::tree::{BinaryTree, Blocks, Cut, InnerNode, Size};
 use crate::bvh::node::{Child, WIDTH, WideNode};
 use math::Bounds3;
 use rayon::prelude::*;
+use std::marker::PhantomData;
+use std::mem::MaybeUninit;
 use std::ops::Range;
 
 /// Smaller ranges are not split between threads.
@@ -30,27 +34,64 @@ pub(crate) struct Built<B> {
     pub blocks: Vec<B>,
 }
 
-/// Wide nodes, and the range of references of each block.
+/// Wide nodes.
 pub(super) struct Wide {
     pub nodes: Vec<WideNode>,
-    pub blocks: Vec<Range<u32>>,
     pub extent: Extent,
     /// The number of levels of nodes.
     pub depth: usize,
 }
 
-/// Collapses a binary tree.
-pub(super) fn widen(tree: &BinaryTree, blocks: Blocks) -> Wide {
-    let BinaryTree { references, inner, root, size } = tree;
-    if references.is_empty() {
-        return Wide { nodes: Vec::new(), blocks: Vec::new(), extent: Extent::EMPTY, depth: 0 };
+/// What makes the blocks of leaves.
+pub(super) trait Leaves<T, B>: Sync {
+    /// Makes the block with this index of the first `len` items. More may follow, of which the next
+    /// blocks will be made.
+    fn block(&self, items: &[T], len: usize, index: usize) -> B;
+
+    /// The boxes of primitives of a leaf.
+    fn boxes(&self, items: &[T]) -> Boxes;
+}
+
+/// The boxes of a leaf's primitives: the box around them, and the sum of half their areas.
+pub(super) struct Boxes {
+    extent: Extent,
+    half_area: f32,
+}
+
+impl Boxes {
+    #[inline(always)]
+    pub fn of(extents: impl Iterator<Item = Extent>) -> Self {
+        let start = Self { extent: Extent::EMPTY, half_area: 0.0 };
+        extents.fold(start, |all, extent| Self {
+            extent: all.extent.union(extent),
+            half_area: all.half_area + extent.half_area(),
+        })
     }
-    let whole = Branch { range: 0..references.len() as u32, root: *root };
+}
+
+/// Collapses a binary tree. The blocks of its leaves are appended to `list`, which is empty and has
+/// capacity for them. Items and binary nodes are given back while nodes and blocks are written.
+pub(super) fn widen<T: Zeroable + Send + Sync, B: Send>(
+    tree: BinaryTree<T>,
+    blocks: Blocks,
+    list: &mut Vec<B>,
+    leaves: &impl Leaves<T, B>,
+) -> Wide {
+    let BinaryTree { mut items, mut inner, root, size } = tree;
+    if items.is_empty() {
+        return Wide { nodes: Vec::new(), extent: Extent::EMPTY, depth: 0 };
+    }
+    let whole = Branch { range: 0..items.len() as u32, root };
     let mut nodes = pages::filled(WideNode::EMPTY, size.nodes as usize);
-    let mut list = pages::filled(0..0, size.blocks as usize);
-    let part = Part { nodes: &mut nodes, first_node: 0, blocks: &mut list, first_block: 0 };
-    let Summary { extent, depth, .. } = Writer { references, inner, blocks }.write(&whole, part);
-    Wide { nodes, blocks: list, extent, depth }
+    let spare = &mut list.spare_capacity_mut()[..size.blocks as usize];
+    let part = Part { nodes: &mut nodes, first_node: 0, blocks: spare, first_block: 0 };
+    let binary = Binary { items: &mut items, inner: &mut inner, first: 0 };
+    let Summary { extent, depth, .. } =
+        Writer { blocks, leaves, of: PhantomData }.write(&whole, binary, part);
+    // SAFETY: all are written: a node shares all of its blocks out ([`finish`] asserts it) among
+    // nodes and leaves, and a leaf writes each of its own.
+    unsafe { list.set_len(size.blocks as usize) };
+    Wide { nodes, extent, depth }
 }
 
 /// A range of references, and where it is split; 0 for a leaf.
@@ -74,27 +115,27 @@ struct Branches {
 }
 
 impl Branches {
-    fn below(inner: &[InnerNode], node: &Branch) -> Self {
+    fn below<T>(tree: &View<T>, node: &Branch) -> Self {
         let mut branches = Self::default();
         match node.root {
             0 => branches.push(node.clone()),
-            root => branches.open(inner, node, inner[root as usize].open()),
+            root => branches.open(tree, node, tree.node(root).open()),
         }
         branches
     }
 
-    fn open(&mut self, inner: &[InnerNode], node: &Branch, shares: [usize; 2]) {
+    fn open<T>(&mut self, tree: &View<T>, node: &Branch, shares: [usize; 2]) {
         let border = node.root;
         let ranges = [node.range.start..border, border..node.range.end];
-        let halves = inner[border as usize].halves;
+        let halves = tree.node(border).halves;
         for ((range, root), share) in ranges.into_iter().zip(halves).zip(shares) {
             let half = Branch { range, root };
             match root {
                 0 => self.push(half),
-                _ => match inner[root as usize].cut(share) {
+                _ => match tree.node(root).cut(share) {
                     Cut::Leaf => self.push(Branch { root: 0, ..half }),
                     Cut::Node => self.push(half),
-                    Cut::Opened(shares) => self.open(inner, &half, shares),
+                    Cut::Opened(shares) => self.open(tree, &half, shares),
                 },
             }
         }
@@ -110,15 +151,50 @@ impl Branches {
     }
 }
 
+/// A part of a binary tree: items, the inner nodes at their indices, and the index of the first.
+struct Binary<'a, T> {
+    items: &'a mut [T],
+    inner: &'a mut [InnerNode],
+    first: u32,
+}
+
+impl<'a, T> Binary<'a, T> {
+    /// Takes so many items from the front.
+    fn take(&mut self, len: u32) -> Self {
+        let (items, later_items) = std::mem::take(&mut self.items).split_at_mut(len as usize);
+        let (inner, later_inner) = std::mem::take(&mut self.inner).split_at_mut(len as usize);
+        let taken = Self { items, inner, ..*self };
+        *self = Self { items: later_items, inner: later_inner, first: self.first + len };
+        taken
+    }
+
+    fn view(&self) -> View<'_, T> {
+        View { items: self.items, inner: self.inner, first: self.first }
+    }
+}
+
+/// [`Binary`], to be read.
+struct View<'a, T> {
+    items: &'a [T],
+    inner: &'a [InnerNode],
+    first: u32,
+}
+
+impl<T> View<'_, T> {
+    fn node(&self, border: u32) -> &InnerNode {
+        &self.inner[(border - self.first) as usize]
+    }
+}
+
 /// The part of the arrays that a subtree is written to.
-struct Part<'a> {
+struct Part<'a, B> {
     nodes: &'a mut [WideNode],
     first_node: u32,
-    blocks: &'a mut [Range<u32>],
+    blocks: &'a mut [MaybeUninit<B>],
     first_block: u32,
 }
 
-impl Part<'_> {
+impl<B> Part<'_, B> {
     /// Takes a part of a size from the front.
     fn take(&mut self, size: Size) -> Self {
         let (nodes, later_nodes) = std::mem::take(&mut self.nodes).split_at_mut(size.nodes as usize);
@@ -147,10 +223,8 @@ struct Summary {
 impl Summary {
     const EMPTY: Self = Self { extent: Extent::EMPTY, depth: 0, probability: 0.0, cost: 0.0 };
 
-    fn leaf(references: &[Reference], cost: f32) -> Self {
-        let extent = Extent::around(references);
-        let area: f32 = references.iter().map(|r| r.extent().half_area()).sum();
-        Self { extent, depth: 0, probability: area_ratio(area, &extent), cost }
+    fn leaf(Boxes { extent, half_area }: Boxes, cost: f32) -> Self {
+        Self { extent, depth: 0, probability: area_ratio(half_area, &extent), cost }
     }
 
     /// A node over children, which are visited from the last to the first.
@@ -178,56 +252,80 @@ fn area_ratio(half_area: f32, extent: &Extent) -> f32 {
     if ratio <= 1.0 { ratio } else { 1.0 }
 }
 
-struct Writer<'a> {
-    references: &'a [Reference],
-    inner: &'a [InnerNode],
+struct Writer<'a, L, T, B> {
     blocks: Blocks,
+    leaves: &'a L,
+    of: PhantomData<fn(T, B)>,
 }
 
-impl Writer<'_> {
-    /// Writes a node and all below it.
-    fn write(&self, node: &Branch, mut part: Part) -> Summary {
-        let branches = Branches::below(self.inner, node);
+impl<L: Leaves<T, B>, T: Zeroable + Send + Sync, B: Send> Writer<'_, L, T, B> {
+    /// Writes a node and all below it, and gives its part of the binary tree back.
+    fn write(&self, node: &Branch, tree: Binary<T>, mut part: Part<B>) -> Summary {
+        if node.len() <= PARALLEL {
+            return self.write_serially(node, &tree.view(), part);
+        }
+        let branches = Branches::below(&tree.view(), node);
         let here = part.take(Size { nodes: 1, blocks: 0 });
         let mut children = [(Summary::EMPTY, Child::EMPTY); WIDTH];
         let children = &mut children[..branches.len];
-        let mut for_others = Vec::new();
+        let mut rest = Binary { items: &mut *tree.items, inner: &mut *tree.inner, first: tree.first };
+        let mut below = Vec::new();
+        for (branch, (written, child)) in branches.list().iter().zip(&mut *children) {
+            let tree = rest.take(branch.len());
+            if branch.root == 0 {
+                (*written, *child) = self.write_leaf(branch, &tree.view(), &mut part);
+            } else {
+                let mine = part.take(tree.view().node(branch.root).as_node());
+                *child = Child::node(mine.first_node as usize);
+                below.push((written, branch, tree, mine));
+            }
+        }
+        below
+            .into_par_iter()
+            .for_each(|(written, branch, tree, mine)| *written = self.write(branch, tree, mine));
+        pages::release(tree.items);
+        pages::release(tree.inner);
+        finish(here, children, &part)
+    }
+
+    fn write_serially(&self, node: &Branch, tree: &View<T>, mut part: Part<B>) -> Summary {
+        let branches = Branches::below(tree, node);
+        let here = part.take(Size { nodes: 1, blocks: 0 });
+        let mut children = [(Summary::EMPTY, Child::EMPTY); WIDTH];
+        let children = &mut children[..branches.len];
         for (branch, (written, child)) in branches.list().iter().zip(&mut *children) {
             if branch.root == 0 {
-                (*written, *child) = self.write_leaf(branch, &mut part);
-                continue;
-            }
-            let mine = part.take(self.inner[branch.root as usize].as_node());
-            *child = Child::node(mine.first_node as usize);
-            match node.len() > PARALLEL {
-                true => for_others.push((written, branch, mine)),
-                false => *written = self.write(branch, mine),
+                (*written, *child) = self.write_leaf(branch, tree, &mut part);
+            } else {
+                let mine = part.take(tree.node(branch.root).as_node());
+                *child = Child::node(mine.first_node as usize);
+                *written = self.write_serially(branch, tree, mine);
             }
         }
-        if !for_others.is_empty() {
-            let write =
-                |(written, branch, mine): (&mut Summary, &Branch, Part)| *written = self.write(branch, mine);
-            for_others.into_par_iter().for_each(write);
-        }
-        children.sort_by(|(a, _), (b, _)| a.priority().total_cmp(&b.priority()));
-        let mut wide = WideNode::EMPTY;
-        children.iter().for_each(|(below, child)| wide.push(&below.extent.bounds(), *child));
-        here.nodes[0] = wide;
-        Summary::node(children)
+        finish(here, children, &part)
     }
 
     /// Writes the blocks of a leaf.
-    fn write_leaf(&self, leaf: &Branch, part: &mut Part) -> (Summary, Child) {
+    fn write_leaf(&self, leaf: &Branch, tree: &View<T>, part: &mut Part<B>) -> (Summary, Child) {
         let count = self.blocks.count(leaf.len());
         let mine = part.take(Size { nodes: 0, blocks: count });
-        let starts = leaf.range.clone().step_by(self.blocks.width());
-        for (block, start) in mine.blocks.iter_mut().zip(starts) {
-            *block = start..(start + self.blocks.width() as u32).min(leaf.range.end);
+        let items = &tree.items[(leaf.range.start - tree.first) as usize..];
+        let (len, width, first) = (leaf.len() as usize, self.blocks.width(), mine.first_block as usize);
+        for (i, block) in mine.blocks.iter_mut().enumerate() {
+            let start = i * width;
+            block.write(self.leaves.block(&items[start..], width.min(len - start), first + i));
         }
-        let references = &self.references[leaf.range.start as usize..leaf.range.end as usize];
-        (
-            Summary::leaf(references, self.blocks.cost(count)),
-            Child::leaf(mine.first_block as usize, count as usize),
-        )
+        let boxes = self.leaves.boxes(&items[..len]);
+        (Summary::leaf(boxes, self.blocks.cost(count)), Child::leaf(first, count as usize))
     }
+}
+
+/// Writes a node over children. `rest` is what these have left of its part: nothing.
+fn finish<B>(here: Part<B>, children: &mut [(Summary, Child)], rest: &Part<B>) -> Summary {
+    assert!(rest.blocks.is_empty(), "each block belongs to a leaf");
+    children.sort_by(|(a, _), (b, _)| a.priority().total_cmp(&b.priority()));
+    let mut wide = WideNode::EMPTY;
+    children.iter().for_each(|(below, child)| wide.push(&below.extent.bounds(), *child));
+    here.nodes[0] = wide;
+    Summary::node(children)
 }

@@ -102,7 +102,10 @@ impl Builder<'_> {
 fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<ShapeKind, String> {
     let bytes = read_unpacked(assets, path).map_err(|error| error.to_string())?;
     let format = Format::from_path(path).unwrap_or(Format::Ply);
-    format.read(&bytes).map(shape_kind).map_err(|error| error.to_string())
+    let mesh = format.read(&bytes).map_err(|error| error.to_string())?;
+    // Before arrays are copied to where they stay.
+    drop(bytes);
+    Ok(shape_kind(mesh))
 }
 
 fn kind(reader: &mut Reader) -> Option<ShapeKind> {

@@ -148,7 +148,7 @@ mod tests {
             let material = Some(desc.materials.push(glass.into()));
             desc.shapes.push(ShapeDesc { material, ..ball(0.6) });
         }
-        let scene = scene::compile(&desc).expect("a scene").scene;
+        let scene = scene::compile(desc.clone()).expect("a scene").scene;
         let view = View::compile(&desc, scene.world_from_render()).expect("a view").view;
         (scene, view)
     }

@@ -13,9 +13,10 @@ use testkit::Random;
 
 /// Compiles a valid scene. World space is render space, as the camera is at the origin.
 pub fn scene(desc: &SceneDesc) -> Scene {
-    let compiled = alhazen_scene::compile(desc).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
+    let compiled =
+        alhazen_scene::compile(desc.clone()).unwrap_or_else(|diagnostics| panic!("{diagnostics:?}"));
     // Many test scenes have no light.
-    let is_dark = |code: &str| matches!(code, "empty-scene" | "no-light");
+    let is_dark = |code: &str| matches!(code, "empty-scene" | "no-light" | "black-light");
     assert!(compiled.warnings.iter().all(|warning| is_dark(warning.code)), "{:?}", compiled.warnings);
     compiled.scene
 }

@@ -30,7 +30,7 @@ fn geometries_refer_to_materials_and_these_to_textures() {
         desc.shapes.push(ShapeDesc { material, ..sphere(1.0).into() });
         desc.shapes.push(sphere(2.0).into());
     });
-    let scene = compile(&desc).unwrap().scene;
+    let scene = compile(desc).unwrap().scene;
     let reflectance = |scene: &Scene, id: MaterialId| {
         let Material::Diffuse(diffuse) = &scene.materials()[id.0 as usize].material else { panic!("{id:?}") };
         scene.textures().spectrum(diffuse.reflectance, &Default::default(), &lambda())[0]
@@ -92,7 +92,7 @@ fn an_interface_does_not_emit() {
         desc.shapes.push_stated(stated(ShapeDesc { area_light, material, ..sphere(1.0).into() }, 2));
     });
     check(&desc, Severity::Warning, "light-ignored", "a shape of material `interface` does not emit", 2);
-    assert!(compile(&desc).unwrap().scene.lights().is_empty());
+    assert!(compile(desc).unwrap().scene.lights().is_empty());
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn all_diagnostics(desc: &SceneDesc) -> Vec<Diagnostic> {
     let view = View::compile(desc, world_from_render(desc));
     [
         view.map_or_else(errors, |view| view.warnings),
-        compile(desc).map_or_else(errors, |scene| scene.warnings),
+        compile(desc.clone()).map_or_else(errors, |scene| scene.warnings),
     ]
     .concat()
 }
@@ -271,7 +271,7 @@ fn curves_are_checked() {
         desc.shapes.push_stated(stated(shape, 4));
     });
     check(&desc, Severity::Warning, "light-ignored", "curves do not emit; drawn without light", 4);
-    assert_eq!(compile(&desc).unwrap().scene.lights().len(), 0);
+    assert_eq!(compile(desc).unwrap().scene.lights().len(), 0);
     let bare = CurveDesc { profile: CurveProfile::Ribbon, ..curve() };
     invalid(ShapeKind::Curve(bare), "N", "invalid-curve", "a ribbon of 1 segments needs 2 normals");
     let linear = CurveDesc { degree: 1, ..curve() };
@@ -291,7 +291,7 @@ fn curves_are_at_their_control_points() {
         let world_from_object = TransformDesc::fixed(to);
         desc.shapes.push(ShapeDesc { world_from_object, ..ShapeKind::Curve(curve).into() });
     });
-    let scene = compile(&desc).unwrap().scene;
+    let scene = compile(desc).unwrap().scene;
     let hits = |y: f32, x: f32| {
         let ray = Ray::new(Vec3::new(x, y, 0.0), Vec3::Z, 0.0);
         scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).map(|hit| hit.1)
@@ -318,7 +318,7 @@ fn successive_curves_become_one_geometry() {
         desc.shapes.push(shape(ribbon()));
         desc.shapes.push(shape(CurveDesc { split_depth: 0, ..ribbon() }));
     });
-    let scene = compile(&desc).unwrap().scene;
+    let scene = compile(desc).unwrap().scene;
     // The four points are one segment of degree 3, or one of degree 2 and a leftover point.
     let parts: Vec<_> = (0..6).map(|id| scene.world().geometry(GeometryId(id)).len()).collect();
     assert_eq!(parts, [24, 8, 8, 16, 16, 1]);
@@ -344,7 +344,7 @@ fn subdivision_is_checked_and_bounded() {
     let message = "the edge from vertex 1 to vertex 2 does not lie between two triangles of like turn";
     invalid(of(&[[0, 1, 2], [1, 2, 3]], 1), "indices", "invalid-mesh", message);
     invalid(of(&[[0, 1, 2]], 13), "levels", "invalid-mesh", "too many triangles");
-    let scene = compile(&with(|desc| desc.shapes.push(of(&[[0, 1, 2], [0, 2, 3]], 2).into()))).unwrap().scene;
+    let scene = compile(with(|desc| desc.shapes.push(of(&[[0, 1, 2], [0, 2, 3]], 2).into()))).unwrap().scene;
     assert_eq!(scene.world().geometry(GeometryId(0)).len(), 32);
 }
 
@@ -372,7 +372,7 @@ fn displaced_meshes_move_by_their_texture() {
     for (scale, triangles) in [(1.0, 16), (2.0, 4)] {
         let mut desc = with(|desc| desc.shapes.push(displaced(square(), 0.7).into()));
         desc.options.displacement_edge_scale = scale;
-        let scene = compile(&desc).unwrap().scene;
+        let scene = compile(desc).unwrap().scene;
         assert_eq!(scene.world().geometry(GeometryId(0)).len(), triangles);
         let ray = Ray::new(Vec3::new(0.3, 0.4, 0.0), Vec3::Z, 0.0);
         let (hit, t) = scene.intersect(&ray, f32::INFINITY, &mut RayStats::default()).unwrap();
@@ -389,7 +389,7 @@ fn displaced_meshes_move_by_their_texture() {
     };
     let triangles = MeshDesc { indices: [].into(), ..square };
     let kind = ShapeKind::PlyMesh { triangles, patches, displacement: Some(0.5.into()), edge_length: 0.7 };
-    let scene = compile(&with(|desc| desc.shapes.push(kind.into()))).unwrap().scene;
+    let scene = compile(with(|desc| desc.shapes.push(kind.into()))).unwrap().scene;
     assert_eq!(scene.world().geometry(GeometryId(0)).len(), 16);
     let ray = Ray::new(Vec3::new(0.6, 0.4, 0.0), Vec3::Z, 0.0);
     assert!((scene.intersect(&ray, 9.0, &mut RayStats::default()).unwrap().1 - 1.5).abs() < 1e-6);

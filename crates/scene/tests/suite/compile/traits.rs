@@ -7,7 +7,7 @@ use description::{
 };
 
 fn traits(desc: &SceneDesc) -> SceneTraits {
-    compile(desc).expect("a scene").scene.traits().clone()
+    compile(desc.clone()).expect("a scene").scene.traits().clone()
 }
 
 fn object(desc: &mut SceneDesc, shapes: impl IntoIterator<Item = (ShapeDesc, u32)>) -> Handle<ObjectDesc> {
