@@ -18,7 +18,8 @@ pub(crate) struct LightTable {
     rows: Vec<Light>,
     /// The id of each row's first light.
     first: Vec<u32>,
-    len: u32,
+    /// The row of each light.
+    row: Vec<u32>,
     emissions: Vec<AreaEmission>,
     infinite: Vec<LightId>,
 }
@@ -32,16 +33,16 @@ impl LightTable {
     /// Adds a row of `count` lights.
     pub fn push(&mut self, light: Light, count: u32) {
         if each_light!(&light, light => light.is_infinite()) {
-            self.infinite.push(LightId(self.len));
+            self.infinite.push(LightId(self.row.len() as u32));
         }
+        self.first.push(self.row.len() as u32);
+        self.row.resize(self.row.len() + count as usize, self.rows.len() as u32);
         self.rows.push(light);
-        self.first.push(self.len);
-        self.len += count;
     }
 
     /// Whether there is no light.
     pub fn is_empty(&self) -> bool {
-        self.len == 0
+        self.row.is_empty()
     }
 
     /// The emissions of area lights.
@@ -66,7 +67,7 @@ pub struct Lights<'a> {
 impl<'a> Lights<'a> {
     /// The number of lights; their ids are 0 … `len` − 1.
     pub fn len(self) -> usize {
-        self.table.len as usize
+        self.table.row.len()
     }
 
     /// Whether there is no light.
@@ -82,18 +83,14 @@ impl<'a> Lights<'a> {
     /// A light by its id.
     #[inline]
     pub fn get(self, id: LightId) -> LightRef<'a> {
-        let LightTable { rows, first, len, .. } = self.table;
-        let row = if rows.len() == *len as usize {
-            id.0 as usize
-        } else {
-            first.partition_point(|&first| first <= id.0) - 1
-        };
+        let LightTable { rows, first, row, .. } = self.table;
+        let row = row[id.0 as usize] as usize;
         LightRef { id, light: &rows[row], part: LightPart { primitive: id.0 - first[row], lights: self } }
     }
 
     /// All lights in the order of their ids.
     pub fn iter(self) -> impl ExactSizeIterator<Item = LightRef<'a>> {
-        (0..self.table.len).map(move |id| self.get(LightId(id)))
+        (0..self.table.row.len() as u32).map(move |id| self.get(LightId(id)))
     }
 }
 

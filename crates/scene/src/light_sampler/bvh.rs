@@ -11,6 +11,7 @@
 //! are built on several threads; the tree does not depend on their number. Sources: [Conty Estevez
 //! & Kulla 2018]; [Pharr 2023 §12.6.3].
 
+use super::cluster::Cluster;
 use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
 use std::f32::consts::PI;
@@ -39,7 +40,7 @@ impl Trail {
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    bounds: LightBounds,
+    cluster: Cluster,
     kind: NodeKind,
 }
 
@@ -78,7 +79,8 @@ impl BvhLightSampler {
                 Some(_) => {}
             }
         }
-        let empty = Node { bounds: LightBounds::EMPTY, kind: NodeKind::Interior { right: 0 } };
+        let empty =
+            Node { cluster: Cluster::new(&LightBounds::EMPTY), kind: NodeKind::Interior { right: 0 } };
         let mut nodes = vec![empty; (2 * bounded.len()).saturating_sub(1)];
         if !nodes.is_empty() {
             build(&mut bounded, &mut nodes, [0, 0], cancel)?;
@@ -108,7 +110,7 @@ impl BvhLightSampler {
     }
 
     fn importance(&self, node: usize, context: &LightSampleContext) -> f32 {
-        self.nodes[node].bounds.importance(context.p.p, context.ns)
+        self.nodes[node].cluster.importance(context.p.p, context.ns)
     }
 
     /// Probability of choosing the tree: zero if its root is a leaf of importance zero.
@@ -179,7 +181,7 @@ fn build(
     cancel: &AtomicBool,
 ) -> Option<LightBounds> {
     if let [(id, bounds)] = lights {
-        nodes[0] = Node { bounds: *bounds, kind: NodeKind::Leaf(*id) };
+        nodes[0] = Node { cluster: Cluster::new(bounds), kind: NodeKind::Leaf(*id) };
         return Some(*bounds);
     }
     if cancel.load(Ordering::Relaxed) {
@@ -195,7 +197,7 @@ fn build(
     let mut right = || build(right, right_nodes, [right_index, depth + 1], cancel);
     let (left, right) = if is_large { rayon::join(left, right) } else { (left(), right()) };
     let bounds = left?.union(right?);
-    *node = Node { bounds, kind: NodeKind::Interior { right: right_index } };
+    *node = Node { cluster: Cluster::new(&bounds), kind: NodeKind::Interior { right: right_index } };
     Some(bounds)
 }
 

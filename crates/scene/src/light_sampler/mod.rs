@@ -5,6 +5,7 @@
 //! needs when a BSDF sample hits that light.
 
 mod bvh;
+mod cluster;
 mod power;
 mod uniform;
 
