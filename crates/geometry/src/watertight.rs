@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn misses() {
         let o = Vec3::new(0.25, 0.25, 1.0);
-        assert!(meet(o, -Vec3::Z, 1.0).is_none(), "the end does not count");
+        assert!(meet(o, -Vec3::Z, 1.0).is_none(), "t_max is exclusive");
         assert!(meet(o, Vec3::Z, 9.0).is_none(), "behind");
         assert!(meet(o, Vec3::X, 9.0).is_none(), "along the plane");
         assert!(meet(o, Vec3::ZERO, 9.0).is_none(), "no direction");

@@ -144,8 +144,7 @@ impl Part {
 
 /// The lines of a file without comments; a backslash at the end of a line joins it to the next.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    // Joined lines are rare, so that they are looked for first: without one, lines are slices of
-    // the file.
+    // Joined lines are rare: a file without them is searched once, and its lines are slices of it.
     let mut rest = bytes;
     std::iter::from_fn(move || {
         if rest.is_empty() {

@@ -1,8 +1,8 @@
 //! Interval arithmetic in doubles: ranges that contain the exact result ([Moore 1966]).
 //!
-//! Ends are rounded outwards. The elementary functions of the system's library are assumed
-//! to be accurate to four units in the last place, as all common ones are. A function is taken over
-//! that part of a range where it is defined; where it is defined nowhere, the result is empty.
+//! Ends are rounded outwards. The elementary functions of the system's library are assumed to be
+//! accurate to four units in the last place, as all common ones are. A function is evaluated over
+//! the part of a range where it is defined; where it is defined nowhere, the result is empty.
 
 use super::program::{Function, Number, power};
 use std::f64::consts::TAU;
@@ -96,7 +96,7 @@ impl Interval {
 
     /// The range of a wave of period 2π that is `f`, with its crest at `crest` turns.
     fn wave(self, f: fn(f64) -> f64, crest: f64) -> Self {
-        // Beyond this, where a crest lies is not known well enough.
+        // Beyond this, rounding leaves the position of a crest unknown.
         const FAR: f64 = 1e6;
         if self.high - self.low >= TAU || self.low < -FAR || self.high > FAR {
             return Self::new(-1.0, 1.0);
