@@ -75,7 +75,7 @@ pub fn compare(reference: &Image, test: &Image) -> Result<Difference, ImageError
 }
 
 /// The squared error at each pixel, averaged over colour channels, as channel Y; relative as in
-/// [`Difference::rel_mse`] on demand. Where a value is not finite it is that too.
+/// [`Difference::rel_mse`] on demand. Where a value is not finite, the error is not either.
 pub fn squared_error_map(reference: &Image, test: &Image, relative: bool) -> Result<Image, ImageError> {
     check_same_size(reference, test)?;
     let mut values = reserved(reference.width() as usize * reference.height() as usize)?;

@@ -248,7 +248,7 @@ fn layers_do_not_change_the_colours() {
 }
 
 #[test]
-fn the_memory_of_a_pixel_is_what_the_documents_say() {
+fn a_pixel_has_the_documented_size() {
     assert_eq!((PIXEL_BYTES, SPLAT_BYTES), (52, 36));
 }
 

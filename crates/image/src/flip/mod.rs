@@ -40,7 +40,7 @@ pub const PIXELS_PER_DEGREE: f32 = 67.020_645;
 /// tone mapped, the impressions of both, and the planes of which the second is made.
 const BYTES_PER_PIXEL: usize = 160;
 
-/// The most exposures that [`hdr_flip`] looks at.
+/// The most exposures that [`hdr_flip`] compares.
 const MAX_EXPOSURES: f32 = 32.0;
 
 /// How different two pictures look.
@@ -110,7 +110,7 @@ fn tone_map(color: Vec3) -> Vec3 {
     (numerator / denominator).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
-/// The exposures in stops at which pictures with this reference are looked at.
+/// The exposures in stops at which pictures are compared to this reference.
 fn exposures(reference: &[Vec3]) -> Vec<f32> {
     let mut luminances: Vec<f32> = reference.iter().map(|color| luminance(*color)).collect();
     luminances.sort_by(f32::total_cmp);
@@ -163,7 +163,7 @@ fn difference(
         .collect())
 }
 
-/// What the eye makes of a pixel.
+/// A pixel as perceived.
 struct Impression {
     /// Hunt-adjusted L*a*b* of the blurred colour.
     lab: Vec3,

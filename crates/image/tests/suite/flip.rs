@@ -72,7 +72,7 @@ fn extremes() {
 }
 
 #[test]
-fn values_without_sense_give_numbers() {
+fn invalid_values_give_finite_errors() {
     let good = Image::from_fn(8, 8, ["Y"], |x, _| [x as f32]);
     let bad = Image::from_fn(8, 8, ["Y"], |x, y| {
         [[f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30, f32::MIN_POSITIVE, 0.0, 1.0]
