@@ -112,7 +112,7 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }
 
-/// Where the report goes.
+/// The files of the report.
 struct Report {
     page: PathBuf,
     numbers: PathBuf,

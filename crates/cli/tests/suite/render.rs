@@ -1,4 +1,4 @@
-//! `alhazen render` from outside.
+//! Tests of `alhazen render`.
 
 use std::time::{Duration, Instant};
 
@@ -178,7 +178,7 @@ fn the_default_name_is_the_films_or_the_scenes() {
 }
 
 #[test]
-fn quiet_says_nothing() {
+fn quiet_prints_nothing() {
     let folder = Folder::with_scene("quiet");
     let finished = folder.alhazen(&["render", "scene.pbrt", "--quiet"]).expect(0);
     assert_eq!((finished.out.as_str(), finished.err.as_str()), ("", ""));

@@ -83,7 +83,7 @@ fn resumed_and_sharded_renders_have_the_bits_of_unbroken_ones() {
         let run = |arguments: &[&str]| folder.alhazen(arguments).expect(0);
         run(&render(integrator, &["-o", "whole.exr"]));
 
-        // One pass at least is done in any time.
+        // At least one pass is done in any time.
         run(&render(integrator, &["-o", "a.exr", "--checkpoint", "a.film", "--time", "1ms"]));
         assert_eq!(header(&folder, "a.film").done.to_string(), "0");
         run(&["resume", "a.film", "--quiet", "--spp", "3", "-o", "a.exr"]);
@@ -294,5 +294,5 @@ fn a_kill_loses_neither_passes_nor_files() {
     folder.alhazen(&arguments).expect(0);
     assert!(bytes(&folder, "a.exr") == bytes(&folder, "whole.exr"));
     let leftovers = folder.files().into_iter().filter(|name| name.starts_with(".a.film"));
-    assert_eq!(leftovers.count(), 0, "what a killed program has left is removed");
+    assert_eq!(leftovers.count(), 0, "leftovers of killed programs are removed");
 }

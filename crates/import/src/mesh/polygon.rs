@@ -12,7 +12,7 @@ use math::{DVec3, Point3};
 /// and modellers do not make such polygons.
 pub(super) const MOST_CORNERS: usize = 4096;
 
-/// Whether a face is convex (seen along its normal).
+/// Whether a face is convex: whether it turns the same way at every corner (seen along its normal).
 pub(super) fn is_convex(positions: &[Point3], corners: &[u32]) -> bool {
     let points = project(positions, corners);
     let n = points.len();
