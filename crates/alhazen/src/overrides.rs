@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_told() {
+    fn invalid_overrides_are_errors() {
         let message = |settings| with_settings(settings).unwrap_err().to_string();
         assert_eq!(
             message(&[("maxdepth", "deep")]),

@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn another_integrator_keeps_what_both_have() {
+    fn another_integrator_keeps_common_settings() {
         let mut photons =
             PhotonMappingDesc { max_depth: 9, radius: Some(3.0), ..PhotonMappingDesc::default() };
         let called = |photons: &PhotonMappingDesc, name| {

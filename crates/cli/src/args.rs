@@ -128,7 +128,7 @@ pub struct Render {
 }
 
 impl Render {
-    /// The changes to the scene that the options ask for.
+    /// The changes to the scene by these options.
     pub fn overrides(&self) -> Overrides {
         Overrides {
             integrator: self.integrator.clone(),
@@ -191,7 +191,7 @@ pub struct Changes {
 }
 
 impl Changes {
-    /// The changes to the scene that the options ask for.
+    /// The changes to the scene by these options.
     pub fn overrides(&self) -> Overrides {
         Overrides {
             accelerator: self.accelerator.clone(),

@@ -119,7 +119,7 @@ struct Report {
 }
 
 impl Report {
-    /// The files that the command line asks for, checked to be writable.
+    /// The files given by the command line, checked to be writable.
     fn new(arguments: &Compare) -> Result<Self, Failure> {
         let page = arguments.output.clone().unwrap_or_else(|| named_after(&arguments.scene, "html"));
         let is_page = page.extension().is_some_and(|extension| {

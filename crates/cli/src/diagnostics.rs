@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_caret_stands_under_what_is_wrong() {
+    fn carets_mark_the_span_of_an_error() {
         let text = b"WorldBegin\nShape \"spere\"\n";
         let shown = shown(text, |file| {
             Diagnostic::error("unknown-type", "no shape is called `spere`", Span::new(file, 17, 24))

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_counted_and_left_out() {
+    fn non_finite_values_are_counted_and_left_out() {
         let reference = Image::from_fn(2, 1, ["Y"], |x, _| [x as f32]);
         let test = Image::from_fn(2, 1, ["Y"], |x, _| [if x == 0 { f32::NAN } else { 1.5 }]);
         let difference = compare(&reference, &test).unwrap();

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_is_refused() {
+    fn invalid_numbers_are_refused() {
         for text in
             ["", "-", ".", "+.", "1x", "inf", "nan", "e5", "1e", "0x10", "--1", "1.2.3", "1e5.", "infinity"]
         {

@@ -13,7 +13,7 @@ fn the_version_contains_the_commit() {
     let out = folder.alhazen(&["--version"]).expect(0).out;
     let start = format!("alhazen {}", env!("CARGO_PKG_VERSION"));
     let rest = out.trim_end().strip_prefix(&start).unwrap_or_else(|| panic!("{out}"));
-    // Built from an unpacked archive, there is no commit to tell.
+    // Built from an unpacked archive, the commit is unknown.
     if std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../.git")).exists() {
         let [hash, date] = rest.trim_matches([' ', '(', ')']).split(' ').collect::<Vec<_>>()[..] else {
             panic!("{out}")

@@ -144,7 +144,7 @@ fn an_algorithm_keeps_the_settings_of_the_scene() {
 }
 
 #[test]
-fn the_summary_says_what_was_done() {
+fn the_summary_describes_the_render() {
     let folder = Folder::with_scene("summary");
     let said = folder.alhazen(&["render", "scene.pbrt", "--crop", "0,0.5,0,1"]).expect(0).out;
     for part in [

@@ -106,7 +106,7 @@ fn resumed_and_sharded_renders_have_the_bits_of_unbroken_ones() {
 }
 
 #[test]
-fn a_render_that_is_done_stays_as_it_is() {
+fn resuming_a_finished_render_changes_nothing() {
     let folder = room("resume-done");
     let saved = ["-o", "whole.exr", "--checkpoint", "whole.film"];
     folder.alhazen(&render(INTEGRATORS[0], &saved)).expect(0);
@@ -173,7 +173,7 @@ fn noise_and_time_end_a_render() {
 }
 
 #[test]
-fn films_that_do_not_fit_are_named() {
+fn films_that_cannot_be_merged_are_named() {
     let folder = room("resume-errors");
     let run = |arguments: &[&str], code| folder.alhazen(arguments).expect(code).err;
     let part = |shard: &str, film: &str, more: &[&str]| {
@@ -236,7 +236,7 @@ fn flipped(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn options_that_make_no_sense_are_refused() {
+fn invalid_combinations_of_options_are_refused() {
     let folder = room("resume-usage");
     let shard = ["--checkpoint", "a.film", "--shard"];
     for arguments in [

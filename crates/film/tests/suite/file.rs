@@ -193,7 +193,7 @@ fn files_of_any_shorter_length_are_refused() {
 }
 
 #[test]
-fn every_flipped_bit_is_noticed() {
+fn every_flipped_bit_is_detected() {
     let bytes = bytes(&PassSet::from(0..1));
     let mut random = Random::new(8);
     for byte in 0..bytes.len() {
@@ -208,7 +208,7 @@ fn every_flipped_bit_is_noticed() {
 }
 
 #[test]
-fn errors_name_the_section_and_what_is_wrong_with_it() {
+fn errors_name_the_section_and_the_problem() {
     let bytes = bytes(&PassSet::from(0..1));
     let message = |bytes: &[u8]| read(bytes).unwrap_err().to_string();
     assert_eq!(message(b"PNG"), "not a film file");

@@ -253,7 +253,7 @@ fn a_pixel_has_the_documented_size() {
 }
 
 #[test]
-fn layers_are_known_by_their_names() {
+fn layers_are_found_by_their_names() {
     for layer in Layer::ALL {
         assert_eq!(Layer::from_name(layer.name()), Some(layer));
         assert_eq!(LayerSet::NONE.with(layer).iter().collect::<Vec<_>>(), [layer]);

@@ -1,5 +1,5 @@
-//! OpenEXR, by the block interface of the `exr` crate: every compression that it knows, scan lines
-//! and tiles, of mip levels the largest, of several parts the first with colour. Deep and
+//! OpenEXR, by the block interface of the `exr` crate: every compression that it supports, scan
+//! lines and tiles, of mip levels the largest, of several parts the first with colour. Deep and
 //! chroma-subsampled pictures are refused.
 //!
 //! Blocks are unpacked on the calling thread pool rather than by the crate's own threads, as a

@@ -62,7 +62,7 @@ fn hdr_agrees_with_the_authors() {
 }
 
 #[test]
-fn extremes() {
+fn flip_of_extreme_pictures() {
     let picture = |color: [f32; 3]| Image::from_fn(20, 10, ["R", "G", "B"], |_, _| color);
     let (green, blue, black) = (picture([0.0, 1.0, 0.0]), picture([0.0, 0.0, 1.0]), picture([0.0; 3]));
     assert_eq!(ldr_flip(&green, &green, PIXELS_PER_DEGREE).unwrap().mean, 0.0);

@@ -201,7 +201,7 @@ fn a_failed_write_leaves_the_old_file() {
 
 #[cfg(unix)]
 #[test]
-fn symbolic_links_are_followed_and_stay() {
+fn symbolic_links_are_followed_and_kept() {
     let folder = Folder::new("link");
     fs::create_dir(folder.0.join("target")).unwrap();
     let [link, second, file] = ["link.exr", "second.exr", "target/file.exr"].map(|name| folder.0.join(name));

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_told_apart_by_material() {
+    fn faces_are_grouped_by_material() {
         let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red paint\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl red paint\nf 3 2 1";
         let obj = read_obj_parts(text).unwrap();
         let sizes: Vec<_> =

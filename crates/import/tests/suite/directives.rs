@@ -234,7 +234,7 @@ fn objects_and_instances_have_their_own_transforms() {
 }
 
 #[test]
-fn objects_may_hold_instances_of_objects_that_come_later() {
+fn objects_may_contain_instances_of_later_objects() {
     let desc = world(
         "ObjectBegin \"a\" Translate 1 0 0 ObjectInstance \"b\" ObjectInstance \"b\" ObjectEnd
         ObjectBegin \"b\" Shape \"sphere\" ObjectEnd ObjectInstance \"a\"",
@@ -298,7 +298,7 @@ fn spectra_are_given_in_five_ways() {
 }
 
 #[test]
-fn meshes_come_from_files_and_from_the_text() {
+fn meshes_are_read_from_files_and_from_the_text() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty float s\n\
         property float t\nelement face 2\nproperty list uchar int vertex_indices\nproperty int face_indices\nend_header\n\
         0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n2 2 0 1 1\n4 0 1 2 3 7\n3 0 1 4 8\n";
@@ -343,7 +343,7 @@ fn an_index_of_refraction_is_a_number_or_any_spectrum() {
 }
 
 #[test]
-fn the_corners_of_a_crop_window_come_in_any_order() {
+fn the_corners_of_a_crop_window_may_be_in_any_order() {
     let desc = read(r#"Film "rgb" "float cropwindow" [0.75 0.25 0 1] WorldBegin"#);
     assert_eq!(desc.film.crop_window, Some([0.25, 0.75, 0.0, 1.0]));
 }

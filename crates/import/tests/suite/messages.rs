@@ -379,8 +379,7 @@ fn every_error_has_its_message() {
         );
     }
     for (text, expected) in IN_WORLD {
-        // `WorldBegin` stands behind spaces on a line of its own, so that columns count from the
-        // text.
+        // `WorldBegin` is on a line of its own, so that columns count from the text.
         let found = messages(&format!("WorldBegin\n{text}"));
         let expected = expected.replacen("1:", "2:", 1);
         assert_eq!(found.len(), 1, "{text}\n{found:#?}");
@@ -390,7 +389,7 @@ fn every_error_has_its_message() {
 }
 
 #[test]
-fn all_errors_of_a_scene_come_in_one_run() {
+fn all_errors_of_a_scene_are_found_in_one_run() {
     let all: String =
         IN_WORLD[3..16].iter().map(|(text, _)| format!("AttributeBegin {text} AttributeEnd\n")).collect();
     let found = messages(&format!("Smapler \"sobol\"\nWorldBegin\n{all}\nShape \"spere\"\n"));
@@ -418,7 +417,7 @@ fn the_number_of_messages_is_bounded() {
 }
 
 #[test]
-fn any_number_of_warnings_is_no_error() {
+fn many_warnings_are_not_an_error() {
     let found = messages(&format!("WorldBegin\n{}", "TransformBegin TransformEnd WorldEnd\n".repeat(10_000)));
     assert_eq!(found.len(), 3, "{found:#?}");
     assert!(found.iter().all(|found| found.starts_with("2:") && found.contains("warning[deprecated]")));

@@ -13,7 +13,7 @@ use super::scenes::{SCENES, Scene};
 use crate::common::{means, render_text};
 
 /// The tolerated difference of means.
-const THREE_IN_A_THOUSAND: f64 = 3e-3;
+const THREE_PER_MILLE: f64 = 3e-3;
 
 /// In the pool, path tracing takes many minutes to reach a standard error of one per mille. In the
 /// prism a path keeps the first of its wavelengths only, which would have to differ between paths.
@@ -48,7 +48,7 @@ struct Member {
     /// Pixels along a side of the picture, and samples of each.
     size: (i32, u32),
     /// The relative standard error to which a mean is estimated.
-    known: f64,
+    tolerance: f64,
     can: fn(&Scene) -> bool,
 }
 
@@ -63,7 +63,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "path",
         settings: &[EVEN],
         size: (32, 64),
-        known: 5e-4,
+        tolerance: 5e-4,
         can: |_| true,
     },
     Member {
@@ -71,7 +71,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "bdpt",
         settings: &[EVEN],
         size: (32, 32),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |_| true,
     },
     Member {
@@ -79,7 +79,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "light-tracing",
         settings: &[EVEN],
         size: (32, 64),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| !scene.is_hidden_from_light,
     },
     Member {
@@ -87,7 +87,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "path")],
         size: (128, 16),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| FOR_CHAINS.contains(&scene.name) || scene.name == CAUSTIC,
     },
     Member {
@@ -95,7 +95,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "bdpt")],
         size: (128, 16),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| FOR_CHAINS.contains(&scene.name),
     },
     Member {
@@ -103,7 +103,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "vcm",
         settings: &[EVEN, ("radius", "0.01")],
         size: (32, 32),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| scene.name != DOOR,
     },
     Member {
@@ -111,18 +111,18 @@ const MEMBERS: [Member; 7] = [
         integrator: "sppm",
         settings: &[EVEN, ("radius", "0.02"), ("photons", "4096")],
         size: (64, 16),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| !["a plane without end", DOOR].contains(&scene.name),
     },
 ];
 
 impl Member {
     /// The relative standard error to which the scene's mean is estimated.
-    fn known(&self, scene: &Scene) -> f64 {
+    fn tolerance(&self, scene: &Scene) -> f64 {
         match (scene.name, self.integrator) {
             (DOOR, "path") => 1e-3,
             (DOOR, _) | (CAUSTIC, "mlt") => 1.2e-3,
-            _ => self.known,
+            _ => self.tolerance,
         }
     }
 
@@ -147,7 +147,7 @@ impl Member {
             };
             let means = means(&render_text(&text, &overrides));
             found.iter_mut().zip(means).for_each(|(moments, mean)| moments.push(mean));
-            if run + 1 >= FEWEST && found.iter().all(|m| error(m) < self.known(scene)) {
+            if run + 1 >= FEWEST && found.iter().all(|m| error(m) < self.tolerance(scene)) {
                 break;
             }
         }
@@ -190,7 +190,7 @@ fn means_agree_within_three_per_mille() {
                 );
                 println!("{line}");
                 let differs = member.is_unbiased() && welch_test(found, expected, tests).is_err();
-                if differs || difference.abs() > THREE_IN_A_THOUSAND || error(found) > member.known(scene) {
+                if differs || difference.abs() > THREE_PER_MILLE || error(found) > member.tolerance(scene) {
                     failures.push(format!("{}, {},{line}", scene.name, member.name));
                 }
             }

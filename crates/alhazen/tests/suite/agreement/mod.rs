@@ -1,8 +1,8 @@
 //! Integrators with the same expected value against each other: pictures of small scenes, as a
 //! whole and by squares.
 
+mod contract;
 mod means;
-mod promises;
 mod scenes;
 
 use std::sync::LazyLock;

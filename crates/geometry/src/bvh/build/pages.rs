@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_lists_hold_what_they_are_filled_with() {
+    fn long_lists_are_filled() {
         for len in [0, 1, 1000, 3 << 20] {
             let list = filled([1u8, 2, 3], len);
             assert_eq!(list.len(), len);
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_released_is_zero_and_the_rest_stays() {
+    fn released_values_are_zero_and_others_are_kept() {
         let mut list = zeroed::<[u32; 2]>(3 << 20);
         assert!(list.iter().all(|&at| at == [0; 2]));
         list.fill([1, 2]);

@@ -142,7 +142,7 @@ impl Mul for Interval {
         if self.is_empty() || other.is_empty() {
             return Self::EMPTY;
         }
-        // An infinite end stands for large numbers, of which zero times any is zero.
+        // An infinite end means arbitrarily large finite numbers, so that zero times it is zero.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let (a, b) = (product(self.low, other.low), product(self.low, other.high));
         let (c, d) = (product(self.high, other.low), product(self.high, other.high));

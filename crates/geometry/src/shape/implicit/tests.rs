@@ -166,7 +166,7 @@ fn operators_have_their_precedence() {
 }
 
 #[test]
-fn errors_say_where_and_what() {
+fn errors_have_a_place_and_a_message() {
     for (text, place, message, help) in [
         ("", "", "the formula is empty", None),
         ("x +", "", "expected a number or a name, found the end of the formula", None),

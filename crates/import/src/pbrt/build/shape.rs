@@ -171,7 +171,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
         ShapeType::Curve => ShapeKind::Curve(curve(reader)?),
         ShapeType::LoopSubdivision => {
             let levels = reader.integer("levels", 3, 0..=12);
-            // The format knows one scheme only.
+            // The format has one scheme only.
             reader.choice("scheme", (), &[("loop", ())]);
             ShapeKind::LoopSubdivision { mesh: triangle_mesh(reader, false)?, levels }
         }
