@@ -1,23 +1,22 @@
 //! Paul Heckbert's business card ray tracer, with the geometry of alhazen
 //! ([Heckbert 1994]).
 //!
-//! Five spheres on the sky's own faint light. At each hit a ray splits in a reflected and a
-//! refracted one, and asks for every sphere that shines whether it sees its centre.
+//! Five spheres under the faint light of a uniform sky. At each hit a ray splits into a reflected
+//! and a refracted one, and a shadow ray is traced to the centre of every emitting sphere.
 //! `cargo run --release --example minray -- 256 > minray.ppm` draws it larger than the card's 32 ×
 //! 32 pixels.
 
 use alhazen::geometry::{Shape, Sphere, SurfacePoint};
 use alhazen::math::{Point3, Ray, Transform, Vec3};
 
-/// Rays that may follow one another.
+/// The maximum depth of the ray tree.
 const LEVELS: u32 = 3;
-/// Light from everywhere: what a ray sees that hits nothing.
+/// The radiance of rays that hit nothing.
 const AMBIENT: Vec3 = Vec3::splat(0.02);
 /// Angle of view in degrees.
 const FIELD_OF_VIEW: f32 = 25.0;
 
-/// A sphere and how it takes part in the light: in diffuse and mirror reflection, in transmission,
-/// and shining itself.
+/// A sphere, with its diffuse and specular reflection, transmission and emission.
 struct Ball {
     shape: Shape,
     center: Point3,
@@ -46,7 +45,7 @@ fn balls() -> [Ball; 5] {
     ]
 }
 
-/// The ball that a ray meets first, and where.
+/// The first sphere that a ray hits, and the hit.
 fn nearest<'a>(balls: &'a [Ball], ray: &Ray) -> Option<(&'a Ball, SurfacePoint)> {
     let hits = balls.iter().filter_map(|ball| Some((ball, ball.shape.intersect(ray, f32::INFINITY)?)));
     let (ball, hit) = hits.min_by(|(_, a), (_, b)| a.t.total_cmp(&b.t))?;

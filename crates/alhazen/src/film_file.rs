@@ -1,4 +1,4 @@
-//! Film files of renders: what is needed to go on with a render, and to merge shards of it.
+//! Film files of renders, by which renders are resumed and their shards merged.
 //!
 //! The film format leaves two texts to the caller. The *settings* are what all parts of a render
 //! have in common: the version of alhazen, the [`Overrides`], and the header of the picture. The
@@ -27,9 +27,9 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// One of the equal parts that the passes of a render are split into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which part, from 1 to `count`.
+    /// The index of the part, from 1 to `count`.
     pub index: u32,
-    /// How many parts there are.
+    /// The number of parts.
     pub count: u32,
 }
 
@@ -37,33 +37,32 @@ impl Shard {
     /// The whole render.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Its passes, of so many.
+    /// Its passes, of `all` in the whole render.
     pub fn passes(self, all: u32) -> std::ops::Range<u32> {
         let end = |index: u32| (u64::from(all) * u64::from(index) / u64::from(self.count)) as u32;
         end(self.index - 1)..end(self.index)
     }
 }
 
-/// What a render was asked for: all that is needed to go on with it.
+/// The order of a render: all that is needed to resume it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderOrder {
     /// The scene file.
     pub scene: PathBuf,
     /// The hash of its content.
     pub scene_hash: [u8; 32],
-    /// What is changed of it.
+    /// Changes to the scene.
     pub overrides: Overrides,
     /// Samples per pixel of the whole render; `u32::MAX` where only time or noise end it.
     pub passes: u32,
     /// The part of the passes that is rendered.
     pub shard: Shard,
-    /// What else ends it.
+    /// Further limits that end it.
     pub limits: Limits,
 }
 
 impl RenderOrder {
-    /// Writes a film file of a render as it stands between two passes, with what the headers of its
-    /// pictures say.
+    /// Writes a film file of a render between two passes, with the header of its pictures.
     pub fn write<W: Write>(&self, session: &Session, header: &Header, output: W) -> Result<W, FilmFileError> {
         let state = session.state();
         let film_header = FilmHeader {
@@ -73,7 +72,7 @@ impl RenderOrder {
             planned: self.passes,
             done: state.done.clone(),
         };
-        // What drafts have left on the film is no part of the picture.
+        // Drafts left on the film are no part of the picture.
         let blank = state.done.is_empty().then(|| state.film.blank()).transpose()?;
         let mut writer = FilmWriter::new(output, &film_header, blank.as_ref().unwrap_or(&state.film))?;
         if let Some(second) = &state.second {
@@ -183,7 +182,7 @@ impl SavedRender {
         Ok(())
     }
 
-    /// What was asked for; of several parts, by the first one.
+    /// The order of the render; of several parts, that of the first.
     pub fn order(&self) -> RenderOrder {
         let first = &self.parts[0];
         RenderOrder {
@@ -196,17 +195,17 @@ impl SavedRender {
         }
     }
 
-    /// Which part of the passes each of the merged files was to hold, in their order.
+    /// The shards of the merged files, in their order.
     pub fn shards(&self) -> Vec<Shard> {
         self.parts.iter().map(|part| part.shard).collect()
     }
 
-    /// What the headers of its pictures say.
+    /// The header of its pictures.
     pub fn header(&self) -> &Header {
         &self.header
     }
 
-    /// What the picture still lacks: names of shards and passes.
+    /// The shards and passes that the picture lacks, by name.
     pub fn missing(&self) -> Vec<String> {
         let planned = self.file.header.planned;
         if planned == u32::MAX {
@@ -228,8 +227,8 @@ impl SavedRender {
         lacking.filter(|(_, passes)| !passes.is_empty()).map(name).collect()
     }
 
-    /// The film, and what else a session goes on from; and the films that the algorithm has filled
-    /// beside it, with their names.
+    /// The film and the rest of the state that a session resumes from; and the films that the
+    /// algorithm has filled beside it, with their names.
     pub fn into_state(self) -> (SessionState, Vec<(String, Film)>) {
         let Self { mut file, parts, .. } = self;
         let second = file.films.iter().position(|(name, _)| name == SECOND);

@@ -9,7 +9,7 @@ use math::Mat4;
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
-/// How many bytes the names of a table may take; further names are left out.
+/// The most bytes of the names in a table; further names are left out.
 const MAX_NAME_BYTES: usize = 4 << 20;
 
 /// The header of a picture: the camera and settings of the scene, and the names of identifiers.
@@ -130,7 +130,7 @@ impl Header {
     }
 }
 
-/// As many of these names as a header has room for.
+/// As many of these names as fit in a header.
 fn limited(names: &mut dyn Iterator<Item = String>) -> Vec<String> {
     let mut bytes = 0;
     let fits = |name: &String| {

@@ -1,4 +1,4 @@
-//! A scene on its way to a picture: compiled, rendered, developed.
+//! A render of a scene: compiled, rendered, developed.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -20,21 +20,21 @@ pub struct Job {
     header: Header,
     sketch: Option<Sketch>,
     planned: u32,
-    /// Whether samples depend on how many are planned.
+    /// Whether samples depend on the number that is planned.
     is_arranged: bool,
 }
 
-/// What [`Job::compile`] gives.
+/// The result of [`Job::compile`].
 pub struct CompiledJob {
-    /// The job, not begun.
+    /// The job, before its first pass.
     pub job: Job,
-    /// What will be drawn otherwise than described.
+    /// Warnings about what is rendered differently than described.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl Job {
-    /// Makes everything that a scene needs to be rendered, or tells everything that is wrong with
-    /// it.
+    /// Compiles everything that a scene needs to be rendered; the error is the list of all its
+    /// diagnostics.
     pub fn compile(desc: SceneDesc) -> Result<CompiledJob, Vec<Diagnostic>> {
         let view = View::compile(&desc, scene::world_from_render(&desc));
         let (film, integrator) = (film::compile(&desc), integrators::build(&desc));
@@ -91,8 +91,7 @@ impl Job {
         self.session.run(passes, &Limits::default(), control, &mut |_| ())
     }
 
-    /// Goes on with a render of the same job that was saved. The error says why it cannot be of the
-    /// same job.
+    /// Resumes a saved render of the same job. The error says why it cannot be of the same job.
     pub fn resume(&mut self, state: SessionState, films: Vec<(String, Film)>) -> Result<(), String> {
         let [ours, theirs] = [&self.session.state().film, &state.film]
             .map(|film| (film.full_resolution(), film.pixel_bounds()));
@@ -103,27 +102,28 @@ impl Job {
         Ok(())
     }
 
-    /// The picture as it stands, with the scene's camera and settings in its header; refused where
-    /// there is no memory for it.
+    /// The current picture, with the scene's camera and settings in its header; refused where there
+    /// is no memory for it.
     pub fn picture(&self) -> Result<Image, ImageError> {
         self.header.picture(self.session.state())
     }
 
-    /// What the headers of its pictures say.
+    /// The header of its pictures.
     pub fn header(&self) -> &Header {
         &self.header
     }
 
-    /// The samples per pixel that are planned. There may be more: samplers go on beyond the plan.
+    /// The samples per pixel that are planned. There may be more: samplers continue beyond the
+    /// plan.
     pub fn planned(&self) -> u32 {
         self.planned
     }
 
-    /// Whether the first samples of a pixel are others if more are planned: so it is with samplers
-    /// that arrange a number of samples, with algorithms that use one of those for paths from the
-    /// lights, and with textures, whose filter is the narrower the more samples there are. A render
-    /// that goes beyond its plan is then another one, and as right, as one for which more samples
-    /// were planned from the beginning.
+    /// Whether the first samples of a pixel depend on the number that is planned: with samplers
+    /// that distribute a fixed number of samples, with algorithms that use such a sampler for paths
+    /// from the lights, and with textures, whose filter narrows as samples increase. A render
+    /// continued beyond its plan then differs from one that was planned for more samples, but is as
+    /// valid.
     pub fn is_arranged(&self) -> bool {
         self.is_arranged
     }
@@ -150,7 +150,7 @@ pub enum RenderError {
     Override(OverrideError),
     /// The render was cancelled.
     Cancelled,
-    /// There is no memory for what is named here.
+    /// Memory ran out; the text says what for.
     OutOfMemory(String),
 }
 

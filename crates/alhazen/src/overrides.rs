@@ -1,4 +1,4 @@
-//! What a caller changes of a scene before it is rendered: the options of the command line.
+//! Changes to a scene before it is rendered: the options of the command line.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use film::Layer;
 
 use crate::settings::{self, Unset, called, drawn, integrator_called};
 
-/// Changes to a scene. `None` leaves what the scene says.
+/// Changes to a scene. `None` keeps the value of the scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// The name of the integrator, as in [`integrator_names`](crate::integrator_names). Settings
@@ -112,8 +112,7 @@ impl Overrides {
         Ok(())
     }
 
-    /// The error, among those that came of the scene after these changes, which is the fault of one
-    /// of them.
+    /// The first of these errors of the changed scene that one of the changes has caused.
     pub fn blamed(&self, diagnostics: &[Diagnostic]) -> Option<OverrideError> {
         let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
         let mut of_caller = errors.filter(|error| error.span().file == FileId::CALLER);
@@ -128,7 +127,7 @@ fn cannot_set(name: &str, value: &str, reason: &str) -> OverrideError {
     OverrideError(format!("cannot set {name} to `{value}`: {reason}"))
 }
 
-/// There is no such name; with the nearest one, or all.
+/// The error of an unknown name, with the nearest known one, or all.
 fn unknown(what: &str, name: &str, known: &[&str]) -> OverrideError {
     let instead = match import::closest(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
@@ -199,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_told() {
+    fn invalid_overrides_are_errors() {
         let message = |settings| with_settings(settings).unwrap_err().to_string();
         assert_eq!(
             message(&[("maxdepth", "deep")]),

@@ -1,4 +1,4 @@
-//! Settings of a scene by their names, in whatever part of the scene they are.
+//! Settings of a scene by name, in any part of the scene.
 
 use description::schema::{Member, Setting, Settings, Value};
 use description::{
@@ -46,7 +46,7 @@ fn split<T: Settings>(stated: &mut Stated<T>) -> (&mut dyn Settings, &mut Origin
 }
 
 impl Part {
-    /// The settings that all members of the set have, and then what else each member has that can
+    /// The settings that all members of the set have, then the further ones of each member that can
     /// be chosen.
     pub fn groups(&self) -> Vec<Group> {
         let mut groups = (self.members)();
@@ -96,7 +96,7 @@ pub(crate) fn integrator_called(name: &str, current: &IntegratorDesc) -> Option<
             integrator.visit(&mut |field, slot| {
                 let old = setting.field;
                 if field.is_called(old.name) || old.is_called(field.name) {
-                    // A value that means nothing here is not shared.
+                    // A value that is invalid here is not shared.
                     let _ = field.assign(slot, &setting.value);
                 }
             });
@@ -105,8 +105,8 @@ pub(crate) fn integrator_called(name: &str, current: &IntegratorDesc) -> Option<
     Some(integrator)
 }
 
-/// The part of which the setting is that users call `key`, and its name there. Of parts that have
-/// settings of the same name the first one is meant, whichever of its members the scene has.
+/// The part that has the setting `key`, and the name of the setting there. Of parts with settings
+/// of the same name it is the first, whichever of its members the scene has.
 fn find(key: &str) -> Option<(&'static Part, &str)> {
     if let Some((part, name)) = key.split_once('.') {
         let part = PARTS.iter().find(|known| known.name == part)?;
@@ -115,7 +115,7 @@ fn find(key: &str) -> Option<(&'static Part, &str)> {
     PARTS.iter().find(|part| part.has(key)).map(|part| (part, key))
 }
 
-/// What users can set by name: settings, and the sets from which sampler and filter are chosen.
+/// All valid keys: settings, and the sets from which sampler and filter are chosen.
 pub(crate) fn keys() -> Vec<&'static str> {
     let settings = PARTS.iter().flat_map(|part| (part.members)()).flat_map(|group| group.settings);
     let mut keys = Vec::new();
@@ -149,8 +149,7 @@ pub(crate) enum Unset {
     Value(String),
 }
 
-/// Sets what users call `key`. From now on what is wrong with it is the fault of what stands at
-/// `span`.
+/// Sets `key`. Later errors about it are reported at `span`.
 pub(crate) fn set(desc: &mut SceneDesc, key: &str, text: &str, span: Span) -> Result<(), Unset> {
     let no_member = |known: Vec<&str>| Unset::Value(format!("it is one of {}", known.join(", ")));
     match key {
@@ -176,8 +175,7 @@ pub(crate) fn set(desc: &mut SceneDesc, key: &str, text: &str, span: Span) -> Re
     Ok(())
 }
 
-/// Names and values of the settings of a part, as reports show them; first, as `name`, that of the
-/// member of its set.
+/// Names and values of the settings of a part for reports; first, as `name`, the member of its set.
 pub(crate) fn listed<T: Settings + Clone>(desc: &T) -> Vec<(&'static str, Value)> {
     let member = desc.member().map(|member| ("name", Value::Text(member.names[0].to_owned())));
     let settings = desc.settings().into_iter().map(|setting| (setting.field.name, setting.value));
@@ -212,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn another_integrator_keeps_what_both_have() {
+    fn another_integrator_keeps_common_settings() {
         let mut photons =
             PhotonMappingDesc { max_depth: 9, radius: Some(3.0), ..PhotonMappingDesc::default() };
         let called = |photons: &PhotonMappingDesc, name| {

@@ -22,7 +22,7 @@ use crate::{Header, Overrides};
 /// The maximum number of pixels of a sketch.
 const MOST_PIXELS: usize = 1 << 16;
 
-/// How a sketch of a picture is made.
+/// The plan of a sketch.
 pub(crate) struct Sketch {
     /// Pixels of the picture along a side of a pixel of the sketch.
     n: u32,
@@ -48,7 +48,8 @@ impl Sketch {
         Some(Self { n: n as u32, desc: small })
     }
 
-    /// Renders it, of what `session` renders; `None` if it was cancelled, or memory is short.
+    /// Renders the sketch of the picture of `session`; `None` if it was cancelled, or memory is
+    /// short.
     pub fn draw(&self, session: &Session, header: &Header, control: &Control) -> Option<Image> {
         let integrator = integrators::build(&self.desc).ok()?.integrator;
         let film = film::compile(&self.desc).ok()?.film;
@@ -75,7 +76,7 @@ fn div_ceil(x: i32, n: i32) -> i32 {
 fn lighten(integrator: &mut IntegratorDesc, n: i32) {
     let fewer = |count: &mut u32| *count = count.div_ceil((n as u32).saturating_pow(2));
     match integrator {
-        // Glass doubles its rays at each event.
+        // At glass, rays double at each event.
         IntegratorDesc::Whitted(desc) => desc.max_depth = desc.max_depth.min(5),
         IntegratorDesc::PhotonMapping(desc) => {
             fewer(&mut desc.photons);

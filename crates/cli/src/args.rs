@@ -31,18 +31,18 @@ pub const EXIT_CODES: &str = concat!(
 pub enum Command {
     /// Render a scene file to pictures.
     ///
-    /// Pictures are written when they are done, and before that now and then as they stand: first,
-    /// of more than 65536 pixels, as a sketch in larger pixels, then after about a second, then
-    /// whenever twice as much time has gone by, but at least every minute. Ctrl-C ends the render
-    /// after the samples in flight, or with --checkpoint after the pass in progress where passes
-    /// are not saved yet, and writes the picture as it stands; a second Ctrl-C ends the program at
-    /// once, with the picture that was written last.
+    /// Pictures are written when they are done, and intermediate pictures before that: first a
+    /// sketch in larger pixels, if there are more than 65536 pixels, then one after about a second,
+    /// then one whenever the time has doubled, but at least every minute. Ctrl-C ends the render
+    /// after the current samples, or with --checkpoint after the current pass if passes are not
+    /// saved yet, and writes the picture so far; a second Ctrl-C ends the program at once, with the
+    /// picture that was written last.
     Render(Box<Render>),
-    /// Go on with a render that was saved by --checkpoint.
+    /// Resume a render that was saved by --checkpoint.
     ///
-    /// The film file knows the scene and the options; the files of the scene must not have changed.
-    /// The picture has the same bits as that of a render that was not interrupted. The film file is
-    /// saved again as by --checkpoint.
+    /// The film file stores the path of the scene and the options; the files of the scene must not
+    /// have changed. The picture has the same bits as that of a render that was not interrupted.
+    /// The film file is saved again as by --checkpoint.
     Resume(Resume),
     /// Merge the film files of all shards of a render, and write the picture: it has the same bits
     /// as that of a render that was not split.
@@ -100,12 +100,12 @@ pub struct Render {
     /// Samples per pixel. [default: the scene's, or no limit where there is one of time or noise]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
-    /// What else ends the render.
+    /// Further limits of the render.
     #[command(flatten)]
     pub limits: RenderLimits,
-    /// Save the render here while it runs, so that `alhazen resume` can go on with it: the film,
-    /// which samples it holds, the scene's path and the options. The file is replaced whole, so
-    /// that it is valid at any moment.
+    /// Save the render here while it runs, so that `alhazen resume` can continue it: the film, the
+    /// passes that it holds, the scene's path and the options. The file is replaced atomically, so
+    /// that it is always valid.
     #[arg(long, value_name = "FILE.film", value_parser = film_file)]
     pub checkpoint: Option<PathBuf>,
     /// How often --checkpoint saves, unless a pass takes longer.
@@ -128,7 +128,7 @@ pub struct Render {
 }
 
 impl Render {
-    /// The changes to the scene that the options ask for.
+    /// The changes to the scene by these options.
     pub fn overrides(&self) -> Overrides {
         Overrides {
             integrator: self.integrator.clone(),
@@ -138,12 +138,12 @@ impl Render {
     }
 }
 
-/// What ends a render beside its number of samples per pixel: whichever comes first.
+/// Limits of a render beside its number of samples per pixel; the first one reached ends it.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct RenderLimits {
-    /// Render for so long: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do
-    /// not count; of a render that is resumed, the time before does. No pass (one sample of each
-    /// pixel) is begun that would probably end later.
+    /// Render for this time: 30s, 1.5min, 2h; a number alone is seconds. Import and compilation do
+    /// not count; the earlier time of a resumed render does. No pass (one sample of each pixel) is
+    /// begun that would probably end later.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Render until the noise of the picture, its estimated relative standard error, is not above
@@ -154,7 +154,7 @@ pub struct RenderLimits {
     pub noise: Option<f64>,
 }
 
-/// Options that change a scene, and how it is rendered, for one algorithm as for many.
+/// Options that change a scene and its rendering, for `render` and `compare`.
 #[derive(Args, Debug)]
 pub struct Changes {
     /// The acceleration structure: bvh, or none, which tests every ray against every primitive. The
@@ -191,7 +191,7 @@ pub struct Changes {
 }
 
 impl Changes {
-    /// The changes to the scene that the options ask for.
+    /// The changes to the scene by these options.
     pub fn overrides(&self) -> Overrides {
         Overrides {
             accelerator: self.accelerator.clone(),
@@ -219,7 +219,7 @@ pub struct Resume {
     /// Samples per pixel of the whole render, those before included. [default: as begun]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i32::MAX as i64))]
     pub spp: Option<u32>,
-    /// What else ends the render. [default: as begun, unless there is --spp]
+    /// Further limits of the render. [default: as begun, unless there is --spp]
     #[command(flatten)]
     pub limits: RenderLimits,
     /// How often the film file is saved, unless a pass takes longer.
@@ -268,8 +268,8 @@ pub struct Compare {
     #[arg(long, value_name = "NAME,NAME,…", required = true, value_delimiter = ',')]
     pub integrators: Vec<Contender>,
     /// How long each picture is rendered: 30s, 1.5min, 2h; a number alone is seconds. Each
-    /// algorithm renders two pictures, from different seeds, so that noise and bias can be told
-    /// apart.
+    /// algorithm renders two pictures, from different seeds, so that noise and bias can be
+    /// separated.
     #[arg(long, value_name = "TIME", value_parser = time)]
     pub time: Option<Duration>,
     /// Samples per pixel of each picture.
@@ -322,7 +322,7 @@ pub struct Check {
 /// Commands about pictures.
 #[derive(Debug, Subcommand)]
 pub enum Image {
-    /// Show what a picture file holds: size, layers, channels, storage and header.
+    /// Show the size, layers, channels, storage and header of a picture file.
     Info(Info),
     /// Measure the difference of a picture to a reference: MSE, relative MSE, FLIP.
     ///
@@ -355,7 +355,7 @@ pub struct Info {
 pub struct Diff {
     /// The reference.
     pub a: PathBuf,
-    /// The picture to judge; of the same size.
+    /// The picture to measure; of the same size.
     pub b: PathBuf,
     /// Write a picture of the error here, from black (none) to pale yellow.
     #[arg(short, long = "output", value_name = "FILE")]
@@ -387,11 +387,11 @@ pub struct Convert {
     pub input: PathBuf,
     /// The picture to write.
     pub output: PathBuf,
-    /// How values are stored: `natural` keeps what the picture has where the format can.
+    /// How values are stored: `natural` keeps the depth of the picture if the format can.
     #[arg(long, value_enum, default_value_t = Depth::Natural)]
     pub depth: Depth,
     /// Convert an image of the sphere of directions, such as an environment map, to another
-    /// projection. It is read as the one whose shape it has.
+    /// projection. Its own projection is determined by its aspect ratio.
     #[arg(long, value_enum)]
     pub projection: Option<Projection>,
     /// Write one JSON object to standard output instead of text.
@@ -434,8 +434,8 @@ pub struct Completions {
 /// Arguments of `alhazen man`.
 #[derive(Args, Debug)]
 pub struct Man {
-    /// Write alhazen.1 and a page for each command into this folder, which is made if it does not
-    /// exist. [default: alhazen.1 alone, to standard output]
+    /// Write alhazen.1 and a page for each command into this folder, which is created if it does
+    /// not exist. [default: alhazen.1 alone, to standard output]
     pub folder: Option<PathBuf>,
 }
 

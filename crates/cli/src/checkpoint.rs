@@ -12,7 +12,7 @@ use alhazen::{Header, RenderOrder, SavedRender};
 
 use crate::failure::{Failure, about_file};
 
-/// A pass that takes so many times as long as saving is saved at once.
+/// A pass that takes this many times as long as saving is saved at once.
 const LONG_PASS: u32 = 20;
 
 /// Saves a render.
@@ -23,14 +23,14 @@ pub struct Checkpoint {
     header: Header,
     saved_at: Instant,
     last_pass_at: Instant,
-    /// How long it took to save.
+    /// The time that the last save took.
     saving: Duration,
-    /// Passes at the last attempt to save, and what came of it.
+    /// Passes at the last attempt to save, and its result.
     last: (u32, Result<(), Failure>),
 }
 
 impl Checkpoint {
-    /// Of a render that holds so many passes, to a file that holds as many or is not there.
+    /// For a render that holds `passes` passes, as does the file if it exists.
     pub fn new(path: PathBuf, every: Duration, order: RenderOrder, header: Header, passes: u32) -> Self {
         remove_leftovers(&path);
         let now = Instant::now();
@@ -51,10 +51,9 @@ impl Checkpoint {
         &self.path
     }
 
-    /// Saves the render after a pass that took much longer than saving does, or if more time than
-    /// the interval would go by until the end of the next one. Tells whether all passes that are
-    /// done are saved. A failure is reported by [`finish`](Self::finish), if it lasts until
-    /// then.
+    /// Saves the render after a pass that took much longer than saving does, or if the interval
+    /// would be exceeded at the end of the next one. Returns whether all passes that are done are
+    /// saved. A failure is reported by [`finish`](Self::finish), if it persists until then.
     pub fn after_pass(&mut self, session: &Session) -> bool {
         let now = Instant::now();
         let pass = now - self.last_pass_at;
@@ -84,7 +83,7 @@ impl Checkpoint {
         });
         let saved = saved.map_err(|error| about_file(&self.path, error));
         self.last = (session.state().done.count(), saved);
-        // How long it takes to save is not to decide how often.
+        // The time that saving takes does not count for the interval.
         self.saved_at = Instant::now();
         self.last_pass_at = self.saved_at;
         self.saving = self.saved_at - begin;
@@ -97,7 +96,7 @@ pub fn read(path: &Path) -> Result<SavedRender, Failure> {
     SavedRender::read(file, &limits).map_err(|error| about_file(path, error))
 }
 
-/// What a film file says of itself.
+/// The header of a film file.
 pub fn header(path: &Path) -> Result<FilmHeader, Failure> {
     FilmFile::read_header(open(path)?.0).map_err(|error| about_file(path, error))
 }
@@ -112,7 +111,7 @@ pub fn open(path: &Path) -> Result<(BufReader<File>, ReadLimits), Failure> {
     open().map_err(|error: std::io::Error| about_file(path, error))
 }
 
-/// Removes what a program that was killed while it saved has left beside the film file.
+/// Removes the temporary files of programs that were killed while saving the film file.
 fn remove_leftovers(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let start = format!(".{}.", path.file_name().unwrap_or_default().to_string_lossy());
@@ -121,7 +120,7 @@ fn remove_leftovers(path: &Path) {
         let name = name.to_string_lossy();
         let id = name.strip_prefix(&start).and_then(|rest| rest.strip_suffix(".part"));
         if id.is_some_and(|id| id.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-')) {
-            // A leftover that stays does no harm.
+            // A leftover does no harm.
             let _ = std::fs::remove_file(entry.path());
         }
     }

@@ -112,14 +112,14 @@ pub fn compare(arguments: &Compare) -> Result<ExitCode, Failure> {
     Ok(if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::SUCCESS })
 }
 
-/// Where the report goes.
+/// The files of the report.
 struct Report {
     page: PathBuf,
     numbers: PathBuf,
 }
 
 impl Report {
-    /// The files that the command line asks for, checked to be writable.
+    /// The files given by the command line, checked to be writable.
     fn new(arguments: &Compare) -> Result<Self, Failure> {
         let page = arguments.output.clone().unwrap_or_else(|| named_after(&arguments.scene, "html"));
         let is_page = page.extension().is_some_and(|extension| {

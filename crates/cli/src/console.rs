@@ -1,5 +1,5 @@
-//! Text to standard output and standard error. What cannot be delivered, as to a full disk, is an
-//! error; a broken pipe is not, as its reader has closed it on purpose.
+//! Text to standard output and standard error. Text that cannot be written, as to a full disk, is
+//! an error; a broken pipe is not, as its reader has closed it on purpose.
 
 use std::fmt::{self, Display};
 use std::io::{self, ErrorKind, Write};

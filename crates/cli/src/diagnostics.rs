@@ -1,5 +1,5 @@
-//! Diagnostics of scenes, as text with the lines that they are about, and as JSON. Warnings of the
-//! same message are shown once with their number.
+//! Diagnostics of scenes, as text with the source lines, and as JSON. Warnings of the same message
+//! are shown once with their number.
 
 use std::io::IsTerminal;
 use std::ops::Range;
@@ -114,7 +114,7 @@ fn render(diagnostic: &Diagnostic, sources: &SourceMap, renderer: &Renderer) -> 
 struct Excerpt {
     file: String,
     line: usize,
-    /// The column, where the text does not begin with its line and cannot tell.
+    /// The column, where the text does not begin at the start of its line.
     column: Option<usize>,
     text: String,
     marked: Range<usize>,
@@ -130,8 +130,7 @@ impl Excerpt {
         let whole = start - line_start <= LONGEST_START;
         let first = if whole { line_start } else { start - MARGIN };
         let last = line_end.min(end + MARGIN).min(start + 4 * MARGIN);
-        // Each part is made text by itself, so that the marked range fits whatever bytes the file
-        // has.
+        // Each part is decoded separately, so that the marked range is right for any bytes.
         let part = |range: Range<usize>| String::from_utf8_lossy(&bytes[range]).into_owned();
         let end = end.min(last);
         let [before, marked, after] = [first..start, start..end, end..last].map(part);
@@ -171,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_caret_stands_under_what_is_wrong() {
+    fn carets_mark_the_span_of_an_error() {
         let text = b"WorldBegin\nShape \"spere\"\n";
         let shown = shown(text, |file| {
             Diagnostic::error("unknown-type", "no shape is called `spere`", Span::new(file, 17, 24))

@@ -1,4 +1,5 @@
-//! What `render` and `resume` have in common: a job is run, watched, saved and written.
+//! The common part of `render` and `resume`: runs a job, shows its progress, saves it and writes
+//! its picture.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -21,8 +22,7 @@ use crate::output;
 use crate::results::{write_preview, write_results};
 use crate::summary::{Seconds, Summary, peak_memory};
 
-/// The longest time between two previews, and how many times as long as writing the last one took
-/// it is at least.
+/// The longest time between two previews, and its least ratio to the time of writing the last one.
 const PREVIEW_INTERVAL: Duration = Duration::from_secs(60);
 const PREVIEW_SHARE: u32 = 20;
 
@@ -92,7 +92,7 @@ impl Prepared {
     }
 }
 
-/// What is still needed of a scene that was compiled.
+/// The data of an imported scene that are needed after compilation.
 pub struct Compiled {
     imported: Imported,
     integrator: &'static str,
@@ -109,9 +109,9 @@ pub struct Task<'a> {
     pub job: Job,
     /// The passes to do.
     pub passes: Range<u32>,
-    /// What else ends it.
+    /// Further limits that end it.
     pub limits: Limits,
-    /// Where the picture goes; nowhere if there are none.
+    /// The files of the picture; it is not written if there are none.
     pub outputs: Vec<PathBuf>,
     /// Where the render is saved.
     pub checkpoint: Option<Checkpoint>,
@@ -163,8 +163,7 @@ impl Task<'_> {
         let films = if self.outputs.is_empty() { Vec::new() } else { session.integrator().films() };
         let picture = self.job.header().development(session.state());
         let beside = write_results(&picture, &self.outputs, films, files);
-        // Where a cancelled pass has left a part of its light on the film, the last checkpoint
-        // stays as it is.
+        // If a cancelled pass has left samples on the film, the last checkpoint is kept.
         let saved = match &mut self.checkpoint {
             Some(checkpoint) if session.is_whole() => checkpoint.finish(session),
             _ => Ok(()),
@@ -210,9 +209,8 @@ impl Task<'_> {
     }
 }
 
-/// Writes the picture as it stands, so that it can be looked at: after the first pass that ends
-/// later than half a second after the begin, and then whenever it has been rendered for twice as
-/// long as the last time, or for a minute more.
+/// Writes previews: after the first pass that ends more than half a second after the start, and
+/// then whenever the time of rendering has doubled, or a minute has passed.
 struct Preview<'a> {
     header: Header,
     outputs: &'a [PathBuf],
@@ -238,7 +236,7 @@ impl<'a> Preview<'a> {
     }
 }
 
-/// The failure that a wrong scene is.
+/// The failure of a scene with errors.
 pub fn scene_failure(imported: Imported) -> Failure {
     Failure::Scene { diagnostics: imported.diagnostics, sources: imported.sources }
 }

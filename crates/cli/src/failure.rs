@@ -12,11 +12,11 @@ use crate::diagnostics;
 /// Why a command ended without its result.
 #[derive(Debug)]
 pub enum Failure {
-    /// The command line is wrong.
+    /// The command line is invalid.
     Usage(String),
-    /// A file is missing, wrong or cannot be written.
+    /// A file is missing, invalid or cannot be written.
     Input(String),
-    /// A scene is wrong.
+    /// A scene has errors.
     Scene {
         /// All diagnostics of the scene.
         diagnostics: Vec<Diagnostic>,
@@ -44,7 +44,7 @@ impl Failure {
             Self::Scene { diagnostics, sources } => diagnostics::print(diagnostics, sources),
         };
         if let Err(undelivered) = reported {
-            // The last place to report to; the exit code tells of a failure all the same.
+            // There is no other place to report to; the exit code indicates the failure.
             let _ = warn(format_args!("error: {undelivered}"));
         }
         ExitCode::from(self.exit_code())

@@ -1,4 +1,4 @@
-//! What a picture file holds, and the values of a pixel, as text and as JSON.
+//! Information about a picture file, and the values of a pixel, as text and as JSON.
 
 use std::fmt;
 use std::path::Path;
@@ -14,7 +14,7 @@ pub struct FileInfo<'a> {
     pub path: &'a Path,
     /// Its length.
     pub bytes: u64,
-    /// What it says of its picture.
+    /// The information about its picture.
     pub info: ImageInfo,
 }
 

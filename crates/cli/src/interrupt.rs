@@ -1,8 +1,8 @@
 //! Ctrl-C. While a picture is being rendered, the first one cancels the render, so that the picture
-//! can be written. A part of a pass cannot be saved, nor taken off the film; so where passes are
-//! done that the checkpoint does not have yet, the pass in progress ends first, and is saved with
-//! them. At any other time, and the second time, Ctrl-C ends the program with what has been written
-//! before. A request to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
+//! can be written. A part of a pass can neither be saved nor removed from the film; so if the
+//! checkpoint lacks completed passes, the current pass is completed first, and saved with them. At
+//! any other time, and the second time, Ctrl-C ends the program with the pictures that are already
+//! written. A request to terminate (SIGTERM, SIGHUP) counts as Ctrl-C.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,12 +23,12 @@ pub struct Interrupt {
     interrupted: Arc<AtomicBool>,
     /// Whether the checkpoint lacks passes that are done.
     unsaved: Arc<AtomicBool>,
-    talkative: Arc<AtomicBool>,
+    verbose: Arc<AtomicBool>,
     cancel: Arc<AtomicBool>,
     written: Arc<Mutex<Written>>,
 }
 
-/// What has been written so far.
+/// The pictures that have been written.
 #[derive(Debug, Default)]
 struct Written {
     outputs: Vec<PathBuf>,
@@ -36,8 +36,8 @@ struct Written {
 }
 
 impl Interrupt {
-    /// Starts to listen; once per program. A program that is ended at once says so as JSON on
-    /// standard output, or as text on standard error.
+    /// Installs the handler; once per program. A program that is ended at once reports it as JSON
+    /// on standard output, or as text on standard error.
     pub fn listen(as_json: bool) -> Result<Self, Failure> {
         let interrupt = Self::default();
         let handler = interrupt.clone();
@@ -46,12 +46,12 @@ impl Interrupt {
             if first && handler.rendering.load(Ordering::SeqCst) {
                 if !handler.unsaved.load(Ordering::SeqCst) {
                     handler.cancel.store(true, Ordering::SeqCst);
-                } else if handler.talkative.load(Ordering::SeqCst) {
-                    // The render goes on to the end of the pass whether or not anybody hears of it.
+                } else if handler.verbose.load(Ordering::SeqCst) {
+                    // The pass is completed even if the message cannot be written.
                     let _ = warn("\nending after this pass, to save it; Ctrl-C again ends at once");
                 }
             } else {
-                // The program ends whether or not anybody hears of it.
+                // The program ends even if the message cannot be written.
                 let _ = if as_json { say(handler.to_json()) } else { warn(handler.message()) };
                 std::process::exit(EXIT_CODE.into());
             }
@@ -61,8 +61,8 @@ impl Interrupt {
     }
 
     /// From now on there is a picture to write.
-    pub fn begin_rendering(&self, is_talkative: bool) {
-        self.talkative.store(is_talkative, Ordering::SeqCst);
+    pub fn begin_rendering(&self, is_verbose: bool) {
+        self.verbose.store(is_verbose, Ordering::SeqCst);
         self.rendering.store(true, Ordering::SeqCst);
     }
 
@@ -79,7 +79,7 @@ impl Interrupt {
         self.cancel.fetch_or(self.interrupted.load(Ordering::SeqCst), Ordering::SeqCst);
     }
 
-    /// Takes note of pictures of so many passes that have been written.
+    /// Records that pictures of `passes` passes have been written.
     pub fn note_written(&self, outputs: &[PathBuf], passes: u32) {
         let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
         *written = Written { outputs: outputs.to_vec(), passes };

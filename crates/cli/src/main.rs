@@ -52,7 +52,7 @@ fn main() -> ExitCode {
     result.unwrap_or_else(|failure| failure.report(cli.command.json()))
 }
 
-/// Reports what is wrong with the command line, or prints the help that was asked for.
+/// Reports an error of the command line, or prints help or version.
 fn usage(error: &clap::Error) -> ExitCode {
     let wrong = error.use_stderr();
     if wrong && std::env::args().any(|argument| argument == "--json") {

@@ -25,7 +25,7 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
         merged.merge(file, &limits).map_err(|error| match error {
             FilmFileError::Overlap(passes) => {
                 let first = &arguments.films[..before];
-                // Which of those before has them shows in their headers.
+                // The headers of the files before show which of them has the passes.
                 let holder = first.iter().find(|path| holds(path, &passes)).unwrap_or(&first[0]);
                 let mut shards = merged.shards();
                 shards.extend(checkpoint::read(path).iter().flat_map(SavedRender::shards));
@@ -74,7 +74,7 @@ fn holds(path: &Path, passes: &PassSet) -> bool {
     checkpoint::header(path).is_ok_and(|header| !header.done.intersection(passes).is_empty())
 }
 
-/// Which shard each film is, where they are not of the same split; else nothing.
+/// The shard of each film, where they are not of the same split; else nothing.
 fn splits(films: &[PathBuf], shards: &[Shard]) -> String {
     if shards.iter().all(|shard| shard.count == shards[0].count) {
         return String::new();

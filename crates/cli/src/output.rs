@@ -1,4 +1,4 @@
-//! Paths of pictures and reports, checked before anything long begins.
+//! Paths of pictures and reports, checked before anything is rendered.
 
 use std::fs::{self, OpenOptions};
 use std::path::Path;
@@ -34,8 +34,8 @@ pub fn check_place(path: &Path) -> Result<(), String> {
     if path.is_dir() {
         return Err(format!("cannot write {shown}: it is a folder"));
     }
-    // Only an attempt shows whether the folder is writable: permissions, read-only and full file
-    // systems.
+    // Whether the folder is writable depends on permissions, read-only and full file systems: only
+    // an attempt shows it.
     let probe = folder.join(format!(".alhazen-{}.part", std::process::id()));
     let attempt = OpenOptions::new().write(true).create_new(true).open(&probe);
     attempt.map_err(|error| format!("cannot write to the folder {}: {error}", folder.display()))?;

@@ -17,7 +17,7 @@ use crate::output;
 use crate::results::named_after;
 use crate::threads::start_threads;
 
-/// Renders a scene and reports what came of it.
+/// Renders a scene and reports the result.
 pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     for path in &arguments.output {
         output::check(path).map_err(Failure::Usage)?;
@@ -76,16 +76,15 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     task.run(compiled, &interrupt)
 }
 
-/// How many passes make the whole render: where nothing but time or noise is to end it, there is no
-/// end to them.
+/// The number of passes of the whole render: unlimited where only time or noise ends it.
 fn all_passes(job: &Job, arguments: &Render) -> u32 {
     let is_limited = arguments.limits.time.is_some() || arguments.limits.noise.is_some();
     let is_planned = arguments.spp.is_some() || arguments.shard.is_some();
     if is_limited && !is_planned { u32::MAX } else { job.planned() }
 }
 
-/// Where the picture goes if the command line does not say: where the scene's film says, else to
-/// the scene's name with the extension of OpenEXR, in the current folder.
+/// The default path of the picture: that of the scene's film, else the scene's name with the
+/// extension of OpenEXR, in the current folder.
 fn default_output(scene: &Path, desc: &SceneDesc) -> Result<PathBuf, Failure> {
     let is_stated = desc.film.origin.states("filename");
     let path = if is_stated { PathBuf::from(&desc.film.filename) } else { named_after(scene, "exr") };

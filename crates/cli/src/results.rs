@@ -1,4 +1,4 @@
-//! What a render leaves: the picture in one or more files, and what stands beside it.
+//! The files of a render: the picture in one or more files, and the further files of its algorithm.
 
 use std::path::{Path, PathBuf};
 
@@ -10,8 +10,7 @@ use alhazen::write_picture;
 use crate::failure::{Failure, about_file};
 
 /// Writes a picture to all outputs, and beside the first one the pictures on films of an algorithm;
-/// gives the paths of the latter. A file that cannot be written does not keep the others from being
-/// written.
+/// returns the paths of the latter. The other files are written even if one cannot be.
 pub fn write_results<'a>(
     picture: &dyn PixelSource,
     outputs: &[PathBuf],
@@ -44,7 +43,7 @@ pub fn write_results<'a>(
     }
 }
 
-/// Writes a picture that a better one will replace. Whether it can be written shows at the end.
+/// Writes a picture that a better one will replace. Errors are ignored: they recur at the end.
 pub fn write_preview(picture: &dyn PixelSource, outputs: &[PathBuf]) {
     for path in outputs {
         let _ = write_picture(picture, path);

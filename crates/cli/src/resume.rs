@@ -1,4 +1,4 @@
-//! `alhazen resume`: goes on with a render that was saved.
+//! `alhazen resume`: resumes a render that was saved.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -16,7 +16,7 @@ use crate::output;
 use crate::results::named_after;
 use crate::threads::start_threads;
 
-/// Goes on with a render, saves it and writes the picture.
+/// Resumes a render, saves it and writes the picture.
 pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     let outputs = outputs(&arguments.output, &arguments.film)?;
     output::check_place(&arguments.film).map_err(Failure::Usage)?;
@@ -77,7 +77,7 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     task.run(compiled, &interrupt)
 }
 
-/// Where a picture of film files goes: to the outputs, or to the film's name with the extension of
+/// The paths of the picture of film files: the outputs, or the film's name with the extension of
 /// OpenEXR in the current folder.
 pub fn outputs(outputs: &[PathBuf], film: &Path) -> Result<Vec<PathBuf>, Failure> {
     let outputs = if outputs.is_empty() { vec![named_after(film, "exr")] } else { outputs.to_vec() };

@@ -15,8 +15,8 @@ use crate::failure::Failure;
 /// Reports all errors and warnings of a scene; errors make it a failure.
 pub fn check(arguments: &Check) -> Result<(), Failure> {
     let mut imported = import(&arguments.scene, &Files);
-    // A scene with errors is compiled too, as far as it was understood: its author wants to see all
-    // errors in one run. Warnings about a part of a scene, such as that it is dark, may be wrong.
+    // A scene with errors is compiled too, as far as possible, to report all errors in one run.
+    // Warnings about a part of a scene, such as that it is dark, may be wrong.
     let (mut found, mut wrong) = match Job::compile(std::mem::take(&mut imported.desc)) {
         Ok(compiled) => (compiled.warnings, false),
         Err(errors) => (errors, true),

@@ -1,4 +1,4 @@
-//! What a render has done: the closing words to people, and the JSON object to programs.
+//! The summary of a render, as text and as a JSON object.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 
 use crate::numbers::{bytes, count, duration};
 
-/// What a render has done.
+/// The summary of a render.
 pub struct Summary<'a> {
-    /// What has ended it; `None` where it was interrupted.
+    /// The limit that ended it; `None` where it was interrupted.
     pub ended_by: Option<Stop>,
     /// The scene file.
     pub scene: &'a Path,
@@ -19,7 +19,7 @@ pub struct Summary<'a> {
     pub outputs: &'a [PathBuf],
     /// What was written beside them.
     pub beside: &'a [PathBuf],
-    /// The film file that the render can go on from.
+    /// The film file from which the render can be resumed.
     pub checkpoint: Option<&'a Path>,
     /// Notes on the render, by the algorithm or others.
     pub notes: &'a [(&'static str, String)],
@@ -29,19 +29,19 @@ pub struct Summary<'a> {
     pub session: &'a Session,
     /// Threads that rendered.
     pub threads: usize,
-    /// How long each stage took.
+    /// The time of each stage.
     pub seconds: Seconds,
-    /// The most memory that was in use, in bytes; `None` where the system does not tell.
+    /// The peak memory use in bytes; `None` where the system does not report it.
     pub peak_memory: Option<u64>,
 }
 
-/// How long each stage took, in seconds.
+/// The time of each stage, in seconds.
 pub struct Seconds {
     /// Reading files.
     pub import: f64,
-    /// Making the scene.
+    /// Compiling the scene.
     pub compile: f64,
-    /// Following light.
+    /// Rendering.
     pub render: f64,
     /// Writing pictures.
     pub write: f64,
@@ -113,10 +113,10 @@ impl Summary<'_> {
     /// The message about an interruption, if there was one.
     pub fn interruption(&self) -> Option<String> {
         let Progress { pass, passes, .. } = self.progress();
-        let picture = if self.outputs.is_empty() { "" } else { "; the picture is written as it stands" };
+        let picture = if self.outputs.is_empty() { "" } else { "; the picture so far is written" };
         let all = if passes == u32::MAX { String::new() } else { format!(" of {passes}") };
         let goes_on = match self.checkpoint {
-            Some(path) => format!("; `alhazen resume {}` goes on from the last checkpoint", path.display()),
+            Some(path) => format!("; `alhazen resume {}` continues from the last checkpoint", path.display()),
             None => String::new(),
         };
         self.ended_by.is_none().then(|| format!("interrupted after {pass}{all} passes{picture}{goes_on}"))
@@ -204,7 +204,7 @@ impl fmt::Display for Summary<'_> {
     }
 }
 
-/// The most memory that this process has had in use, in bytes; Linux tells it.
+/// The peak memory use of this process in bytes, as Linux reports it.
 pub fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

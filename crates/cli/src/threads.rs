@@ -5,14 +5,14 @@ use std::thread::available_parallelism;
 
 use crate::failure::Failure;
 
-/// Threads that may be asked for on any machine. The time to start and to wake threads grows faster
-/// than their number, and beyond the number of cores they do not help.
+/// The most threads that are allowed on any machine. The time to start and to wake threads grows
+/// faster than their number, and beyond the number of cores they do not help.
 const ALWAYS_ALLOWED: usize = 256;
 
-/// Threads for each core that may be asked for.
+/// The most threads for each core.
 const PER_CORE: usize = 4;
 
-/// Starts the threads that everything runs on: as many as asked for, or one for each core.
+/// Starts the thread pool: the given number of threads, or one for each core.
 pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
     let mut builder = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = threads.map(usize::from) {

@@ -36,11 +36,11 @@ pub fn noise(text: &str) -> Result<f64, String> {
 
 /// The name of a film file.
 pub fn film_file(text: &str) -> Result<PathBuf, String> {
-    // A slip such as the scene's own name must not cost a file.
+    // A mistake such as the scene's own name must not overwrite a file.
     if text.ends_with(".film") { Ok(text.into()) } else { Err("its name ends in .film".into()) }
 }
 
-/// Which of how many parts.
+/// A shard: its index and the number of parts.
 pub fn shard(text: &str) -> Result<Shard, String> {
     let numbers = text
         .split_once('/')

@@ -10,16 +10,15 @@ use crate::{Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
 /// The range of white balance temperatures in kelvin.
 const WHITE_BALANCE: std::ops::RangeInclusive<f32> = 500.0..=100_000.0;
 
-/// The layers of the format's film `gbuffer`, as far as there are any for them, apart from
-/// positions and normals.
+/// The layers of the format's film `gbuffer` that exist here, apart from positions and normals.
 const GBUFFER_LAYERS: [Layer; 4] = [Layer::Depth, Layer::Albedo, Layer::Uv, Layer::Variance];
 
-/// What [`compile`] gives.
+/// The result of [`compile`].
 #[derive(Debug)]
 pub struct Compiled {
     /// The film, without light.
     pub film: Film,
-    /// What is rendered differently from its description.
+    /// Warnings about what is rendered differently from its description.
     pub warnings: Vec<Diagnostic>,
 }
 

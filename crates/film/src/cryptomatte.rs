@@ -11,7 +11,7 @@ use image::{Attribute, ImageMetadata};
 
 use crate::Layer;
 
-/// How many identifiers of a pixel a picture has.
+/// The number of identifiers per pixel of a picture.
 const RANKS: usize = 6;
 
 /// The identifier of a name: its hash by MurmurHash3 (32 bits, seed 0), one bit of it changed where
@@ -24,7 +24,7 @@ pub fn id_of_name(name: &str) -> u32 {
     }
 }
 
-/// MurmurHash3_x86_32 of Austin Appleby, who has given it to the public domain.
+/// MurmurHash3_x86_32 of Austin Appleby, in the public domain.
 fn murmur3(bytes: &[u8]) -> u32 {
     let scramble = |k: u32| k.wrapping_mul(0xcc9e_2d51).rotate_left(15).wrapping_mul(0x1b87_3593);
     let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte));
@@ -51,8 +51,8 @@ pub(crate) fn channels(layer: Layer) -> impl Iterator<Item = String> {
     })
 }
 
-/// The values of [`channels`] for a pixel that these identifiers with weights cover, of which
-/// `whole` is all of it.
+/// The values of [`channels`] for a pixel with these identifiers and weights; `whole` is the weight
+/// of full coverage.
 pub(crate) fn ranks(covered: impl Iterator<Item = (u32, f64)>, whole: f64) -> impl Iterator<Item = f32> {
     let mut covered: Vec<_> = covered.filter(|&(_, weight)| weight > 0.0).collect();
     covered.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
@@ -98,7 +98,7 @@ fn quoted(text: &str) -> String {
     quoted + "\""
 }
 
-/// Says in a picture's header that a layer is Cryptomatte's.
+/// Marks a layer as Cryptomatte in a picture's header.
 pub(crate) fn describe(layer: Layer, metadata: &mut ImageMetadata) {
     let mut set = |key, value: &str| metadata.set(&attribute(layer, key), Attribute::Text(value.to_owned()));
     set("name", layer_name(layer));
@@ -106,8 +106,8 @@ pub(crate) fn describe(layer: Layer, metadata: &mut ImageMetadata) {
     set("conversion", "uint32_to_float32");
 }
 
-/// The attribute with this key of a layer; the first seven digits of the hash of its name tell it
-/// from other layers.
+/// The attribute with this key of a layer; the first seven digits of the hash of its name
+/// distinguish it from other layers.
 fn attribute(layer: Layer, key: &str) -> String {
     let digits = format!("{:08x}", id_of_name(layer_name(layer)));
     format!("cryptomatte/{}/{key}", &digits[..7])

@@ -18,8 +18,8 @@ use crate::{Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
 const FAR: f32 = 1e10;
 
 impl Film {
-    /// The picture as it stands: linear R, G and B in the film's colour space, without layers.
-    /// Refused where there is no memory for it.
+    /// The current picture: linear R, G and B in the film's colour space, without layers. Refused
+    /// where there is no memory for it.
     pub fn develop(&self) -> Result<Image, ImageError> {
         Development::new(self, None, LayerSet::NONE).to_image()
     }

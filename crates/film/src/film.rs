@@ -1,5 +1,5 @@
-//! The film: samples of light go in, in any order and from any number of threads; a picture comes
-//! out.
+//! The film: takes samples of light, in any order and from any number of threads, and gives a
+//! picture.
 //!
 //! A pixel is Σ wᵢ cᵢ / Σ wᵢ over its samples, c being the sensor's response to a sample's light
 //! and w its filter weight. All sums are exact, so that threads, tiles and merges never change a
@@ -26,10 +26,10 @@ use crate::{Filter, Layer, LayerSet, PixelSensor, Rejected, SPLAT_BYTES, Sample,
 /// The sums of a pixel's colour: red, green, blue and weight.
 const COLOR_SUMS: usize = 4;
 
-/// What the colour of a pixel takes, in bytes: four sums and the number of samples.
+/// The bytes of a pixel's colour: four sums and the number of samples.
 pub const PIXEL_BYTES: usize = COLOR_SUMS * SUM_BYTES + size_of::<u32>();
 
-/// What a film is made of.
+/// The settings of a film.
 #[derive(Clone, Debug)]
 pub struct FilmSettings {
     /// Width and height of the whole image in pixels.
@@ -40,7 +40,7 @@ pub struct FilmSettings {
     pub diagonal: f32,
     /// The pixel filter.
     pub filter: Filter,
-    /// How light becomes numbers.
+    /// The sensor, which turns light into numbers.
     pub sensor: PixelSensor,
     /// Samples are scaled down so that no sensor response exceeds this.
     pub max_component_value: f32,
@@ -77,8 +77,7 @@ pub struct Film {
 pub(crate) const ID_LAYERS: [Layer; 2] = [Layer::ObjectId, Layer::MaterialId];
 
 impl Film {
-    /// A film without light. Refused if there is no pixel to render, or more than memory has room
-    /// for.
+    /// A film without light. Refused if there is no pixel to render, or more than fit in memory.
     pub fn new(settings: FilmSettings) -> Result<Self, ImageError> {
         Self::with_colors(settings, COLOR_SUMS)
     }
@@ -122,7 +121,7 @@ impl Film {
         })
     }
 
-    /// What it was made of.
+    /// Its settings.
     pub fn settings(&self) -> FilmSettings {
         FilmSettings {
             full_resolution: self.full_resolution,
@@ -232,8 +231,8 @@ impl Film {
         Ok(self.cut()?.0)
     }
 
-    /// [`Film::tiles_mut`], and what takes light that arrives anywhere; refused where there is no
-    /// memory for splats, which may be [reserved](Self::reserve_splats) before.
+    /// [`Film::tiles_mut`], and a splatter for light that arrives anywhere; refused where there is
+    /// no memory for splats, which may be [reserved](Self::reserve_splats) before.
     pub fn tiles_and_splatter(&mut self) -> Result<(Vec<FilmTile<'_>>, Splatter<'_>), ImageError> {
         self.reserve_splats()?;
         self.cut()
@@ -259,7 +258,7 @@ impl Film {
         Ok((tiles, Splatter::new(grid, &self.filter, exposure, &self.splats)))
     }
 
-    /// Takes the memory that splats need; refused where there is none.
+    /// Allocates the memory of splats; refused where there is none.
     pub fn reserve_splats(&mut self) -> Result<(), ImageError> {
         self.splats.reserve(self.grid).map_err(|_| no_memory(self.grid))
     }
@@ -313,7 +312,7 @@ impl Film {
         self.exposure.rejected().merge(rejected);
     }
 
-    /// What a film of these settings takes for a pixel, in bytes, without identifiers.
+    /// The bytes per pixel of a film with these settings, without identifiers.
     pub(crate) fn pixel_bytes(layers: LayerSet, color: bool, splats: bool) -> u64 {
         let data = Layout::new(layers).count() * SUM_BYTES;
         let (color, splats) = (if color { PIXEL_BYTES } else { 0 }, if splats { SPLAT_BYTES } else { 0 });

@@ -13,12 +13,12 @@ pub const TILE_SIZE: i32 = 16;
 pub(crate) struct Grid(pub(crate) Bounds2i);
 
 impl Grid {
-    /// How many tiles stand side by side.
+    /// The number of tiles in a row.
     pub(crate) fn columns(self) -> usize {
         (self.0.width() as usize).div_ceil(TILE_SIZE as usize)
     }
 
-    /// How many rows of tiles there are.
+    /// The number of rows of tiles.
     pub(crate) fn rows(self) -> usize {
         (self.0.height() as usize).div_ceil(TILE_SIZE as usize)
     }

@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-/// A layer beside the colour: what is known of the samples of a pixel, or of what they hit first.
+/// A layer beside the colour: a quantity of the samples of a pixel, or of their first hits.
 ///
 /// Alpha, albedo and variance are means as the colour is. The other quantities of a first hit are
 /// means over the samples that hit something, without those of negative filter weight: such a mean
 /// never lies outside the range of its values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Layer {
-    /// Opacity: which part of a pixel is covered.
+    /// Opacity: the fraction of a pixel that is covered.
     Alpha,
     /// Distance from the plane of the camera along its axis, or from a spherical camera, in units
     /// of the scene.
@@ -22,16 +22,15 @@ pub enum Layer {
     Position,
     /// Surface parameters (u, v).
     Uv,
-    /// How far the point moves on the film while the shutter is open, in pixels.
+    /// Motion of the point on the film while the shutter is open, in pixels.
     Motion,
-    /// Which objects are in the pixel, and how much of it they cover.
+    /// Identifiers of the objects in the pixel, and the coverage of each.
     ObjectId,
-    /// Which materials are in the pixel, and how much of it they cover.
+    /// Identifiers of the materials in the pixel, and the coverage of each.
     MaterialId,
     /// Number of samples.
     Samples,
-    /// Estimated variance of the pixel's luminance, as far as it comes from samples: that of splats
-    /// is not known.
+    /// Estimated variance of the pixel's luminance from samples; that of splats is unknown.
     Variance,
     /// Position in camera space at the time of the sample: x to the right, y up, z forward.
     CameraPosition,
@@ -99,7 +98,7 @@ impl Layer {
         }
     }
 
-    /// How many sums it has for a pixel.
+    /// The number of its sums per pixel.
     pub(crate) fn sums(self) -> usize {
         match self {
             // Σ w², Σ w² y and Σ w² y² of the luminance y.
@@ -129,7 +128,7 @@ impl Layer {
         matches!(self, Self::ObjectId | Self::MaterialId)
     }
 
-    /// Whether it takes what a sample hits first, or that it hits something.
+    /// Whether it needs a sample's first hit, or whether there is one.
     fn is_of_first_hit(self) -> bool {
         !matches!(self, Self::Samples | Self::Variance)
     }
@@ -165,7 +164,7 @@ impl LayerSet {
         Layer::ALL.into_iter().filter(move |&layer| self.has(layer))
     }
 
-    /// Whether some layer takes what samples hit first, or that they hit something.
+    /// Whether some layer needs a sample's first hit, or whether there is one.
     pub fn has_first_hit(self) -> bool {
         self.iter().any(Layer::is_of_first_hit)
     }
@@ -204,7 +203,7 @@ impl Layout {
         self.layers
     }
 
-    /// How many sums a pixel has.
+    /// The number of sums per pixel.
     pub(crate) fn count(&self) -> usize {
         self.count
     }

@@ -1,4 +1,4 @@
-//! Sets of passes: which part of a render is done.
+//! Sets of passes: the part of a render that is done.
 
 use std::fmt;
 use std::ops::Range;
@@ -27,7 +27,7 @@ impl PassSet {
         &self.ranges
     }
 
-    /// How many passes the set has.
+    /// The number of passes in the set.
     pub fn count(&self) -> u32 {
         self.ranges.iter().map(|range| range.end - range.start).sum()
     }

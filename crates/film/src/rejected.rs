@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-/// How many pixels [`Rejected`] remembers.
+/// The most pixels that [`Rejected`] lists.
 pub const MAX_REJECTED_PIXELS: usize = 16;
 
 /// The samples that a film refused.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Rejected {
-    /// How many.
+    /// Their number.
     pub count: u64,
     /// The pixels, as (row, column), of at most [`MAX_REJECTED_PIXELS`] of them: the first ones in
     /// reading order.
@@ -16,7 +16,7 @@ pub struct Rejected {
 }
 
 impl Rejected {
-    /// So many refused samples, some of them at these pixels.
+    /// `count` refused samples, some of them at these pixels.
     pub(crate) fn new(count: u64, pixels: impl IntoIterator<Item = [i32; 2]>) -> Self {
         let mut rejected = Self { count, ..Self::default() };
         pixels.into_iter().for_each(|[x, y]| rejected.remember((y, x)));

@@ -1,4 +1,4 @@
-//! What a film takes for one sample of a pixel.
+//! Samples of pixels.
 
 use std::slice::from_ref;
 
@@ -15,18 +15,18 @@ pub struct Sample<'a> {
     pub weight: f32,
     /// Opacity of what the sample sees, from 0 to 1.
     pub alpha: f32,
-    /// What the sample hits first; only films that have a layer of it look at it.
+    /// The sample's first hit; only films with a layer of it use it.
     pub first_hit: Option<FirstHit>,
 }
 
 impl<'a> Sample<'a> {
-    /// A sample of radiance alone, which sees nothing that is opaque.
+    /// A sample of radiance alone, with opacity 0.
     pub fn new(l: &'a SampledSpectrum, lambda: &'a SampledWavelengths, weight: f32) -> Self {
         Self { l: from_ref(l), lambda: from_ref(lambda), weight, alpha: 0.0, first_hit: None }
     }
 }
 
-/// What a sample hits first.
+/// The first hit of a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstHit {
     /// As [`Layer::Depth`](crate::Layer::Depth) has it, in units of the scene.
@@ -43,7 +43,7 @@ pub struct FirstHit {
     pub albedo: SampledSpectrum,
     /// Surface parameters.
     pub uv: [f32; 2],
-    /// How far the point moves on the film while the shutter is open, in pixels.
+    /// Motion of the point on the film while the shutter is open, in pixels.
     pub motion: [f32; 2],
     /// Identifier of the object; [`id_of_name`](crate::id_of_name) makes one of a name.
     pub object: u32,

@@ -23,7 +23,7 @@ use crate::sum::{OwnTileSums, SUM_BYTES, can_add, reserved};
 /// The sums of a pixel's splats: the three responses of the sensor.
 const SPLAT_SUMS: usize = 3;
 
-/// What the splats of a film take for each of its pixels, in bytes.
+/// The bytes of a pixel's splats.
 pub const SPLAT_BYTES: usize = SPLAT_SUMS * SUM_BYTES;
 
 /// The sums of all splats on a film. They take no memory before it is reserved.
@@ -34,7 +34,7 @@ pub(crate) struct SplatSums {
 }
 
 impl SplatSums {
-    /// Takes memory for a film of these tiles; refused where there is none.
+    /// Allocates memory for a film of these tiles; refused where there is none.
     pub(crate) fn reserve(&mut self, grid: Grid) -> Result<(), ImageError> {
         if self.tiles.is_empty() {
             let mut tiles = reserved(grid.tile_count())?;
@@ -95,7 +95,7 @@ pub struct Splatter<'film> {
 }
 
 impl<'film> Splatter<'film> {
-    /// What adds splats to these sums, which have memory.
+    /// The splatter for these sums, which have memory.
     pub(crate) fn new(
         grid: Grid,
         filter: &'film Filter,

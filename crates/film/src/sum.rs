@@ -19,7 +19,7 @@ use crate::grid::Grid;
 /// The largest magnitude that a term may have.
 pub(crate) const MAX_TERM: f64 = (1_u64 << 40) as f64;
 
-/// What the array takes for a sum, in bytes.
+/// The bytes of a sum in the array.
 pub(crate) const SUM_BYTES: usize = size_of::<Low>();
 
 const UNITS_PER_ONE: f64 = 18_446_744_073_709_551_616.0;
@@ -63,14 +63,14 @@ fn low_bits(units: i128) -> i128 {
 /// Sums for each pixel of a film, tile after tile.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sums {
-    /// How many sums a pixel has.
+    /// The number of sums per pixel.
     components: usize,
     low: Vec<Low>,
     high: Vec<High>,
 }
 
 impl Sums {
-    /// So many sums for each pixel, all 0; refused where there is no memory for them.
+    /// `components` sums for each pixel, all 0; refused where there is no memory for them.
     pub(crate) fn new(grid: Grid, components: usize) -> Result<Self, ImageError> {
         if components == 0 {
             return Ok(Self::default());
@@ -79,7 +79,7 @@ impl Sums {
         Ok(Self { components, low: zeros(count)?, high: maps(grid.tile_count())? })
     }
 
-    /// How many sums a pixel has.
+    /// The number of sums per pixel.
     pub(crate) fn components(&self) -> usize {
         self.components
     }
@@ -192,12 +192,12 @@ pub(crate) struct OwnTileSums {
 }
 
 impl OwnTileSums {
-    /// So many sums for each of so many pixels, all 0; refused where there is no memory for them.
+    /// `components` sums for each of `pixels`, all 0; refused where there is no memory for them.
     pub(crate) fn new(pixels: usize, components: usize) -> Result<Self, ImageError> {
         Ok(Self { components, low: zeros(pixels * components)?, high: High::new() })
     }
 
-    /// How many sums a pixel has.
+    /// The number of sums per pixel.
     pub(crate) fn components(&self) -> usize {
         self.components
     }

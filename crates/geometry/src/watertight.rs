@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn misses() {
         let o = Vec3::new(0.25, 0.25, 1.0);
-        assert!(meet(o, -Vec3::Z, 1.0).is_none(), "the end does not count");
+        assert!(meet(o, -Vec3::Z, 1.0).is_none(), "t_max is exclusive");
         assert!(meet(o, Vec3::Z, 9.0).is_none(), "behind");
         assert!(meet(o, Vec3::X, 9.0).is_none(), "along the plane");
         assert!(meet(o, Vec3::ZERO, 9.0).is_none(), "no direction");
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn very_near_hits_are_told_from_those_behind() {
+    fn very_near_hits_are_distinguished_from_those_behind() {
         let o = Vec3::new(0.25, 0.25, 1e-9);
         let d = Vec3::new(0.3, 0.1, -1.0);
         assert!(meet(o, d, 9.0).is_some_and(|(t, _)| (t - 1e-9).abs() < 1e-15));

@@ -1,11 +1,11 @@
-//! How the codes of an integer image stand for linear values.
+//! The encoding of linear values as the codes of integer images.
 //!
 //! sRGB [IEC 61966-2-1]: linear = c / 12.92 for c ≤ 0.04045, else ((c + 0.055) / 1.055)^2.4. Gamma
 //! x: linear = c^x. Codes and linear values both run over [0, 1].
 
 use std::fmt;
 
-/// How integer codes stand for linear values; floating-point images are always linear.
+/// The encoding of linear values as integer codes; floating-point images are always linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ColorEncoding {
     /// The code is the value.

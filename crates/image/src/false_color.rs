@@ -1,6 +1,6 @@
 //! Numbers as colours: the magma map from black through purple and orange to pale yellow, whose
 //! lightness grows evenly; and for numbers with a sign a map from blue through black to orange,
-//! told apart by all who see colours.
+//! which the colour-blind can also distinguish.
 
 use crate::{
     encoding::{ColorEncoding, at_most},

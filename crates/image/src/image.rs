@@ -19,7 +19,7 @@ use crate::{
 /// by side.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Pixels {
-    /// 8-bit codes and what they stand for.
+    /// 8-bit codes and their encoding.
     U8(Vec<u8>, ColorEncoding),
     /// Half floats, linear.
     F16(Vec<f16>),

@@ -1,10 +1,10 @@
 //! Pixel arrays, pyramids, file formats and error metrics.
 //!
 //! An [`Image`] is a rectangle of pixels with named channels, stored as 8-bit codes, half or single
-//! floats; what leaves it through [`Image::channel`] is always linear. Row 0 is the top row, x runs
-//! to the right. [`read`] decodes a file's bytes, [`write`](write()) encodes by extension; a
-//! [`Pyramid`] answers filtered lookups at texture coordinates; [`metrics`] and [`flip`] say how
-//! far two pictures are apart.
+//! floats; values read by [`Image::channel`] are always linear. Row 0 is the top row, x runs to the
+//! right. [`read`] decodes a file's bytes, [`write`](write()) encodes by extension; a [`Pyramid`]
+//! answers filtered lookups at texture coordinates; [`metrics`] and [`flip`] measure the difference
+//! of two pictures.
 
 pub mod codec;
 mod depth;

@@ -75,7 +75,7 @@ pub fn compare(reference: &Image, test: &Image) -> Result<Difference, ImageError
 }
 
 /// The squared error at each pixel, averaged over colour channels, as channel Y; relative as in
-/// [`Difference::rel_mse`] on demand. Where a value is not finite it is that too.
+/// [`Difference::rel_mse`] on demand. Where a value is not finite, the error is not either.
 pub fn squared_error_map(reference: &Image, test: &Image, relative: bool) -> Result<Image, ImageError> {
     check_same_size(reference, test)?;
     let mut values = reserved(reference.width() as usize * reference.height() as usize)?;
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_counted_and_left_out() {
+    fn non_finite_values_are_counted_and_left_out() {
         let reference = Image::from_fn(2, 1, ["Y"], |x, _| [x as f32]);
         let test = Image::from_fn(2, 1, ["Y"], |x, _| [if x == 0 { f32::NAN } else { 1.5 }]);
         let difference = compare(&reference, &test).unwrap();

@@ -1,4 +1,4 @@
-//! Images of the whole sphere of directions: their two projections, and from one to the other.
+//! Images of the whole sphere of directions: their two projections, and conversion between them.
 //!
 //! Directions have +z up. A position st has (0, 0) at the upper left of the image.
 //!

@@ -2,7 +2,7 @@
 //!
 //! Level 0 is the image, enlarged to powers of two where its sides are not; each further level is
 //! the 2 × 2 box average of the one before; the last is one texel. A lookup at `st` ∈ [0, 1]² (t
-//! runs down) is told two vectors `dst0`, `dst1` by which `st` differs between neighbouring pixels.
+//! runs down) takes two vectors `dst0`, `dst1` by which `st` differs between neighbouring pixels.
 //! With L levels:
 //!
 //! - point, bilinear, trilinear: the level is ℓ = L − 1 + log₂(2 max |dst|), taken as ⌊ℓ⌋, or
@@ -88,7 +88,7 @@ impl Pyramid {
         &self.levels
     }
 
-    /// What lookups see outside [0, 1]².
+    /// The wrap mode of lookups outside [0, 1]².
     pub fn wrap(&self) -> WrapMode {
         self.wrap
     }

@@ -27,8 +27,8 @@ struct Taps {
 }
 
 impl Image {
-    /// The image at another size, stored as single floats; `wrap` tells what the filter sees beyond
-    /// the edges. Refused where there is no memory for it.
+    /// The image at another size, stored as single floats; `wrap` gives the texels beyond the
+    /// edges. Refused where there is no memory for it.
     pub fn resize(&self, width: u32, height: u32, wrap: WrapMode) -> Result<Self, ImageError> {
         if width == 0 || height == 0 {
             return Err(ImageError::Invalid(format!("cannot resize to {width} × {height} pixels")));

@@ -12,7 +12,7 @@ pub struct Channel {
 }
 
 /// A picture that can be written: an [`Image`](crate::Image), or something that computes its rows
-/// when they are asked for, so that a large picture needs no copy in memory.
+/// on demand, so that a large picture needs no copy in memory.
 pub trait PixelSource: Sync {
     /// Number of columns.
     fn width(&self) -> u32;

@@ -1,6 +1,6 @@
-//! What lies outside an image.
+//! Lookups outside an image.
 
-/// What a lookup outside the pixel rectangle sees.
+/// The value of a lookup outside the pixel rectangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WrapMode {
     /// The image again, as on tiles.
@@ -31,7 +31,8 @@ impl WrapMode {
         }
     }
 
-    /// The pixel inside a `width` × `height` image that stands for (x, y); `None` means zero.
+    /// The pixel inside a `width` × `height` image that a lookup at (x, y) reads; `None` means
+    /// zero.
     pub fn apply(self, x: i32, y: i32, width: u32, height: u32) -> Option<(u32, u32)> {
         if (x as u32) < width && (y as u32) < height {
             return Some((x as u32, y as u32));

@@ -1,4 +1,4 @@
-//! Where files come from. No other part of the crate reads files.
+//! Sources of files. No other part of the crate reads files.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read};
@@ -11,18 +11,19 @@ pub trait AssetSource: Sync {
     /// The whole content of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
 
-    /// Whether a file is there.
+    /// Whether a file exists.
     fn exists(&self, path: &Path) -> bool;
 }
 
 /// The file system; the path `-` is standard input.
 ///
-/// What has no length, as pipes and standard input, is read up to 1 GiB. Devices are refused.
+/// Streams without a length, such as pipes and standard input, are read up to 1 GiB. Devices are
+/// refused.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Files;
 
 impl Files {
-    /// Most bytes of a pipe, which may have no end.
+    /// Most bytes read from a pipe, which may never end.
     const LONGEST_STREAM: u64 = 1 << 30;
 }
 
@@ -95,10 +96,10 @@ impl AssetSource for MemoryAssets {
     }
 }
 
-/// Reads a file and unpacks it if its content is gzip, whatever it is called. The content may be
-/// 64 MiB or 256 times as long as the file, whichever is more, and 4 GiB at most.
+/// Reads a file and unpacks it if its content is gzip, whatever its name. The content may be 64 MiB
+/// or 256 times as long as the file, whichever is more, and 4 GiB at most.
 pub(crate) fn read_unpacked(assets: &dyn AssetSource, path: &Path) -> io::Result<Vec<u8>> {
-    /// Texts and meshes are packed less tightly than this many to one.
+    /// Texts and meshes have smaller compression ratios than this.
     const GREATEST_RATIO: u64 = 256;
     const ALWAYS_ALLOWED: u64 = 64 << 20;
     const NEVER_ALLOWED: u64 = 4 << 30;

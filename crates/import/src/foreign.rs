@@ -1,6 +1,6 @@
 //! Scene formats that are not read, recognised so that a message can name them.
 
-/// What a file is, with its article, if it is of a known format other than those that are read.
+/// The kind of a file, with its article, if it is of a known format other than those that are read.
 /// `name` is its path.
 pub(crate) fn recognise(name: &str, bytes: &[u8]) -> Option<&'static str> {
     by_content(bytes).or_else(|| by_name(name))

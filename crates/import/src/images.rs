@@ -7,7 +7,7 @@ use image::{ColorEncoding, Image, Pixels, ReadOptions};
 
 use crate::assets::AssetSource;
 
-/// Reads and decodes an image file; on failure, why.
+/// Reads and decodes an image file; on failure, the reason.
 pub(crate) fn decode(
     assets: &dyn AssetSource,
     path: &Path,

@@ -1,11 +1,11 @@
-//! What importing gives.
+//! The result of an import.
 
 use description::{Diagnostic, SceneDesc, SourceMap};
 
 /// A scene that was read.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// The scene, as far as it could be understood.
+    /// The scene, as far as the files were valid.
     pub desc: SceneDesc,
     /// The texts that the spans of the scene and its messages refer to.
     pub sources: SourceMap,

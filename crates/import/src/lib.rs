@@ -1,8 +1,8 @@
 //! Scene and mesh files read into a [`SceneDesc`](description::SceneDesc).
 //!
-//! [`import`] always gives a description: the scene as far as it could be understood, the texts
-//! that were read, and all errors and warnings about them. Files are read through an
-//! [`AssetSource`] only.
+//! [`import`] always gives a description: the scene as far as the files were valid, the texts that
+//! were read, and all errors and warnings about them. Files are read through an [`AssetSource`]
+//! only.
 
 mod assets;
 mod foreign;

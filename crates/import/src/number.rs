@@ -15,8 +15,8 @@ pub(crate) fn double(text: &[u8]) -> Option<f64> {
 pub(crate) fn float(text: &[u8]) -> Option<f32> {
     /// The mantissa bits of a double beyond those of a float.
     const BELOW: u64 = (1 << 29) - 1;
-    /// Their value half way between two floats. A double rounded to it may have been on either
-    /// side.
+    /// Their value half way between two floats. The exact value of a double that rounds to it may
+    /// be on either side.
     const HALFWAY: u64 = 1 << 28;
     if let Some(value) = exact(text)
         && value.to_bits() & BELOW != HALFWAY
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_is_refused() {
+    fn invalid_numbers_are_refused() {
         for text in
             ["", "-", ".", "+.", "1x", "inf", "nan", "e5", "1e", "0x10", "--1", "1.2.3", "1e5.", "infinity"]
         {

@@ -2,7 +2,7 @@
 
 use description::{Diagnostic, DiagnosticList, Span};
 
-/// Collects diagnostics up to a limit, so that a file of noise does not fill memory.
+/// Collects diagnostics up to a limit, so that a file of random bytes does not fill memory.
 #[derive(Debug, Default)]
 pub(crate) struct Report(DiagnosticList);
 
@@ -11,7 +11,7 @@ impl Report {
         self.0.push(diagnostic);
     }
 
-    /// Whether there are so many errors that reading on is of no use.
+    /// Whether the limit of errors is reached, so that reading stops.
     pub(crate) fn is_full(&self) -> bool {
         self.0.has_too_many_errors()
     }

@@ -3,7 +3,7 @@
 /// The candidate with the least edit distance to a misspelt name, if it is small.
 pub fn closest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
-    // The edit distance takes quadratic time; so long a name is no typing error.
+    // The edit distance takes quadratic time; a name this long is not a typing error.
     if name.len() > 64 {
         return None;
     }

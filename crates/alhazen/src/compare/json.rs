@@ -1,4 +1,4 @@
-//! A comparison as JSON. Unknown values (the noise of a given reference, the slope of two points)
+//! A comparison as JSON. Undefined values (the noise of a given reference, the slope of two points)
 //! are null.
 
 use serde_json::{Map, Value, json};

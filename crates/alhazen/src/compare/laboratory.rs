@@ -28,7 +28,7 @@ pub struct Laboratory {
     view: View,
     contenders: Vec<Entry>,
     reference: ReferencePlan,
-    /// What will be rendered differently than described.
+    /// Warnings about what is rendered differently than described.
     warnings: Vec<String>,
 }
 
@@ -297,7 +297,7 @@ fn run(
     }))
 }
 
-/// Pairs that have been built before, with another seed: now they can only lack memory.
+/// Pairs that were built before with another seed: only memory can be lacking now.
 fn paired_renders(
     entry: &Entry,
     viewed: (&Arc<Scene>, &View),

@@ -7,9 +7,9 @@
 //!
 //! exactly. In expectation the first term is the variance of one picture: noise. As a and b are
 //! independent, the second is (E[a] − r)²: the squared bias, plus the variance of the reference
-//! itself, which is subtracted where it is known. This tells a noisy unbiased algorithm from a
-//! smooth biased one. The squared bias is an estimate, which may be below 0; its standard deviation
-//! is estimated from the variance over pixels.
+//! itself, which is subtracted where it is known. This distinguishes a noisy unbiased algorithm
+//! from a smooth biased one. The squared bias is an estimate, which may be below 0; its standard
+//! deviation is estimated from the variance over pixels.
 //!
 //! Relative figures have each term divided by r² + 0.01, as relMSE has [Rousselle 2011]. The mean
 //! error has a sign, which the squared bias lacks: it is positive where the picture is too bright.

@@ -72,7 +72,7 @@ impl fmt::Display for Budget {
     }
 }
 
-/// Where the reference comes from.
+/// The source of the reference.
 #[derive(Clone, Debug)]
 pub enum ReferenceSource {
     /// A given picture, of the size of the whole image or of the part to render; its noise is
@@ -84,9 +84,9 @@ pub enum ReferenceSource {
         picture: Image,
     },
     /// A picture to render first, as the mean of two independent halves, whose difference gives its
-    /// noise. Its seeds differ from those of the pictures that it judges.
+    /// noise. Its seeds differ from those of the contenders' pictures.
     Render {
-        /// What renders it; the first of the contenders if `None`.
+        /// The contender that renders it; the first one if `None`.
         by: Option<Contender>,
         /// Samples per pixel of both halves together; if `None`, they get 16 times a contender's
         /// budget.
@@ -272,8 +272,8 @@ impl Comparison {
         convergence::seconds_to(self.common_error(), &run.curve())
     }
 
-    /// Why the reference is perhaps not the common limit of all: at least two other integrators, or
-    /// all others, find more light than the one that rendered it.
+    /// Why the reference may be biased: at least two other integrators, or all others, find more
+    /// light than the one that rendered it.
     pub fn doubt(&self) -> Option<String> {
         let by = self.reference.by.as_deref()?;
         let others: Vec<&Run> = self.runs.iter().filter(|run| run.name != by).collect();

@@ -37,7 +37,7 @@ fn json_value(value: &Value) -> Json {
     match value {
         Value::Bool(value) => (*value).into(),
         Value::Integer(value) => (*value).into(),
-        // Converted by its text: an `f32` as `f64` would have more digits.
+        // Converted through text: an `f32` as `f64` would have more digits.
         Value::Number(_) => {
             let text = value.to_string();
             serde_json::from_str(&text).unwrap_or(Json::String(text))

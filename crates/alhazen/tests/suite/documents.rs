@@ -1,4 +1,4 @@
-//! What documents tell of integrators and settings is what the schema says.
+//! The documents list the integrators and settings of the schema.
 
 use std::path::Path;
 

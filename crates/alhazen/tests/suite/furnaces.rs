@@ -11,7 +11,7 @@ use crate::common::{Estimate, means, render_text, rgb_values};
 use alhazen::image::{self, Image};
 use alhazen::{Overrides, write_picture};
 
-/// Where each reflection halves what a path carries, the rest after these is less than rounding.
+/// Where each reflection halves the throughput, the rest after this depth is less than rounding.
 const IN_FURNACE: u32 = 24;
 
 /// Light is trapped in glass for long where it hits the surface at grazing angles.

@@ -11,7 +11,7 @@ use alhazen::{Job, Overrides};
 
 const LIMIT: Duration = Duration::from_secs(2);
 
-/// Imports a scene and renders a few pixels of it; whether that went well.
+/// Imports a scene and renders a few pixels of it; whether that succeeded.
 fn draws(path: &Path, assets: &dyn AssetSource) -> bool {
     let mut imported = import(path, assets);
     if imported.has_errors() {
@@ -24,8 +24,8 @@ fn draws(path: &Path, assets: &dyn AssetSource) -> bool {
     job.render(&Control::default()).is_ok() && job.session.state().film.sample_count() > 0
 }
 
-/// Draws all files of some folders that have one of the extensions, each in its time; gives how
-/// many could be drawn.
+/// Draws all files of some folders with one of the extensions, each in bounded time; returns the
+/// number that could be drawn.
 fn draw_all(folders: &[&str], extensions: &[&str], draw: impl Fn(&Path) -> bool) -> usize {
     let mut drawn = 0;
     for folder in folders.iter().filter_map(|folder| data(&format!("malformed/{folder}"))) {

@@ -10,8 +10,8 @@ const INTEGRATORS: [&str; 3] = ["path", "bdpt", "light-tracing"];
 /// Pictures of each scene, with a seed each.
 const RUNS: i32 = 6;
 
-/// A floor and a ball; the shutter is open for `duration` around a time. The film is the more
-/// sensitive the shorter that is.
+/// A floor and a ball; the shutter is open for `duration` around a time. The shorter it is, the
+/// more sensitive is the film.
 fn scene(time: f32, duration: f32, world: &str) -> String {
     let (open, close, iso) = (time - 0.5 * duration, time + 0.5 * duration, 100.0 / duration);
     format!(

@@ -192,7 +192,7 @@ fn a_pass_depends_on_its_number_alone() {
     };
     let values =
         |film: &alhazen::film::Film| film.develop().unwrap().values().map(f32::to_bits).collect::<Vec<_>>();
-    // A better draft takes the place of the one before, and the first sample that of the last.
+    // A better draft replaces the one before, and the first sample replaces the last.
     for passes in [0..=1, 0..=2] {
         let last = [*passes.end()];
         assert_eq!(values(&picture(&passes.collect::<Vec<_>>())), values(&picture(&last)));
@@ -207,9 +207,9 @@ fn a_pass_depends_on_its_number_alone() {
 fn the_solution_is_saved_as_a_mesh() {
     let settings = [("mesh-out", "somewhere/room.ply"), ("tolerance", "0.5"), ("patchsize", "2")];
     let mut job = job("radiosity-room.pbrt", &overrides("radiosity", 16, 1, &settings));
-    assert!(job.session.integrator().files().is_empty(), "nothing is known before the first pass");
+    assert!(job.session.integrator().files().is_empty(), "no mesh before the first pass");
     let passes = (job.session.integrator().drafts(), job.planned());
-    assert_eq!(passes, (8, 1), "passes that send light are no samples");
+    assert_eq!(passes, (8, 1), "shooting passes are not samples");
     job.render(&Control::default()).unwrap();
     let summary = job.session.integrator().summary();
     let told = |name: &str| summary.iter().find(|(known, _)| *known == name).unwrap().1.clone();

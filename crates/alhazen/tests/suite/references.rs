@@ -1,4 +1,4 @@
-//! Scenes of Bitterli's collection against the pictures that came with them.
+//! Scenes of Bitterli's collection against their reference pictures.
 //!
 //! Those were rendered in RGB, ours are spectral, which shifts the colour of multiply scattered
 //! light in the Cornell box by some percent. So the box is rendered once per channel with

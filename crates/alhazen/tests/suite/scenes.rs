@@ -45,7 +45,7 @@ fn every_scene_renders_without_diagnostics() {
             Err(errors) => return silent(name, &errors),
         };
         silent(name, &warnings);
-        job.render(&Control::default()).expect("nobody cancels it");
+        job.render(&Control::default()).expect("not cancelled");
         let values: Vec<f32> = job.picture().unwrap().values().collect();
         assert_eq!(values, without_extents(desc), "{name} without extents");
         assert!(values.iter().all(|value| value.is_finite()), "{name} has values that are no numbers");
@@ -58,7 +58,7 @@ fn every_scene_renders_without_diagnostics() {
 fn without_extents(mut desc: SceneDesc) -> Vec<f32> {
     desc.accelerator = AcceleratorDesc::None.into();
     let mut job = Job::compile(desc).expect("a scene").job;
-    job.render(&Control::default()).expect("nobody cancels it");
+    job.render(&Control::default()).expect("not cancelled");
     assert_eq!(job.session.progress().stats.extents, 0);
     job.picture().expect("a picture").values().collect()
 }

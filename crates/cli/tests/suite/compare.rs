@@ -1,4 +1,4 @@
-//! `alhazen compare` from outside.
+//! Tests of `alhazen compare`.
 
 use crate::common::{Folder, SCENE};
 use serde_json::Value;
@@ -51,7 +51,7 @@ fn a_picture_can_be_the_reference() {
     assert!(json["integrators"][0]["seconds"].as_f64() >= Some(0.05));
     let mut written = report(&folder, "scene").1;
     written["outputs"] = json["outputs"].clone();
-    assert_eq!(written, json, "both say the same");
+    assert_eq!(written, json, "the same numbers in both");
     let quiet = folder.alhazen(&[&arguments[..], &["--quiet"]].concat()).expect(0);
     assert_eq!((quiet.out.as_str(), quiet.err.as_str()), ("", ""));
 }
@@ -108,8 +108,8 @@ fn an_interruption_leaves_a_report() {
 
     let folder = Folder::with_scene("compare-interrupt");
     folder.alhazen(&["render", "scene.pbrt", "--quiet", "-o", "r.exr"]).expect(0);
-    // The warning about the sensor is printed when rendering begins, which tells when to interrupt
-    // it.
+    // The warning about the sensor is printed when rendering begins, so that the test knows when to
+    // interrupt it.
     folder.write(
         "scene.pbrt",
         &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),

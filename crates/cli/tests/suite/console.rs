@@ -8,12 +8,12 @@ use crate::common::Folder;
 use alhazen::image::{Image, WriteOptions, write};
 
 #[test]
-fn the_version_tells_the_commit() {
+fn the_version_contains_the_commit() {
     let folder = Folder::new("version");
     let out = folder.alhazen(&["--version"]).expect(0).out;
     let start = format!("alhazen {}", env!("CARGO_PKG_VERSION"));
     let rest = out.trim_end().strip_prefix(&start).unwrap_or_else(|| panic!("{out}"));
-    // Built from an unpacked archive, there is no commit to tell.
+    // Built from an unpacked archive, the commit is unknown.
     if std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../.git")).exists() {
         let [hash, date] = rest.trim_matches([' ', '(', ')']).split(' ').collect::<Vec<_>>()[..] else {
             panic!("{out}")
@@ -26,7 +26,7 @@ fn the_version_tells_the_commit() {
 }
 
 #[test]
-fn completions_and_man_pages_know_every_command() {
+fn completions_and_man_pages_contain_every_command() {
     let folder = Folder::new("manual");
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = folder.alhazen(&["completions", shell]).expect(0).out;

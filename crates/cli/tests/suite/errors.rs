@@ -1,4 +1,4 @@
-//! What goes wrong: texts and exit codes.
+//! Errors: texts and exit codes.
 
 use crate::common::{Folder, SCENE};
 
@@ -90,7 +90,7 @@ fn outputs_are_checked_before_anything_else() {
         #[cfg(unix)]
         ("loop.exr", "too many symbolic links"),
     ] {
-        // The scene is not there either, but the output is what is told.
+        // The scene does not exist either, but the output is reported.
         let finished = folder.alhazen(&["render", "none.pbrt", "-o", "good.exr", "-o", output]).expect(2);
         assert!(finished.err.contains(problem), "{finished:?}");
     }
@@ -185,7 +185,7 @@ fn help_names_every_algorithm_and_setting() {
 }
 
 #[test]
-fn a_camera_that_looks_away_gives_a_warning() {
+fn a_camera_that_sees_no_surface_gives_a_warning() {
     let folder = Folder::new("nothing-in-view");
     let scene = |look_at: &str| {
         format!(

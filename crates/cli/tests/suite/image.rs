@@ -1,4 +1,4 @@
-//! `alhazen image` from outside.
+//! Tests of `alhazen image`.
 
 use crate::common::Folder;
 use alhazen::image::{Image, WriteOptions, write};

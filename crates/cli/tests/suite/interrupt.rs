@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use crate::common::{Folder, SCENE};
 
-/// A render without end, interrupted after a moment: its exit code and standard output.
+/// An unlimited render, interrupted after a moment: its exit code and standard output.
 fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
-    // The warning about the sensor is printed when the render begins, which tells when to interrupt
-    // it.
+    // The warning about the sensor is printed when the render begins, so that the test knows when
+    // to interrupt it.
     folder.write(
         "scene.pbrt",
         &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),
@@ -25,7 +25,7 @@ fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
     let errors = BufReader::new(child.stderr.take().expect("standard error"));
     let begun = errors.lines().map_while(Result::ok).any(|line| line.contains("1 warning"));
     assert!(begun, "the program ended before it rendered");
-    // The picture is to be seen long before it is done.
+    // A preview is written long before the render is done.
     let deadline = Instant::now() + Duration::from_secs(60);
     while !folder.path().join("a.png").exists() && Instant::now() < deadline {
         std::thread::sleep(Duration::from_millis(50));
@@ -40,13 +40,13 @@ fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
 }
 
 #[test]
-fn the_picture_is_written_as_it_stands() {
+fn an_interrupted_render_writes_its_picture() {
     for (name, signal) in [("interrupt", "-INT"), ("terminate", "-TERM")] {
         let folder = Folder::new(name);
         let (code, said) = interrupted(&folder, signal);
         assert_eq!(code, Some(130), "{said}");
         assert!(
-            said.contains("interrupted after ") && said.contains("the picture is written as it stands"),
+            said.contains("interrupted after ") && said.contains("the picture so far is written"),
             "{said}"
         );
         let exr = folder.image("a.exr");
@@ -69,7 +69,7 @@ fn interrupt(child: &std::process::Child) {
         caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).is_ok_and(|mask| mask & 2 != 0))
     };
     while !listens() {
-        assert!(Instant::now() < deadline, "the program does not listen");
+        assert!(Instant::now() < deadline, "the program has no signal handler");
         std::thread::sleep(Duration::from_millis(20));
     }
     assert!(Command::new("kill").args(["-INT", &pid]).status().expect("kill runs").success());
@@ -88,7 +88,7 @@ fn end(mut child: std::process::Child) -> (Option<i32>, serde_json::Value) {
 #[test]
 fn the_import_ends_at_once() {
     let folder = Folder::new("interrupt-import");
-    // The scene never comes.
+    // The scene never arrives.
     let mut command = folder.command(&["render", "-", "--json", "-o", "a.exr"]);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("the program runs");
     let _open = child.stdin.take();
@@ -111,7 +111,7 @@ fn a_second_interrupt_ends_a_program_that_is_stuck() {
     let mut command =
         folder.command(&["render", "scene.pbrt", "--json", "--spp", "100000000", "-o", "a.exr"]);
     let child = command.stdout(Stdio::piped()).spawn().expect("the program runs");
-    // Nobody reads the rest of the first preview, so that it is never written.
+    // The rest of the first preview is not read, so that writing it blocks.
     let mut reader = BufReader::with_capacity(1, std::fs::File::open(&pipe).expect("the pipe"));
     while reader.read(&mut [0]).expect("a byte") == 0 {
         std::thread::sleep(Duration::from_millis(20));

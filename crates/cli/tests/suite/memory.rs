@@ -1,4 +1,4 @@
-//! Memory that runs out is an error that says what it was for, wherever input can cause it.
+//! Wherever input can exhaust the memory, the error says what it was needed for.
 
 use std::process::Command;
 

@@ -1,4 +1,4 @@
-//! `alhazen render` from outside.
+//! Tests of `alhazen render`.
 
 use std::time::{Duration, Instant};
 
@@ -147,7 +147,7 @@ fn an_algorithm_keeps_the_settings_of_the_scene() {
 }
 
 #[test]
-fn the_summary_says_what_was_done() {
+fn the_summary_describes_the_render() {
     let folder = Folder::with_scene("summary");
     let said = folder.alhazen(&["render", "scene.pbrt", "--crop", "0,0.5,0,1"]).expect(0).out;
     for part in [
@@ -181,7 +181,7 @@ fn the_default_name_is_the_films_or_the_scenes() {
 }
 
 #[test]
-fn quiet_says_nothing() {
+fn quiet_prints_nothing() {
     let folder = Folder::with_scene("quiet");
     let finished = folder.alhazen(&["render", "scene.pbrt", "--quiet"]).expect(0);
     assert_eq!((finished.out.as_str(), finished.err.as_str()), ("", ""));

@@ -83,7 +83,7 @@ fn resumed_and_sharded_renders_have_the_bits_of_unbroken_ones() {
         let run = |arguments: &[&str]| folder.alhazen(arguments).expect(0);
         run(&render(integrator, &["-o", "whole.exr"]));
 
-        // One pass at least is done in any time.
+        // At least one pass is done in any time.
         run(&render(integrator, &["-o", "a.exr", "--checkpoint", "a.film", "--time", "1ms"]));
         assert_eq!(header(&folder, "a.film").done.to_string(), "0");
         run(&["resume", "a.film", "--quiet", "--spp", "3", "-o", "a.exr"]);
@@ -106,7 +106,7 @@ fn resumed_and_sharded_renders_have_the_bits_of_unbroken_ones() {
 }
 
 #[test]
-fn a_render_that_is_done_stays_as_it_is() {
+fn resuming_a_finished_render_changes_nothing() {
     let folder = room("resume-done");
     let saved = ["-o", "whole.exr", "--checkpoint", "whole.film"];
     folder.alhazen(&render(INTEGRATORS[0], &saved)).expect(0);
@@ -173,7 +173,7 @@ fn noise_and_time_end_a_render() {
 }
 
 #[test]
-fn films_that_do_not_fit_are_named() {
+fn films_that_cannot_be_merged_are_named() {
     let folder = room("resume-errors");
     let run = |arguments: &[&str], code| folder.alhazen(arguments).expect(code).err;
     let part = |shard: &str, film: &str, more: &[&str]| {
@@ -236,7 +236,7 @@ fn flipped(bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn options_that_make_no_sense_are_refused() {
+fn invalid_combinations_of_options_are_refused() {
     let folder = room("resume-usage");
     let shard = ["--checkpoint", "a.film", "--shard"];
     for arguments in [
@@ -294,5 +294,5 @@ fn a_kill_loses_neither_passes_nor_files() {
     folder.alhazen(&arguments).expect(0);
     assert!(bytes(&folder, "a.exr") == bytes(&folder, "whole.exr"));
     let leftovers = folder.files().into_iter().filter(|name| name.starts_with(".a.film"));
-    assert_eq!(leftovers.count(), 0, "what a killed program has left is removed");
+    assert_eq!(leftovers.count(), 0, "leftovers of killed programs are removed");
 }

@@ -22,7 +22,7 @@ pub enum FilmFileError {
         /// What is wrong with it.
         problem: String,
     },
-    /// The file takes more memory than is allowed, or there.
+    /// The file needs more memory than is allowed or available.
     Limits(String),
     /// The files are of different renders.
     Mismatch(String),
@@ -59,7 +59,7 @@ impl std::error::Error for FilmFileError {
     }
 }
 
-/// Of a film that there is no memory for.
+/// The error of a film that does not fit in memory.
 impl From<ImageError> for FilmFileError {
     fn from(error: ImageError) -> Self {
         match error {

@@ -5,7 +5,7 @@ use super::section::Fields;
 use crate::grid::Grid;
 use crate::{Film, MAX_REJECTED_PIXELS, Rejected, TILE_SIZE};
 
-/// Appends what a film counts as a whole: paths of splats and refused samples.
+/// Appends the totals of a film: paths of splats and refused samples.
 pub fn put_totals(payload: &mut Vec<u8>, film: &Film) {
     payload.extend(film.splats.paths().to_le_bytes());
     let rejected = film.rejected();
@@ -19,7 +19,7 @@ pub fn add_totals(fields: &mut Fields, film: &mut Film) -> Result<(), FilmFileEr
     film.splats.add_paths(fields.u64()?);
     let (count, pixels) = (fields.u64()?, fields.u8()?);
     if usize::from(pixels) > MAX_REJECTED_PIXELS || u64::from(pixels) > count {
-        return Err(fields.wrong(&format!("it remembers {pixels} of {count} refused samples")));
+        return Err(fields.wrong(&format!("it lists {pixels} pixels of {count} refused samples")));
     }
     let mut remembered = Vec::new();
     for _ in 0..pixels {
@@ -135,7 +135,7 @@ fn byte_length(value: i128) -> usize {
     if value == 0 { 0 } else { (bits as usize + 1).div_ceil(8) }
 }
 
-/// Reads a block of so many numbers.
+/// Reads a block of `count` numbers.
 fn block(fields: &mut Fields, count: usize) -> Result<Vec<i128>, FilmFileError> {
     let length = usize::from(fields.u8()?);
     if length > 16 {

@@ -1,5 +1,4 @@
-//! Film files: what a render has found so far, so that it can go on later, or be one part of
-//! several that are merged.
+//! Film files: the state of a render, from which it can be resumed, or merged with other parts.
 //!
 //! A file holds a [`FilmHeader`] (which scene, which settings, which passes), the picture's
 //! [`Film`] with all its sums exactly, films that an algorithm fills beside it, and opaque states
@@ -55,17 +54,17 @@ const END: section::Tag = *b"END ";
 /// The most bytes that a header, or the settings of a film, take.
 const MAX_SETTINGS: u64 = 16 << 20;
 
-/// What a film file says about the render that it is part of.
+/// The render that a film file is part of.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FilmHeader {
-    /// A hash of the scene's content, by which another scene is recognised.
+    /// A hash of the scene's content, which identifies the scene.
     pub scene_hash: [u8; 32],
-    /// What is needed to go on and to write pictures, in the caller's own form. Files whose
-    /// settings differ cannot be merged. At most 16 MiB with the rest of the header.
+    /// What is needed to resume the render and to write pictures, in the caller's own format. Files
+    /// whose settings differ cannot be merged. At most 16 MiB with the rest of the header.
     pub settings: String,
     /// The seed of the random numbers.
     pub seed: u64,
-    /// How many passes make the whole picture.
+    /// The number of passes of the whole picture.
     pub planned: u32,
     /// The passes that the films hold.
     pub done: PassSet,
@@ -109,7 +108,7 @@ impl FilmHeader {
 /// The state of an algorithm, which only the algorithm itself can read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
-    /// Which state.
+    /// Its name.
     pub name: String,
     /// The passes after which it was saved.
     pub passes: PassSet,
@@ -117,7 +116,7 @@ pub struct State {
     pub bytes: Vec<u8>,
 }
 
-/// What memory a film file may take when it is read.
+/// Limits of the memory that a film file may take when it is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadLimits {
     /// Bytes of films and states together.
@@ -132,15 +131,15 @@ impl Default for ReadLimits {
 }
 
 impl ReadLimits {
-    /// For a file of so many bytes: what its films can take at most, so that a short file that
-    /// claims a huge film is refused.
+    /// The limits for a file of this length: the most that its films can take, so that a short file
+    /// that claims a huge film is refused.
     pub fn for_file(length: u64) -> Self {
         // A tile has a byte at least for each component of 256 pixels of 16 bytes.
         const GREATEST_RATIO: u64 = 8192;
         Self { max_bytes: length.saturating_mul(GREATEST_RATIO) }
     }
 
-    /// Takes its share of what is left for a film or a state.
+    /// Deducts the memory of a film or a state.
     fn take(&mut self, bytes: u64, what: &str) -> Result<(), FilmFileError> {
         let left = self.max_bytes.checked_sub(bytes).ok_or_else(|| {
             FilmFileError::Limits(format!("{what} needs {bytes} bytes, of which {} are left", self.max_bytes))
@@ -194,17 +193,17 @@ impl<W: Write> FilmWriter<W> {
         Ok(self.sections.write(STATE, &[&start, bytes])?)
     }
 
-    /// Ends the file; without it, it counts as cut short.
+    /// Ends the file; without this it counts as truncated.
     pub fn finish(mut self) -> Result<W, FilmFileError> {
         self.sections.write(END, &[])?;
         Ok(self.sections.finish()?)
     }
 }
 
-/// What a film file holds.
+/// The contents of a film file.
 #[derive(Debug)]
 pub struct FilmFile {
-    /// Which render, and which passes of it.
+    /// The render, and the passes of it that the films hold.
     pub header: FilmHeader,
     /// The film of the picture.
     pub picture: Film,
@@ -250,8 +249,8 @@ impl FilmFile {
     /// Adds another file of the same render, without holding its films in memory a second time.
     /// States are collected, as only their algorithms can merge them.
     ///
-    /// After an error that [`FilmHeader::check_merge`] does not foresee the films may hold a part
-    /// of the other file, and are of no use.
+    /// After an error that [`FilmHeader::check_merge`] does not detect, the films may hold a part
+    /// of the other file and must not be used.
     pub fn merge(&mut self, input: impl Read, limits: &ReadLimits) -> Result<(), FilmFileError> {
         let mut sections = SectionReader::new(input)?;
         let header = FilmHeader::from_section(&sections.read(&[HEADER], MAX_SETTINGS)?)?;

@@ -4,8 +4,8 @@ use std::io::{self, ErrorKind, Read, Write};
 
 use super::{FilmFileError, VERSION};
 
-/// The first bytes of every film file. The first is no ASCII, and the line ends are those that a
-/// transfer in text mode would change.
+/// The first bytes of every film file. The first is not ASCII, and a transfer in text mode would
+/// change the line ends.
 const MAGIC: [u8; 8] = *b"\x89ALZF\r\n\x1a";
 
 /// Bytes allocated at a time, as the length that a section claims may be wrong.
@@ -47,12 +47,12 @@ impl<W: Write> SectionWriter<W> {
     }
 }
 
-/// A section that was read, whose checksum is right.
+/// A section that was read, with a valid checksum.
 #[derive(Debug)]
 pub struct Section {
-    /// What it is.
+    /// Its tag.
     pub tag: Tag,
-    /// What it holds.
+    /// Its payload.
     pub payload: Vec<u8>,
 }
 
@@ -90,7 +90,7 @@ impl<R: Read> SectionReader<R> {
     /// Reads the next section, which must be one of those in `expected`, of at most `max_bytes`.
     pub fn read(&mut self, expected: &[Tag], max_bytes: u64) -> Result<Section, FilmFileError> {
         let (mut tag, mut length) = (Tag::default(), [0; 8]);
-        // What is missing is best named by what should be there.
+        // A missing section is named by the one that is expected.
         read_exact(&mut self.input, expected[0], &mut tag)?;
         if !expected.contains(&tag) {
             let names = expected.iter().map(|&tag| name(tag)).collect::<Vec<_>>().join(" or ");
@@ -116,7 +116,8 @@ impl<R: Read> SectionReader<R> {
         Ok(Section { tag, payload })
     }
 
-    /// Reads a payload. Memory grows with what is there, not with what is claimed.
+    /// Reads a payload. Memory grows with the bytes that are read, not with the length that is
+    /// claimed.
     fn payload(&mut self, tag: Tag, length: u64) -> Result<Vec<u8>, FilmFileError> {
         let no_memory =
             || FilmFileError::Limits(format!("no memory for the {length} bytes of {}", name(tag)));
@@ -165,7 +166,7 @@ pub struct Fields<'a> {
 }
 
 impl<'a> Fields<'a> {
-    /// So many bytes.
+    /// A number of bytes.
     pub fn bytes(&mut self, count: usize) -> Result<&'a [u8], FilmFileError> {
         let (bytes, rest) = self.rest.split_at_checked(count).ok_or_else(|| self.wrong("it is too short"))?;
         self.rest = rest;

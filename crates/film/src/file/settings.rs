@@ -40,7 +40,7 @@ pub fn put(payload: &mut Vec<u8>, film: &Film) {
 pub fn read(fields: &mut Fields, limits: &mut ReadLimits) -> Result<Film, FilmFileError> {
     let mut corner = || Ok::<_, FilmFileError>([fields.i32()?, fields.i32()?]);
     let (full_resolution, min, max) = (corner()?, corner()?, corner()?);
-    // Sizes that are no sizes would overflow below.
+    // Invalid sizes would overflow below.
     let inside = |axis: usize| 0 <= min[axis] && min[axis] < max[axis] && max[axis] <= full_resolution[axis];
     if !(inside(0) && inside(1)) {
         return Err(fields.wrong(&format!("pixels {min:?} to {max:?} of {full_resolution:?}")));

@@ -1,4 +1,4 @@
-//! Every filter through the same contract.
+//! The contract of all filters.
 
 use alhazen_film::Filter;
 use alhazen_film::filter::MAX_RADIUS;
@@ -6,7 +6,7 @@ use description::FilterDesc;
 use math::Vec2;
 use testkit::{Chi2, Moments, Random, integrate, t_test};
 
-/// One filter of each kind and more, with the names that failures show.
+/// Filters of every kind, with names for failures.
 fn all() -> Vec<(&'static str, Filter)> {
     let describe = [
         ("box", FilterDesc::Box { radius: [0.5, 0.5] }),
@@ -178,7 +178,7 @@ fn the_defaults_of_the_format_have_known_values() {
 }
 
 #[test]
-fn parameters_that_make_no_filter_are_refused_by_name() {
+fn invalid_parameters_are_refused_by_name() {
     for (desc, parameter) in [
         (FilterDesc::Box { radius: [0.0, 1.0] }, "xradius"),
         (FilterDesc::Box { radius: [1.0, f32::NAN] }, "yradius"),

@@ -78,7 +78,7 @@ fn floats(film: &Film) -> Vec<u32> {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn files_round_trip() {
     let passes = passes(&[0..2, 5..6]);
     let written = bytes(&passes);
     let file = read(&written).unwrap();
@@ -97,7 +97,7 @@ fn what_is_written_is_read_again() {
 }
 
 #[test]
-fn a_film_that_was_read_goes_on_like_the_original() {
+fn a_film_that_was_read_continues_like_the_original() {
     let mut file = read(&bytes(&PassSet::from(0..3))).unwrap();
     add_pass(&mut file.picture, 3);
     assert_eq!(floats(&file.picture), floats(&film(&PassSet::from(0..4))));
@@ -174,7 +174,7 @@ fn files_of_other_renders_and_doubled_passes_are_refused() {
     ];
     for (change, message) in cases {
         let refusal = refusal(change);
-        assert!(refusal.contains(message), "{refusal:?} should tell that {message}");
+        assert!(refusal.contains(message), "{refusal:?} lacks `{message}`");
     }
 }
 
@@ -193,7 +193,7 @@ fn files_of_any_shorter_length_are_refused() {
 }
 
 #[test]
-fn every_flipped_bit_is_noticed() {
+fn every_flipped_bit_is_detected() {
     let bytes = bytes(&PassSet::from(0..1));
     let mut random = Random::new(8);
     for byte in 0..bytes.len() {
@@ -208,7 +208,7 @@ fn every_flipped_bit_is_noticed() {
 }
 
 #[test]
-fn errors_name_the_section_and_what_is_wrong_with_it() {
+fn errors_name_the_section_and_the_problem() {
     let bytes = bytes(&PassSet::from(0..1));
     let message = |bytes: &[u8]| read(bytes).unwrap_err().to_string();
     assert_eq!(message(b"PNG"), "not a film file");

@@ -102,7 +102,7 @@ fn tiles_hold_every_pixel_once_and_fill_the_same_film() {
 }
 
 #[test]
-fn samples_that_are_no_numbers_are_counted_and_left_out() {
+fn invalid_samples_are_counted_and_left_out() {
     let mut film = film_of(&scene([4, 4]));
     let lambda = SampledWavelengths::sample_visible(0.5);
     let good = SampledSpectrum::splat(0.5);
@@ -180,7 +180,7 @@ fn a_sample_is_scaled_down_to_the_largest_allowed_component() {
 }
 
 #[test]
-fn the_picture_knows_its_window_and_its_colour_space() {
+fn the_picture_has_its_window_and_colour_space() {
     let mut desc = scene([40, 30]);
     desc.film.pixel_bounds = Some([10, 99, -5, 20]);
     desc.film.color_space = ColorSpaceDesc::Rec2020;
@@ -202,7 +202,7 @@ fn a_crop_window_is_rounded_up_on_both_sides() {
     assert_eq!(film_of(&desc).pixel_bounds(), bounds, "pixel bounds do not count beside it");
 }
 
-/// The codes and messages of what [`compile`] says about a scene.
+/// The codes and messages of [`compile`] for a scene.
 fn said(desc: &SceneDesc) -> Vec<(Severity, &'static str, String)> {
     let diagnostics = match compile(desc) {
         Ok(compiled) => compiled.warnings,
@@ -212,7 +212,7 @@ fn said(desc: &SceneDesc) -> Vec<(Severity, &'static str, String)> {
 }
 
 #[test]
-fn what_makes_no_film_is_an_error() {
+fn invalid_films_are_errors() {
     let mut desc = scene([10, 10]);
     desc.film.pixel_bounds = Some([20, 30, 0, 10]);
     assert_eq!(said(&desc)[0].1, "invalid-film");
@@ -244,7 +244,7 @@ fn settings_outside_their_domain_are_errors() {
 }
 
 #[test]
-fn what_is_not_drawn_is_a_warning() {
+fn unsupported_settings_are_warnings() {
     let mut desc = scene([10, 10]);
     desc.film.kind = FilmKind::Spectral { buckets: 8, lambda_min: 400.0, lambda_max: 700.0 };
     desc.film.sensor.name = "canon_eos_100d".into();

@@ -248,12 +248,12 @@ fn layers_do_not_change_the_colours() {
 }
 
 #[test]
-fn the_memory_of_a_pixel_is_what_the_documents_say() {
+fn a_pixel_has_the_documented_size() {
     assert_eq!((PIXEL_BYTES, SPLAT_BYTES), (52, 36));
 }
 
 #[test]
-fn layers_are_known_by_their_names() {
+fn layers_are_found_by_their_names() {
     for layer in Layer::ALL {
         assert_eq!(Layer::from_name(layer.name()), Some(layer));
         assert_eq!(LayerSet::NONE.with(layer).iter().collect::<Vec<_>>(), [layer]);

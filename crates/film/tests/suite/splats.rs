@@ -118,7 +118,7 @@ fn order_and_merging_do_not_change_a_bit() {
 }
 
 #[test]
-fn what_is_no_light_or_not_on_the_film_is_left_out() {
+fn invalid_light_and_positions_off_the_film_are_left_out() {
     let mut film = film(FilterDesc::Box { radius: [0.5, 0.5] });
     count(&mut film, 1);
     splat(&mut film, Vec2::new(5.0, 5.0), f32::NAN);

@@ -1,8 +1,8 @@
 //! A bounding volume hierarchy over primitives of any kind.
 //!
-//! [`build`] makes the tree, [`node`] has its nodes, [`traverse`] passes rays through it; the tests
-//! of leaves are the caller's. A leaf is a range of *blocks*, each of a fixed number of primitives
-//! that are tested at once.
+//! [`build`] makes the tree, [`node`] has its nodes, and [`traverse`] traverses it; the caller
+//! tests the leaves. A leaf is a range of *blocks*, each of a fixed number of primitives that are
+//! tested at once.
 //!
 //! The tree depends on the primitives alone, not on the number of threads that build it.
 
@@ -18,7 +18,7 @@ pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};
 pub(crate) use traverse::Leaves;
 
-/// The most levels of nodes of a tree, for which the traversal stack has capacity.
+/// The maximum depth of a tree, which bounds the traversal stack.
 const MAX_DEPTH: usize = 96;
 
 /// A bounding volume hierarchy.

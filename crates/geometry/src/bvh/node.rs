@@ -1,8 +1,8 @@
 //! Wide nodes: sixteen children, whose boxes are tested together ([Wald et al. 2008]).
 //!
 //! Traversal is bound by latency: each step depends on the one before, and takes the same time for
-//! eight boxes as for sixteen. With sixteen there are fewer steps, which pays even where vectors
-//! are shorter.
+//! eight boxes as for sixteen. With sixteen there are fewer steps, which is faster even where
+//! vectors are shorter.
 //!
 //! A ray enters a slab at t = p·(1/d) − o/d, one fused multiply-add; everything but the plane p is
 //! precomputed. Boxes are widened by the rounding error, and by that of the watertight triangle

@@ -2,8 +2,8 @@
 //!
 //! For the nearest hit, children are visited front to back: the nearest at once, the others from a
 //! stack, where each has the distance of its box, so that it is skipped when a nearer hit has been
-//! found. For any hit, the order is a heuristic: by distance where the ray has an end, since such
-//! rays test visibility of a point; where it has none, the order of the builder, which puts
+//! found. For any hit, the order is a heuristic: by distance where the ray is a segment, since such
+//! rays test the visibility of a point; where it is unbounded, the order of the builder, which puts
 //! children with large primitives last, where they are visited first. Children on the stack are
 //! prefetched.
 
@@ -108,7 +108,7 @@ impl Bvh {
         leaves: &mut impl Leaves,
     ) -> (u64, bool) {
         let mut extents = 0;
-        // Nothing is before an end that is negative or NaN.
+        // A negative or NaN `t_max` admits no hit.
         if self.nodes.is_empty() || t_max.is_nan() || *t_max < 0.0 {
             return (extents, false);
         }

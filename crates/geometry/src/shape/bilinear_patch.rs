@@ -1,10 +1,10 @@
 //! The bilinear patch p(u, v) = (1−u)(1−v)·p₀₀ + u(1−v)·p₁₀ + (1−u)v·p₀₁ + uv·p₁₁.
 //!
 //! A ray meets a line of constant u where the three vectors between them are coplanar, which is a
-//! quadratic equation in u; v and t follow from the nearest points of ray and line
-//! ([Reshetov 2019]; [Pharr 2023 §6.6]). Of a parallelogram, which most patches are, all is linear.
-//! It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on the
-//! patch whatever t was.
+//! quadratic equation in u; v and t follow from the nearest points of ray and line ([Reshetov
+//! 2019]; [Pharr 2023 §6.6]). For a parallelogram, which most patches are, the equations are
+//! linear. It is solved in doubles, and the hit point is evaluated from (u, v), so that it lies on
+//! the patch whatever t was.
 //!
 //! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the
 //! corners, or an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is
@@ -354,7 +354,7 @@ fn lines_met([p00, p10, p01, p11]: &[DVec3; 4], d: DVec3) -> Option<[f64; 2]> {
     solve_quadratic(a, b, c)
 }
 
-/// The roots of a·t² + b·t + c; one root comes twice.
+/// The roots of a·t² + b·t + c; a double root is given twice.
 fn solve_quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     if a == 0.0 {
         return (b != 0.0).then(|| [-c / b; 2]);
@@ -367,7 +367,7 @@ fn solve_quadratic(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     Some([q / a, if q == 0.0 { 0.0 } else { c / q }])
 }
 
-/// Turns `v` as the shortest turn does that brings one unit vector to another less than a right
+/// Rotates `v` by the smallest rotation that takes one unit vector to another, less than a right
 /// angle away (Rodrigues).
 fn turn(v: Vec3, from: Vec3, to: Vec3) -> Vec3 {
     let (axis, cos) = (from.cross(to), from.dot(to));

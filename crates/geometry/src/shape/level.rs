@@ -2,8 +2,8 @@
 //!
 //! The normal is n = ∇F/|∇F|; along a tangent v it changes by (H·v − n·(n·H·v))/|∇F|, with H the
 //! second derivatives of F. The parameters are the spherical angles around a centre, u = φ/2π and v
-//! = 1 − θ/π, as on a whole sphere. Their gradients in space give the tangents: ∂p/∂u is at right
-//! angles to n and ∇v, and ∇u·∂p/∂u = 1.
+//! = 1 − θ/π, as on a whole sphere. Their gradients in space give the tangents: ∂p/∂u is
+//! perpendicular to n and ∇v, and ∇u·∂p/∂u = 1.
 
 use super::quadric::Quadric;
 use crate::surface::{SurfacePoint, any_tangents};

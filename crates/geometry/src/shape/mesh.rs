@@ -49,7 +49,7 @@ impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Index { triangle, vertex } => {
-                write!(f, "triangle {triangle} names vertex {vertex}, which does not exist")
+                write!(f, "triangle {triangle} has vertex index {vertex}, which does not exist")
             }
             Self::AttributeLength { attribute, values, vertices } => {
                 write!(f, "{values} {attribute} for {vertices} vertices")
@@ -57,10 +57,10 @@ impl fmt::Display for MeshError {
             Self::Edge([a, b]) => {
                 write!(
                     f,
-                    "the edge from vertex {a} to vertex {b} does not lie between two triangles of like turn"
+                    "the edge from vertex {a} to vertex {b} is not shared by two triangles of the same orientation"
                 )
             }
-            Self::Vertex(vertex) => write!(f, "parts of the mesh touch in nothing but vertex {vertex}"),
+            Self::Vertex(vertex) => write!(f, "parts of the mesh are joined at vertex {vertex} only"),
             Self::TooLarge => write!(f, "too many triangles"),
         }
     }

@@ -22,12 +22,12 @@ pub struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// A mesh that interpolates its keys; before and after the times it is at rest.
+    /// A mesh that interpolates its keys; it is at rest before the first and after the last.
     ///
     /// # Panics
     /// When there is no key, or keys differ in the number of their triangles.
     pub fn new(keys: Vec<TriangleMesh>, times: [f32; 2]) -> Self {
-        assert!(!keys.is_empty(), "a mesh is somewhere");
+        assert!(!keys.is_empty(), "a moving mesh has a key");
         assert!(keys.iter().all(|key| key.len() == keys[0].len()), "all keys have the same triangles");
         Self { keys, times }
     }
@@ -43,7 +43,7 @@ impl MovingMesh {
         let last = self.keys.len() - 1;
         let [start, end] = self.times;
         let x = (time - start) / (end - start) * last as f32;
-        // Written so that NaN, where the times are one, is the start.
+        // Written so that NaN, where both times are equal, is the start.
         let x = if x > 0.0 { x.min(last as f32) } else { 0.0 };
         let key = (x as usize).min(last.saturating_sub(1));
         (key, x - key as f32)

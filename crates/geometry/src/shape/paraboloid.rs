@@ -2,8 +2,8 @@
 //! at z_max is r.
 //!
 //! p(u, v) = (√(s·z) cos φ, √(s·z) sin φ, z), φ = u·φ_max, z = z_min + v·(z_max − z_min). Sampled
-//! by area: its element is √(s·z + s²/4) dz dφ, so that the power 3/2 of z + s/4 is uniform
-//! ([Pharr 2016 §3.5]).
+//! by area: its element is √(s·z + s²/4) dz dφ, so that (z + s/4)^(3/2) is uniform ([Pharr 2016
+//! §3.5]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, revolved_roots, swept, unrounded};
 use super::sample::{ShapeHit, ShapeSample};

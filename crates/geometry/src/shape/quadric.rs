@@ -100,8 +100,8 @@ impl Quadric {
         (pdf / self.placement.area_factor_outside(n.as_dvec3())) as f32
     }
 
-    /// The area in render space of what has `area` in object space, and the unit normal
-    /// `normal(u, v)` at parameters spread evenly over that area.
+    /// The area in render space of a surface with `area` in object space, and the unit normal
+    /// `normal(u, v)` at parameters that are uniform over that area.
     pub fn area(&self, area: f64, normal: impl Fn(f64, f64) -> DVec3) -> f32 {
         const STEPS: usize = 64;
         let place = |i: usize| (i as f64 + 0.5) / STEPS as f64;
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn a_surface_of_revolution_has_the_roots_of_its_meridian() {
-        // A cone of 45° met across, along its axis, along its side, and from very far.
+        // A cone of 45° hit across, along its axis, along its side, and from very far.
         let cone = |o, d| revolved_roots([0.0, 0.0, 1.0], o, d, DVec3::ZERO);
         let o = DVec3::new(-4.0, 0.0, 2.0);
         assert_eq!(cone(o, DVec3::X), Some([2.0, 6.0]));

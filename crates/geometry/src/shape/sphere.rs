@@ -5,7 +5,7 @@
 //!
 //! A whole sphere under a similarity transform is sampled over the cone in which it is seen from
 //! outside: with sin θ_max = r/d, the cosine is uniform in [cos θ_max, 1], so that the density is
-//! 1/(2π(1 − cos θ_max)). All else is sampled by area ([Pharr 2023 §6.2]).
+//! 1/(2π(1 − cos θ_max)). All other spheres are sampled by area ([Pharr 2023 §6.2]).
 
 use super::quadric::{Local, Quadric, between, first_hit, phi, roots, swept, unrounded};
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};

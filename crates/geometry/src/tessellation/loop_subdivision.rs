@@ -150,7 +150,7 @@ impl Mesh {
     }
 
     /// A vertex and its neighbours, weighted: on the border by `border` for the two along it, else
-    /// by `inner` of how many there are.
+    /// by `inner` of their number.
     fn weighted(&self, vertex: u32, inner: impl Fn(f64) -> f64, border: f64) -> DVec3 {
         let (p, ring) = (self.point(vertex), self.ring(vertex));
         if self.is_border(vertex) {

@@ -4,7 +4,7 @@
 //! origins in an order in which consecutive rays visit the same nodes and triangles, so that these
 //! are in the cache; few rays in the order given.
 //!
-//! Each ray finds the very hit that it finds alone.
+//! Each ray finds the same hit as on its own.
 
 #![allow(unsafe_code)]
 
@@ -20,7 +20,7 @@ use crate::bvh::WIDTH;
 use lanes::{Simd, Task};
 use math::Ray;
 
-/// How many rays ahead of its turn a ray is prefetched.
+/// How many rays ahead rays are prefetched.
 const PREFETCH_DISTANCE: usize = 16;
 
 impl World {

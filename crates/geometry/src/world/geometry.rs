@@ -1,4 +1,4 @@
-//! Geometries: what a scene ties materials, lights and names to.
+//! Geometries: the objects that a scene gives materials, lights and names.
 
 use crate::curve::Curves;
 use crate::shape::{Shape, TriangleMesh};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GeometryId(pub u32);
 
-/// One object of a scene: one or more primitives that share whatever is tied to a [`GeometryId`].
+/// One object of a scene: one or more primitives with one [`GeometryId`].
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// The triangles of a mesh.

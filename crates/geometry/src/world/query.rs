@@ -6,12 +6,12 @@
 use super::hit::Hit;
 use math::Ray;
 
-/// A query that hits are offered to.
+/// A query, which considers hits one after another.
 pub(super) trait Query {
     /// Whether any hit answers the query, not only the nearest.
     const ANY: bool;
 
-    /// Whether the query wants no more hits.
+    /// Whether the query is finished.
     fn is_answered(&self) -> bool;
 
     /// The result.
@@ -20,13 +20,13 @@ pub(super) trait Query {
     /// The answer, once all hits were offered.
     fn answer(self) -> Self::Answer;
 
-    /// Hits beyond this distance are not wanted.
+    /// Hits beyond this distance are ignored.
     fn t_max(&self) -> f32;
 
-    /// Hits at or beyond this distance are not wanted.
+    /// Hits at or beyond this distance are ignored.
     fn end(&self) -> f32;
 
-    /// Considers a hit; returns whether the query wants no more.
+    /// Considers a hit; returns whether the query is finished.
     fn offer(&mut self, hit: Hit) -> bool;
 }
 

@@ -6,7 +6,7 @@
 
 use math::{Bounds3, Ray};
 
-/// Fewer rays share too few nodes to pay for the sort.
+/// Fewer rays share too few nodes to make up for the sort.
 const MIN_RAYS: usize = 1 << 14;
 
 /// Rays are coherent as given where the mean distance between consecutive origins is below this

@@ -18,7 +18,7 @@ use lanes::{Simd, Vector};
 use math::Ray;
 use std::ops::Range;
 
-/// How far apart the directions of a packet may be, relative to their length.
+/// The largest difference between directions of a packet, relative to their length.
 const SPREAD: f32 = 0.1;
 
 /// Whether rays are worth tracing as a packet: they have one origin, and similar directions with
@@ -45,7 +45,7 @@ pub(super) struct RayPacket<'a> {
 }
 
 impl<'a> RayPacket<'a> {
-    /// Up to so many rays are tested against triangles one by one.
+    /// Up to this many rays are tested against triangles individually.
     const FEW: u32 = 4;
 
     #[inline(always)]

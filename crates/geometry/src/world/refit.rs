@@ -31,7 +31,7 @@ impl World {
     /// Replaces geometries by others with the same primitives elsewhere, as
     /// [`TriangleMesh::moved`](crate::TriangleMesh::moved) makes them. The trees keep their
     /// topology, so that this takes a fraction of the build time; rays find the same hits as in a
-    /// new world, the more slowly the further neighbours have moved apart. Primitives that were not
+    /// new world, but more slowly the further neighbours have moved apart. Primitives that were not
     /// finite when the world was built are never hit; those that are not finite now cannot be hit
     /// until they are.
     ///

@@ -1,10 +1,10 @@
 //! The spheres of a group's sets: a tree over blocks of eight.
 //!
-//! A block finds in floats which of its spheres the ray may meet; these candidates, which are few,
-//! are then tested in doubles. With m = c − o, unit direction d and b = m·d, the ray passes the
-//! centre at distance |m − b·d|. A sphere is rejected only where that exceeds r + E, or where the
-//! range b ± (r + E) lies outside of the ray's; E is more than twice the rounding error of m, d, b
-//! and the distance, each of which is a few ε·|m|.
+//! A block is tested in floats for the spheres that the ray may hit; these few candidates are then
+//! tested in doubles. With m = c − o, unit direction d and b = m·d, the ray passes the centre at
+//! distance |m − b·d|. A sphere is rejected only where that exceeds r + E, or where the range b ±
+//! (r + E) lies outside of the ray's; E is more than twice the rounding error of m, d, b and the
+//! distance, each of which is a few ε·|m|.
 
 #![allow(unsafe_code)]
 
@@ -115,7 +115,7 @@ impl SphereBlock {
     /// Spheres in a block.
     pub const WIDTH: usize = 8;
 
-    /// A block, and the box around it. Unused lanes have a centre of NaN, which no ray is near to.
+    /// A block, and the box around it. Unused lanes have a centre of NaN, which no ray hits.
     fn new(references: &[Reference], geometries: &[Geometry]) -> (Self, Bounds3) {
         let mut block = Self {
             center: [[f32::NAN; Self::WIDTH]; 3],

@@ -5,7 +5,7 @@ use super::group::Group;
 use super::instance::{GroupId, PreparedInstance};
 use lanes::InstructionSet;
 
-/// What rays are traced against.
+/// The tables that rays are traced against.
 #[derive(Clone, Debug)]
 pub(super) struct Tables {
     /// By [`GroupId`].

@@ -30,7 +30,7 @@ pub(super) struct Trace<'a> {
 }
 
 impl Trace<'_> {
-    /// Offers all hits in a group to the query; returns whether it wants no more.
+    /// Offers all hits in a group to the query; returns whether it is finished.
     pub fn group<Q: Query>(&mut self, group: &Group, query: &mut Q) -> bool {
         if !is_valid(self.ray) {
             return false;
@@ -69,7 +69,7 @@ impl Trace<'_> {
         stop
     }
 
-    /// The parameters of these hits are zero: only the surface has them.
+    /// The parameters of these hits are zero: only the surface point has them.
     fn spheres<Q: Query>(&mut self, spheres: &Spheres, query: &mut Q) -> bool {
         if spheres.blocks.is_empty() {
             return false;
@@ -106,7 +106,7 @@ impl Trace<'_> {
         }
     }
 
-    /// All of so many blocks, where rays are not tested against bounding volumes.
+    /// The range of all blocks, where rays are not tested against bounding volumes.
     fn all(&self, blocks: usize) -> Option<Range<usize>> {
         (!self.tables.extents).then_some(0..blocks)
     }
@@ -125,7 +125,7 @@ fn in_order<Q: Query>(t_max: f32) -> bool {
 }
 
 /// Passes `leaves` the blocks of a tree that the ray may meet, or `all` without traversal. Returns
-/// the number of boxes tested, and whether `leaves` wants no more.
+/// the number of boxes tested, and whether `leaves` stopped.
 ///
 /// # Safety
 /// The blocks must be those of the tree, and the processor must have the instruction set.

@@ -29,14 +29,14 @@ impl TriangleBlock {
     /// Triangles in a block.
     pub const WIDTH: usize = 4;
 
-    /// The most vertices that these may have.
+    /// The most vertices of a block.
     pub const VERTICES: usize = 8;
 
     /// The number of an unused lane.
     const UNUSED: u32 = u32::MAX;
 
-    /// A block of the first of `len` triangles; as many as their vertices allow, which is returned
-    /// with the box around them. `triangle` gives number, vertex ids and positions of a triangle.
+    /// A block of the first of `len` triangles, as many as their vertices allow, with their number
+    /// and the box around them. `triangle` gives number, vertex ids and positions of a triangle.
     #[inline(always)]
     pub fn new(len: usize, triangle: impl Fn(usize) -> (u32, [u32; 3], [Vec3; 3])) -> (Self, usize, Extent) {
         const CORNERS: usize = 3 * TriangleBlock::WIDTH;

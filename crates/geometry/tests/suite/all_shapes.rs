@@ -284,11 +284,11 @@ fn hits_in_closed_form() {
     assert_eq!(meet(dome, high, -Vec3::Z).map(|hit| hit.0), Some(6.0), "through the open top");
     let tube = || Shape::from(Cylinder::new(m, false, 2.0, [0.0, 4.0], 360.0));
     assert_eq!(meet(tube(), Vec3::new(5.0, 0.0, 1.0), -Vec3::X), Some((3.0, Vec2::new(0.0, 0.25))));
-    assert_eq!(meet(tube(), Vec3::new(0.0, 0.0, 9.0), -Vec3::Z), None, "it has no ends");
+    assert_eq!(meet(tube(), Vec3::new(0.0, 0.0, 9.0), -Vec3::Z), None, "no caps");
     let cone = || Shape::from(Cone::new(m, false, 2.0, 4.0, 360.0));
     assert_eq!(meet(cone(), Vec3::new(5.0, 0.0, 2.0), -Vec3::X), Some((4.0, Vec2::new(0.0, 0.5))));
     assert_eq!(meet(cone(), Vec3::new(0.0, 0.0, 9.0), -Vec3::Z), Some((5.0, Vec2::new(0.0, 1.0))), "the tip");
-    assert_eq!(meet(cone(), Vec3::new(0.0, 2.0, 5.0), -Vec3::Y), None, "it has no other half");
+    assert_eq!(meet(cone(), Vec3::new(0.0, 2.0, 5.0), -Vec3::Y), None, "no second nappe");
     assert_eq!(
         meet(cone(), Vec3::new(-1.0, 0.0, -3.0), Vec3::Z),
         Some((5.0, Vec2::new(0.5, 0.5))),

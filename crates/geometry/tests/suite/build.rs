@@ -173,8 +173,8 @@ fn refit_skips_non_finite_vertices() {
     let mut world = world([mesh.clone().into()]);
     let ray = Ray::new(Vec3::new(0.1, 0.2, 5.0), -Vec3::Z, 0.0);
     let mut refit = |positions: Vec<Vec3>| {
-        let moved = mesh.moved(positions.into(), None).expect("as many vertices");
-        world.refit([(GeometryId(0), moved.into())]).expect("as many triangles");
+        let moved = mesh.moved(positions.into(), None).expect("the same number of vertices");
+        world.refit([(GeometryId(0), moved.into())]).expect("the same triangles");
         nearest(&world, &ray).map(|hit| hit.t)
     };
     assert_eq!(refit(positions.clone()), Some(4.0));

@@ -214,7 +214,7 @@ fn the_bvh_finds_the_nearest_hit() {
 }
 
 #[test]
-fn v_and_tangents_follow_the_format() {
+fn v_and_tangents_follow_pbrts_conventions() {
     // A ray along −z at a curve along +x: v grows towards d × x = −y, and so does ∂p/∂v.
     let ray = Ray::new(Vec3::new(0.3, -0.1, 5.0), -Vec3::Z, 0.25);
     let m = &Transform::IDENTITY;
@@ -244,7 +244,7 @@ fn v_and_tangents_follow_the_format() {
         false,
     );
     let hit = mirrored.intersect(0, &ray, 9.0).expect("a hit");
-    assert!(mirrored.surface(0, &ray, &hit).n.distance(Vec3::Z) < 1e-6, "a mirror turns normals");
+    assert!(mirrored.surface(0, &ray, &hit).n.distance(Vec3::Z) < 1e-6, "a reflection flips normals");
 }
 
 #[test]
@@ -274,7 +274,7 @@ fn spawned_rays_do_not_hit_a_straight_curve() {
 }
 
 #[test]
-fn hostile_curves_are_harmless() {
+fn degenerate_curves_do_not_panic() {
     let rng = &mut Rng::new(6, 0);
     let values = [0.0, -1.0, 1.0, 1e-38, 1e38, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
     for i in 0..2000 {

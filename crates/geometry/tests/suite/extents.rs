@@ -58,7 +58,7 @@ fn brute_force_finds_the_same_hits() {
         assert_eq!((all.extents, all.rays), (0, 300));
         assert!(fewer.extents > 0 && fewer.primitives * 10 < all.primitives, "{fewer:?} and {all:?}");
         let one = RayStats { rays: 1, primitives: all.primitives / 300, extents: 0 };
-        assert_eq!(one.primitives * 300, all.primitives, "each ray has met all of them");
+        assert_eq!(one.primitives * 300, all.primitives, "each ray was tested against all primitives");
         for _ in 0..300 {
             let ray = Ray::new(point_in(rng, 3.0), direction(rng), rng.uniform_f32());
             let t_max = between(rng, 0.0, 3.0);

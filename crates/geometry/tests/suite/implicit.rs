@@ -240,7 +240,7 @@ fn singular_points() {
 }
 
 #[test]
-fn distant_origins_lose_only_their_own_rounding() {
+fn distant_origins_add_only_their_own_rounding_error() {
     let rng = &mut Rng::new(5, 0);
     for distance in [1e2f32, 1e4, 1e6] {
         for text in ["x^2 + y^2 + z^2 - 1", "x^4 + y^4 + z^4 - 1", "sqrt(x^2 + y^2 + z^2) - 1"] {

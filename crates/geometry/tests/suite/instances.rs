@@ -139,7 +139,7 @@ fn shading_normals_determine_orientation() {
         let ray = Ray::new(Vec3::new(0.2, 0.3, 1.0), -Vec3::Z, 0.0);
         let surface = world.surface(&ray, &nearest(&world, &ray).expect("hit"));
         assert!(surface.shading.n.distance(expected) < 1e-6);
-        assert!(surface.n.distance(Vec3::Z * expected.z.signum()) < 1e-6, "n is turned to it");
+        assert!(surface.n.distance(Vec3::Z * expected.z.signum()) < 1e-6, "n is flipped to its side");
         assert!(
             surface.shading.dpdu.dot(expected).abs() < 1e-6
                 && surface.shading.dpdv.dot(expected).abs() < 1e-6
@@ -244,8 +244,7 @@ fn nested_instances_compose_their_transforms() {
 
 #[test]
 fn a_group_is_shared_by_many_nested_instances() {
-    // A ball at x = 0, 1; those at y = 0, 3; and those again, with the first pair by itself, at z =
-    // 0.
+    // A ball at x = 0, 1; those at y = 0, 3; and those again, with the first pair alone, at z = 0.
     let mut builder = World::builder();
     let at = |group, p: Vec3| Instance { group, render_from_instance: Transform::translate(p).into() };
     let one = builder.add_group();

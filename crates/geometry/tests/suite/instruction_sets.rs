@@ -90,7 +90,7 @@ fn lattices_with_coincident_hits() {
 }
 
 #[test]
-fn hostile_geometry() {
+fn degenerate_geometry() {
     let bad = [f32::NAN, f32::INFINITY, -f32::INFINITY, 3e38, -3e38, 1e-42, 1e-30, 0.0, 1.0, -1.0, 0.5];
     let rng = &mut Rng::new(3, 0);
     let pick = |rng: &mut Rng| bad[((rng.uniform_f32() * bad.len() as f32) as usize).min(bad.len() - 1)];

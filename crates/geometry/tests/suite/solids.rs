@@ -1,4 +1,4 @@
-//! Solids: against point membership, and that they are closed.
+//! Solids: hits against point membership, and closed boundaries.
 
 use crate::common::*;
 use alhazen_geometry::*;
@@ -340,7 +340,7 @@ fn hits_in_closed_form() {
         None
     );
     let joined = meet(Union, vec![tube(0.0, 1.0), tube(-1.0, 0.0)], Vec3::new(0.1, 0.2, 0.5), -Vec3::Z);
-    assert_eq!(joined, Some((1.5, -Vec3::Z)), "no wall where two bodies meet");
+    assert_eq!(joined, Some((1.5, -Vec3::Z)), "no surface inside of a union");
     // An implicit surface is closed by its bounds.
     let half = Solid::implicit(
         m,

@@ -1,4 +1,4 @@
-//! A set of spheres is hit, shaded and sampled like its spheres one by one.
+//! A set of spheres is hit, shaded and sampled like single spheres.
 
 use crate::common::*;
 use alhazen_geometry::*;
@@ -142,7 +142,7 @@ fn hits_in_closed_form() {
     assert_eq!(hit(-Vec3::X * 3.0, Vec3::X), Some((2.0, 0)));
     assert_eq!(hit(Vec3::X * 9.0, -Vec3::X * 2.0), Some((1.0, 2)));
     assert_eq!(hit(Vec3::ZERO, Vec3::X), Some((1.0, 0)), "from within");
-    assert_eq!(hit(Vec3::X * 3.0 + Vec3::Y, Vec3::Z), None, "a tangent that begins where it touches");
+    assert_eq!(hit(Vec3::X * 3.0 + Vec3::Y, Vec3::Z), None, "a tangent that starts at its point of contact");
     assert_eq!(hit(Vec3::new(3.0, 1.0, -2.0), Vec3::Z), Some((2.0, 1)), "a tangent");
     assert_eq!(hit(Vec3::new(3.0, 1.0 + 1e-6, -2.0), Vec3::Z), None);
     assert_eq!(hit(Vec3::X * 1.5, Vec3::Y), None, "between");
@@ -169,7 +169,7 @@ fn all_magnitudes_and_non_finite_spheres() {
     let world = crate::common::world([huge.into()]);
     assert!(
         nearest(&world, &Ray::new(Vec3::Z * 2.0, -Vec3::Z, 0.0)).is_some(),
-        "boxes beyond floats are left out"
+        "infinite boxes are left out"
     );
 }
 

@@ -119,7 +119,7 @@ fn invalid_meshes_are_errors() {
     assert_eq!(error(&[[0, 1, 2], [0, 9, 2]], 1), MeshError::Index { triangle: 1, vertex: 9 });
     assert_eq!(error(&[[4, 3, 3]], 1), MeshError::Edge([3, 3]));
     assert_eq!(error(&[[0, 1, 2], [1, 0, 3], [0, 1, 4]], 1), MeshError::Edge([0, 1]), "three on an edge");
-    assert_eq!(error(&[[2, 3, 4], [3, 4, 1]], 1), MeshError::Edge([3, 4]), "two of different turn");
+    assert_eq!(error(&[[2, 3, 4], [3, 4, 1]], 1), MeshError::Edge([3, 4]), "opposite orientations");
     assert_eq!(error(&[[0, 1, 4], [2, 3, 4]], 1), MeshError::Vertex(4), "a bow tie");
     for levels in [13, 40, u32::MAX] {
         assert_eq!(error(&[[0, 1, 2]], levels), MeshError::TooLarge);
@@ -164,7 +164,7 @@ fn dicing_leaves_short_edges_and_no_cracks() {
 
 #[test]
 fn vertices_move_along_their_normals() {
-    // From the octahedron to a sphere of radius 2, whose normals are found again.
+    // From the octahedron to a sphere of radius 2, with the normals of the sphere.
     let mesh = MeshArrays { normals: CORNERS.map(|n| n * 3.0).to_vec(), ..octahedron() };
     let to_sphere = |p: Vec3, n: Vec3, _| {
         assert!((n.length() - 1.0).abs() < 1e-6);

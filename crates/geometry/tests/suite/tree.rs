@@ -28,7 +28,7 @@ fn compare(geometries: &[Geometry], rays: impl IntoIterator<Item = Ray>) -> Resu
         prop_assert_eq!(nearest(&world, &ray).map(|hit| hit.t), expected, "{:?}", ray);
         prop_assert_eq!(world.occluded(&ray, f32::INFINITY, &keep_all, &mut stats), expected.is_some());
         if let Some(t) = expected {
-            prop_assert!(!world.occluded(&ray, t, &keep_all, &mut stats), "the end does not count");
+            prop_assert!(!world.occluded(&ray, t, &keep_all, &mut stats), "t_max is exclusive");
         }
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! OpenEXR, by the block interface of the `exr` crate: every compression that it knows, scan lines
-//! and tiles, of mip levels the largest, of several parts the first with colour. Deep and
+//! OpenEXR, by the block interface of the `exr` crate: every compression that it supports, scan
+//! lines and tiles, of mip levels the largest, of several parts the first with colour. Deep and
 //! chroma-subsampled pictures are refused.
 //!
 //! Blocks are unpacked on the calling thread pool rather than by the crate's own threads, as a
@@ -31,10 +31,10 @@ use crate::{
     source::{Channel, PixelSource},
 };
 
-/// How many blocks are in memory packed and unpacked at a time.
+/// The number of blocks that are in memory, packed and unpacked, at a time.
 const BATCH: usize = 64;
 
-/// Pictures of half floats alone stay so; whatever else becomes single floats. Channels come as R,
+/// Pictures of half floats alone stay so; all others become single floats. Channels are ordered R,
 /// G, B, A, then by name.
 pub fn decode(bytes: &[u8], options: &ReadOptions) -> Result<Image, ImageError> {
     let reader = block::read(Cursor::new(bytes), false).map_err(from_library)?;
@@ -80,7 +80,7 @@ fn choose_layer(headers: &[Header]) -> Result<usize, ImageError> {
     chosen.map(|(index, _)| index).ok_or_else(|| ImageError::Unsupported("deep EXR".into()))
 }
 
-/// The names of the channels as the image will have them, and where each of the file's goes.
+/// The names of the image's channels, and the index in it of each of the file's.
 fn channel_order(header: &Header) -> (Vec<String>, Vec<usize>) {
     let in_file: Vec<String> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
     let rank = |name: &str| ["R", "G", "B", "A"].iter().position(|usual| *usual == name).unwrap_or(4);
@@ -285,8 +285,8 @@ pub fn encode(
     sort_attributes(output, start)
 }
 
-/// Puts the attributes of a file's header in the order of their names: the library leaves it to
-/// chance, and the same picture is to be the same bytes. Nothing that follows the header moves.
+/// Sorts the attributes of a file's header by name, so that the same picture gives the same bytes:
+/// the library's order is random. Nothing after the header moves.
 fn sort_attributes(file: &mut (impl Read + Write + Seek), start: u64) -> Result<(), ImageError> {
     /// The magic number and the version.
     const BEFORE: u64 = 8;
@@ -302,7 +302,7 @@ fn sort_attributes(file: &mut (impl Read + Write + Seek), start: u64) -> Result<
             break;
         }
     }
-    // No name is the beginning of another one with its zero.
+    // With its terminating zero, no name is a prefix of another.
     attributes.sort_unstable_by_key(|range| &header[range.clone()]);
     let sorted: Vec<u8> = attributes.into_iter().flat_map(|range| header[range].iter().copied()).collect();
     file.seek(SeekFrom::Start(start + BEFORE))?;
@@ -311,8 +311,8 @@ fn sort_attributes(file: &mut (impl Read + Write + Seek), start: u64) -> Result<
     Ok(())
 }
 
-/// How long the attribute is with which a header begins: name and type, each with a zero after it,
-/// the value's length, the value. `None` at the header's end.
+/// The length of the first attribute of a header: name and type, each with a terminating zero, the
+/// value's length, the value. `None` at the header's end.
 fn attribute_length(header: &[u8]) -> Option<usize> {
     let name = header.iter().position(|&byte| byte == 0).filter(|&length| length > 0)?;
     let kind = header[name + 1..].iter().position(|&byte| byte == 0)?;

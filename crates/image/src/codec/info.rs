@@ -1,4 +1,4 @@
-//! What a file says of its picture: size, layers, channels, storage and header, of most formats
+//! Information about a picture file: size, layers, channels, storage and header, for most formats
 //! without decoding the pixels.
 
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ use super::{Format, ReadOptions, exr as open_exr, pfm, raster};
 use crate::error::ImageError;
 use crate::metadata::{Attribute, ImageMetadata, Window};
 
-/// What a file says of its picture.
+/// Information about a picture file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageInfo {
     /// The file format.
@@ -47,9 +47,9 @@ pub struct LayerInfo {
 /// How one value of a channel is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
-    /// An integer of so many bits.
+    /// An integer with this number of bits.
     Integer(u32),
-    /// A floating-point number of so many bits.
+    /// A floating-point number with this number of bits.
     Float(u32),
     /// Eight bits, and an exponent shared by the channels of a pixel.
     SharedExponent,
@@ -65,8 +65,8 @@ impl fmt::Display for Sample {
     }
 }
 
-/// Reads what the bytes of a file say of its picture. `name` is used where the content does not
-/// tell the format, and may be empty.
+/// Reads the information about a picture from the bytes of its file. `name` is used where the
+/// content does not determine the format, and may be empty.
 ///
 /// # Errors
 /// As those of [`read`](super::read); the pixels of most formats are not checked.
@@ -81,7 +81,7 @@ pub fn info(bytes: &[u8], name: &str) -> Result<ImageInfo, ImageError> {
         }
         _ => raster_info(bytes, format),
     };
-    // As in `read`: the decoders of other crates are not proof against every byte string.
+    // As in `read`: the decoders of other crates may panic on damaged files.
     catch_unwind(AssertUnwindSafe(inspect))
         .unwrap_or_else(|_| Err(ImageError::Invalid(format!("damaged {format:?} data"))))
 }

@@ -72,7 +72,7 @@ impl Format {
         Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()))
     }
 
-    /// The format of a file: by its content, or where that does not tell, by its name.
+    /// The format of a file: by its content, else by its name.
     fn of(bytes: &[u8], name: &str) -> Result<Self, ImageError> {
         Self::from_content(bytes).or_else(|| Self::from_name(name)).ok_or_else(|| {
             ImageError::Unsupported("neither content nor extension is that of a known image format".into())
@@ -96,11 +96,10 @@ impl Format {
     }
 }
 
-/// How to read.
+/// Options for reading.
 #[derive(Clone, Debug)]
 pub struct ReadOptions {
-    /// What integer codes stand for; `None` means sRGB. Floating-point files are linear whatever
-    /// this says.
+    /// The encoding of integer codes; `None` means sRGB. Floating-point files are always linear.
     pub encoding: Option<ColorEncoding>,
     /// The most bytes that a decoded image may take; 16 GiB by default.
     pub max_bytes: u64,
@@ -145,15 +144,15 @@ impl ReadOptions {
     }
 }
 
-/// How to write.
+/// Options for writing.
 #[derive(Clone, Debug, Default)]
 pub struct WriteOptions {
     /// How values are stored; a depth that the format does not have is refused.
     pub depth: SampleDepth,
 }
 
-/// Decodes the bytes of a file. `name` is used where the content does not tell the format, and may
-/// be empty.
+/// Decodes the bytes of a file. `name` is used where the content does not determine the format, and
+/// may be empty.
 pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, ImageError> {
     let format = Format::of(bytes, name)?;
     let decode = || match format {
@@ -161,8 +160,7 @@ pub fn read(bytes: &[u8], name: &str, options: &ReadOptions) -> Result<Image, Im
         Format::Pfm => pfm::decode(bytes, options),
         _ => raster::decode(bytes, format, options),
     };
-    // The decoders of other crates are not proof against every byte string; a damaged picture must
-    // not end a render.
+    // The decoders of other crates may panic on damaged files, which must not end a render.
     catch_unwind(AssertUnwindSafe(decode))
         .unwrap_or_else(|_| Err(ImageError::Invalid(format!("damaged {format:?} data"))))
 }
@@ -225,8 +223,8 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Writes a file that appears whole or not at all: it is written beside its final place and then
-/// moved there. Symbolic links are followed: their target is replaced, and they stay. What is no
-/// file, such as a pipe, is written as it is. `write` is given the file without a buffer.
+/// moved there. Symbolic links are followed: their target is replaced, and they stay. Anything but
+/// a regular file, such as a pipe, is written in place. `write` is given the file without a buffer.
 pub fn replace_file_with<E: From<io::Error>>(
     path: &Path,
     write: impl FnOnce(&mut File) -> Result<(), E>,
@@ -241,14 +239,13 @@ pub fn replace_file_with<E: From<io::Error>>(
         Ok(fs::rename(&temporary, path)?)
     });
     if written.is_err() {
-        // The first error is the one to tell; a leftover that cannot be removed either changes
-        // nothing about it.
+        // The first error is reported, whether or not the leftover can be removed.
         let _ = fs::remove_file(&temporary);
     }
     written
 }
 
-/// Whether something is there that is no file.
+/// Whether the path is something other than a file.
 fn is_special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|existing| !existing.is_file())
 }

@@ -1,5 +1,5 @@
 //! Portable float maps: a text header `PF` (RGB) or `Pf` (one channel), width, height and a scale
-//! whose sign tells the byte order (negative: little endian), then rows of single floats from the
+//! whose sign gives the byte order (negative: little endian), then rows of single floats from the
 //! **bottom** up [Debevec, PFM format].
 
 use std::io::{BufWriter, Write};

@@ -68,8 +68,7 @@ pub fn decode(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Ima
     Image::new(width, height, channels.iter().copied(), pixels)
 }
 
-/// Refuses a PNG whose pixels name colours that its palette does not have, which the library takes
-/// for black.
+/// Refuses a PNG whose pixels index colours beyond its palette, which the library reads as black.
 fn check_palette(bytes: &[u8]) -> Result<(), ImageError> {
     let damaged = |error: png::DecodingError| ImageError::Invalid(error.to_string());
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().map_err(damaged)?;

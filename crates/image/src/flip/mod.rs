@@ -36,11 +36,12 @@ use crate::{
 /// Pixels per degree of a screen 0.7 m wide with 3840 pixels across, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f32 = 67.020_645;
 
-/// Bytes per pixel that a comparison takes at most: the colours of both pictures, as read and
-/// tone mapped, the impressions of both, and the planes of which the second is made.
+/// Bytes per pixel that a comparison takes at most: the colours of both pictures, as read and tone
+/// mapped, the perceived pixels of both, and the planes from which those of the second are
+/// computed.
 const BYTES_PER_PIXEL: usize = 160;
 
-/// The most exposures that [`hdr_flip`] looks at.
+/// The most exposures that [`hdr_flip`] compares.
 const MAX_EXPOSURES: f32 = 32.0;
 
 /// How different two pictures look.
@@ -110,7 +111,7 @@ fn tone_map(color: Vec3) -> Vec3 {
     (numerator / denominator).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
-/// The exposures in stops at which pictures with this reference are looked at.
+/// The exposures in stops at which pictures are compared to this reference.
 fn exposures(reference: &[Vec3]) -> Vec<f32> {
     let mut luminances: Vec<f32> = reference.iter().map(|color| luminance(*color)).collect();
     luminances.sort_by(f32::total_cmp);
@@ -142,8 +143,9 @@ fn difference(
     if !(0.1..=1e4).contains(&pixels_per_degree) {
         return Err(ImageError::Invalid(format!("{pixels_per_degree} pixels per degree")));
     }
-    let eye = Eye::new(pixels_per_degree);
-    let (reference, test) = (eye.see(reference, width as usize), eye.see(test, width as usize));
+    let kernels = Kernels::new(pixels_per_degree);
+    let (reference, test) =
+        (kernels.perceived(reference, width as usize), kernels.perceived(test, width as usize));
     let largest = hyab(hunt_lab_from_rgb(Vec3::Y), hunt_lab_from_rgb(Vec3::Z)).powf(0.7);
     let knee = 0.4 * largest;
     Ok(reference
@@ -163,8 +165,8 @@ fn difference(
         .collect())
 }
 
-/// What the eye makes of a pixel.
-struct Impression {
+/// A pixel as perceived.
+struct PerceivedPixel {
     /// Hunt-adjusted L*a*b* of the blurred colour.
     lab: Vec3,
     /// Strengths of features in the lightness.
@@ -173,7 +175,7 @@ struct Impression {
 }
 
 /// One-dimensional kernels at some distance from the screen.
-struct Eye {
+struct Kernels {
     lightness: Vec<f32>,
     red_green: Vec<f32>,
     /// Two, whose squares are summed.
@@ -183,7 +185,7 @@ struct Eye {
     second_derivative: Vec<f32>,
 }
 
-impl Eye {
+impl Kernels {
     fn new(pixels_per_degree: f32) -> Self {
         use std::f32::consts::PI;
         // The radius is three deviations of the widest Gaussian, b = 0.04.
@@ -214,7 +216,7 @@ impl Eye {
         }
     }
 
-    fn see(&self, colors: &[Vec3], width: usize) -> Vec<Impression> {
+    fn perceived(&self, colors: &[Vec3], width: usize) -> Vec<PerceivedPixel> {
         let opponent: Vec<Vec3> = colors.par_iter().map(|color| ycxcz_from_rgb(*color)).collect();
         let channel = |c: usize| Plane::new(width, opponent.iter().map(|color| color[c]).collect());
         let (y, cx, cz) = (channel(0), channel(1), channel(2));
@@ -235,7 +237,7 @@ impl Eye {
             .map(|i| {
                 let blurred = Vec3::new(blurred_y[i], blurred_cx[i], blurred_cz[0][i] + blurred_cz[1][i]);
                 let rgb = rgb_from_ycxcz(blurred).clamp(Vec3::ZERO, Vec3::ONE);
-                Impression { lab: hunt_lab_from_rgb(rgb), edge: edges[i], point: points[i] }
+                PerceivedPixel { lab: hunt_lab_from_rgb(rgb), edge: edges[i], point: points[i] }
             })
             .collect()
     }

@@ -14,8 +14,8 @@ impl Plane {
         Self { width, values }
     }
 
-    /// The convolution with `column` ⊗ `row`, both of odd length; edge pixels go on beyond the
-    /// edges.
+    /// The convolution with `column` ⊗ `row`, both of odd length; edge pixels are repeated beyond
+    /// the edges.
     pub fn convolved(&self, row: &[f32], column: &[f32]) -> Self {
         let width = self.width;
         let height = self.values.len() / width;

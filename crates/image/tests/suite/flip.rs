@@ -62,7 +62,7 @@ fn hdr_agrees_with_the_authors() {
 }
 
 #[test]
-fn extremes() {
+fn flip_of_extreme_pictures() {
     let picture = |color: [f32; 3]| Image::from_fn(20, 10, ["R", "G", "B"], |_, _| color);
     let (green, blue, black) = (picture([0.0, 1.0, 0.0]), picture([0.0, 0.0, 1.0]), picture([0.0; 3]));
     assert_eq!(ldr_flip(&green, &green, PIXELS_PER_DEGREE).unwrap().mean, 0.0);
@@ -72,7 +72,7 @@ fn extremes() {
 }
 
 #[test]
-fn values_without_sense_give_numbers() {
+fn invalid_values_give_finite_errors() {
     let good = Image::from_fn(8, 8, ["Y"], |x, _| [x as f32]);
     let bad = Image::from_fn(8, 8, ["Y"], |x, y| {
         [[f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30, f32::MIN_POSITIVE, 0.0, 1.0]

@@ -1,5 +1,5 @@
-//! Decoders fed with what is damaged, odd or made to hurt: an image or an error comes, soon and
-//! within bounds.
+//! Decoders on damaged, unusual and malicious files: an image or an error, in bounded time and
+//! memory.
 
 use std::time::{Duration, Instant};
 
@@ -25,7 +25,7 @@ fn malformed_files_end_in_an_image_or_an_error() {
             assert!(!(name.starts_with("invalid") && result.is_ok()), "{name} must be refused");
         }
     }
-    // What the whole run of these tests has taken, where the system tells.
+    // The peak of all these tests together, where the system reports it.
     if let Some(peak) = peak_memory() {
         assert!(peak < 1 << 30, "{peak} bytes");
     }
@@ -53,7 +53,7 @@ fn a_header_that_claims_too_much_is_refused_before_memory_is_taken() {
 }
 
 #[test]
-fn no_format_is_told_by_nothing() {
+fn files_without_a_format_are_refused() {
     for bytes in [&b""[..], b"hello", &[0; 100]] {
         assert!(matches!(read(bytes, "x.txt", &ReadOptions::default()), Err(ImageError::Unsupported(_))));
     }
@@ -64,8 +64,8 @@ fn small() -> Image {
     Image::new(24, 18, ["R", "G", "B"], Pixels::F32(values)).unwrap()
 }
 
-/// Reads bytes as a format whatever they are.
-fn survives(bytes: &[u8], format: Format) {
+/// Reads any bytes as a format: an image or an error, within two seconds.
+fn assert_is_read_or_refused(bytes: &[u8], format: Format) {
     let start = Instant::now();
     if let Ok(image) = read(bytes, &format!("x.{}", format.extensions()[0]), &ReadOptions::default()) {
         assert!(image.values().count() > 0);
@@ -77,15 +77,15 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 48, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
 
     #[test]
-    fn truncated_files_are_survived(part in 0.0f64..1.0) {
+    fn truncated_files_do_not_panic(part in 0.0f64..1.0) {
         for format in Format::ALL {
             let bytes = encode(&small(), format, &WriteOptions::default()).unwrap();
-            survives(&bytes[..(part * bytes.len() as f64) as usize], format);
+            assert_is_read_or_refused(&bytes[..(part * bytes.len() as f64) as usize], format);
         }
     }
 
     #[test]
-    fn damaged_files_are_survived(damage in prop::collection::vec((0.0f64..1.0, any::<u8>()), 1..8)) {
+    fn damaged_files_do_not_panic(damage in prop::collection::vec((0.0f64..1.0, any::<u8>()), 1..8)) {
         for format in Format::ALL {
             let mut bytes = encode(&small(), format, &WriteOptions::default()).unwrap();
             for &(at, value) in &damage {
@@ -93,17 +93,17 @@ proptest! {
                 let index = (at * at * bytes.len() as f64) as usize;
                 bytes[index] = value;
             }
-            survives(&bytes, format);
+            assert_is_read_or_refused(&bytes, format);
         }
     }
 
     #[test]
-    fn noise_behind_a_signature_is_survived(noise in prop::collection::vec(any::<u8>(), 0..400)) {
+    fn random_bytes_after_a_signature_do_not_panic(noise in prop::collection::vec(any::<u8>(), 0..400)) {
         for format in Format::ALL {
             let mut bytes = encode(&small(), format, &WriteOptions::default()).unwrap();
             bytes.truncate(8);
             bytes.extend(&noise);
-            survives(&bytes, format);
+            assert_is_read_or_refused(&bytes, format);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What is told of a file without decoding its pixels is what was written.
+//! The information read without decoding the pixels is what was written.
 
 use alhazen_image::{
     Attribute, Format, Image, Pixels, Sample, SampleDepth, Window, WriteOptions, encode, info,
@@ -63,7 +63,7 @@ fn damaged_headers_are_errors() {
         for at in 0..bytes.len().min(300) {
             let mut damaged = bytes.clone();
             damaged[at] ^= 0xff;
-            // It may still be a picture; it may not be a panic.
+            // It may still be a valid picture, but must not panic.
             let _ = info(&damaged, &name).is_ok();
         }
     }

@@ -141,7 +141,7 @@ fn a_window_of_the_wrong_size_is_refused() {
 }
 
 #[test]
-fn a_crop_knows_where_it_lay() {
+fn a_crop_keeps_its_window() {
     let crop = gradient(3).crop(Window { min: [2, 1], max: [6, 4] }).unwrap();
     assert_eq!((crop.width(), crop.height()), (4, 3));
     assert_eq!(crop.rgb(0, 0), gradient(3).rgb(2, 1));
@@ -152,7 +152,7 @@ fn a_crop_knows_where_it_lay() {
     assert!(gradient(3).crop(Window { min: [4, 4], max: [4, 5] }).is_err());
 }
 
-/// A fresh folder that goes when it is dropped.
+/// A temporary folder, removed when it is dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -170,7 +170,7 @@ impl Drop for Folder {
 }
 
 #[test]
-fn files_appear_whole_and_nothing_else_does() {
+fn files_are_written_atomically() {
     let folder = Folder::new("write");
     for format in Format::ALL {
         let path = folder.0.join(format!("picture.{}", format.extensions()[0]));
@@ -201,7 +201,7 @@ fn a_failed_write_leaves_the_old_file() {
 
 #[cfg(unix)]
 #[test]
-fn symbolic_links_are_followed_and_stay() {
+fn symbolic_links_are_followed_and_kept() {
     let folder = Folder::new("link");
     fs::create_dir(folder.0.join("target")).unwrap();
     let [link, second, file] = ["link.exr", "second.exr", "target/file.exr"].map(|name| folder.0.join(name));

@@ -1,4 +1,4 @@
-//! Pictures of other programs, and what OpenEXR's own library makes of some of them.
+//! Pictures of other programs, some against their means by OpenEXR's own library.
 
 use alhazen_image::{Format, Image, ImageError, Pixels, ReadOptions, Window, read};
 

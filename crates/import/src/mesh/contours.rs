@@ -1,4 +1,4 @@
-//! Triangulation of plane polygons with holes.
+//! Triangulation of planar polygons with holes.
 //!
 //! Each hole is joined to the outer contour by a *bridge*, an edge that is traversed in both
 //! directions, so that one contour is left for the ear clipping of [`super::polygon`]. Holes are
@@ -39,7 +39,7 @@ impl fmt::Display for ContourError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooShort { contour } => write!(f, "contour {contour} has fewer than three points"),
-            Self::TooMany => write!(f, "more than {MOST_CORNERS} points make a mesh, not a polygon"),
+            Self::TooMany => write!(f, "a polygon has at most {MOST_CORNERS} points; use a mesh"),
             Self::Flat => write!(f, "the outer contour has no area"),
             Self::OffPlane { point } => write!(f, "point {point} is not in the plane of the others"),
             Self::Touch { edges: [a, b] } => {
@@ -113,7 +113,7 @@ impl Plane {
         let origin = points[outer[0] as usize].as_dvec3();
         let size = points.iter().map(|p| (p.as_dvec3() - origin).length()).fold(0.0, f64::max);
         let normal = normal(points, outer);
-        // Rounded coordinates leave some area to a line.
+        // With rounded coordinates, even a line has some area.
         if normal.length() <= 1e-7 * size * size {
             return Err(ContourError::Flat);
         }

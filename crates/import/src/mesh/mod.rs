@@ -95,7 +95,7 @@ pub enum MeshError {
     Invalid(String),
     /// The file has no faces that can be rendered.
     Unsupported(String),
-    /// The file claims more than its bytes can hold.
+    /// The file declares more data than its bytes can hold.
     Limits(String),
 }
 

@@ -144,8 +144,7 @@ impl Part {
 
 /// The lines of a file without comments; a backslash at the end of a line joins it to the next.
 fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    // Joined lines are rare, so that they are looked for first: without one, lines are slices of
-    // the file.
+    // Joined lines are rare: a file without them is searched once, and its lines are slices of it.
     let mut rest = bytes;
     std::iter::from_fn(move || {
         if rest.is_empty() {
@@ -289,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_are_told_apart_by_material() {
+    fn faces_are_grouped_by_material() {
         let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red paint\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl red paint\nf 3 2 1";
         let obj = read_obj_parts(text).unwrap();
         let sizes: Vec<_> =

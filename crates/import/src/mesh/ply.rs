@@ -360,12 +360,12 @@ fn read_faces<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Resu
     }
 }
 
-/// The vertex that a corner names.
+/// The vertex index of a corner, checked.
 fn vertex(corner: f64, mesh: &Mesh) -> Result<u32, MeshError> {
     let vertices = mesh.positions.len();
     match corner >= 0.0 && corner.fract() == 0.0 && corner < vertices as f64 {
         true => Ok(corner as u32),
-        false => invalid(format!("a face has vertex {corner} of {vertices}")),
+        false => invalid(format!("a face has vertex index {corner}, but there are {vertices} vertices")),
     }
 }
 
@@ -375,7 +375,8 @@ fn read_polygons<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
     if !element.properties.iter().any(is_corners) {
         return invalid("the faces have no list property `vertex_indices`");
     }
-    // Nearly all meshes are of triangles: what they need at once, as growing would copy it.
+    // Nearly all meshes are of triangles: their memory is reserved at once, as growing would copy
+    // it.
     mesh.triangles.reserve_exact(element.count);
     let mut corners = Vec::new();
     for _ in 0..element.count {

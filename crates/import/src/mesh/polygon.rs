@@ -8,11 +8,11 @@
 
 use math::{DVec3, Point3};
 
-/// Polygons with more corners than this are cut as fans: searching ears takes quadratic time, and
-/// no modeller makes them.
+/// Polygons with more corners than this are cut as fans: the search for ears takes quadratic time,
+/// and modellers do not make such polygons.
 pub(super) const MOST_CORNERS: usize = 4096;
 
-/// Whether a face turns the same way at every corner (seen along its normal).
+/// Whether a face is convex: whether it turns the same way at every corner (seen along its normal).
 pub(super) fn is_convex(positions: &[Point3], corners: &[u32]) -> bool {
     let points = project(positions, corners);
     let n = points.len();
@@ -81,8 +81,8 @@ pub(super) fn normal(positions: &[Point3], corners: &[u32]) -> DVec3 {
     (0..corners.len()).map(|i| point(i).cross(point(i + 1))).sum()
 }
 
-/// The axes of the coordinate plane in which what has this normal has most area, so ordered that it
-/// turns counter-clockwise.
+/// The axes of the coordinate plane in which a polygon with this normal has the most area, ordered
+/// so that it is counter-clockwise.
 pub(super) fn axes(normal: DVec3) -> [usize; 2] {
     let size = normal.abs();
     let (axes, along) = if size.z >= size.x && size.z >= size.y {

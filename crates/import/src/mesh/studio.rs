@@ -1,8 +1,8 @@
-//! The studio in which a bare mesh is shown: a camera that sees all of it, a ground that takes its
-//! shadow, and light of a neutral grey.
+//! The studio in which a bare mesh is shown: a camera that sees all of it, a ground that receives
+//! its shadow, and light of a neutral grey.
 //!
 //! The light is an environment of constant radiance with a large soft key light in it. The key
-//! light is as bright as makes the lit ground look exactly like the environment behind it: for a
+//! light is so bright that the lit ground looks exactly like the environment behind it: for a
 //! diffuse ground of reflectance ρ under an environment of radiance L, the key light's irradiance
 //! is E = π L (1/ρ − 1), as ρ (π L + E) / π = L. Neither the ground's edge nor a horizon is then
 //! visible, and the shadow lies in an even grey.

@@ -26,7 +26,7 @@ const COLOR_SPACES: [(&str, ColorSpaceDesc); 4] = [
 ];
 
 impl Interpreter<'_> {
-    /// A statement of which a scene has one; a second one replaces the first.
+    /// A statement that a scene has once; a second one replaces the first.
     pub(super) fn only(
         &mut self,
         name: &str,
@@ -121,7 +121,7 @@ impl Interpreter<'_> {
         let target = self.string(tokens, "what the attributes are for")?;
         let given = parameter::parameters(tokens, self.state.color_space, &mut self.report);
         let Some(list) = self.state.attributes.target(&target.value) else {
-            let message = format!("attributes cannot be for `{}`", target.value);
+            let message = format!("there are no attributes for `{}`", target.value);
             self.report.push(Diagnostic {
                 help: did_you_mean(&target.value, Attributes::TARGETS),
                 ..Diagnostic::error("unknown-attribute-target", message, target.span)

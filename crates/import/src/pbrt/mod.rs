@@ -1,8 +1,8 @@
 //! The scene format of pbrt-v4 [Pharr 2023; pbrt.org/fileformat-v4].
 //!
 //! Two steps: the [`interpreter`] runs the directives of all files and collects statements, each
-//! with its graphics state; then [`build`] turns statements into descriptions and resolves names. A
-//! name may thus be used before its definition (except for textures in textures).
+//! with its graphics state; then [`build`] turns statements into descriptions and resolves names.
+//! Names may therefore be used before their definition (except for textures in textures).
 
 mod build;
 mod declarations;

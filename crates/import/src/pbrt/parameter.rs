@@ -96,7 +96,7 @@ pub(crate) struct RawParameter {
     pub(crate) color_space: ColorSpaceDesc,
 }
 
-/// Most parameters of one statement; none that the format knows takes a tenth of them.
+/// Most parameters of one statement; no statement of the format takes a tenth of them.
 const MOST_PARAMETERS: usize = 1000;
 
 /// Reads all parameters of a statement. One that is wrong is reported and skipped.
@@ -340,7 +340,7 @@ fn skip_values(tokens: &mut Tokens) {
     }
 }
 
-/// Skips to behind the next `]`, but never into the next statement.
+/// Skips past the next `]`, but never into the next statement.
 fn skip_to_close(tokens: &mut Tokens) {
     loop {
         let token = tokens.peek();

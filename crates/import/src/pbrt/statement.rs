@@ -99,7 +99,7 @@ pub(crate) struct Statements {
     pub(crate) transform_times: Option<[f32; 2]>,
     pub(crate) float_textures: Vec<TextureStatement>,
     pub(crate) spectrum_textures: Vec<TextureStatement>,
-    /// The order of float and spectrum textures among each other: `true` for a spectrum texture.
+    /// The order of all textures: `true` for a spectrum texture.
     pub(crate) texture_order: Vec<bool>,
     /// Where each texture is named; `true` for a spectrum texture.
     pub(crate) texture_names: HashMap<(bool, String), Span>,

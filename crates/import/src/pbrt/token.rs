@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn words_strings_and_brackets_are_told_apart() {
+    fn text_is_split_into_words_strings_and_brackets() {
         use TokenKind::*;
         let found = kinds("\u{feff}Shape\"x # y\"[1 -.5e3]# c\r\ntrue\r\n\"a\\\"b\"");
         let expected = [

@@ -1,5 +1,5 @@
-//! Scenes and meshes that others wrote: good ones are read without errors, damaged ones end in a
-//! message, quickly.
+//! Scenes and meshes of other authors: valid ones are read without errors, damaged ones are refused
+//! with a message, in bounded time.
 //!
 //! The files are looked for in `$ALHAZEN_DATA` or in `../shared/data` beside the workspace.
 

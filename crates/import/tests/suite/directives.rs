@@ -1,4 +1,4 @@
-//! What every directive does to the description.
+//! The effect of every directive on the description.
 
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{
@@ -94,7 +94,7 @@ fn the_quality_of_the_tree() {
 }
 
 #[test]
-fn what_is_left_out_has_the_default_of_the_format() {
+fn omitted_statements_have_the_defaults_of_the_format() {
     let desc = read("WorldBegin");
     assert_eq!((desc.film.resolution, desc.sampler.kind.samples_per_pixel()), ([1280, 720], 16));
     assert_eq!(*desc.filter, description::FilterDesc::Gaussian { radius: [1.5, 1.5], sigma: 0.5 });
@@ -157,7 +157,7 @@ fn transforms_may_move() {
 }
 
 #[test]
-fn blocks_bring_the_state_back() {
+fn blocks_restore_the_graphics_state() {
     let desc = world(
         r#"Material "diffuse" AttributeBegin Translate 1 0 0 ReverseOrientation Material "conductor"
         AreaLightSource "diffuse" "rgb L" [1 2 3] Shape "sphere" AttributeEnd Shape "disk""#,
@@ -234,7 +234,7 @@ fn objects_and_instances_have_their_own_transforms() {
 }
 
 #[test]
-fn objects_may_hold_instances_of_objects_that_come_later() {
+fn objects_may_contain_instances_of_later_objects() {
     let desc = world(
         "ObjectBegin \"a\" Translate 1 0 0 ObjectInstance \"b\" ObjectInstance \"b\" ObjectEnd
         ObjectBegin \"b\" Shape \"sphere\" ObjectEnd ObjectInstance \"a\"",
@@ -248,7 +248,7 @@ fn objects_may_hold_instances_of_objects_that_come_later() {
 }
 
 #[test]
-fn a_mesh_with_keyframes_has_its_points_divided_up() {
+fn points_of_a_mesh_are_divided_among_keyframes() {
     let desc = world(
         "Shape \"trianglemesh\" \"integer keyframes\" 2 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1] \"normal N\" [0 0 1 0 0 1 0 0 1]",
     );
@@ -298,7 +298,7 @@ fn spectra_are_given_in_five_ways() {
 }
 
 #[test]
-fn meshes_come_from_files_and_from_the_text() {
+fn meshes_are_read_from_files_and_from_the_text() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nproperty float s\n\
         property float t\nelement face 2\nproperty list uchar int vertex_indices\nproperty int face_indices\nend_header\n\
         0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n2 2 0 1 1\n4 0 1 2 3 7\n3 0 1 4 8\n";
@@ -318,7 +318,7 @@ fn meshes_come_from_files_and_from_the_text() {
 }
 
 #[test]
-fn every_parameter_knows_its_place() {
+fn every_parameter_has_its_span() {
     let imported = read_with(MemoryAssets::default(), "WorldBegin Shape \"sphere\" \"float radius\" 2");
     let (handle, _) = imported.desc.shapes.iter().next().unwrap();
     let origin = imported.desc.shapes.origin(handle);
@@ -343,7 +343,7 @@ fn an_index_of_refraction_is_a_number_or_any_spectrum() {
 }
 
 #[test]
-fn the_corners_of_a_crop_window_come_in_any_order() {
+fn the_corners_of_a_crop_window_may_be_in_any_order() {
     let desc = read(r#"Film "rgb" "float cropwindow" [0.75 0.25 0 1] WorldBegin"#);
     assert_eq!(desc.film.crop_window, Some([0.25, 0.75, 0.0, 1.0]));
 }

@@ -1,4 +1,4 @@
-//! No bytes, however wrong, make the readers panic, hang or take much memory.
+//! No input makes the readers panic, hang or take much memory.
 
 use std::io::Write;
 
@@ -65,29 +65,29 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 400, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn random_bytes_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+    fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         let _ = (read_ply(&bytes).is_ok(), read_obj(&bytes).is_ok(), import_bytes(bytes));
     }
 
     #[test]
-    fn random_words_do_no_harm(words in prop::collection::vec(
+    fn random_words_do_not_panic(words in prop::collection::vec(
         prop::sample::select(SCENE.split_whitespace().collect::<Vec<_>>()), 0..60,
     )) {
         let _ = import_bytes(words.join(" ").into_bytes());
     }
 
     #[test]
-    fn damaged_scenes_do_no_harm(bytes in mutated(SCENE)) {
+    fn damaged_scenes_do_not_panic(bytes in mutated(SCENE)) {
         let _ = import_bytes(bytes);
     }
 
     #[test]
-    fn damaged_meshes_do_no_harm(ply in mutated(PLY), obj in mutated(OBJ)) {
+    fn damaged_meshes_do_not_panic(ply in mutated(PLY), obj in mutated(OBJ)) {
         let _ = (read_ply(&ply).is_ok(), read_obj(&obj).is_ok());
     }
 
     #[test]
-    fn damaged_binary_meshes_do_no_harm(body in prop::collection::vec(any::<u8>(), 0..120), big: bool) {
+    fn damaged_binary_meshes_do_not_panic(body in prop::collection::vec(any::<u8>(), 0..120), big: bool) {
         let order = if big { "big" } else { "little" };
         let mut bytes = PLY[..PLY.find("0 0 0").unwrap()].replace("ascii", &format!("binary_{order}_endian")).into_bytes();
         bytes.extend(body);
@@ -108,14 +108,14 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, rng_seed: RngSeed::Fixed(2), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn damaged_mesh_scenes_do_no_harm(obj in mutated(OBJ), mtl in mutated(MTL)) {
+    fn damaged_mesh_scenes_do_not_panic(obj in mutated(OBJ), mtl in mutated(MTL)) {
         let assets = MemoryAssets::default().with("a.obj", obj).with("a.mtl", mtl);
         let imported = import("a.obj", &assets);
         prop_assert!(imported.has_errors() || imported.desc.shapes.len() >= 2, "the mesh and the ground");
     }
 
     #[test]
-    fn damaged_packed_scenes_do_no_harm(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..4)) {
+    fn damaged_packed_scenes_do_not_panic(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..4)) {
         let mut bytes = packed(SCENE.as_bytes());
         for (at, byte) in changes {
             let at = at % bytes.len();
@@ -125,7 +125,7 @@ proptest! {
     }
 
     #[test]
-    fn damaged_tables_do_no_harm(bytes in prop::collection::vec(prop::sample::select(&b"0123456789.-+e #\n,x\xff"[..]), 0..80)) {
+    fn damaged_tables_do_not_panic(bytes in prop::collection::vec(prop::sample::select(&b"0123456789.-+e #\n,x\xff"[..]), 0..80)) {
         let scene = "Camera \"realistic\" \"string lensfile\" \"a.dat\"\nWorldBegin\n\
                      Material \"diffuse\" \"spectrum reflectance\" \"a.dat\"\nShape \"plymesh\" \"string filename\" \"a.dat\"\n";
         let _ = import("a.pbrt", &MemoryAssets::default().with("a.pbrt", scene).with("a.dat", bytes)).has_errors();

@@ -1,4 +1,4 @@
-//! Files of all formats: what they say, and what is said of their errors.
+//! Files of all formats: their descriptions, and the messages about their errors.
 
 mod corpora;
 mod directives;

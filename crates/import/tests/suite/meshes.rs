@@ -75,7 +75,7 @@ fn expected() -> Mesh {
 }
 
 #[test]
-fn all_encodings_of_ply_say_the_same() {
+fn all_encodings_of_ply_give_the_same_mesh() {
     for bytes in [ascii(), binary(false), binary(true)] {
         assert_eq!(read_ply(&bytes), Ok(expected()));
     }
@@ -102,7 +102,7 @@ fn counts_are_checked_before_memory_is_taken() {
 }
 
 #[test]
-fn strips_turn_one_way() {
+fn triangles_of_strips_have_one_winding() {
     let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
         property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n8 0 1 2 3 -1 2 3 4\n";
     let mesh = read_ply(text.as_bytes()).unwrap();
@@ -124,7 +124,8 @@ fn faces_may_stand_before_the_vertices() {
     assert_eq!((mesh.triangles.as_slice(), mesh.quads.as_slice()), (&[[0, 1, 2]][..], &[[0, 1, 2, 3]][..]));
     assert_eq!(Ok(mesh), read([vertices, faces], "2"));
     for corner in ["4", "-1", "0.5"] {
-        let message = MeshError::Invalid(format!("a face has vertex {corner} of 4"));
+        let message =
+            MeshError::Invalid(format!("a face has vertex index {corner}, but there are 4 vertices"));
         assert_eq!(read([faces, vertices], corner), Err(message.clone()));
         assert_eq!(read([vertices, faces], corner), Err(message));
     }

@@ -157,7 +157,7 @@ const BEFORE_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Attribute "shap" "float radius" 2"#,
-        "1:11 error[unknown-attribute-target] attributes cannot be for `shap` (did you mean `shape`?)",
+        "1:11 error[unknown-attribute-target] there are no attributes for `shap` (did you mean `shape`?)",
     ),
     (
         r#"Attribute "shape" "float raduis" 2"#,
@@ -262,7 +262,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 0 4 0 1 1 0 2 1 0 1 2 0] "integer contours" [3 4]"#,
-        "1:66 error[parameter-value] `contours` must divide up the 6 points in `P`",
+        "1:66 error[parameter-value] `contours` must add up to the 6 points in `P`",
     ),
     (
         r#"Shape "polygon" "point3 P" [0 0 0 4 0 0 4 4 0 0 4 1]"#,
@@ -287,15 +287,15 @@ const IN_WORLD: &[(&str, &str)] = &[
     (r#"Shape "sphere" "float radius" 0"#, "1:16 error[parameter-value] `radius` must be above zero"),
     (
         r#"Shape "sphere" "float radius" 2 "float zmin" 3 "float zmax" 4"#,
-        "1:48 error[parameter-value] between `zmin` and `zmax` there is nothing of the surface",
+        "1:48 error[parameter-value] no part of the surface lies between `zmin` and `zmax`",
     ),
     (
         r#"Shape "cylinder" "float zmin" 1"#,
-        "1:18 error[parameter-value] between `zmin` and `zmax` there is nothing of the surface",
+        "1:18 error[parameter-value] no part of the surface lies between `zmin` and `zmax`",
     ),
     (
         r#"Shape "paraboloid" "float zmax" -1"#,
-        "1:20 error[parameter-value] between `zmin` and `zmax` there is nothing of the surface",
+        "1:20 error[parameter-value] no part of the surface lies between `zmin` and `zmax`",
     ),
     (
         r#"Shape "disk" "float innerradius" 1"#,
@@ -309,13 +309,10 @@ const IN_WORLD: &[(&str, &str)] = &[
         r#"Shape "curve" "point3 P" [0 0 0 1 0 0 0 1 0 1 1 1] "float width" -1"#,
         "1:52 error[parameter-value] the width of a curve cannot be negative",
     ),
-    (
-        r#"LightSource "point" "float scale" -2"#,
-        "1:21 error[parameter-value] `scale` cannot be negative: there is no negative light",
-    ),
+    (r#"LightSource "point" "float scale" -2"#, "1:21 error[parameter-value] `scale` cannot be negative"),
     (
         r#"AreaLightSource "diffuse" "float scale" -2"#,
-        "1:27 error[parameter-value] `scale` cannot be negative: there is no negative light",
+        "1:27 error[parameter-value] `scale` cannot be negative",
     ),
     (
         r#"LightSource "point" "float power" 0"#,
@@ -340,7 +337,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"Shape "hyperboloid" "point3 p1" [1 0 1] "point3 p2" [0 2 1]"#,
-        "1:41 error[parameter-value] `p1` and `p2` have the same z: a `disk` draws what such a line sweeps",
+        "1:41 error[parameter-value] `p1` and `p2` have the same z: use a `disk`, which is what such a line sweeps",
     ),
     (r#"ObjectInstance "x""#, "1:16 error[unknown-reference] there is no object `x`"),
     (r#"Shape "implicit""#, "1:7 error[missing-parameter] `implicit` needs the parameter `f`"),
@@ -362,7 +359,7 @@ const IN_WORLD: &[(&str, &str)] = &[
     ),
     (
         r#"ObjectBegin "b" ObjectEnd ObjectBegin "a" Shape "csg" "string operation" "union" "string operands" ["a" "b"] ObjectEnd"#,
-        "1:101 error[unknown-reference] the object `a` is not complete here (a solid inside of an object is made of objects that end before that begins)",
+        "1:101 error[unknown-reference] the object `a` is not complete here (the operands of a solid in an object must end before that object begins)",
     ),
     (
         r#"Shape "csg" "string operands" ["a" "b"]"#,
@@ -382,8 +379,7 @@ fn every_error_has_its_message() {
         );
     }
     for (text, expected) in IN_WORLD {
-        // `WorldBegin` stands behind spaces on a line of its own, so that columns count from the
-        // text.
+        // `WorldBegin` is on a line of its own, so that columns count from the text.
         let found = messages(&format!("WorldBegin\n{text}"));
         let expected = expected.replacen("1:", "2:", 1);
         assert_eq!(found.len(), 1, "{text}\n{found:#?}");
@@ -393,7 +389,7 @@ fn every_error_has_its_message() {
 }
 
 #[test]
-fn all_errors_of_a_scene_come_in_one_run() {
+fn all_errors_of_a_scene_are_found_in_one_run() {
     let all: String =
         IN_WORLD[3..16].iter().map(|(text, _)| format!("AttributeBegin {text} AttributeEnd\n")).collect();
     let found = messages(&format!("Smapler \"sobol\"\nWorldBegin\n{all}\nShape \"spere\"\n"));
@@ -414,14 +410,14 @@ fn too_many_included_files_are_cut_off() {
 }
 
 #[test]
-fn noise_does_not_fill_memory_with_messages() {
+fn the_number_of_messages_is_bounded() {
     let found = messages(&"Noise 1 2 3\n".repeat(100_000));
     assert!(found.len() < 200);
     assert!(found.last().is_some_and(|last| last.contains("[more-errors]")));
 }
 
 #[test]
-fn any_number_of_warnings_is_no_error() {
+fn many_warnings_are_not_an_error() {
     let found = messages(&format!("WorldBegin\n{}", "TransformBegin TransformEnd WorldEnd\n".repeat(10_000)));
     assert_eq!(found.len(), 3, "{found:#?}");
     assert!(found.iter().all(|found| found.starts_with("2:") && found.contains("warning[deprecated]")));
@@ -435,7 +431,7 @@ fn any_number_of_warnings_is_no_error() {
 }
 
 #[test]
-fn messages_quote_a_part_of_what_is_endless() {
+fn long_quotes_are_shortened() {
     let long = "x".repeat(3_000_000);
     for text in [
         format!("{long} 1"),

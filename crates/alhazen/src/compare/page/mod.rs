@@ -269,7 +269,7 @@ impl Comparison {
     }
 }
 
-/// Appends text; a `String` takes all of it.
+/// Appends text.
 fn write_to(text: &mut String, what: std::fmt::Arguments) {
     text.write_fmt(what).expect("invariant: a string can be written to");
 }

@@ -1,9 +1,10 @@
 //! Means of whole pictures, with a standard error of one per mille, which agree within three for
 //! all integrators.
 //!
-//! Pictures with one seed after another are made until the mean of each channel is known well
-//! enough. The mean does not mind how many pixels there are, so each algorithm has as many as make
-//! it quick. All have the same four wavelengths, as colours would be noise alone.
+//! Pictures with successive seeds are rendered until the standard error of each channel's mean is
+//! small enough. The mean does not depend on the number of pixels, so each algorithm has the
+//! resolution at which it is fastest. All have the same four wavelengths, as colours would only add
+//! noise.
 
 use alhazen::Overrides;
 use testkit::{Moments, welch_test};
@@ -12,22 +13,22 @@ use super::scenes::{SCENES, Scene};
 use crate::common::{means, render_text};
 
 /// The tolerated difference of means.
-const THREE_IN_A_THOUSAND: f64 = 3e-3;
+const THREE_PER_MILLE: f64 = 3e-3;
 
-/// In the pool, path tracing knows the mean to a part in a thousand after many minutes. In the
-/// prism a path is left with the first of its wavelengths, which has to be another for each.
+/// In the pool, path tracing takes many minutes to reach a standard error of one per mille. In the
+/// prism a path keeps the first of its wavelengths only, which would have to differ between paths.
 const NOT_COMPARED: [&str; 2] = ["a pool", "a prism"];
 
-/// Where few of all paths carry light: minutes pass until anything knows how much there is.
+/// Few paths carry light here: every algorithm takes minutes to reach this standard error.
 const DOOR: &str = "a door that is almost closed";
 const CAUSTIC: &str = "the caustic of a glass ball";
 
-/// Where chains know the mean after a minute or two: they find out how light goes, less so how much
-/// there is. That they know from the independent paths alone among which they choose their starts,
-/// a fifth of all that they look at. Elsewhere a part in a thousand would take them from ten
-/// minutes to an hour. What three to five minutes show, all channels: over `path`, mirrors +0.0 ±
-/// 0.25 % and door −0.2 to +0.1 ± 0.3 %; over `bdpt`, caustic −0.2 ± 0.3 %, mirrors −0.5 ± 0.6 %
-/// and door −0.2 to +0.1 ± 0.3 to 0.5 %.
+/// Scenes in which Markov chains reach this standard error in a minute or two. Chains estimate the
+/// distribution of light well, but its mean only by the independent paths from which they choose
+/// their starts, a fifth of all paths. Elsewhere one per mille would take them from ten minutes to
+/// an hour. The results of three to five minutes, all channels: over `path`, mirrors +0.0 ± 0.25 %
+/// and door −0.2 to +0.1 ± 0.3 %; over `bdpt`, caustic −0.2 ± 0.3 %, mirrors −0.5 ± 0.6 % and door
+/// −0.2 to +0.1 ± 0.3 to 0.5 %.
 const FOR_CHAINS: [&str; 8] = [
     "a diffuse box",
     "a glossy box",
@@ -39,30 +40,30 @@ const FOR_CHAINS: [&str; 8] = [
     "motion",
 ];
 
-/// An algorithm, with what makes it quick.
+/// An algorithm, with settings that make it fast.
 struct Member {
     name: &'static str,
     integrator: &'static str,
     settings: &'static [(&'static str, &'static str)],
     /// Pixels along a side of the picture, and samples of each.
     size: (i32, u32),
-    /// The standard error with which a mean is known, in parts of it.
-    known: f64,
+    /// The relative standard error to which a mean is estimated.
+    tolerance: f64,
     can: fn(&Scene) -> bool,
 }
 
 const EVEN: (&str, &str) = ("sampler", "zsobol");
 
-/// Path tracing first, which the others are held to; last those that are not unbiased but
-/// consistent: with radii as small, the blur is below the noise, save at a door without thickness,
-/// through which photons seep.
+/// Path tracing first, the reference for the others; last those that are not unbiased but
+/// consistent: with such small radii, the blur is below the noise, except at a door without
+/// thickness, through which photons leak.
 const MEMBERS: [Member; 7] = [
     Member {
         name: "path",
         integrator: "path",
         settings: &[EVEN],
         size: (32, 64),
-        known: 5e-4,
+        tolerance: 5e-4,
         can: |_| true,
     },
     Member {
@@ -70,7 +71,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "bdpt",
         settings: &[EVEN],
         size: (32, 32),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |_| true,
     },
     Member {
@@ -78,7 +79,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "light-tracing",
         settings: &[EVEN],
         size: (32, 64),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| !scene.is_hidden_from_light,
     },
     Member {
@@ -86,7 +87,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "path")],
         size: (128, 16),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| FOR_CHAINS.contains(&scene.name) || scene.name == CAUSTIC,
     },
     Member {
@@ -94,7 +95,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "mlt",
         settings: &[("technique", "bdpt")],
         size: (128, 16),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| FOR_CHAINS.contains(&scene.name),
     },
     Member {
@@ -102,7 +103,7 @@ const MEMBERS: [Member; 7] = [
         integrator: "vcm",
         settings: &[EVEN, ("radius", "0.01")],
         size: (32, 32),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| scene.name != DOOR,
     },
     Member {
@@ -110,18 +111,18 @@ const MEMBERS: [Member; 7] = [
         integrator: "sppm",
         settings: &[EVEN, ("radius", "0.02"), ("photons", "4096")],
         size: (64, 16),
-        known: 8e-4,
+        tolerance: 8e-4,
         can: |scene| !["a plane without end", DOOR].contains(&scene.name),
     },
 ];
 
 impl Member {
-    /// The standard error with which the scene's mean is to be known.
-    fn known(&self, scene: &Scene) -> f64 {
+    /// The relative standard error to which the scene's mean is estimated.
+    fn tolerance(&self, scene: &Scene) -> f64 {
         match (scene.name, self.integrator) {
             (DOOR, "path") => 1e-3,
             (DOOR, _) | (CAUSTIC, "mlt") => 1.2e-3,
-            _ => self.known,
+            _ => self.tolerance,
         }
     }
 
@@ -146,7 +147,7 @@ impl Member {
             };
             let means = means(&render_text(&text, &overrides));
             found.iter_mut().zip(means).for_each(|(moments, mean)| moments.push(mean));
-            if run + 1 >= FEWEST && found.iter().all(|m| error(m) < self.known(scene)) {
+            if run + 1 >= FEWEST && found.iter().all(|m| error(m) < self.tolerance(scene)) {
                 break;
             }
         }
@@ -158,7 +159,7 @@ impl Member {
     }
 }
 
-/// The standard error of a mean, in parts of it.
+/// The relative standard error of a mean.
 fn error(moments: &Moments) -> f64 {
     moments.variance_of_mean().sqrt() / moments.mean
 }
@@ -173,7 +174,7 @@ fn means_agree_within_three_per_mille() {
         let members = MEMBERS.iter().zip(0..).filter(|(member, _)| (member.can)(scene));
         let mut reference = None;
         for (member, k) in members {
-            // No two means have a seed in common.
+            // No two means share a seed.
             let found = member.means(scene, 2000 * (MEMBERS.len() as i32 * i + k));
             let reference = reference.get_or_insert(found);
             println!("{}, {}:", scene.name, member.name);
@@ -189,7 +190,7 @@ fn means_agree_within_three_per_mille() {
                 );
                 println!("{line}");
                 let differs = member.is_unbiased() && welch_test(found, expected, tests).is_err();
-                if differs || difference.abs() > THREE_IN_A_THOUSAND || error(found) > member.known(scene) {
+                if differs || difference.abs() > THREE_PER_MILLE || error(found) > member.tolerance(scene) {
                     failures.push(format!("{}, {},{line}", scene.name, member.name));
                 }
             }

@@ -1,8 +1,8 @@
-//! Integrators with the same expected value, against each other: pictures of small scenes, as a
+//! Integrators with the same expected value against each other: pictures of small scenes, as a
 //! whole and by squares.
 
+mod contract;
 mod means;
-mod promises;
 mod scenes;
 
 use std::sync::LazyLock;
@@ -52,7 +52,7 @@ impl Pictures {
         pictures
     }
 
-    /// What differs from other pictures beyond chance, as one of `tests` pairs.
+    /// The significant differences from other pictures, as one of `tests` pairs.
     fn differences(&self, other: &Self, tests: usize) -> Vec<String> {
         let pairs = self.0.iter().zip(&other.0).enumerate();
         let tested = pairs.filter_map(|(index, (a, b))| {
@@ -77,7 +77,7 @@ fn means(picture: &Image) -> Vec<f64> {
     sums.iter().map(|sum| sum / (SIDE * SIDE) as f64).collect()
 }
 
-/// What path tracing shows of each scene.
+/// The statistics of path tracing for each scene.
 static REFERENCES: LazyLock<Vec<Pictures>> = LazyLock::new(|| {
     let reference = |scene: &Scene| Pictures::new(scene, "path", &[], scene.path_samples, 1000);
     SCENES.iter().map(reference).collect()

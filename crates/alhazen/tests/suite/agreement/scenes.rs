@@ -1,6 +1,6 @@
-//! Small scenes, each hard in its own way.
+//! Small scenes, each with its own difficulty.
 
-/// A scene as text, but for its film and algorithm.
+/// A scene as text, without film and algorithm.
 pub struct Scene {
     pub name: &'static str,
     /// Most scattering events.

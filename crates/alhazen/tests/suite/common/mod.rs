@@ -12,7 +12,7 @@ use alhazen::integrators::Control;
 use alhazen::{Overrides, RenderError, render_file};
 use testkit::{Moments, z_test};
 
-/// A part of the third-party test data, or `None`, said aloud, where it is absent.
+/// A part of the third-party test data, or `None`, with a message, where it is absent.
 pub fn data(part: &str) -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let path = std::env::var_os("ALHAZEN_DATA").map_or_else(beside, PathBuf::from).join(part);
@@ -92,7 +92,7 @@ pub fn shape(path: &Path) -> String {
     text + "]\n"
 }
 
-/// The mean of pictures of one scene that differ by their seeds, and how far the mean may be off.
+/// The mean of pictures of one scene with different seeds, and its standard error.
 pub struct Estimate {
     width: usize,
     height: usize,

@@ -1,4 +1,4 @@
-//! What the tests of the command line share: the program, temporary folders, and a small scene.
+//! Helpers of the tests of the command line: the program, temporary folders, and a small scene.
 
 use std::fs;
 use std::io::Write;
@@ -88,12 +88,12 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A folder that stays is no reason to fail a test.
+        // A leftover folder does not fail a test.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
 
-/// What the program said, and its exit code.
+/// The output of the program, and its exit code.
 #[derive(Debug)]
 pub struct Finished {
     pub code: Option<i32>,
@@ -102,12 +102,12 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// What it said on standard output as JSON.
+    /// Its standard output as JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// The same, once it is sure that it ended with this exit code.
+    /// The same, after checking its exit code.
     pub fn expect(self, code: i32) -> Self {
         assert_eq!(self.code, Some(code), "{self:?}");
         self
@@ -116,7 +116,7 @@ impl Finished {
 
 impl From<Output> for Finished {
     fn from(output: Output) -> Self {
-        let text = |bytes| String::from_utf8(bytes).expect("the program speaks UTF-8");
+        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
         Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
     }
 }

@@ -13,8 +13,8 @@ pub(super) const PARALLEL: usize = 4096;
 
 /// Sorts references and builds a tree over them.
 ///
-/// References of finished subtrees are given back while ids and inner nodes, which take as much
-/// memory, fill up.
+/// The references of finished subtrees are freed while ids and inner nodes, which take as much
+/// memory, are written.
 pub(super) fn build(mut references: Vec<Reference>, blocks: Blocks) -> BinaryTree<Ids> {
     let mut ids = pages::zeroed(references.len());
     let mut inner = pages::zeroed(references.len());
@@ -24,8 +24,8 @@ pub(super) fn build(mut references: Vec<Reference>, blocks: Blocks) -> BinaryTre
     BinaryTree { items: ids, inner, root: tree.root, size }
 }
 
-/// Sorts references and fills in their ids and inner nodes, which are as many. `first` is the index
-/// of the first reference.
+/// Sorts references and writes their ids and inner nodes, one of each per reference. `first` is the
+/// index of the first reference.
 fn grow(
     references: &mut [Reference],
     (ids, inner): (&mut [Ids], &mut [InnerNode]),

@@ -1,10 +1,10 @@
 //! The surface-area heuristic over bins.
 //!
-//! A ray that meets a box meets a box inside of it with the probability of their ratio of surfaces.
-//! Splitting a set into L and R is therefore expected to cost A(L)·blocks(L) + A(R)·blocks(R).
-//! Centroids are sorted into bins along all three axes, and every border between bins is tried
-//! ([Wald 2007]; [Pharr 2023 §7.3]). Minimum, maximum and count do not depend on order, so that any
-//! number of threads may fill bins.
+//! A ray that hits a box hits a box inside of it with the ratio of their surface areas as
+//! probability. Splitting a set into L and R is therefore expected to cost A(L)·blocks(L) +
+//! A(R)·blocks(R). Centroids are sorted into bins along all three axes, and every border between
+//! bins is tried ([Wald 2007]; [Pharr 2023 §7.3]). Minimum, maximum and count do not depend on
+//! order, so that any number of threads may fill bins.
 
 use super::reference::{Extent, Reference, in_parts};
 use super::tree::Blocks;
@@ -19,16 +19,16 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A number below 2²² added to this stands, rounded, in the low bits.
+    /// Adding a number below 2²² rounds it into the low bits of the sum.
     const ROUND: Vec4 = Vec4::splat(12_582_912.0);
 
-    /// For a power of two of bins, over the range of doubled centroids.
+    /// A grid over the range of doubled centroids; `bins` is a power of two.
     fn new(centroids: &Extent, bins: usize) -> Self {
         let scale = (bins - 1) as f32 / (centroids.high() - centroids.low());
         // Where all centroids are the same, all go into one bin.
         let scale = Vec4::select(scale.is_finite_mask(), scale, Vec4::ZERO);
-        // Ids in the lanes w are mostly denormal as numbers, which make a product slow; these make
-        // them −1.
+        // The lanes w hold ids, which are mostly denormal as floats and slow to multiply: they
+        // become −1.
         let mut min = centroids.low();
         min.w = 1.0;
         Self { min, scale, mask: bins as u32 - 1 }
@@ -42,10 +42,10 @@ impl Grid {
     }
 }
 
-/// To read so many references costs more than to sort them into bins.
+/// Reading this many references costs more than sorting them into bins.
 const LARGE_SET: usize = 1 << 14;
 
-/// A place to split at.
+/// A border between bins to split at.
 #[derive(Clone, Copy)]
 pub(super) struct ObjectSplit {
     grid: Grid,
@@ -89,7 +89,7 @@ pub(super) fn centroids(references: &[Reference]) -> Extent {
     in_parts(references, serial, Extent::union)
 }
 
-/// For each axis, what falls into each bin.
+/// The boxes and counts of the bins along each axis.
 struct Bins<const B: usize> {
     boxes: [[Extent; B]; 3],
     counts: [[u32; B]; 3],

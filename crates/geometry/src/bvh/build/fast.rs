@@ -22,9 +22,9 @@ const BITS: u32 = 30;
 const DIGIT: u32 = 10;
 /// Keys that a thread sorts at a time.
 const PART: usize = 1 << 16;
-/// Ranges of at most so many blocks are cut into full ones.
+/// Ranges of at most this many blocks are cut into full ones.
 const FULL_BLOCKS: usize = 4;
-/// Ranges of at most so many blocks become a leaf.
+/// Ranges of at most this many blocks become a leaf.
 const LEAF_BLOCKS: usize = 2;
 
 /// Makes blocks, and builds a tree over them: each reference is a block.
@@ -66,7 +66,7 @@ pub(super) fn build<P: Primitives>(primitives: &P) -> Built<P::Block> {
     Built { nodes, bounds: extent.bounds(), depth, blocks }
 }
 
-/// Leaves whose blocks are made: each reference is one.
+/// Leaves whose blocks exist already: each reference is one.
 struct Made;
 
 impl Leaves<Reference, ()> for Made {

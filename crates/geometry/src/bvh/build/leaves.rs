@@ -27,7 +27,7 @@ impl Item for Ids {
         *self
     }
 
-    /// The box is found again: the block needs the same corners.
+    /// The box is recomputed: the block needs the same corners.
     #[inline(always)]
     fn extent(&self, primitives: &impl Primitives) -> Extent {
         let [geometry, primitive] = *self;

@@ -4,10 +4,9 @@
 //! which is then collapsed into wide nodes ([`widen`]).
 //!
 //! Temporary memory for n primitives: 32 n bytes. `balanced` has 32 n of references, which are
-//! given back part by part as 8 n of ids and 24 n of binary nodes take their place; these are given
-//! back in turn while nodes and blocks are written. `high` keeps its references, and has up to
-//! twice as many. `fast` has one reference and one binary node per block, and takes 16 n bytes to
-//! sort.
+//! freed in parts while 8 n of ids and 24 n of binary nodes are written; these are freed in turn
+//! while nodes and blocks are written. `high` keeps its references, and has up to twice as many.
+//! `fast` has one reference and one binary node per block, and takes 16 n bytes to sort.
 
 mod balanced;
 mod bins;
@@ -41,7 +40,7 @@ pub(crate) use widen::Built;
 /// The trade-off between build time and tracing time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BuildQuality {
-    /// By Morton codes: for what is rebuilt for each picture. Takes a third of the time of
+    /// By Morton codes: for worlds that are rebuilt for each picture. Takes a third of the time of
     /// `Balanced`; rays take up to twice as many tests.
     Fast,
     /// By the binned surface area heuristic: for nearly everything.

@@ -18,14 +18,14 @@ impl<B: Copy + Send> Overflow<B> {
         Self(Mutex::default())
     }
 
-    /// An empty list with capacity for so many planned blocks, and some more: one that grows would
-    /// be copied.
+    /// An empty list with capacity for the planned blocks and some more, so that it is not copied
+    /// to grow.
     pub fn with_capacity(&self, planned: usize) -> Vec<B> {
         pages::with_capacity(planned + planned / 16)
     }
 
-    /// Makes a planned block, and additional ones where it is too small; returns the box around
-    /// all.
+    /// Makes a planned block, and additional ones where it is too small; returns the box around all
+    /// of them.
     #[inline(always)]
     pub fn block<P: Primitives<Block = B>>(
         &self,
@@ -63,7 +63,8 @@ impl<B: Copy + Send> Overflow<B> {
         }
         // Stable, so that blocks of one index stay in order.
         added.par_sort_by_key(|&(index, _)| index);
-        // The final index of each planned block: later by the additional blocks before it.
+        // The final index of each planned block: its own plus the number of additional blocks
+        // before it.
         let planned = blocks.len();
         let mut firsts: Vec<u32> = (0..=planned as u32).collect();
         blocks.reserve_exact(added.len());

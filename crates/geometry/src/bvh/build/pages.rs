@@ -1,4 +1,4 @@
-//! Long arrays in huge pages, and how they are given back part by part.
+//! Long arrays in huge pages, which can be freed in parts.
 //!
 //! The first write to a page faults, which costs about a microsecond: with pages of 4 KiB, a
 //! quarter of the build time at [`super::BuildQuality::Fast`]. Traversal then misses the TLB more
@@ -22,23 +22,24 @@ pub(super) fn filled<T: Clone>(value: T, len: usize) -> Vec<T> {
     list
 }
 
-/// What is a value when all of its bits are zero.
+/// Types for which all bits zero is a valid value.
 ///
 /// # Safety
-/// It must be so.
+/// All bits zero must be a valid value.
 pub(super) unsafe trait Zeroable: Copy {}
 
-// SAFETY: they are integers.
+// SAFETY: any bits are valid integers.
 unsafe impl Zeroable for [u32; 2] {}
 
-/// A vector of values whose bits are zero, in huge pages. A page takes memory from when it is
-/// first written to.
+/// A vector of values whose bits are zero, in huge pages. A page takes no memory until it is first
+/// written to.
 pub(super) fn zeroed<T: Zeroable>(len: usize) -> Vec<T> {
     let layout = Layout::array::<T>(len).expect("invariant: arrays fit in the address space");
     if layout.size() == 0 {
         return Vec::new();
     }
-    // SAFETY: the layout is that of a vector of this capacity, and not empty. Zero bits are values.
+    // SAFETY: the layout is that of a vector of this capacity, and not empty. All bits zero is a
+    // valid `T`.
     let list = unsafe {
         let first = alloc_zeroed(layout);
         if first.is_null() {
@@ -50,8 +51,8 @@ pub(super) fn zeroed<T: Zeroable>(len: usize) -> Vec<T> {
     list
 }
 
-/// Gives the memory of values that are no longer needed back to the system; some of them become
-/// zero. A short list, which is not worth a system call, is kept.
+/// Returns the memory of values that are no longer needed to the system; some of them become zero.
+/// A short list is not worth the system call and keeps its memory.
 pub(super) fn release<T: Zeroable>(list: &mut [T]) {
     const SHORT: usize = 512 << 10;
     if size_of_val(list) >= SHORT {
@@ -59,7 +60,7 @@ pub(super) fn release<T: Zeroable>(list: &mut [T]) {
     }
 }
 
-/// What Linux is asked to do with pages.
+/// Advice to Linux about pages.
 enum Advice {
     MakeHuge,
     Release,
@@ -79,8 +80,8 @@ fn advise<T>(first: *const T, len: usize, advice: Advice) {
         return;
     }
     let first = first.wrapping_byte_add(before).cast_mut().cast();
-    // SAFETY: callers own these bytes. To ask for huge pages does not change them, and what is
-    // released may become zero. An error means that the advice is not taken, which is fine.
+    // SAFETY: callers own these bytes. Asking for huge pages does not change them, and released
+    // bytes may become zero. An error means that the advice is not taken, which is harmless.
     unsafe { libc::madvise(first, (bytes - before) / page * page, advice) };
 }
 
@@ -92,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_lists_hold_what_they_are_filled_with() {
+    fn long_lists_are_filled() {
         for len in [0, 1, 1000, 3 << 20] {
             let list = filled([1u8, 2, 3], len);
             assert_eq!(list.len(), len);
@@ -102,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_released_is_zero_and_the_rest_stays() {
+    fn released_values_are_zero_and_others_are_kept() {
         let mut list = zeroed::<[u32; 2]>(3 << 20);
         assert!(list.iter().all(|&at| at == [0; 2]));
         list.fill([1, 2]);

@@ -5,7 +5,7 @@ use super::reference::{Extent, Reference};
 use math::Vec3;
 use rayon::prelude::*;
 
-/// How many blocks ahead primitives are prefetched; what leads to them, twice as many.
+/// How many blocks ahead primitives are prefetched; indices that lead to them, twice as far.
 pub(super) const PREFETCH_DISTANCE: usize = 8;
 /// Fewer primitives are not split between threads.
 const PARALLEL: usize = 4096;
@@ -38,8 +38,8 @@ pub(crate) trait Primitives: Sync {
     /// Prefetches a primitive that will soon be put into a block.
     fn prefetch(&self, _geometry: u32, _primitive: u32) {}
 
-    /// Makes a block of the first of some primitives, given by their ids; returns how many fit into
-    /// it, and the box around these. The rest gets blocks of its own.
+    /// Makes a block of the first of some primitives, given by their ids; returns the number that
+    /// fits into it, and the box around these. The rest gets blocks of its own.
     fn block(&self, primitives: &[Reference]) -> (Self::Block, usize, Extent);
 }
 

@@ -40,13 +40,13 @@ impl Extent {
         (nothing == Vec4::ZERO).then_some(extent)
     }
 
-    /// The box that both share.
+    /// The intersection of both.
     #[inline]
     pub fn intersection(self, other: Self) -> Self {
         Self { low: self.low.max(other.low), minus_high: self.minus_high.max(other.minus_high) }
     }
 
-    /// The part below a plane at right angles to an axis.
+    /// The part below a plane perpendicular to an axis.
     pub fn below(mut self, axis: usize, at: f32) -> Self {
         self.minus_high[axis] = self.minus_high[axis].max(-at);
         self

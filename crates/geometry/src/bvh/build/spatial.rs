@@ -1,9 +1,9 @@
-//! Planes that split space, and what becomes of primitives across them.
+//! Planes that split space, and the clipping of primitives that straddle them.
 //!
-//! A triangle is cut at the plane and the box drawn around each part, inside of the box that the
-//! reference had before; other primitives have their box cut. Where a side of a triangle crosses
-//! the plane is rounded, and the box made wider by as much, so that no part of the triangle is in
-//! neither box.
+//! A triangle is clipped at the plane, and each part bounded, within the box that the reference had
+//! before; of other primitives the box is clipped. The point where an edge of a triangle crosses
+//! the plane is rounded, and the box is widened by the error, so that no part of the triangle is
+//! outside of both boxes.
 
 use super::reference::{Extent, Reference, in_parts};
 use super::tree::Blocks;
@@ -12,23 +12,24 @@ use math::{Vec3, Vec4, gamma};
 /// Intervals along each axis at whose borders planes are tried.
 const INTERVALS: usize = 16;
 
-/// Tells the corners of what is a triangle.
+/// The corners of a reference to a triangle; `None` for other primitives.
 pub(crate) trait Corners: Fn(&Reference) -> Option<[Vec3; 3]> + Sync + Send {}
 
 impl<T: Fn(&Reference) -> Option<[Vec3; 3]> + Sync + Send> Corners for T {}
 
-/// A plane at right angles to an axis.
+/// A plane perpendicular to an axis.
 pub(super) struct Plane {
     axis: usize,
     at: f32,
     /// As [`super::bins::ObjectSplit::cost`].
     pub cost: f32,
-    /// What is on either side: a box around it, and how many.
+    /// The box and the number of the references on either side.
     sides: [(Extent, u32); 2],
 }
 
 impl Plane {
-    /// The cheapest plane through a set with the box `extent`, as far as that has a finite cost.
+    /// The cheapest plane through a set with the box `extent`; `None` where no plane has a finite
+    /// cost.
     pub fn best(
         references: &[Reference],
         extent: &Extent,
@@ -40,8 +41,8 @@ impl Plane {
         in_parts(references, serial, Intervals::merge).cheapest(&grid, blocks)
     }
 
-    /// The side (0 left, 1 right) to which a primitive across the plane best goes if it goes to one
-    /// alone, and whether that costs less than both.
+    /// The cheaper side (0 left, 1 right) for a primitive across the plane that goes to one side
+    /// alone, and whether that costs less than both sides.
     pub fn one_side(&self, r: &Reference) -> (usize, bool) {
         let cost = |(extent, count): (Extent, u32)| extent.half_area() * count as f32;
         let alone = |side: usize| {
@@ -71,7 +72,7 @@ impl Plane {
     }
 }
 
-/// The boxes around what a reference holds on both sides of a plane.
+/// The boxes of the parts of a reference on both sides of a plane.
 fn cut(r: &Reference, corners: Option<[Vec3; 3]>, axis: usize, at: f32) -> [Extent; 2] {
     let whole = r.extent();
     let [left, right] = [whole.below(axis, at), whole.above(axis, at)];
@@ -121,8 +122,8 @@ impl Grid {
     }
 }
 
-/// For each axis and interval, the box around what lies in it, and how many references begin and
-/// end there.
+/// For each axis and interval, the box around the parts in it, and the numbers of references that
+/// begin and end there.
 struct Intervals {
     boxes: [[Extent; INTERVALS]; 3],
     begin: [[u32; INTERVALS]; 3],

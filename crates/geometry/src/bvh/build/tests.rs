@@ -1,4 +1,4 @@
-//! What every tree must be, whatever it is built over and however.
+//! Invariants of all trees, for any input and builder.
 
 use super::{BuildQuality, Built, Extent, Primitives, Reference, build};
 use crate::bvh::node::WideNode;
@@ -45,7 +45,7 @@ fn inputs() -> Vec<(&'static str, Vec<[Vec3; 3]>)> {
 struct Triangles<'a> {
     corners: &'a [[Vec3; 3]],
     width: usize,
-    /// How many find room in a block.
+    /// The capacity of a block.
     room: usize,
 }
 
@@ -92,15 +92,15 @@ fn contains(outer: &Bounds3, inner: &Bounds3) -> bool {
     inner.is_empty() || outer.contains(inner.min) && outer.contains(inner.max)
 }
 
-/// How often the nodes and blocks of a tree were visited, and the boxes of the leaves that hold
-/// each triangle.
+/// The number of visits of each node and block, and the boxes of the leaves that hold each
+/// triangle.
 struct Visits {
     nodes: Vec<u32>,
     blocks: Vec<u32>,
     boxes: Vec<Vec<Bounds3>>,
 }
 
-/// Visits a whole tree over so many triangles.
+/// Visits a whole tree over a number of triangles.
 fn visited(built: &Built<Block>, triangles: usize) -> Visits {
     let mut visits = Visits {
         nodes: vec![0; built.nodes.len()],

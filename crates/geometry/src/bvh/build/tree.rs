@@ -1,15 +1,15 @@
-//! The binary tree that every builder grows, and how it is best cut into wide nodes.
+//! The binary tree that every builder makes, and the cheapest way to collapse it into wide nodes.
 //!
-//! The tree stands over an array of references; each inner node divides a range of them in two. A
-//! place in the array can only be a border once, so that an inner node is stored at the index of
-//! its border, and threads that work on different ranges write to different parts of one array.
+//! The leaves of the tree are an array of references; each inner node divides a range of them in
+//! two. An index can be a border only once, so that an inner node is stored at the index of its
+//! border, and threads that work on different ranges write to different parts of one array.
 //!
-//! A wide node takes the place of a connected part of the binary tree with at most [`WIDTH`]
-//! branches. Which parts are cheapest to trace is found from the leaves upwards: the cost C(n, i)
-//! of representing what is below n by at most i children of some wide node is C(n, 1) =
-//! min(A·c·blocks (if that is a leaf), A + min_k C(l, k) + C(r, WIDTH − k)), C(n, i) = min(C(n, i −
-//! 1), min_k C(l, k) + C(r, i − k)) with the area A of its box and the cost c of a block, where the
-//! test of a wide node costs 1 ([Ylitie et al. 2017 §3.1]).
+//! A wide node replaces a connected part of the binary tree with at most [`WIDTH`] branches. The
+//! parts that are cheapest to trace are found from the leaves upwards: the cost C(n, i) of
+//! representing what is below n by at most i children of some wide node is C(n, 1) = min(A·c·blocks
+//! (if that is a leaf), A + min_k C(l, k) + C(r, WIDTH − k)), C(n, i) = min(C(n, i − 1), min_k C(l,
+//! k) + C(r, i − k)) with the area A of its box and the cost c of a block, where the test of a wide
+//! node costs 1 ([Ylitie et al. 2017 §3.1]).
 
 #![allow(unsafe_code)]
 
@@ -36,13 +36,13 @@ impl Blocks {
         1 << self.log2
     }
 
-    /// The cost of testing so many blocks.
+    /// The cost of testing a number of blocks.
     #[inline]
     pub fn cost(&self, blocks: u32) -> f32 {
         blocks as f32 * self.cost
     }
 
-    /// The number of blocks of so many primitives.
+    /// The number of blocks for a number of primitives.
     #[inline]
     pub fn count(&self, primitives: u32) -> u32 {
         (primitives + (1 << self.log2) - 1) >> self.log2
@@ -52,13 +52,14 @@ impl Blocks {
 /// An inner node of the binary tree. It is stored where its right half begins.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct InnerNode {
-    /// Borders at which the halves are divided in turn; 0 where a half is not.
+    /// The borders that divide the halves; 0 for a half that is not divided.
     pub halves: [u32; 2],
-    /// Four bits for each number of branches i from 2: how many the left half gets, 0 to do with i
-    /// − 1. No branch of a wide node has all of its branches: the last bits say how many the left
-    /// half gets of a wide node here. Bit 0 says that, as one branch, this is a leaf.
+    /// Four bits for each number of branches i ≥ 2: the number for the left half, 0 if i − 1
+    /// branches are as cheap. A branch of a wide node never has all of its branches: the last bits
+    /// are the number for the left half of a wide node here. Bit 0 is set if one branch here is a
+    /// leaf.
     plan: u64,
-    /// What there is below this if it becomes a wide node.
+    /// The size of the collapsed tree below this if it becomes a wide node.
     pub below: Size,
 }
 
@@ -82,12 +83,12 @@ impl Size {
 pub(super) enum Cut {
     Leaf,
     Node,
-    /// Left and right half take so many branches.
+    /// The numbers of branches of the left and right half.
     Opened([usize; 2]),
 }
 
 impl InnerNode {
-    /// What becomes of this node when it may take `branches`.
+    /// What this node becomes when it may take `branches`.
     #[inline]
     pub fn cut(&self, mut branches: usize) -> Cut {
         while branches > 1 {
@@ -105,14 +106,14 @@ impl InnerNode {
         self.plan != 0
     }
 
-    /// How this node as a wide node shares its branches.
+    /// The numbers of branches of both halves if this is a wide node.
     #[inline]
     pub fn open(&self) -> [usize; 2] {
         let left = (self.plan >> (4 * (WIDTH - 1))) as usize;
         [left, WIDTH - left]
     }
 
-    /// How much a wide node here becomes.
+    /// The size of the collapsed tree if this is a wide node.
     pub fn as_node(&self) -> Size {
         Size { nodes: self.below.nodes + 1, ..self.below }
     }
@@ -123,7 +124,7 @@ pub(super) struct BinaryTree<T> {
     /// References, or ids alone.
     pub items: Vec<T>,
     pub inner: Vec<InnerNode>,
-    /// ObjectSplit of the root; 0 for a leaf.
+    /// The border of the root; 0 for a leaf.
     pub root: u32,
     /// The size of the collapsed tree, which has at least one wide node.
     pub size: Size,
@@ -132,14 +133,14 @@ pub(super) struct BinaryTree<T> {
 /// The binary tree over a range of references.
 #[derive(Clone, Copy)]
 pub(super) struct Subtree {
-    /// ObjectSplit of its root; 0 for a leaf.
+    /// The border of its root; 0 for a leaf.
     pub root: u32,
     pub count: u32,
     pub extent: Extent,
-    /// C(n, i + 1); the last is not asked for, as a branch of a wide node never has all of its
+    /// C(n, i + 1) at index i; the last is unused, as a branch of a wide node never has all of its
     /// branches.
     cost: [f32; WIDTH],
-    /// What it becomes as so many branches.
+    /// The size of the collapsed tree with i + 1 branches.
     size: [Size; WIDTH],
 }
 
@@ -184,7 +185,7 @@ impl Subtree {
         (Self { root: border as u32, count, extent, cost, size }, inner)
     }
 
-    /// How much a wide node over this becomes.
+    /// The size of the collapsed tree under a wide node here.
     pub fn as_node(&self, inner: &[InnerNode]) -> Size {
         match self.root {
             0 => Size { nodes: 1, ..self.size[0] },
@@ -193,7 +194,8 @@ impl Subtree {
     }
 }
 
-/// By i − 1: the cost of sharing i branches between two neighbours, and how many the left one gets.
+/// At index i − 1: the cost of sharing i branches between two neighbours, and the number for the
+/// left.
 fn share(left: &Subtree, right: &Subtree) -> ([f32; WIDTH], [u32; WIDTH]) {
     // What is one branch anyway gets one.
     let mut cost = [f32::INFINITY; WIDTH];

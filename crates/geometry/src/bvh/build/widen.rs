@@ -42,7 +42,7 @@ pub(super) struct Wide {
     pub depth: usize,
 }
 
-/// What makes the blocks of leaves.
+/// Makes the blocks of leaves.
 pub(super) trait Leaves<T, B>: Sync {
     /// Makes the block with this index of the first `len` items. More may follow, of which the next
     /// blocks will be made.
@@ -70,7 +70,7 @@ impl Boxes {
 }
 
 /// Collapses a binary tree. The blocks of its leaves are appended to `list`, which is empty and has
-/// capacity for them. Items and binary nodes are given back while nodes and blocks are written.
+/// capacity for them. Items and binary nodes are freed while nodes and blocks are written.
 pub(super) fn widen<T: Zeroable + Send + Sync, B: Send>(
     tree: BinaryTree<T>,
     blocks: Blocks,
@@ -88,8 +88,8 @@ pub(super) fn widen<T: Zeroable + Send + Sync, B: Send>(
     let binary = Binary { items: &mut items, inner: &mut inner, first: 0 };
     let Summary { extent, depth, .. } =
         Writer { blocks, leaves, of: PhantomData }.write(&whole, binary, part);
-    // SAFETY: all are written: a node shares all of its blocks out ([`finish`] asserts it) among
-    // nodes and leaves, and a leaf writes each of its own.
+    // SAFETY: all are written: a node divides all of its blocks ([`finish`] asserts it) among nodes
+    // and leaves, and a leaf writes each of its own.
     unsafe { list.set_len(size.blocks as usize) };
     Wide { nodes, extent, depth }
 }
@@ -159,7 +159,7 @@ struct Binary<'a, T> {
 }
 
 impl<'a, T> Binary<'a, T> {
-    /// Takes so many items from the front.
+    /// Takes a number of items from the front.
     fn take(&mut self, len: u32) -> Self {
         let (items, later_items) = std::mem::take(&mut self.items).split_at_mut(len as usize);
         let (inner, later_inner) = std::mem::take(&mut self.inner).split_at_mut(len as usize);
@@ -173,7 +173,7 @@ impl<'a, T> Binary<'a, T> {
     }
 }
 
-/// [`Binary`], to be read.
+/// A shared borrow of a [`Binary`].
 struct View<'a, T> {
     items: &'a [T],
     inner: &'a [InnerNode],
@@ -259,7 +259,7 @@ struct Writer<'a, L, T, B> {
 }
 
 impl<L: Leaves<T, B>, T: Zeroable + Send + Sync, B: Send> Writer<'_, L, T, B> {
-    /// Writes a node and all below it, and gives its part of the binary tree back.
+    /// Writes a node and all below it, and frees its part of the binary tree.
     fn write(&self, node: &Branch, tree: Binary<T>, mut part: Part<B>) -> Summary {
         if node.len() <= PARALLEL {
             return self.write_serially(node, &tree.view(), part);
@@ -320,7 +320,7 @@ impl<L: Leaves<T, B>, T: Zeroable + Send + Sync, B: Send> Writer<'_, L, T, B> {
     }
 }
 
-/// Writes a node over children. `rest` is what these have left of its part: nothing.
+/// Writes a node over children. `rest` is the part that these left unwritten: nothing.
 fn finish<B>(here: Part<B>, children: &mut [(Summary, Child)], rest: &Part<B>) -> Summary {
     assert!(rest.blocks.is_empty(), "each block belongs to a leaf");
     children.sort_by(|(a, _), (b, _)| a.priority().total_cmp(&b.priority()));

@@ -48,7 +48,7 @@ impl Body {
     pub fn refined(&self, o: DVec3, d: DVec3, t: f32) -> Root {
         let range = [t.next_down().into(), t.next_up().into()];
         let root = self.find(o, d, range, |_| true);
-        // At higher resolution, a double root may turn out to be a near miss.
+        // At higher resolution, a double root may be a near miss.
         root.unwrap_or(Root { t: t.into(), error: range[1] - range[0] })
     }
 

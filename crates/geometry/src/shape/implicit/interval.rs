@@ -1,8 +1,8 @@
 //! Interval arithmetic in doubles: ranges that contain the exact result ([Moore 1966]).
 //!
-//! Ends are rounded outwards. The elementary functions of the system's library are assumed
-//! to be accurate to four units in the last place, as all common ones are. A function is taken over
-//! that part of a range where it is defined; where it is defined nowhere, the result is empty.
+//! Ends are rounded outwards. The elementary functions of the system's library are assumed to be
+//! accurate to four units in the last place, as all common ones are. A function is evaluated over
+//! the part of a range where it is defined; where it is defined nowhere, the result is empty.
 
 use super::program::{Function, Number, power};
 use std::f64::consts::TAU;
@@ -96,7 +96,7 @@ impl Interval {
 
     /// The range of a wave of period 2π that is `f`, with its crest at `crest` turns.
     fn wave(self, f: fn(f64) -> f64, crest: f64) -> Self {
-        // Beyond this, where a crest lies is not known well enough.
+        // Beyond this, rounding leaves the position of a crest unknown.
         const FAR: f64 = 1e6;
         if self.high - self.low >= TAU || self.low < -FAR || self.high > FAR {
             return Self::new(-1.0, 1.0);
@@ -142,7 +142,7 @@ impl Mul for Interval {
         if self.is_empty() || other.is_empty() {
             return Self::EMPTY;
         }
-        // An infinite end stands for large numbers, of which zero times any is zero.
+        // An infinite end means arbitrarily large finite numbers, so that zero times it is zero.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let (a, b) = (product(self.low, other.low), product(self.low, other.high));
         let (c, d) = (product(self.high, other.low), product(self.high, other.high));

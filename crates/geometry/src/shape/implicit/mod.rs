@@ -56,7 +56,7 @@ impl Implicit {
         let (o, d) = self.quadric.placement.ray_inward(ray);
         let ends = [0.0, t_max.into()].map(|t| Crossing { t, face: 0 });
         let range = self.body.extent.clip(o, d, ends, 0)?.map(|crossing| crossing.t);
-        // A root whose place is not known to be ahead is where the ray started.
+        // A root that is not certainly ahead is the point where the ray starts.
         let root = self.body.find(o, d, range, |root| root.t - root.error > 0.0)?;
         let t = root.t as f32;
         (t > 0.0 && t < t_max).then(|| ShapeHit { t, uv: self.body.level(o + d * root.t, d).parameters() })

@@ -17,7 +17,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub(super) struct Model<const N: usize> {
     /// By ascending powers of s.
     pub c: [f64; N],
-    /// The error bound of the polynomial; infinite where nothing is known.
+    /// The error bound of the polynomial; infinite where there is none.
     pub r: f64,
     /// All values; empty where the formula is defined nowhere on the piece.
     pub range: Interval,
@@ -40,12 +40,12 @@ impl<const N: usize> Model<N> {
         Self { c, r, range: Interval::around(c[0] - reach, c[0] + reach), partial: false }
     }
 
-    /// Nothing is known but the range.
+    /// A model without a polynomial: the range alone.
     fn unknown(range: Interval, partial: bool) -> Self {
         Self { c: [0.0; N], r: f64::INFINITY, range, partial }
     }
 
-    /// The constant in the middle of a range, and how far the ends are from it.
+    /// The middle of a range, and the distance of the ends from it.
     fn flat(range: Interval, partial: bool) -> Self {
         let mut c = [0.0; N];
         c[0] = range.midpoint();

@@ -53,14 +53,14 @@ pub(super) fn parse(text: &str) -> Result<Program, FormulaError> {
     let value = parser.sum()?;
     match parser.peek() {
         None => (),
-        Some(b')') => return Err(parser.error_here("this `)` closes nothing")),
+        Some(b')') => return Err(parser.error_here("this `)` has no `(`")),
         Some(b'=') => {
             let error = parser.error_here("a formula has no `=`");
             return Err(error.with_help("the surface is where the formula is 0: write `a - b` for a = b"));
         }
         Some(_) => return Err(parser.missing_operator()),
     }
-    let whole = parser.error(0..text.len(), "the formula is the same everywhere: it uses neither x, y nor z");
+    let whole = parser.error(0..text.len(), "the formula is constant: it uses neither x, y nor z");
     parser.builder.finish(value).ok_or(whole)
 }
 
@@ -149,7 +149,7 @@ impl Parser<'_> {
         loop {
             let product = if self.take(b'*') {
                 if self.peek() == Some(b'*') {
-                    let error = self.error(self.at - 1..self.at + 1, "`**` is no operator");
+                    let error = self.error(self.at - 1..self.at + 1, "`**` is not an operator");
                     return Err(error.with_help("powers are written with `^`"));
                 }
                 let factor = self.unary()?;
@@ -209,17 +209,15 @@ impl Parser<'_> {
                 let message = if self.text.trim_ascii().is_empty() {
                     "the formula is empty"
                 } else {
-                    "the formula ends where a number or a name should come"
+                    "expected a number or a name, found the end of the formula"
                 };
                 let end = self.text.len();
                 Err(self.error(end..end, message))
             }
             Some(_) => {
                 let error = self.error_here("");
-                let message = format!(
-                    "a number or a name should stand here, not `{}`",
-                    &self.text[error.place.clone()]
-                );
+                let message =
+                    format!("expected a number or a name, found `{}`", &self.text[error.place.clone()]);
                 Err(FormulaError { message, ..error })
             }
         }
@@ -231,7 +229,7 @@ impl Parser<'_> {
         }
         match self.peek() {
             None => Err(self.error(open..open + 1, "this `(` has no `)`")),
-            Some(b',') => Err(self.error_here("there is an argument too many here")),
+            Some(b',') => Err(self.error_here("too many arguments")),
             Some(_) => Err(self.missing_operator()),
         }
     }
@@ -257,7 +255,7 @@ impl Parser<'_> {
         match self.text[start..end].parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(Value::Known(value)),
             Ok(_) => Err(self.error(start..end, "this number is too large")),
-            Err(_) => Err(self.error(start..end, "this is no number")),
+            Err(_) => Err(self.error(start..end, "this is not a number")),
         }
     }
 
@@ -349,7 +347,7 @@ impl Parser<'_> {
         let mut arguments = [Value::Known(0.0); N];
         for (i, argument) in arguments.iter_mut().enumerate() {
             if i > 0 && !self.take(b',') {
-                let message = format!("`{name}` needs {N} arguments, parted by commas");
+                let message = format!("`{name}` needs {N} arguments, separated by commas");
                 return Err(self.error_here(message));
             }
             *argument = self.sum()?;

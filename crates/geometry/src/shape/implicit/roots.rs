@@ -12,7 +12,7 @@
 //! root. Pieces on which the formula is unbounded (poles) never become roots. The work for a ray is
 //! bounded: beyond that, pieces that could not be excluded count as roots.
 //!
-//! How short is relative to the coordinates on the ray; on a ray through a huge box, to those on
+//! This length is relative to the coordinates on the ray; on a ray through a huge box, to those on
 //! the piece, so that a small surface in it is resolved as in a box of its own size.
 
 use super::model::Model;
@@ -35,7 +35,7 @@ const RESOLUTION: f64 = 1.0 / (1u64 << 36) as f64;
 const TOUCH: f64 = 1.0 / (1u64 << 27) as f64;
 /// The formula is evaluated again once the error is this fraction of the polynomial.
 const WORN: f64 = 1.0 / 16.0;
-/// A ray through a huge box has numbers so many times larger than those on a piece.
+/// The ratio of the numbers on a ray to those on a piece above which the box counts as huge.
 const HUGE: f64 = 1024.0;
 
 /// An iterator over the roots of a formula along a ray.
@@ -97,7 +97,7 @@ impl<'a, const N: usize> Roots<'a, N> {
         if !model.range.contains(0.0) {
             return None;
         }
-        // A piece as short as a point is where the formula is defined, or where it is not.
+        // On a piece as short as a point, the formula is either defined or not.
         if model.partial && t[1] - t[0] <= self.scale(t) * RESOLUTION && !self.is_defined(0.5 * (t[0] + t[1]))
         {
             return None;
@@ -225,7 +225,7 @@ fn largest<const N: usize>(b: &[f64; N]) -> f64 {
 }
 
 /// The part of [0, 1] outside of which the polynomial is further than `r` from zero; `None` where
-/// all of it is.
+/// it is on all of [0, 1].
 fn clip<const N: usize>(b: &[f64; N], r: f64) -> Option<[f64; 2]> {
     let reach = |from: usize, other: fn(usize) -> usize| {
         let first = b[from];

@@ -1,5 +1,5 @@
-//! Formulas at random: what is computed of them holds their values, and whatever text comes,
-//! nothing panics.
+//! Random formulas: ranges, models and derivatives contain their values. Random texts: nothing
+//! panics.
 
 use super::interval::Interval;
 use super::jet::Jet;
@@ -9,7 +9,7 @@ use super::{Formula, parser};
 use math::DVec3;
 use proptest::{prelude::*, test_runner::RngSeed};
 
-/// Random texts of formulas with all that formulas have.
+/// Random formulas with all operators, functions and names.
 fn text() -> impl Strategy<Value = String> {
     let leaf = prop_oneof![
         4 => prop::sample::select(vec!["x", "y", "z"]).prop_map(str::to_owned),
@@ -98,7 +98,7 @@ proptest! {
         let h = 1e-5;
         for axis in 0..3 {
             let [above, below] = [h, -h].map(|h| jet(p + DVec3::AXES[axis] * h));
-            // Steps over kinks and poles, and near them, tell nothing.
+            // Finite differences across kinks and poles, or near them, are meaningless.
             let is_tame = |j: &Jet| j.value.is_finite() && j.hessian.abs_diff_eq(here.hessian, 0.01);
             if !(is_tame(&above) && is_tame(&below) && above.gradient.abs_diff_eq(below.gradient, 0.1)) {
                 continue;
@@ -134,7 +134,7 @@ fn hostile(text: &str) {
 }
 
 #[test]
-fn what_binds_how() {
+fn operators_have_their_precedence() {
     let at = |text: &str| {
         Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error}")).value([2.0, 3.0, 5.0])
     };
@@ -166,10 +166,10 @@ fn what_binds_how() {
 }
 
 #[test]
-fn errors_say_where_and_what() {
+fn errors_have_a_place_and_a_message() {
     for (text, place, message, help) in [
         ("", "", "the formula is empty", None),
-        ("x +", "", "the formula ends where a number or a name should come", None),
+        ("x +", "", "expected a number or a name, found the end of the formula", None),
         (
             "x^2 + y^2 = 1",
             "=",
@@ -178,18 +178,18 @@ fn errors_say_where_and_what() {
         ),
         ("2x - 1", "x", "an operator is missing before `x`", Some("products are written with `*`")),
         ("2exp(x)", "exp", "an operator is missing before `exp`", Some("products are written with `*`")),
-        ("x**2", "**", "`**` is no operator", Some("powers are written with `^`")),
+        ("x**2", "**", "`**` is not an operator", Some("powers are written with `^`")),
         ("xy + z", "xy", "there is no `xy` in formulas", Some("did you mean `x*y`?")),
         ("SIN(x)", "SIN", "there is no `SIN` in formulas", Some("did you mean `sin`?")),
         ("ln(x)", "ln", "there is no `ln` in formulas", Some("did you mean `log`?")),
         ("(x + 1", "(", "this `(` has no `)`", None),
-        ("x + 1)", ")", "this `)` closes nothing", None),
+        ("x + 1)", ")", "this `)` has no `(`", None),
         ("sin x", "sin", "`sin` needs its argument in parentheses", None),
-        ("min(x)", ")", "`min` needs 2 arguments, parted by commas", None),
-        ("sin(x, y)", ",", "there is an argument too many here", None),
+        ("min(x)", ")", "`min` needs 2 arguments, separated by commas", None),
+        ("sin(x, y)", ",", "too many arguments", None),
         ("x + 1e999", "1e999", "this number is too large", None),
-        ("x + \u{3c0}", "\u{3c0}", "a number or a name should stand here, not `\u{3c0}`", None),
-        ("1 + 2", "1 + 2", "the formula is the same everywhere: it uses neither x, y nor z", None),
+        ("x + \u{3c0}", "\u{3c0}", "expected a number or a name, found `\u{3c0}`", None),
+        ("1 + 2", "1 + 2", "the formula is constant: it uses neither x, y nor z", None),
     ] {
         let error = Formula::parse(text).expect_err(text);
         assert_eq!(

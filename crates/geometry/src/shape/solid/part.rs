@@ -216,7 +216,7 @@ impl Revolved {
                 };
                 if is_inside { [Some([first, last]), None] } else { [Some([-FAR, first]), Some([last, FAR])] }
             }
-            // A ray that touches is inside nowhere, or everywhere.
+            // A tangent ray is inside nowhere, or everywhere.
             _ => [(!is_positive(0.0)).then_some([-FAR, FAR]), None],
         }
     }

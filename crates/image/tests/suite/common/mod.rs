@@ -1,8 +1,8 @@
-//! Where the third-party pictures lie.
+//! The location of the third-party pictures.
 
 use std::path::PathBuf;
 
-/// The folder of third-party test data, or `None`, said aloud, where it is absent.
+/// The folder of third-party test data, or `None`, with a message, where it is absent.
 pub fn data_folder() -> Option<PathBuf> {
     let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
     let folder = std::env::var_os("ALHAZEN_DATA").map_or_else(beside, PathBuf::from);

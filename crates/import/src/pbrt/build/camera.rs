@@ -30,7 +30,7 @@ impl Builder<'_> {
     }
 }
 
-/// Reads what is no setting, and checks what concerns several settings.
+/// Reads the parameters that are no settings, and checks rules that concern several settings.
 fn complete(kind: &mut CameraKind, reader: &mut Reader) -> Option<()> {
     match kind {
         CameraKind::Perspective { screen, fov, .. } => {
@@ -44,7 +44,7 @@ fn complete(kind: &mut CameraKind, reader: &mut Reader) -> Option<()> {
         }
         CameraKind::Orthographic { screen, .. } => window(screen, reader),
         CameraKind::Spherical { .. } => {
-            // The format lets a spherical camera have a screen and a lens, and ignores them.
+            // The format allows a spherical camera a screen and a lens, and ignores them.
             reader.settings(&mut ScreenDesc::default());
             reader.settings(&mut LensDesc::default());
         }

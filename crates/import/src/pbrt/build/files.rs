@@ -12,7 +12,7 @@ use crate::assets::{read_unpacked, resolve};
 use crate::images;
 use crate::number;
 
-/// Images that were asked for, each path and encoding once. They are decoded together, in parallel.
+/// The images of the scene, each path and encoding once. They are decoded together, in parallel.
 #[derive(Default)]
 pub(super) struct ImageRequests {
     requests: Vec<(PathBuf, Option<EncodingDesc>, Span)>,
@@ -44,8 +44,8 @@ impl Builder<'_> {
         handle
     }
 
-    /// Decodes all images that were asked for. One that cannot be decoded is reported and stands as
-    /// one black pixel.
+    /// Decodes all images of the scene. One that cannot be decoded is reported and replaced by one
+    /// black pixel.
     pub(super) fn decode_images(&mut self) -> Arena<ImageDesc> {
         let requests = std::mem::take(&mut self.images.requests);
         let decoded: Vec<_> = requests

@@ -18,7 +18,7 @@ impl Builder<'_> {
         Some(Stated::new(LightDesc { kind, world_from_light: light.world_from_light, scale, medium }, origin))
     }
 
-    /// Builds an area light; one that cannot be read stands as one that does not shine.
+    /// Builds an area light; one that cannot be read is replaced by one without emission.
     pub(super) fn area_light(&mut self, statement: Statement) -> Stated<AreaLightDesc> {
         let (read, origin) = self.read(statement, area_light);
         Stated::new(read.unwrap_or(AreaLightDesc::new(0.0.into())), origin)
@@ -34,7 +34,7 @@ fn color(reader: &mut Reader, name: &'static str) -> SpectrumDesc {
 fn scale(reader: &mut Reader) -> f32 {
     let scale = reader.float("scale", 1.0);
     if scale < 0.0 {
-        reader.refuse("scale", "`scale` cannot be negative: there is no negative light");
+        reader.refuse("scale", "`scale` cannot be negative");
     }
     scale
 }

@@ -13,7 +13,7 @@ use crate::pbrt::statement::MaterialStatement;
 use crate::suggest::did_you_mean;
 
 impl Builder<'_> {
-    /// Builds all materials; one that cannot be read stands as the format's default.
+    /// Builds all materials; one that cannot be read is replaced by the format's default.
     pub(super) fn materials(&mut self, statements: Vec<MaterialStatement>) -> Arena<MaterialDesc> {
         let mut materials = Arena::default();
         for MaterialStatement { statement, name } in statements {
@@ -27,7 +27,7 @@ impl Builder<'_> {
 
     /// Reports mixes that contain themselves.
     fn break_cycles(&mut self, materials: &mut Arena<MaterialDesc>) {
-        // 0: not seen; 1: on the way down from the material under way; 2: sound.
+        // 0: not visited; 1: on the current path of the search; 2: free of cycles.
         let mut states = vec![0_u8; materials.len()];
         for start in 0..materials.len() {
             let mut stack = vec![(Handle::<MaterialDesc>::new(start as u32), 0_usize)];
@@ -193,7 +193,7 @@ fn hair(reader: &mut Reader) -> MaterialKind {
     let melanin = eumelanin.is_some() || pheomelanin.is_some();
     let given = [sigma_a.is_some(), reflectance.is_some(), melanin];
     if given.into_iter().filter(|&given| given).count() > 1 {
-        let message = "the colour of hair is given more than once: `sigma_a` counts before `reflectance`, and that before melanin";
+        let message = "the colour of hair is given more than once: `sigma_a` takes precedence over `reflectance`, and that over melanin";
         let span = reader.span;
         reader.builder.report.warning("ignored", message, span);
     }

@@ -15,7 +15,7 @@ use crate::pbrt::statement::MediumStatement;
 const TYPES: [&str; 5] = ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"];
 
 impl Builder<'_> {
-    /// Builds a medium; one that cannot be read stands as a homogeneous one.
+    /// Builds a medium; one that cannot be read is replaced by a homogeneous one.
     pub(super) fn medium(&mut self, medium: MediumStatement) -> Stated<MediumDesc> {
         let (read, origin) = self.read(medium.statement, |reader| {
             let kind = kind(reader)?;

@@ -1,5 +1,5 @@
-//! From statements to descriptions: a file for each family, and here what they share: resolving
-//! names and files.
+//! From statements to descriptions: a file for each family of statements; this file resolves names
+//! and files for all of them.
 
 mod camera;
 mod files;
@@ -92,7 +92,7 @@ pub(crate) struct Builder<'a> {
     images: ImageRequests,
     meshes: shape::Meshes,
     objects: HashMap<String, Handle<ObjectDesc>>,
-    /// How many objects are complete, and may be operands of a solid.
+    /// The number of objects that are complete, and may be operands of a solid.
     complete_objects: usize,
 }
 
@@ -151,8 +151,8 @@ impl<'a> Builder<'a> {
         table
     }
 
-    /// Reads a statement by a function that asks for its parameters; reports those that it did not
-    /// ask for.
+    /// Reads a statement by a function that takes its parameters; reports those that it did not
+    /// take.
     fn read<T>(
         &mut self,
         statement: Statement,
@@ -165,7 +165,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// [`Builder::read`] with the default for what cannot be read.
+    /// [`Builder::read`] with the default for a statement that cannot be read.
     fn read_or_default<T: Default>(
         &mut self,
         statement: Statement,
@@ -258,7 +258,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Reports a name that is in no table; `other` is what it names instead.
+/// Reports an unknown name; `other` is what it refers to instead.
 fn unknown_reference<T>(
     report: &mut Report,
     what: &str,

@@ -1,5 +1,5 @@
-//! Reads the parameters of one statement by name and type, and records the names that were asked
-//! for: a parameter that was not is an error, and the recorded names are candidates for its
+//! Reads the parameters of one statement by name and type, and records the names that were looked
+//! up: a parameter that was not is an error, and the recorded names are the candidates for its
 //! correction.
 
 use std::ops::RangeInclusive;
@@ -60,7 +60,8 @@ impl<'b, 'a> Reader<'b, 'a> {
         }
     }
 
-    /// Reports every parameter that was not asked for; gives the spans of statement and parameters.
+    /// Reports every parameter that was not looked up; returns the spans of statement and
+    /// parameters.
     pub(crate) fn finish(self) -> Origin {
         for Given { parameter, used, default } in &self.given {
             if *used || *default {

@@ -71,12 +71,12 @@ fn film(reader: &mut Reader) -> Option<FilmDesc> {
     if let Some([x0, x1, y0, y1]) = film.pixel_bounds
         && (x0.max(0) >= x1.min(width) || y0.max(0) >= y1.min(height))
     {
-        reader.refuse("pixelbounds", "`pixelbounds` (x0, x1, y0, y1) holds no pixel of the image");
+        reader.refuse("pixelbounds", "`pixelbounds` (x0, x1, y0, y1) contains no pixel of the image");
     }
     if let Some([x0, x1, y0, y1]) = film.crop_window
         && (x0.max(0.0) >= x1.min(1.0) || y0.max(0.0) >= y1.min(1.0))
     {
-        reader.refuse("cropwindow", "`cropwindow` (x0, x1, y0, y1) holds nothing of the image");
+        reader.refuse("cropwindow", "`cropwindow` (x0, x1, y0, y1) contains no part of the image");
     }
     Some(film)
 }

@@ -19,7 +19,7 @@ use crate::mesh::{Format, contours::triangulate_contours, scene::shape_kind};
 use crate::pbrt::parameter::Values;
 use crate::pbrt::statement::{InstanceStatement, ShapeStatement, Statements};
 
-/// Mesh files by path, each read once; or why it could not be.
+/// Mesh files by path, each read once; or the reason of the failure.
 pub(super) type Meshes = HashMap<PathBuf, Result<ShapeKind, String>>;
 
 impl Builder<'_> {
@@ -103,7 +103,7 @@ fn read_mesh(assets: &dyn AssetSource, path: &std::path::Path) -> Result<ShapeKi
     let bytes = read_unpacked(assets, path).map_err(|error| error.to_string())?;
     let format = Format::from_path(path).unwrap_or(Format::Ply);
     let mesh = format.read(&bytes).map_err(|error| error.to_string())?;
-    // Before arrays are copied to where they stay.
+    // Before arrays are copied to their final place.
     drop(bytes);
     Ok(shape_kind(mesh))
 }
@@ -140,7 +140,10 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
         ShapeType::Hyperboloid => {
             let ends = [reader.point3("p1", Vec3::ZERO), reader.point3("p2", Vec3::ONE)];
             if ends[0].z == ends[1].z {
-                reader.refuse("p2", "`p1` and `p2` have the same z: a `disk` draws what such a line sweeps");
+                reader.refuse(
+                    "p2",
+                    "`p1` and `p2` have the same z: use a `disk`, which is what such a line sweeps",
+                );
                 return None;
             }
             if ends.iter().all(|end| end.x == 0.0 && end.y == 0.0) {
@@ -168,7 +171,7 @@ fn kind(reader: &mut Reader) -> Option<ShapeKind> {
         ShapeType::Curve => ShapeKind::Curve(curve(reader)?),
         ShapeType::LoopSubdivision => {
             let levels = reader.integer("levels", 3, 0..=12);
-            // The format knows one scheme only.
+            // The format has one scheme only.
             reader.choice("scheme", (), &[("loop", ())]);
             ShapeKind::LoopSubdivision { mesh: triangle_mesh(reader, false)?, levels }
         }
@@ -183,13 +186,13 @@ fn z_range(reader: &mut Reader, default: [f32; 2], limits: [f32; 2]) -> Option<(
         return Some((z[0], z[1]));
     }
     let blamed = if reader.has("zmax") { "zmax" } else { "zmin" };
-    reader.refuse(blamed, "between `zmin` and `zmax` there is nothing of the surface");
+    reader.refuse(blamed, "no part of the surface lies between `zmin` and `zmax`");
     None
 }
 
 /// `"string f"`: the surface is where this formula of x, y and z is zero, and its inside where it
-/// is negative; what it may say is told by `geometry::Formula`. `"point3 bounds"`: two corners of
-/// the box at which the surface is cut off, ±2 if absent.
+/// is negative; its syntax is that of `geometry::Formula`. `"point3 bounds"`: two corners of the
+/// box at which the surface is cut off, ±2 if absent.
 fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
     let bounds = reader.points3("bounds").unwrap_or_else(|| Arc::from([Vec3::splat(-2.0), Vec3::splat(2.0)]));
     let Some(formula) = reader.string("f") else {
@@ -212,7 +215,7 @@ fn implicit(reader: &mut Reader) -> Option<ShapeKind> {
 
 /// `"string operation"`: `union`, `intersection`, or `difference` (the first without all others).
 /// `"string operands"`: names of objects, all shapes of which are one body; they are placed as an
-/// instance of the object would be, and their materials count for nothing here.
+/// instance of the object would be, and their materials are ignored.
 fn solid(reader: &mut Reader) -> Option<ShapeKind> {
     let known = [
         ("union", SolidOperation::Union),
@@ -244,7 +247,7 @@ fn operand(builder: &mut Builder, name: &Spanned<String>) -> Option<Spanned<Hand
         }
         Some(object) if object.index() >= builder.complete_objects => {
             let message = format!("the object `{}` is not complete here", name.value);
-            let help = "a solid inside of an object is made of objects that end before that begins";
+            let help = "the operands of a solid in an object must end before that object begins";
             let diagnostic = Diagnostic::error("unknown-reference", message, name.span);
             builder.report.push(diagnostic.with_help(help));
             None
@@ -354,7 +357,7 @@ fn triangle_mesh(reader: &mut Reader, with_attributes: bool) -> Option<MeshDesc>
     })
 }
 
-/// A plane polygon: `contours` counts the points of its outer contour and of each hole.
+/// A planar polygon: `contours` counts the points of its outer contour and of each hole.
 fn polygon(reader: &mut Reader) -> Option<MeshDesc> {
     let positions = points(reader)?;
     let vertices = positions.len();
@@ -365,7 +368,7 @@ fn polygon(reader: &mut Reader) -> Option<MeshDesc> {
             && lengths.iter().try_fold(0, |sum: usize, &n| sum.checked_add(n)) == Some(vertices)
     });
     let Some(lengths) = lengths else {
-        let message = format!("`contours` must divide up the {vertices} points in `P`");
+        let message = format!("`contours` must add up to the {vertices} points in `P`");
         reader.refuse(if reader.has("contours") { "contours" } else { "P" }, message);
         return None;
     };
@@ -447,7 +450,7 @@ fn mesh_file(reader: &mut Reader) -> Option<ShapeKind> {
             None
         }
         None => {
-            // Only a name of the wrong type or count was not loaded; that has been reported.
+            // Only a parameter of the wrong type or count was not loaded; that has been reported.
             None
         }
     }

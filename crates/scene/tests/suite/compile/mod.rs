@@ -339,9 +339,9 @@ fn subdivision_is_checked_and_bounded() {
         let mesh = MeshDesc { indices: indices.into(), uvs: [].into(), ..square() };
         ShapeKind::LoopSubdivision { mesh, levels }
     };
-    let message = "triangle 0 names vertex 4, which does not exist";
+    let message = "triangle 0 has vertex index 4, which does not exist";
     invalid(of(&[[0, 1, 4]], 1), "indices", "invalid-mesh", message);
-    let message = "the edge from vertex 1 to vertex 2 does not lie between two triangles of like turn";
+    let message = "the edge from vertex 1 to vertex 2 is not shared by two triangles of the same orientation";
     invalid(of(&[[0, 1, 2], [1, 2, 3]], 1), "indices", "invalid-mesh", message);
     invalid(of(&[[0, 1, 2]], 13), "levels", "invalid-mesh", "too many triangles");
     let scene = compile(with(|desc| desc.shapes.push(of(&[[0, 1, 2], [0, 2, 3]], 2).into()))).unwrap().scene;

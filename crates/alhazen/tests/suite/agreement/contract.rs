@@ -55,13 +55,12 @@ const FURNACE: &str = r#"Option "disablewavelengthjitter" true
 /// Samples of each pixel.
 const PASSES: i32 = 16;
 
-/// The radius within which photons count; a wall has the side 2.
+/// The radius of photon lookups; a wall has the side 2.
 const RADIUS: f64 = 0.3;
 
-/// The share of their light that photon maps miss: they do not know of corners, where the disk
-/// around a point reaches beyond the wall. Of a disk that is moved by (x, y) against a square of
-/// side 2, (1 − |x|/2)(1 − |y|/2) remain in the mean; Epanechnikov's kernel has the means E|x| =
-/// 16r/15π and E|xy| = r²/3π.
+/// The share of their light that photon maps miss: at edges, where the disk around a point reaches
+/// beyond the wall. Of a disk that is moved by (x, y) against a square of side 2, (1 − |x|/2)(1 −
+/// |y|/2) remain in the mean; Epanechnikov's kernel has the means E|x| = 16r/15π and E|xy| = r²/3π.
 fn beyond_kernel() -> f64 {
     16.0 * RADIUS / (15.0 * PI) - RADIUS * RADIUS / (12.0 * PI)
 }
@@ -69,7 +68,7 @@ fn beyond_kernel() -> f64 {
 /// The same for merging, whose radius shrinks from pass to pass. The even kernel has the means
 /// 4r/3π and r²/2π. But photons on the adjoining walls are merged, too: along each of four edges
 /// those within r of a wall's points fill a quarter of a ball, of the volume πr³/3 and with the
-/// mean 3r/8 of |y|; half of their light comes from before the wall.
+/// mean 3r/8 of |y|; half of their light comes from the front of the wall.
 fn beyond_disks(alpha: f64) -> f64 {
     let mut square = RADIUS * RADIUS;
     let passes = (1..=PASSES).map(|pass| {
@@ -95,9 +94,9 @@ impl Member {
 
     /// All integrators of global illumination.
     ///
-    /// A final gather looks for photons where its rays fall, on the other walls: nowhere more than
-    /// 2.5 times as often as in the mean. Connecting loses nothing, so vcm loses less than merging
-    /// alone. Of form factors the rows sum to one but for a thousandth.
+    /// A final gather looks up photons where its rays end, on the other walls: nowhere more than
+    /// 2.5 times as often as on average. Connections lose nothing, so vcm loses less than merging
+    /// alone. The rows of form factors sum to one to within a thousandth.
     fn all() -> Vec<Self> {
         let kernel = beyond_kernel();
         const MAP: [(&str, &str); 4] =
@@ -142,7 +141,7 @@ impl Member {
 #[test]
 fn a_closed_furnace_has_every_path_up_to_a_depth_once() {
     let members = Member::all();
-    // These do not follow light from surface to surface.
+    // These have no interreflection.
     let others = ["ray-casting", "whitted", "ambient-occlusion"];
     for integrator in integrator_names() {
         let is_member = members.iter().any(|member| member.integrator == integrator);
