@@ -22,8 +22,8 @@ pub struct Cli {
 
 /// Ends the help of every command.
 pub const EXIT_CODES: &str = concat!(
-    "Exit codes: 0 done, 1 the input is wrong or the output cannot be written, ",
-    "2 the command line is wrong, 130 interrupted."
+    "Exit codes: 0 done, 1 the input is invalid or the output cannot be written, ",
+    "2 the command line is invalid, 130 interrupted."
 );
 
 /// The commands.

@@ -188,7 +188,7 @@ fn row(comparison: &Comparison, run: &Run) -> [String; 9] {
         percent(parts.variance.sqrt()),
         match parts.bias() {
             Bias::Significant(bias) => percent(bias),
-            Bias::Below(_) => "none seen".into(),
+            Bias::Below(_) => "not significant".into(),
             Bias::Hidden => "hidden by noise".into(),
         },
         comparison.relative_mean_error(run).map_or("–".into(), |[error, deviation]| {

@@ -174,7 +174,7 @@ impl fmt::Display for Summary<'_> {
         }
         match (self.ended_by, self.noise()) {
             (_, None) => (),
-            (Some(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, low enough")?,
+            (Some(Stop::Noise), Some(noise)) => writeln!(f, "  noise    {noise:.4}, limit reached")?,
             (_, Some(noise)) => writeln!(f, "  noise    {noise:.4}")?,
         }
         let stats = progress.stats;
@@ -185,7 +185,7 @@ impl fmt::Display for Summary<'_> {
         }
         write!(
             f,
-            "  rays     {}, {} a second; {:.1} extent tests and {:.1} primitive tests a ray",
+            "  rays     {}, {} per second; {:.1} extent tests and {:.1} primitive tests per ray",
             count(rays),
             count(self.rays_per_second()),
             stats.extents as f64 / rays.max(1.0),

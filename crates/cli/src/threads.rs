@@ -20,7 +20,7 @@ pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
         let most = ALWAYS_ALLOWED.max(PER_CORE * cores);
         if threads > most {
             return Err(Failure::Usage(format!(
-                "cannot start {threads} threads: this machine has {cores} cores, and may have {most} threads"
+                "cannot start {threads} threads: this machine has {cores} cores, which allow {most} threads"
             )));
         }
         builder = builder.num_threads(threads);

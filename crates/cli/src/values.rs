@@ -31,13 +31,13 @@ pub fn time(text: &str) -> Result<Duration, String> {
 /// A relative standard error.
 pub fn noise(text: &str) -> Result<f64, String> {
     let noise = text.parse().ok().filter(|&noise: &f64| noise > 0.0 && noise.is_finite());
-    noise.ok_or_else(|| "it is a number above 0: 0.02".into())
+    noise.ok_or_else(|| "expected a number above 0, such as 0.02".into())
 }
 
 /// The name of a film file.
 pub fn film_file(text: &str) -> Result<PathBuf, String> {
     // A mistake such as the scene's own name must not overwrite a file.
-    if text.ends_with(".film") { Ok(text.into()) } else { Err("its name ends in .film".into()) }
+    if text.ends_with(".film") { Ok(text.into()) } else { Err("expected a name that ends in .film".into()) }
 }
 
 /// A shard: its index and the number of parts.
@@ -47,7 +47,7 @@ pub fn shard(text: &str) -> Result<Shard, String> {
         .and_then(|(index, count)| Some(Shard { index: index.parse().ok()?, count: count.parse().ok()? }));
     numbers
         .filter(|shard| (1..=shard.count).contains(&shard.index))
-        .ok_or_else(|| "it is written 3/8, from 1/8 to 8/8".into())
+        .ok_or_else(|| "expected INDEX/COUNT, such as 3/8".into())
 }
 
 /// Width and height in pixels.

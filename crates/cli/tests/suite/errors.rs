@@ -161,7 +161,7 @@ fn a_wrong_command_line_is_reported() {
         (&["render", "scene.pbrt", "--pixel", "24,0"], "not in the image of 24 × 16 pixels"),
         (&["render", "scene.pbrt", "--threads", "60000"], "cannot start 60000 threads: this machine has"),
         (&["render", "scene.pbrt", "--resolution", "12"], "640x480"),
-        (&["render", "scene.pbrt", "--checkpoint", "scene.obj"], "its name ends in .film"),
+        (&["render", "scene.pbrt", "--checkpoint", "scene.obj"], "expected a name that ends in .film"),
         (&["paint", "scene.pbrt"], "paint"),
     ] {
         let finished = folder.alhazen(arguments).expect(2);

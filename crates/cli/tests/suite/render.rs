@@ -154,7 +154,7 @@ fn the_summary_describes_the_render() {
         "scene.pbrt: path, 2 samples per pixel, 24 × 16 pixels, of them x 0 to 11, y 0 to 15",
         "picture  scene.exr",
         "samples  384",
-        "primitive tests a ray",
+        "primitive tests per ray",
     ] {
         assert!(said.contains(part), "no `{part}` in {said}");
     }
