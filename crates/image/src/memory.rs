@@ -23,9 +23,10 @@ pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Res
     Ok(array)
 }
 
-/// Refused where `bytes` bytes cannot be allocated now.
+/// Refused where `bytes` bytes cannot be allocated now: asked before work that would abort.
 pub fn require_memory(bytes: usize) -> Result<(), ImageError> {
-    reserved::<u8>(bytes).map(drop)
+    let refused = |_| ImageError::Limits(format!("no memory for {bytes} bytes"));
+    Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
 }
 
 fn no_memory(bytes: usize) -> ImageError {

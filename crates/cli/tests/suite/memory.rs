@@ -28,3 +28,30 @@ fn a_second_film_may_not_fit() {
     let message = &finished.json()["errors"][0]["message"];
     assert_eq!(message, "no memory for a film of 1000 × 1000 pixels");
 }
+
+#[test]
+fn a_tree_may_not_fit() {
+    const TRIANGLES: usize = 2_000_000;
+    let folder = Folder::with_scene("memory-tree");
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+         property float z\nelement face {TRIANGLES}\nproperty list uchar int vertex_indices\nend_header\n"
+    );
+    let vertices = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_le_bytes);
+    let face = [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
+    let mesh = [header.as_bytes(), vertices.as_flattened(), &face.repeat(TRIANGLES)].concat();
+    std::fs::write(folder.path().join("mesh.ply"), mesh).expect("a file");
+    folder.write("mesh.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"mesh.ply\"\n");
+    let finished = with_memory(&folder, 340, &["render", "mesh.pbrt", "--threads", "1"]).expect(1);
+    let problem = format!("no memory for the acceleration structure of {TRIANGLES} primitives");
+    assert!(finished.err.contains(&problem) && finished.err.contains("mesh.pbrt:2:1"), "{finished:?}");
+}
+
+#[test]
+fn photons_may_not_fit() {
+    let folder = Folder::with_scene("memory-photons");
+    let photons = ["--integrator", "photon-mapping", "--set", "photons=2000000000", "--threads", "1"];
+    let render = ["render", "scene.pbrt", "-o", "a.exr"];
+    let finished = with_memory(&folder, 4000, &[&render[..], &photons].concat()).expect(1);
+    assert!(finished.err.contains("error: no memory for "), "{finished:?}");
+}

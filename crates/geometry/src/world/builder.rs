@@ -89,6 +89,13 @@ impl WorldBuilder {
         self
     }
 
+    /// Bytes of address space that building takes for each primitive, at most: references, ids,
+    /// binary nodes, blocks and nodes; twice as many references for spatial splits.
+    pub fn bytes_per_primitive(&self) -> usize {
+        let references = if self.quality == BuildQuality::High { 2 * 32 } else { 32 };
+        references + 8 + 24 + 33 + 5
+    }
+
     /// Builds all trees, in parallel. The result does not depend on the number of threads.
     ///
     /// # Panics

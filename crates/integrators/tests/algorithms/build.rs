@@ -113,7 +113,7 @@ fn light_from_infinity_on_unbounded_shapes_gives_a_warning() {
         };
         let found: Vec<_> =
             found.iter().map(|warning| (&*warning.message, warning.count, warning.span().start)).collect();
-        assert_eq!(found, [(&*message("a solid"), 1, 2), (&*message("a plane"), 2, 3)]);
+        assert_eq!(found, [(&*message("an unbounded solid"), 1, 2), (&*message("an infinite plane"), 2, 3)]);
     }
     let from_both_ends = IntegratorDesc::Vcm(VcmDesc::default());
     assert!(told(&desc, &from_both_ends).is_empty());

@@ -66,6 +66,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
                 BuildQualityDesc::High => BuildQuality::High,
             })
             .extents(*desc.accelerator != AcceleratorDesc::None),
+        primitives: 0,
         entries: Vec::new(),
         names,
         instances: Vec::new(),
@@ -118,6 +119,8 @@ struct Compiler<'a> {
     diagnostics: Vec<Diagnostic>,
     textures: TextureCompiler,
     world: WorldBuilder,
+    /// The number of primitives in `world`.
+    primitives: usize,
     entries: Vec<GeometryEntry>,
     names: Names,
     materials: Vec<MaterialEntry>,

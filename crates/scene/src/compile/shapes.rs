@@ -14,6 +14,7 @@ use geometry::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Geometry, GroupId, Hyperboloid, Implicit,
     Instance, MeshAttributes, MovingMesh, Paraboloid, Plane, Shape, Sphere, TriangleMesh,
 };
+use image::require_memory;
 use math::{AnimatedTransform, Bounds2, Bounds3, Normal3, Point3, Transform};
 use sampling::PiecewiseConstant2d;
 use spectrum::Rgb;
@@ -63,6 +64,14 @@ impl Compiler<'_> {
         let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
         let geometries = self.geometries(run, transform);
+        self.primitives += geometries.iter().map(Geometry::len).sum::<usize>();
+        let bytes = self.primitives.saturating_mul(self.world.bytes_per_primitive());
+        if require_memory(bytes).is_err() {
+            let primitives = self.primitives;
+            let message = format!("no memory for the acceleration structure of {primitives} primitives");
+            self.error("out-of-memory", message, shape.origin.span);
+            return;
+        }
         self.shape_traits(run, &geometries);
         for geometry in geometries {
             let emitter = self.emitter(shape, &geometry, alpha);

@@ -6,6 +6,7 @@
 //! and a caustic if specular surfaces do; later photons are indirect light.
 
 use geometry::RayStats;
+use image::require_memory;
 use rayon::prelude::*;
 use sampling::sampler::PaddedSobol;
 use sampling::{Randomize, Sampler};
@@ -13,7 +14,7 @@ use sampling::{Randomize, Sampler};
 use crate::bidirectional::{Bidirectional, Vertex, Walk};
 use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
-use crate::{Cancelled, Control};
+use crate::{Cancelled, Control, PassError};
 
 /// Number of subpaths per parallel task.
 const CHUNK: u32 = 2048;
@@ -65,7 +66,9 @@ impl Emission<'_> {
         paths: u32,
         control: &Control,
         keep: impl Fn(&Vertex, &mut Tracer) -> T + Sync,
-    ) -> Result<(Vec<T>, RayStats), Cancelled> {
+    ) -> Result<(Vec<T>, RayStats), PassError> {
+        // A subpath has about two photons, which are copied once.
+        require_memory((4 * size_of::<T>()).saturating_mul(paths as usize))?;
         // Stratified over all subpaths of the generation, which decorrelates dimensions.
         let sampler = Sampler::PaddedSobol(PaddedSobol::new(paths, Randomize::FastOwen, self.seed));
         let chunks: Vec<_> = (0..paths.div_ceil(CHUNK))
@@ -85,7 +88,7 @@ impl Emission<'_> {
                 control.count(&stats);
                 Ok((kept, stats))
             })
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<_, Cancelled>>()?;
         let mut all = Vec::with_capacity(chunks.iter().map(|(kept, _)| kept.len()).sum());
         let mut sum = RayStats::default();
         for (kept, stats) in chunks {

@@ -107,10 +107,10 @@ impl PhotonMapping {
     }
 
     /// Emits the photons of a pass.
-    fn maps(&self, emission: &Emission, control: &Control) -> Result<(PhotonMaps, RayStats), Cancelled> {
+    fn maps(&self, emission: &Emission, control: &Control) -> Result<(PhotonMaps, RayStats), PassError> {
         let map = |kind, paths| {
             let (photons, stats) = emission.emit(kind, paths, control, |vertex, _| Photon::at(vertex))?;
-            Ok((PhotonMap::build(photons, paths, control)?, stats))
+            Ok::<_, PassError>((PhotonMap::build(photons, paths, control)?, stats))
         };
         let (caustic, mut stats) = map(Kind::Caustic, self.settings.caustic_photons)?;
         let (global, global_stats) = map(self.global_kind(), self.settings.photons)?;
