@@ -115,8 +115,8 @@ fn open_shapes_are_not_operands_of_solids() {
 
 #[test]
 fn size_and_depth_of_solids_are_limited() {
-    // Twice as many bodies with every object; one more level with every object.
-    for (copies, text) in [(2, "1024 bodies"), (1, "32 deep")] {
+    // Twice as many parts with every object; one more level with every object.
+    for (copies, text) in [(2, "1024 parts"), (1, "32 levels deep")] {
         let mut desc = SceneDesc::default();
         let ball = object(&mut desc, [sphere(1.0).into()]);
         let mut last = ball;
