@@ -58,7 +58,7 @@ settings! {
             /// How much time the build of the hierarchy that replaces it may take.
             quality: Option<BuildQualityDesc> = None => ["quality"];
         },
-        /// None: every ray is tested against every primitive, for comparison.
+        /// No hierarchy: every ray is tested against every primitive, for comparison.
         None = "none",
     }
 }

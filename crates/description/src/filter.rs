@@ -39,9 +39,9 @@ settings! {
                 "xradius"[0] | "filterradius": above(0.0).unit("pixels"),
                 "yradius"[1] | "filterradius": above(0.0).unit("pixels")
             ];
-            /// Their parameter B.
+            /// Parameter B of the family.
             b: f32 = 1.0 / 3.0 => ["B"];
-            /// Their parameter C.
+            /// Parameter C of the family.
             c: f32 = 1.0 / 3.0 => ["C"];
         },
         /// A windowed sinc.

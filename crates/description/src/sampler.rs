@@ -36,7 +36,7 @@ settings! {
     pub struct SamplerDesc {
         /// Which one.
         kind: SamplerKind = SamplerKind::default() => ..;
-        /// Its seed. If absent, that of the options.
+        /// Seed of the sampler. If absent, that of the options.
         seed: Option<i32> = None => ["seed"];
     }
 }

@@ -1,4 +1,4 @@
-//! What a caller holds of a render while it runs: the request to stop, and the clock.
+//! Control of a running render by its caller: cancellation and the clock.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,25 +12,25 @@ use image::ImageError;
 /// `std::time::Instant` does not exist in a browser.
 pub type Clock = Arc<dyn Fn() -> Duration + Send + Sync>;
 
-/// What a caller holds of a render. The default never cancels it and has no clock.
+/// Cancels a render and measures its time. The default never cancels and has no clock.
 #[derive(Clone, Default)]
 pub struct Control {
-    /// Set it, from any thread, and the render ends before its next tile.
+    /// Any thread may set it; the render then ends before its next tile.
     pub cancel: Arc<AtomicBool>,
     /// Measures elapsed time. Without a clock no time passes, and a limit on time is never reached.
     pub clock: Option<Clock>,
-    /// Rays of the pass in progress, which would be lost with its result where it is cancelled;
-    /// integrators count them.
+    /// Rays of the pass in progress, counted by integrators. They would be lost with the result of
+    /// a cancelled pass.
     under_way: Arc<Mutex<RayStats>>,
 }
 
 impl Control {
-    /// With a flag that cancels the render and a clock.
+    /// A control with a cancellation flag and a clock.
     pub fn new(cancel: Arc<AtomicBool>, clock: Clock) -> Self {
         Self { cancel, clock: Some(clock), ..Self::default() }
     }
 
-    /// Whether to go on.
+    /// An error if the render was cancelled.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.cancel.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }
@@ -40,7 +40,7 @@ impl Control {
         *self.under_way.lock().unwrap_or_else(PoisonError::into_inner) += *stats;
     }
 
-    /// What has been counted since the last pass.
+    /// Takes the rays counted since the last pass.
     pub(crate) fn take_counted(&self) -> RayStats {
         std::mem::take(&mut *self.under_way.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -68,7 +68,7 @@ impl std::error::Error for Cancelled {}
 pub enum PassError {
     /// The render was cancelled. The film is valid, but holds a part of the pass.
     Cancelled,
-    /// There is no memory for what is named here. The film is as it was before the pass.
+    /// Memory ran out; the text says what for. The film is unchanged by the pass.
     OutOfMemory(String),
 }
 
@@ -89,7 +89,7 @@ impl From<Cancelled> for PassError {
     }
 }
 
-/// Memory is all that a film may lack in a pass.
+/// Within a pass, the only error of a film is a lack of memory.
 impl From<ImageError> for PassError {
     fn from(error: ImageError) -> Self {
         match error {

@@ -1,31 +1,32 @@
-//! The driver of all integrators: prepare, then pass after pass, until a limit is reached.
+//! The driver of all integrators: it prepares them and runs passes until a limit is reached.
 //!
 //! The passes of an integrator are independent of each other given their numbers, and the sums of a
-//! film are exact. So any order of passes, any split of them over sessions and any number of stops
-//! in between give the same bits: renders can be resumed and sharded. Previews, checkpoints and
-//! comparisons look at the session after each pass.
+//! film are exact. So the picture has the same bits for any order of passes, any division of them
+//! among sessions and any number of interruptions: renders can be resumed and sharded. Previews,
+//! checkpoints and comparisons read the session after each pass.
 //!
 //! # Noise
 //!
 //! Where noise is a limit, passes alternate between two films, whose pictures a and b of n_a and
-//! n_b passes are independent estimates of the same picture. Of their weighted mean r, the picture,
-//! each value has the variance
+//! n_b passes are independent estimates of the same picture. The picture is their weighted mean r.
+//! The variance of each of its values is
 //!
 //! ```text
 //! Var[r] = n_a n_b/(n_a + n_b)² · E[(a − b)²]
 //! ```
 //!
-//! whatever a pass does: it holds for splats and for chains of Metropolis, where samples of a pixel
-//! are not independent. The *noise* of the picture is its relative standard error
+//! for any integrator, also for splats and Markov chains, where the samples of a pixel are not
+//! independent. The *noise* of the picture is its relative standard error
 //!
 //! ```text
 //! noise = √⟨Var[r] / (r² + (m/10)²)⟩
 //! ```
 //!
 //! where ⟨·⟩ is the mean over pixels and channels, and m the mean of r, which keeps dark pixels
-//! from deciding alone. It is the root of the relMSE [Rousselle 2011] against the picture without
-//! noise, but does not depend on exposure. Bias is not noise. Samplers whose passes complement each
-//! other have less noise than this says, as the halves' errors are negatively correlated.
+//! from dominating. It is the root of the relMSE [Rousselle 2011] against the picture without
+//! noise, but does not depend on exposure. Bias is not included. Samplers whose passes complement
+//! each other have less noise than estimated, because the errors of the two films are negatively
+//! correlated.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -39,34 +40,35 @@ use scene::{Scene, View};
 
 use crate::{Control, Integrator, PassError};
 
-/// Passes before which noise is not trusted: light that few paths find may not have been found.
+/// The number of passes of the first noise estimate. Before it, light that few paths find may be
+/// missing.
 const FIRST_ESTIMATE: u32 = 16;
 
-/// How far a session is.
+/// The progress of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Passes done, drafts included.
     pub pass: u32,
-    /// Passes to do in all: an estimate where the limit is time or noise, `u32::MAX` where it is
-    /// not known yet.
+    /// Total number of passes: an estimate if time or noise is limited, `u32::MAX` if it is not
+    /// known yet.
     pub passes: u32,
     /// Pixel samples taken by this session.
     pub samples: u64,
-    /// Rays traced by this session, and what they met.
+    /// Rays traced by this session, with their intersection tests.
     pub stats: RayStats,
-    /// Time that this session has run.
+    /// Running time of this session.
     pub elapsed: Duration,
     /// The last estimate of noise.
     pub noise: Option<f64>,
 }
 
-/// What ends a run before its last pass.
+/// Limits that end a run before its last pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// No pass but the first is begun that would end, if it took as long as the one before, after
-    /// sessions have run for so long.
+    /// Maximum running time of all sessions together. A pass that would exceed it, if it took as
+    /// long as the previous one, is not begun; the first pass always is.
     pub time: Option<Duration>,
-    /// The run ends when the estimated noise is not above this.
+    /// The run ends when the estimated noise is at most this.
     pub noise: Option<f64>,
 }
 
@@ -89,7 +91,7 @@ pub struct Session {
     integrator: Box<dyn Integrator>,
     state: SessionState,
     is_prepared: bool,
-    /// Whether the film has no light of a pass that was cancelled.
+    /// Whether the film holds no part of a cancelled pass.
     is_whole: bool,
     /// Drafts done by this session.
     drafts: u32,
@@ -99,28 +101,28 @@ pub struct Session {
     elapsed: Duration,
     last_pass: Duration,
     noise: Option<f64>,
-    /// What the film is to hold at the end of the current run.
+    /// The passes that the film holds after the current run, if no limit ends it.
     planned: PassSet,
     limits: Limits,
 }
 
-/// What has to be kept of a session for another one to go on as if they were one.
+/// The state of a session from which another one resumes, with the same bits.
 #[derive(Debug)]
 pub struct SessionState {
     /// The passes that the films hold.
     pub done: PassSet,
     /// The film.
     pub film: Film,
-    /// The film that takes turns with the first one, where noise is estimated.
+    /// The film that alternates with the first one, if noise is limited.
     pub second: Option<Film>,
-    /// How many passes the first and the second film hold.
+    /// The number of passes in the first and in the second film.
     pub counts: [u32; 2],
-    /// Time that sessions have run.
+    /// Running time of all sessions.
     pub elapsed: Duration,
 }
 
 impl SessionState {
-    /// No passes.
+    /// The state before the first pass.
     pub fn new(film: Film) -> Self {
         Self { done: PassSet::new(), film, second: None, counts: [0; 2], elapsed: Duration::ZERO }
     }
@@ -135,12 +137,12 @@ impl SessionState {
         Development::new(&self.film, self.second.as_ref(), self.film.layers())
     }
 
-    /// How many samples have come in.
+    /// The number of samples in the films.
     pub fn sample_count(&self) -> u64 {
         self.films().map(Film::sample_count).sum()
     }
 
-    /// The samples that were refused.
+    /// The samples that the films rejected.
     pub fn rejected(&self) -> Rejected {
         self.films().fold(Rejected::default(), |mut all, film| {
             all.merge(&film.rejected());
@@ -162,7 +164,7 @@ impl SessionState {
 }
 
 impl Session {
-    /// Begins with `state`.
+    /// A session that starts from `state`.
     pub fn new(scene: Arc<Scene>, view: View, integrator: Box<dyn Integrator>, state: SessionState) -> Self {
         Self {
             scene,
@@ -182,13 +184,12 @@ impl Session {
         }
     }
 
-    /// Does those passes of a range that are not done yet, on the threads of rayon's current pool,
+    /// Runs the passes of a range that are not done yet, on the threads of rayon's current pool,
     /// and calls `after_pass` after each.
     ///
-    /// Pass 0 of an integrator that makes drafts is preceded by them. After `Err` the film is valid
-    /// all the same: it holds the light of the passes that were done, and after a cancellation that
-    /// of some tiles of the next one. But unless it [is whole](Self::is_whole), no other session
-    /// can go on from it.
+    /// Drafts, if the integrator makes any, precede pass 0. The film is valid after `Err`, too: it
+    /// holds the passes that are done, and after a cancellation some tiles of the next one. But
+    /// unless it [is whole](Self::is_whole), no other session can resume from it.
     pub fn run(
         &mut self,
         passes: Range<u32>,
@@ -278,12 +279,12 @@ impl Session {
         self.elapsed = elapsed;
     }
 
-    /// Whether the next pass would end after this time. There is one pass at least.
+    /// Whether the next pass would end after this time. At least one pass is run.
     fn is_over(&self, time: Duration) -> bool {
         !self.state.done.is_empty() && self.state.elapsed.saturating_add(self.last_pass) >= time
     }
 
-    /// How far the session is.
+    /// The progress of the session.
     pub fn progress(&self) -> Progress {
         let done = f64::from(self.state.done.count());
         let share_of_time = self.limits.time.map(|time| self.state.elapsed.div_duration_f64(time));
@@ -317,19 +318,19 @@ impl Session {
         &self.state
     }
 
-    /// Whether the film holds whole passes only, none that was cancelled on the way.
+    /// Whether the film holds complete passes only, no part of a cancelled one.
     pub fn is_whole(&self) -> bool {
         self.is_whole
     }
 
-    /// Goes on with what another session of the same scene, view and algorithm has left, and with
-    /// the films that its algorithm has filled beside the picture's.
+    /// Resumes from the state of another session of the same scene, view and algorithm, and from
+    /// the further films that its algorithm has filled.
     pub fn resume(&mut self, state: SessionState, films: Vec<(String, Film)>) {
         self.state = state;
         self.integrator.set_films(films);
     }
 
-    /// What another session can go on from.
+    /// The state from which another session can resume.
     pub fn into_state(self) -> SessionState {
         self.state
     }
@@ -340,23 +341,23 @@ impl Session {
     }
 }
 
-/// Measures a run.
+/// Measures the time of a run.
 struct Stopwatch<'a> {
     control: &'a Control,
     begin: Duration,
-    /// Time that the session had run before.
+    /// Running time of the session before this run.
     before: Duration,
 }
 
-/// Whether noise is estimated after so many passes: after every second one at first, later when a
-/// sixteenth more are done. It depends on nothing else, so that a render that was resumed ends as
-/// one that was not.
+/// Whether noise is estimated after this number of passes: after every second one at first, later
+/// after each increase by about a sixteenth. It depends on nothing else, so that a resumed render
+/// ends at the same pass as an uninterrupted one.
 fn is_estimated_after(passes: u32) -> bool {
     let step = (1_u32 << passes.max(1).ilog2().saturating_sub(4)).max(2);
     passes >= FIRST_ESTIMATE && passes.is_multiple_of(step)
 }
 
-/// The noise of the mean of the independent pictures of two films of so many passes each.
+/// The noise of the weighted mean of two films' independent pictures. `counts` are their passes.
 fn noise(films: [&Film; 2], counts: [u32; 2]) -> f64 {
     let [a, b] = counts.map(f64::from);
     let [share_a, share_b] = [a / (a + b), b / (a + b)];
@@ -365,15 +366,15 @@ fn noise(films: [&Film; 2], counts: [u32; 2]) -> f64 {
     let floor = (mean / 10.0).powi(2);
     let relative_variance = |[a, b]: [f64; 2]| {
         let variance = share_a * share_b * (a - b).powi(2);
-        // Where the whole picture is black there is nothing to differ.
+        // Avoids 0/0 where the whole picture is black.
         if variance == 0.0 { 0.0 } else { variance / (mean_of([a, b]).powi(2) + floor) }
     };
     mean_over(films, relative_variance).sqrt()
 }
 
 /// The mean of a function of the values of two films' pictures, over pixels and channels. The
-/// pictures are developed row by row, so that they need no memory; rows are summed in order, so
-/// that threads do not matter.
+/// pictures are developed row by row to save memory. Rows are summed in order, so that the result
+/// does not depend on the number of threads.
 fn mean_over(films: [&Film; 2], f: impl Fn([f64; 2]) -> f64 + Sync) -> f64 {
     let pictures = films.map(|film| Development::new(film, None, LayerSet::NONE));
     let (width, height) = (pictures[0].width(), pictures[0].height());

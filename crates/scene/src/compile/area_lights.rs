@@ -1,8 +1,7 @@
-//! Emitting shapes, and the rows of the table of lights that they become.
+//! Emitting shapes, compiled to rows of the light table.
 //!
-//! The lights of a group are counted within it, those of what is placed in it included, in the
-//! order in which its members were added. An emitting geometry becomes one row for each path of
-//! instances through which it is seen.
+//! The lights of a group are numbered in the order in which its members were added, lights of its
+//! instances included. An emitting geometry becomes one row for each path of instances to it.
 
 use super::Compiler;
 use crate::light::{AreaEmission, AreaLight, EmissionId, Light, LightTable, SceneSphere};
@@ -12,15 +11,15 @@ use crate::texture::FloatTextureId;
 use description::{AreaLightDesc, Origin, ShapeDesc, Span, Stated};
 use geometry::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, World};
 
-/// The most lights of a scene, primitives and instances counted: the tables with which one is
-/// chosen take about 150 bytes for each.
+/// The maximum number of lights of a scene; each primitive of each instance counts. The tables of
+/// the light samplers take about 150 bytes per light.
 const MAX_LIGHTS: u32 = 1 << 28;
 
-/// What emits in a group.
+/// The emitters of a group.
 #[derive(Default)]
 pub(super) struct Emitters {
     members: Vec<Member>,
-    /// How many lights there are in the group.
+    /// The number of lights in the group.
     len: u32,
 }
 
@@ -29,19 +28,19 @@ enum Member {
     Instance(InstanceId, GroupId),
 }
 
-/// What an emitting geometry emits, through whichever instances it is seen.
+/// The emission of a geometry, shared by all its instances.
 #[derive(Clone)]
 pub(super) struct Emitter {
     emission: EmissionId,
     alpha: Option<FloatTextureId>,
     invisible: bool,
-    /// Of every primitive, if it is asked for.
+    /// The power of each primitive, if the scene states it.
     power: Option<f32>,
     primitives: u32,
 }
 
 impl Compiler<'_> {
-    /// What every area light emits, on whatever shape; `None` where that makes no sense.
+    /// Compiles the emission of all area lights; `None` where it is invalid.
     pub(super) fn area_emissions(&mut self) {
         let desc = self.desc;
         for (_, light) in desc.area_lights.iter() {
@@ -62,7 +61,7 @@ impl Compiler<'_> {
         Some(AreaEmission { radiance, image, two_sided: desc.two_sided })
     }
 
-    /// What a shape of `geometry` emits, if it can.
+    /// The emitter of a shape of `geometry`, if the shape can emit.
     pub(super) fn emitter(
         &mut self,
         shape: &Stated<ShapeDesc>,
@@ -101,7 +100,8 @@ impl Compiler<'_> {
         })
     }
 
-    /// Adds what a geometry of a group emits; the number of its first light in the group.
+    /// Adds the emitter of a geometry of a group. Returns the index of its first light in the
+    /// group.
     pub(super) fn add_emitter(
         &mut self,
         group: GroupId,
@@ -114,13 +114,13 @@ impl Compiler<'_> {
         Some(first)
     }
 
-    /// A new group of the world.
+    /// Adds a group to the world.
     pub(super) fn add_group(&mut self) -> GroupId {
         self.emitters.push(Emitters::default());
         self.world.add_group()
     }
 
-    /// Places an instance in a group of the world, with the lights in it.
+    /// Adds an instance and its lights to a group of the world.
     pub(super) fn add_instance(&mut self, group: GroupId, instance: Instance, span: Span) {
         let placed = instance.group;
         let id = self.world.add_instance(group, instance);
@@ -142,17 +142,18 @@ impl Compiler<'_> {
                 Some(first)
             }
             None => {
-                self.error("too-large", format!("there are {MAX_LIGHTS} emitting primitives at most"), span);
+                let message = format!("a scene has at most {MAX_LIGHTS} emitting primitives");
+                self.error("too-large", message, span);
                 None
             }
         }
     }
 
-    /// All lights: of what emits in `world`, then those without a surface. `sphere` is the extent
-    /// of the scene.
+    /// All lights: the area lights of `world`, then the lights without a surface. `sphere` bounds
+    /// the scene.
     pub(super) fn light_table(&mut self, world: &World, sphere: SceneSphere) -> LightTable {
         let emissions = std::mem::take(&mut self.area_emissions).into_iter().map(|emission| {
-            // Of what makes no sense nothing emits; it keeps its place.
+            // Invalid emission is replaced by black, so that ids stay valid.
             emission.unwrap_or_else(AreaEmission::black)
         });
         let mut table = LightTable::new(emissions.collect());

@@ -1,13 +1,13 @@
-//! Curves of any basis become cubic Bézier segments. Scenes of hair state each by itself; those
-//! that follow each other and differ in nothing but their points and widths become one geometry,
-//! which costs no more than its segments.
+//! Curves of any basis are compiled to cubic Bézier segments. Hair scenes have a statement per
+//! curve. Successive curves that differ only in points and widths become one geometry, so that
+//! memory is needed for segments only.
 
 use super::Compiler;
 use description::{CurveBasis, CurveDesc, CurveProfile, ShapeDesc, ShapeKind, Stated};
 use geometry::{CurveSegment, Curves, SplineBasis, bezier_segments};
 use math::{Normal3, Transform, lerp};
 
-/// Whether two shapes are curves that may be one geometry.
+/// Whether two shapes are curves that can share one geometry.
 pub(super) fn are_strands(a: &ShapeDesc, b: &ShapeDesc) -> bool {
     let (ShapeKind::Curve(curve), ShapeKind::Curve(other)) = (&a.kind, &b.kind) else { return false };
     curve.profile == other.profile
@@ -21,7 +21,7 @@ pub(super) fn are_strands(a: &ShapeDesc, b: &ShapeDesc) -> bool {
 }
 
 impl Compiler<'_> {
-    /// One or more curves that are [strands](are_strands).
+    /// Compiles one or more curves that are [strands](are_strands).
     pub(super) fn curves(&mut self, strands: &[&Stated<ShapeDesc>], transform: &Transform) -> Curves {
         let (mut segments, mut normals) = (Vec::new(), Vec::new());
         let (mut profile, mut split_depth) = (CurveProfile::Flat, 0);

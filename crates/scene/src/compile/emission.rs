@@ -1,8 +1,8 @@
-//! How brightly lights shine: the format's photometric scale.
+//! The photometric scale of lights, as the format defines it.
 //!
 //! A spectrum is divided by its photometric integral, so that a scale of 1 means a luminance (for
 //! points, a luminous intensity) of 1; `power` and `illuminance` then set the scale so that the
-//! light's total is met.
+//! light has the stated total.
 
 use super::Compiler;
 use crate::light::{Emission, EmissionImage};
@@ -14,7 +14,7 @@ use spectrum::RgbColorSpace;
 use std::f32::consts::PI;
 
 impl Compiler<'_> {
-    /// Reports factors of brightness, by name, that make no sense.
+    /// Reports invalid brightness factors by name.
     pub(super) fn check_brightness(&mut self, origin: &Origin, factors: &[(&str, Option<f32>)]) {
         for &(name, factor) in factors {
             let Some(factor) = factor else { continue };
@@ -33,7 +33,7 @@ impl Compiler<'_> {
         let before = self.diagnostics.len();
         let spectrum = compile_spectrum(spectrum, SpectrumType::Illuminant, span, &mut self.diagnostics);
         let photometric = spectrum.to_photometric();
-        // In the place of a spectrum with an error is a black one.
+        // A spectrum with an error is replaced by a black one.
         if photometric == 0.0 && self.diagnostics.len() == before {
             self.warn("black-light", "the light is black; it emits nothing", span);
         }
@@ -45,7 +45,8 @@ impl Compiler<'_> {
         emission
     }
 
-    /// A light's image, and the factor that makes its 1 one unit of luminance times `scale`.
+    /// A light's image, and the factor by which a pixel value of 1 becomes one unit of luminance
+    /// times `scale`.
     pub(super) fn emission_image(
         &mut self,
         handle: Handle<ImageDesc>,
@@ -58,11 +59,7 @@ impl Compiler<'_> {
             return None;
         }
         if image.values().any(|value| !value.is_finite()) {
-            self.error(
-                "image-values",
-                "the image of a light has values that are infinite or no numbers",
-                span,
-            );
+            self.error("image-values", "the image of a light has infinite or NaN values", span);
             return None;
         }
         let color_space = image_color_space(&image);
@@ -71,7 +68,7 @@ impl Compiler<'_> {
     }
 }
 
-/// The colour space that an image says it is in; sRGB if it says none, or one without a name.
+/// The colour space of an image by its metadata; sRGB if they name none, or an unnamed one.
 fn image_color_space(image: &Image) -> &'static RgbColorSpace {
     image
         .metadata
@@ -80,8 +77,8 @@ fn image_color_space(image: &Image) -> &'static RgbColorSpace {
         .unwrap_or(RgbColorSpace::srgb())
 }
 
-/// Illuminance of an image of the sphere on a surface that faces +z, as the pbrt-v4 format counts
-/// it: with half of the solid angle of each pixel. Scenes made for the format rely on that.
+/// Illuminance from a spherical image on a surface that faces +z. As in pbrt-v4, each pixel has
+/// half of its solid angle: scenes of the format rely on that.
 pub(super) fn upward_illuminance(image: &EmissionImage, projection: Projection) -> f32 {
     let (width, height) = (image.image.width(), image.image.height());
     let weights = image.color_space.luminance_weights();

@@ -1,4 +1,4 @@
-//! Lights that are not surfaces.
+//! Lights without a surface.
 
 use super::Compiler;
 use super::emission::upward_illuminance;
@@ -12,7 +12,7 @@ use math::{AnimatedTransform, DMat4, Point3, Transform, Vec3, Vector3};
 use std::f32::consts::PI;
 
 impl Compiler<'_> {
-    /// All of them. `scene` is the extent of what can be hit.
+    /// Compiles all lights without a surface. `scene` bounds all surfaces.
     pub(super) fn lights(&mut self, scene: SceneSphere) -> Vec<Light> {
         let desc = self.desc;
         let lights = desc.lights.iter();
@@ -36,7 +36,8 @@ impl Compiler<'_> {
             self.singular("light", origin);
             return None;
         };
-        // What moves stays in its own space, and is brought to render space at each shutter time.
+        // Moving lights keep their own space; they are transformed to render space at each shutter
+        // time.
         let motion = render_from_light.is_moving().then(|| Box::new(render_from_light.clone()));
         let at_rest = match motion {
             Some(_) => DMat4::IDENTITY,
@@ -137,7 +138,7 @@ impl Compiler<'_> {
         Some(Light::ImageInfinite(Box::new(light)))
     }
 
-    /// Radiant intensity; `power`, if given, is that over `unit` steradians.
+    /// Radiant intensity. `power`, if given, is emitted into `unit` steradians.
     fn intensity(
         &mut self,
         spectrum: &SpectrumDesc,

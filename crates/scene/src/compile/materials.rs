@@ -1,4 +1,4 @@
-//! Materials, and what stands in for those that are not drawn yet.
+//! Materials, and the replacements of those that are not supported yet.
 
 use super::Compiler;
 use crate::material::{
@@ -14,7 +14,7 @@ use description::{
 use spectrum::Spectrum;
 
 impl Compiler<'_> {
-    /// All of them, in the author's order, and the default one last.
+    /// Compiles all materials in the order of the scene, then the default material.
     pub(super) fn materials(&mut self) {
         let desc = self.desc;
         for (_, material) in desc.materials.iter() {
@@ -57,7 +57,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// Whether a mix reaches itself.
+    /// Whether a mix refers to itself, directly or through other mixes.
     fn leads_back(&self, start: Handle<MaterialDesc>) -> bool {
         let mut seen = vec![false; self.materials.len()];
         let mut open = vec![start.index()];
@@ -98,7 +98,7 @@ impl Compiler<'_> {
             MaterialKind::Diffuse { reflectance } => self.diffuse(reflectance, origin),
             MaterialKind::DiffuseTransmission { reflectance, transmittance, scale } => {
                 if !(0.0..f32::INFINITY).contains(scale) {
-                    let message = format!("{scale} is no factor on a reflectance");
+                    let message = format!("a reflectance cannot be scaled by {scale}");
                     self.error("invalid-value", message, origin.parameter("scale"));
                 }
                 Material::DiffuseTransmission(DiffuseTransmissionMaterial {
@@ -172,7 +172,7 @@ impl Compiler<'_> {
         self.spectrum_texture(parameter, SpectrumType::Albedo, origin.parameter(name))
     }
 
-    /// The index of refraction given by the parameter `name`.
+    /// The index of refraction of the parameter `name`.
     fn index_of_refraction(&mut self, eta: &SpectrumDesc, name: &str, origin: &Origin) -> Spectrum {
         let span = origin.parameter(name);
         let is_positive = match eta {

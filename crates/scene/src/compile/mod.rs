@@ -1,7 +1,7 @@
-//! From what the author said to what the renderer sees: the only place that assembles a [`Scene`].
+//! Compiles a description to a [`Scene`]. Scenes are assembled only here.
 //!
-//! All mistakes come out at once, with the spans of what is to blame; what can be described but not
-//! yet drawn is a warning that says what is drawn instead.
+//! All errors are reported at once, with their spans. A feature that is not supported yet is a
+//! warning that names its replacement.
 
 mod area_lights;
 mod curves;
@@ -31,20 +31,20 @@ use math::DMat4;
 use std::mem::take;
 use std::sync::Arc;
 
-/// A scene, and what had to be left out of it.
+/// A scene, and the warnings of its compilation.
 #[derive(Debug)]
 pub struct Compiled {
     /// The scene.
     pub scene: Scene,
-    /// What is drawn otherwise than described.
+    /// Warnings about what is rendered differently than described.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Compiles a description, apart from camera, film, sampler and integrator. Its camera chooses
+/// Compiles a description, apart from camera, film, sampler and integrator. Its camera determines
 /// render space ([`world_from_render`]). Returns all errors and warnings if there is an error.
 ///
-/// Arrays of shapes become those of the scene where they stay the same, and are dropped before
-/// trees are built where they do not, unless the caller keeps another reference to them.
+/// The scene reuses arrays of shapes that are unchanged. The others are dropped before BVHs are
+/// built, unless the caller keeps another reference to them.
 pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     let world_from_render = world_from_render(&desc);
@@ -126,7 +126,7 @@ struct Compiler<'a> {
     materials: Vec<MaterialEntry>,
     instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
-    /// By group of the world.
+    /// Indexed by group of the world.
     emitters: Vec<Emitters>,
     traits: SceneTraits,
 }
@@ -148,7 +148,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// Warns where there is nothing to see.
+    /// Warns if the picture will be black.
     fn warn_of_darkness(&mut self, lights: &LightTable) {
         let needs_light = !matches!(*self.desc.integrator, IntegratorDesc::AmbientOcclusion { .. });
         if self.entries.is_empty() && lights.infinite().is_empty() {

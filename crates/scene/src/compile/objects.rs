@@ -1,8 +1,8 @@
-//! Objects, and instances of them: in the world, and within each other.
+//! Objects and their instances, which may be nested.
 //!
-//! An object is a group of the world. Its resting shapes stand there in render space; a shape that
-//! moves is an instance within it, and so is another object. Motions at several levels are found
-//! each for itself and then combined.
+//! An object is a group of the world. Its static shapes are in render space; a moving shape is an
+//! instance within the group, and so is a nested object. Motions of nested instances are
+//! interpolated separately and then combined.
 
 use super::Compiler;
 use super::curves::are_strands;
@@ -12,23 +12,23 @@ use math::{AnimatedTransform, Transform};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// An object as a group.
+/// The group of an object.
 #[derive(Clone, Copy)]
 struct Placeable {
     group: GroupId,
-    /// How many levels of instances stand within it.
+    /// The number of levels of nested instances.
     levels: usize,
 }
 
 #[derive(Default)]
 struct Objects {
     built: HashMap<usize, Placeable>,
-    /// Those under way, each within the one before.
+    /// The objects being compiled, each nested in the one before.
     open: Vec<usize>,
 }
 
 impl Compiler<'_> {
-    /// All instances, and the objects that they show.
+    /// Compiles all instances and their objects.
     pub(super) fn instances(&mut self, instances: &Arena<InstanceDesc>) {
         let mut objects = Objects::default();
         for (_, desc) in instances.iter() {
@@ -40,7 +40,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// An instance and the levels of instances that it makes, itself included.
+    /// An instance, and its number of levels of nested instances, itself included.
     fn instance(
         &mut self,
         instance: &Stated<InstanceDesc>,
@@ -48,7 +48,7 @@ impl Compiler<'_> {
     ) -> Option<(Instance, usize)> {
         let span = instance.origin.span;
         if objects.open.contains(&instance.object.index()) {
-            let message = format!("the object `{}` is within itself", self.objects[instance.object].name);
+            let message = format!("the object `{}` contains itself", self.objects[instance.object].name);
             self.error("endless-instances", message, span);
             return None;
         }
@@ -58,7 +58,7 @@ impl Compiler<'_> {
             built.filter(|object| objects.open.len() + object.levels < InstancePath::MAX_DEPTH)
         else {
             let most = InstancePath::MAX_DEPTH;
-            self.error("nested-too-deep", format!("instances lie more than {most} deep in each other"), span);
+            self.error("nested-too-deep", format!("instances are nested more than {most} levels deep"), span);
             return None;
         };
         let Some(render_from_instance) = self.instance_motion(&instance.world_from_object) else {
@@ -68,16 +68,16 @@ impl Compiler<'_> {
         Some((Instance { group, render_from_instance }, levels + 1))
     }
 
-    /// How an instance moves whose shapes already stand in render space. Its transform is brought
-    /// there before the moments between start and end are found: of a turn they depend on the place
-    /// of the origin, and this is that of the format.
+    /// The motion of an instance whose shapes are already in render space. The transforms of start
+    /// and end are converted to render space before interpolation: the interpolation of a rotation
+    /// depends on the origin, and the format interpolates about this one.
     fn instance_motion(&self, t: &TransformDesc) -> Option<AnimatedTransform> {
         let world_from_render = self.render_from_world.inverse();
         let moved = |world_from_object| self.render_from_world * world_from_object * world_from_render;
         AnimatedTransform::new(moved(t.start), moved(t.end), t.times)
     }
 
-    /// The group of an object. What stands within it comes before it.
+    /// The group of an object. Nested objects are compiled first.
     fn object(&mut self, handle: Handle<ObjectDesc>, objects: &mut Objects) -> Placeable {
         if let Some(built) = objects.built.get(&handle.index()) {
             return *built;

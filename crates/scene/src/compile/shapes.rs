@@ -1,4 +1,4 @@
-//! Shapes: the geometries of the world.
+//! Shapes, compiled to geometries of the world.
 
 use super::Compiler;
 use super::curves::are_strands;
@@ -21,7 +21,7 @@ use spectrum::Rgb;
 use std::sync::Arc;
 
 impl Compiler<'_> {
-    /// The shapes of the world.
+    /// Compiles the shapes of the world.
     pub(super) fn shapes(&mut self, shapes: &Arena<ShapeDesc>) {
         let shapes: Vec<_> = shapes.iter().map(|(_, shape)| shape).collect();
         let mut index = 0;
@@ -32,8 +32,8 @@ impl Compiler<'_> {
         }
     }
 
-    /// A shape of the world (or strands): in render space where it rests, in a group of its own
-    /// where it moves.
+    /// Adds a shape (or strands) to the world: in render space if it is static, in a group of its
+    /// own if it moves.
     fn shape(&mut self, run: &[&Stated<ShapeDesc>]) {
         let shape = run[0];
         if !shape.world_from_object.is_animated() {
@@ -47,7 +47,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// A shape (or strands) that moves: the instance of a group of its own.
+    /// Compiles a moving shape (or strands) to an instance of its own group.
     pub(super) fn moving(&mut self, run: &[&Stated<ShapeDesc>]) -> Option<Instance> {
         let shape = run[0];
         let Some(render_from_instance) = self.motion(&shape.world_from_object) else {
@@ -59,7 +59,7 @@ impl Compiler<'_> {
         Some(Instance { group, render_from_instance })
     }
 
-    /// Adds a shape to a group, in which it is at rest.
+    /// Adds a shape (or strands) that is static within a group.
     pub(super) fn resting(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
         let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
@@ -82,10 +82,10 @@ impl Compiler<'_> {
         }
     }
 
-    /// Records what holds of a shape that has become these geometries.
+    /// Records the traits of a shape that was compiled to these geometries.
     fn shape_traits(&mut self, run: &[&Stated<ShapeDesc>], geometries: &[Geometry]) {
         let kind = &run[0].kind;
-        // What has no bounds is the only shape of its geometry.
+        // An unbounded shape is the only one of its geometry.
         let has_no_bounds = |geometry: &Geometry| match geometry {
             Geometry::Shapes(shapes) => shapes.first().is_some_and(|shape| shape.bounds().is_none()),
             Geometry::Mesh(_) | Geometry::Spheres(_) | Geometry::Curves(_) => false,
@@ -172,12 +172,12 @@ impl Compiler<'_> {
         }
     }
 
-    /// A formula that is zero somewhere in the box, as far as is known.
+    /// Parses a formula. Warns if it certainly has no zero in the box.
     pub(super) fn formula(&mut self, text: &Spanned<String>, bounds: &Bounds3) -> Option<Formula> {
         let formula = match Formula::parse(&text.value) {
             Ok(formula) => formula,
             Err(FormulaError { place, message, help }) => {
-                // Behind the opening quote.
+                // The text starts after the opening quote.
                 let Span { file, start, end } = text.span;
                 let at = |offset: usize| (start + 1 + offset as u32).min(end);
                 let span = if text.span.is_none() {
@@ -193,12 +193,12 @@ impl Compiler<'_> {
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         if reach > Formula::MAX_COORDINATE {
             let limit = Formula::MAX_COORDINATE;
-            let message = format!("the bounds reach to {reach:e}; beyond {limit:e} numbers overflow");
+            let message = format!("the bounds reach to {reach:e}; at most {limit:e} is supported");
             self.error("invalid-bounds", message, text.span);
             return None;
         }
         if formula.has_no_zero(bounds) {
-            self.warn("empty-shape", "the formula is zero nowhere within its bounds", text.span);
+            self.warn("empty-shape", "the formula has no zero within its bounds", text.span);
         }
         Some(formula)
     }
@@ -250,14 +250,15 @@ impl Compiler<'_> {
         let uneven = [mesh.normals.len(), mesh.uvs.len()].iter().any(|&n| n != 0 && n != vertices);
         if missing || uneven {
             let message = if missing {
-                "a patch names a vertex that does not exist"
+                "a patch refers to a vertex that does not exist"
             } else {
                 "a patch mesh needs as many normals and texture coordinates as vertices, or none"
             };
             self.error("invalid-mesh", message, shape.origin.span);
             return None;
         }
-        // An image lies over the patch's own parameters, which texture coordinates would replace.
+        // The image is mapped to the patch's own parameters, which texture coordinates would
+        // replace.
         let image = mesh.emission_image.filter(|_| mesh.uvs.is_empty());
         let image = image.map(|handle| self.emission_distribution(handle));
         let patches = mesh.indices.iter().map(|corners| {
@@ -277,7 +278,7 @@ impl Compiler<'_> {
         Some(Geometry::Shapes(patches.collect()))
     }
 
-    /// How much light leaves from where on a patch, over its (u, v).
+    /// The distribution of a patch's emission over its (u, v).
     fn emission_distribution(&self, handle: Handle<ImageDesc>) -> Arc<PiecewiseConstant2d> {
         let image = &self.desc.images[handle].image;
         let (width, height) = (image.width(), image.height());

@@ -1,4 +1,4 @@
-//! Solids: bodies that are combined.
+//! Constructive solid geometry: combinations of solids.
 
 use super::Compiler;
 use description::{Diagnostic, ShapeDesc, ShapeKind, SolidOperation, Span, Stated};
@@ -6,14 +6,14 @@ use geometry::{Operation, Solid};
 use math::{Bounds3, DMat4, Transform};
 use std::sync::Arc;
 
-/// The most bodies of a solid.
+/// The maximum number of parts of a solid, nested solids included.
 const MAX_PARTS: usize = 1024;
-/// How deep solids may be made of solids.
+/// The maximum nesting depth of solids.
 const MAX_DEPTH: usize = 32;
 
 /// A solid under construction.
 pub(super) struct Assembly {
-    /// Where the solid's shape stands.
+    /// The span of the outermost solid.
     whole: Span,
     parts: usize,
     depth: usize,
@@ -26,7 +26,8 @@ impl Assembly {
 }
 
 impl Compiler<'_> {
-    /// The body that a shape is; `None` where it is none, which is then reported.
+    /// The solid that a shape bounds. `None` after an error, such as for a shape that is not
+    /// closed.
     pub(super) fn solid(
         &mut self,
         shape: &Stated<ShapeDesc>,
@@ -37,7 +38,7 @@ impl Compiler<'_> {
         assembly.parts += 1;
         if assembly.parts > MAX_PARTS {
             if assembly.parts == MAX_PARTS + 1 {
-                let message = format!("a solid is made of {MAX_PARTS} bodies at most");
+                let message = format!("a solid has at most {MAX_PARTS} parts");
                 self.error("too-large", message, assembly.whole);
             }
             return None;
@@ -77,9 +78,9 @@ impl Compiler<'_> {
             ShapeKind::Patches(_) => "a patch",
             ShapeKind::Curve(_) => "a curve",
         };
-        let message = format!("{what} is no body that a solid can be made of");
+        let message = format!("{what} cannot be part of a solid");
         let diagnostic = Diagnostic::error("not-closed", message, span);
-        let help = "bodies are quadrics that go all the way round, all below a plane, formulas, and solids";
+        let help = "parts of a solid are full quadrics, planes, implicit surfaces and solids";
         self.diagnostics.push(diagnostic.with_label(assembly.whole, "the solid").with_help(help));
         None
     }
@@ -93,7 +94,7 @@ impl Compiler<'_> {
         let ShapeKind::Solid { operation, operands } = &shape.kind else { return None };
         assembly.depth += 1;
         if assembly.depth > MAX_DEPTH {
-            let message = format!("solids are made of solids {MAX_DEPTH} deep at most");
+            let message = format!("solids can be nested at most {MAX_DEPTH} levels deep");
             self.error("too-large", message, assembly.whole);
             return None;
         }
@@ -102,7 +103,7 @@ impl Compiler<'_> {
         for operand in operands {
             let object = &objects[operand.value];
             if let Some((_, instance)) = object.instances.iter().next() {
-                let message = "instances of objects are no bodies that a solid can be made of";
+                let message = "instances of objects cannot be part of a solid";
                 self.error("not-closed", message, instance.origin.span);
                 return None;
             }
@@ -128,7 +129,7 @@ impl Compiler<'_> {
         Solid::combine(operation, bodies)
     }
 
-    /// A shape of an object, placed in the solid.
+    /// Compiles a shape of an object to a part of the solid.
     fn part(
         &mut self,
         shape: &Stated<ShapeDesc>,

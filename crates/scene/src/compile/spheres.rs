@@ -6,7 +6,7 @@ use geometry::{Geometry, Shape, Sphere, SphereSet, SphereSetError};
 use math::Transform;
 
 impl Compiler<'_> {
-    /// A set; under a transform that is no similarity, ellipsoids one by one.
+    /// A sphere set; under a transform that is not a similarity, one ellipsoid per sphere.
     pub(super) fn spheres(
         &mut self,
         spheres: &SpheresDesc,

@@ -1,4 +1,4 @@
-//! Shapes that are made into fine meshes: subdivision surfaces and displaced meshes.
+//! Shapes that are tessellated: subdivision surfaces and displaced meshes.
 
 use super::Compiler;
 use crate::texture::TextureContext;
@@ -21,7 +21,7 @@ impl Compiler<'_> {
         self.fine_mesh(result, span, shape, transform)
     }
 
-    /// A mesh moved along its normals. Quadrilaterals are cut in two.
+    /// A mesh displaced along its normals. Quadrilaterals are split into triangles.
     pub(super) fn displaced(
         &mut self,
         triangles: &MeshDesc,
@@ -73,8 +73,7 @@ impl Compiler<'_> {
     }
 }
 
-/// The triangles of a mesh file, among them both halves of its quadrilaterals. The two share
-/// vertices.
+/// The triangles of a mesh file and both halves of its quadrilaterals, which share vertices.
 fn joined(triangles: &MeshDesc, patches: &PatchMeshDesc) -> MeshArrays {
     let halves = patches.indices.iter().flat_map(|&[a, b, c, d]| [[a, b, d], [a, d, c]]);
     MeshArrays {

@@ -77,7 +77,7 @@ fn errors_in_formulas_are_located() {
     let ends = message(SceneDesc::default(), implicit("x +").into());
     assert_eq!(ends.span(), span(104, 104), "at the closing quote");
     let nowhere = message(SceneDesc::default(), implicit("x^2 + 1").into());
-    assert_eq!(nowhere.message, "the formula is zero nowhere within its bounds");
+    assert_eq!(nowhere.message, "the formula has no zero within its bounds");
     assert!(!nowhere.is_error());
 }
 
@@ -104,7 +104,7 @@ fn open_shapes_are_not_operands_of_solids() {
         let mut desc = SceneDesc::default();
         let operands = vec![object(&mut desc, [sphere(1.0).into()]), object(&mut desc, [kind.into()])];
         let wrong = message(desc, solid(SolidOperation::Union, operands));
-        assert_eq!(wrong.message, format!("{what} is no body that a solid can be made of"));
+        assert_eq!(wrong.message, format!("{what} cannot be part of a solid"));
         assert_eq!((wrong.code, wrong.span(), wrong.labels[1].0), ("not-closed", span(40, 50), span(0, 10)));
     }
     let mut desc = SceneDesc::default();
@@ -115,8 +115,8 @@ fn open_shapes_are_not_operands_of_solids() {
 
 #[test]
 fn size_and_depth_of_solids_are_limited() {
-    // Twice as many bodies with every object; one more level with every object.
-    for (copies, text) in [(2, "1024 bodies"), (1, "32 deep")] {
+    // Twice as many parts with every object; one more level with every object.
+    for (copies, text) in [(2, "1024 parts"), (1, "32 levels deep")] {
         let mut desc = SceneDesc::default();
         let ball = object(&mut desc, [sphere(1.0).into()]);
         let mut last = ball;

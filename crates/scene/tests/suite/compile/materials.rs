@@ -77,7 +77,7 @@ fn invalid_materials_are_errors() {
         transmittance: 0.25.into(),
         scale,
     };
-    let message = "NaN is no factor on a reflectance";
+    let message = "a reflectance cannot be scaled by NaN";
     check(&material(leaf(f32::NAN), "scale"), Severity::Error, "invalid-value", message, 4);
     let message = "the values of a spectrum must be at most 1e30";
     let bright = MaterialKind::Diffuse { reflectance: SpectrumDesc::Constant(1e35).into() };

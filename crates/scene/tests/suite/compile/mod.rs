@@ -122,7 +122,7 @@ fn recursive_or_too_deeply_nested_objects_are_errors() {
         desc.objects.push(b);
         desc.instances.push(place(a));
     });
-    let message = "the object `a` is within itself";
+    let message = "the object `a` contains itself";
     check(&endless, Severity::Error, "endless-instances", message, 8);
     let chain = |levels: u32| {
         with(|desc| {
@@ -138,7 +138,7 @@ fn recursive_or_too_deeply_nested_objects_are_errors() {
         })
     };
     assert!(diagnostics(&chain(8)).is_empty());
-    let message = "instances lie more than 8 deep in each other";
+    let message = "instances are nested more than 8 levels deep";
     check(&chain(9), Severity::Error, "nested-too-deep", message, 1);
     check(&chain(10_000), Severity::Error, "nested-too-deep", message, 9992);
     // The inner object was built before, at less depth.
@@ -164,7 +164,7 @@ fn unusable_images_are_errors() {
     error(
         &image_sky(rgb_image(4, 4, |x, _| [if x == 2 { f32::NAN } else { 1.0 }; 3]), None),
         "image-values",
-        "the image of a light has values that are infinite or no numbers",
+        "the image of a light has infinite or NaN values",
     );
     error(
         &image_sky(rgb_image(4, 4, |_, _| [0.0; 3]), Some(100.0)),
@@ -215,7 +215,7 @@ fn invalid_lights_are_errors() {
 #[test]
 fn inconsistent_meshes_are_errors() {
     let shape = |kind: ShapeKind| with(|desc| desc.shapes.push_stated(stated(kind.into(), 3)));
-    let message = "a patch names a vertex that does not exist";
+    let message = "a patch refers to a vertex that does not exist";
     let patches = |indices, normals: usize| {
         ShapeKind::Patches(PatchMeshDesc {
             indices: [indices].into(),
