@@ -23,7 +23,8 @@ pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Res
     Ok(array)
 }
 
-/// Refused where `bytes` bytes cannot be allocated now: asked before work that would abort.
+/// Refused where `bytes` bytes cannot be allocated now. To be checked before allocations whose
+/// failure would abort the program.
 pub fn require_memory(bytes: usize) -> Result<(), ImageError> {
     let refused = |_| ImageError::Limits(format!("no memory for {bytes} bytes"));
     Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)

@@ -50,8 +50,12 @@ fn a_tree_may_not_fit() {
 #[test]
 fn photons_may_not_fit() {
     let folder = Folder::with_scene("memory-photons");
-    let photons = ["--integrator", "photon-mapping", "--set", "photons=2000000000", "--threads", "1"];
-    let render = ["render", "scene.pbrt", "-o", "a.exr"];
-    let finished = with_memory(&folder, 4000, &[&render[..], &photons].concat()).expect(1);
-    assert!(finished.err.contains("error: no memory for "), "{finished:?}");
+    for (integrator, photons) in
+        [("photon-mapping", "photons=2000000000"), ("sppm", "photonsperiteration=2000000000")]
+    {
+        let set = ["--integrator", integrator, "--set", photons, "--threads", "1"];
+        let render = ["render", "scene.pbrt", "-o", "a.exr"];
+        let finished = with_memory(&folder, 4000, &[&render[..], &set].concat()).expect(1);
+        assert!(finished.err.contains("error: no memory for "), "{finished:?}");
+    }
 }

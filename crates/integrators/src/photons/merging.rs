@@ -30,6 +30,7 @@
 //! Sources: [Knaus 2011]; [Hachisuka 2009].
 
 use geometry::RayStats;
+use image::require_memory;
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::View;
@@ -38,7 +39,7 @@ use crate::bidirectional::{Bidirectional, LightVertex, Vertex};
 use crate::photons::photon_grid::PhotonGrid;
 use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
-use crate::{Cancelled, Control};
+use crate::{Cancelled, Control, PassError};
 
 /// Number of light subpaths per parallel task.
 const BATCH: usize = 1024;
@@ -131,7 +132,9 @@ impl Merging {
         sampler: impl Fn(usize) -> Sampler + Sync,
         keep: impl Fn(&Vertex, &mut Sampler) -> Option<V> + Sync,
         control: &Control,
-    ) -> Result<(LightSubpaths<V>, RayStats), Cancelled> {
+    ) -> Result<(LightSubpaths<V>, RayStats), PassError> {
+        // A subpath stores about two vertices, which are copied once.
+        require_memory((4 * size_of::<V>() + size_of::<usize>()).saturating_mul(count))?;
         let shutter = self.shutter(paths.view, pass);
         let time = shutter.time(paths.view);
         let batch = |first: usize| {
@@ -150,7 +153,8 @@ impl Merging {
             Ok((subpaths, stats))
         };
         let batches = (0..count.div_ceil(BATCH)).into_par_iter().map(|i| i * BATCH);
-        let batches: Vec<(LightSubpaths<V>, RayStats)> = batches.map(batch).collect::<Result<_, _>>()?;
+        let batches: Vec<(LightSubpaths<V>, RayStats)> =
+            batches.map(batch).collect::<Result<_, Cancelled>>()?;
         let mut stats = RayStats::default();
         let mut all = LightSubpaths {
             vertices: Vec::with_capacity(batches.iter().map(|(batch, _)| batch.vertices.len()).sum()),
