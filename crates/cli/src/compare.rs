@@ -141,7 +141,8 @@ impl Report {
             replace_file(path, text.as_bytes()).map_err(|error| about_file(path, error))
         };
         let numbers = format!("{json:#}\n");
-        write(&self.numbers, numbers).and(write(&self.page, comparison.to_html()))
+        write(&self.numbers, numbers)?;
+        write(&self.page, comparison.to_html().map_err(|error| about_file(&self.page, error))?)
     }
 }
 

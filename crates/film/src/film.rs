@@ -9,9 +9,9 @@
 //! Sums are stored tile by tile, so that each tile is a contiguous slice that one thread can fill.
 //! A pixel takes [`PIXEL_BYTES`] for its colour, 12 bytes for each further sum (a layer has one for
 //! each of its numbers, and two serve all layers of first hits), [`SPLAT_BYTES`] once there are
-//! splats, and about 60 bytes for each identifier in it.
+//! splats, and about [`ID_BYTES`] for each identifier in it.
 
-use image::ImageError;
+use image::{ImageError, require_memory};
 use math::Bounds2i;
 use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
@@ -28,6 +28,9 @@ const COLOR_SUMS: usize = 4;
 
 /// The bytes of a pixel's colour: four sums and the number of samples.
 pub const PIXEL_BYTES: usize = COLOR_SUMS * SUM_BYTES + size_of::<u32>();
+
+/// The bytes of an identifier in a pixel, about: maps grow as identifiers are found.
+const ID_BYTES: usize = 60;
 
 /// The settings of a film.
 #[derive(Clone, Debug)]
@@ -104,7 +107,7 @@ impl Film {
         let (grid, layout) = (Grid(bounds), Layout::new(layers));
         let no_memory = |_| no_memory(grid);
         let ids = |layer| maps(if layers.has(layer) { grid.tile_count() } else { 0 });
-        Ok(Self {
+        let film = Self {
             full_resolution,
             grid,
             diagonal: settings.diagonal,
@@ -118,7 +121,11 @@ impl Film {
             data: Sums::new(grid, layout.count()).map_err(no_memory)?,
             ids: [ids(ID_LAYERS[0]).map_err(no_memory)?, ids(ID_LAYERS[1]).map_err(no_memory)?],
             splats: SplatSums::default(),
-        })
+        };
+        // Most pixels will have one identifier per layer.
+        let id_layers = ID_LAYERS.into_iter().filter(|&layer| layers.has(layer)).count();
+        require_memory(ID_BYTES * id_layers * bounds.area()).map_err(no_memory)?;
+        Ok(film)
     }
 
     /// Its settings.

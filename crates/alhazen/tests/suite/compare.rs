@@ -154,7 +154,7 @@ fn a_reference_that_misses_light_gives_a_warning() {
     let comparison = compared(Plan { reference: short, ..plan(&contenders, Budget::Samples(8)) });
     let doubt = comparison.doubt().unwrap();
     assert!(doubt.contains("path:maxdepth=1 rendered it") && doubt.contains("simple-path "), "{doubt}");
-    assert!(comparison.to_html().contains("The reference may miss light"));
+    assert!(comparison.to_html().unwrap().contains("The reference may miss light"));
     assert_eq!(comparison.to_json()["reference"]["doubt"], doubt);
 }
 
@@ -230,13 +230,13 @@ fn a_cancelled_comparison_reports_completed_runs() {
         (1, ["whitted".to_owned()].as_slice())
     );
     assert_eq!(comparison.to_json()["status"], "interrupted");
-    assert!(comparison.to_html().contains("Interrupted"));
+    assert!(comparison.to_html().unwrap().contains("Interrupted"));
 }
 
 #[test]
 fn the_page_is_well_formed_and_self_contained() {
     let comparison = compared(plan(&["path", "ray-casting"], Budget::Samples(2)));
-    let page = comparison.to_html();
+    let page = comparison.to_html().unwrap();
     for outside in ["http:", "https:", "url(", "@import", "src=\"/", "<link", "fetch("] {
         assert!(!page.contains(outside), "the page has `{outside}`");
     }
@@ -257,7 +257,7 @@ fn black_pictures_and_single_pixels_can_be_reported() {
     let overrides = Overrides { crop: Some([0.0, 0.1, 0.9, 1.0]), ..Overrides::default() };
     let one = Overrides { pixel: Some([3, 4]), ..Overrides::default() };
     for comparison in [overrides, one].map(|overrides| compared(Plan { overrides, ..dark.clone() })) {
-        let page = comparison.to_html();
+        let page = comparison.to_html().unwrap();
         check_elements(&page);
         assert!(!page.contains("NaN") && !page.contains("inf "), "{page}");
         let point = comparison.runs[0].last();

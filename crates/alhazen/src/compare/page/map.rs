@@ -2,7 +2,7 @@
 
 use image::false_color::signed_false_color;
 use image::metrics::RELATIVE_EPSILON;
-use image::{Format, Image, WriteOptions, encode};
+use image::{Format, Image, ImageError, WriteOptions, encode, require_memory};
 
 use crate::compare::Comparison;
 use crate::picture::in_srgb;
@@ -12,6 +12,14 @@ const BLOCK: u32 = 8;
 
 /// The fraction of a map's values that its colour scale covers.
 const WITHIN_SCALE: f64 = 0.98;
+
+/// The most bytes of a pixel that a run's pictures take: two maps of floats, three PNGs of three
+/// channels in base64, each in [`Maps`], in the gallery and in the page.
+const RUN_BYTES: usize = 2 * 4 + 3 * 3 * 4;
+
+/// The most bytes of a pixel for the other pictures: the reference's, and one picture while it is
+/// converted to sRGB, encoded as PNG and as base64.
+const OTHER_BYTES: usize = 3 * 4 + 3 * 4 + 2 * 3 + 4;
 
 /// Every picture of a page as a data URI.
 pub struct Maps {
@@ -31,8 +39,11 @@ pub struct RunMaps {
 }
 
 impl Maps {
-    pub fn new(comparison: &Comparison) -> Self {
+    /// Refused where there is no memory for a page of these pictures.
+    pub fn new(comparison: &Comparison) -> Result<Self, ImageError> {
         let reference = &comparison.reference.picture;
+        let bytes = RUN_BYTES * comparison.runs.len() + OTHER_BYTES;
+        require_memory(bytes * reference.width() as usize * reference.height() as usize)?;
         let errors: Vec<Image> =
             comparison.runs.iter().map(|run| error_map(reference, &run.pictures[..1])).collect();
         let blocks: Vec<Image> =
@@ -44,7 +55,7 @@ impl Maps {
                 error: colored(error, scale),
                 blocks: colored(blocks, block_scale),
             });
-        Self { reference: data_uri(&in_srgb(reference)), runs: runs.collect(), scale, block_scale }
+        Ok(Self { reference: data_uri(&in_srgb(reference)), runs: runs.collect(), scale, block_scale })
     }
 }
 

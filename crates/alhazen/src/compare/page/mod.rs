@@ -7,6 +7,8 @@ mod map;
 
 use std::fmt::Write;
 
+use image::ImageError;
+
 use self::chart::{Chart, Series, Shape};
 use self::figure::{count, escape, figure, percent};
 use self::map::Maps;
@@ -16,11 +18,11 @@ use super::{Bias, Comparison, Parts, Run, settings};
 const COLORS: usize = 8;
 
 impl Comparison {
-    /// The page.
-    pub fn to_html(&self) -> String {
+    /// The page; refused where there is no memory for its pictures.
+    pub fn to_html(&self) -> Result<String, ImageError> {
         let title = escape(&format!("{}: {}", self.setup.title, self.names().join(", ")));
-        let maps = Maps::new(self);
-        [
+        let maps = Maps::new(self)?;
+        Ok([
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n",
             "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n",
             "<meta name=\"color-scheme\" content=\"light dark\">\n",
@@ -34,7 +36,7 @@ impl Comparison {
             &self.settings(),
             &format!("</main>\n<script>\n{}</script>\n</body>\n</html>\n", include_str!("script.js")),
         ]
-        .concat()
+        .concat())
     }
 
     fn names(&self) -> Vec<&str> {
