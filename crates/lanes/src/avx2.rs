@@ -6,6 +6,7 @@ use std::arch::x86_64::*;
 instruction_set! {
     Avx2, is_x86_feature_detected ["avx2" "fma" "bmi1" "bmi2" "popcnt" "lzcnt"];
     F32x4, F32x8, Pair<F32x8>;
+    f32;
 
     #[inline(always)]
     fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {

@@ -9,6 +9,7 @@ instruction_set! {
         "avx512f" "avx512vl" "avx512dq" "avx512bw" "avx2" "fma" "bmi1" "bmi2" "popcnt" "lzcnt"
     ];
     F32x4, F32x8, F32x16;
+    f32;
 
     #[inline(always)]
     fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {

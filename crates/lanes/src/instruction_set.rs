@@ -3,7 +3,7 @@
 #[cfg(target_arch = "aarch64")]
 use crate::neon;
 use crate::scalar;
-use crate::simd::Task;
+use crate::simd::{Kernel, Task, Widest};
 #[cfg(target_arch = "x86_64")]
 use crate::{avx2, avx512, sse2};
 
@@ -46,6 +46,17 @@ impl InstructionSet {
             #[allow(unreachable_patterns)]
             _ => false,
         }
+    }
+
+    /// Runs a kernel with it.
+    ///
+    /// # Panics
+    /// If the processor does not have it.
+    #[inline]
+    pub fn dispatch<K: Kernel>(self, kernel: K) -> K::Output {
+        assert!(self.is_available(), "{self:?} on a processor without it");
+        // SAFETY: as just checked.
+        unsafe { self.run(Widest(kernel)) }
     }
 
     /// Runs a task with it.

@@ -24,11 +24,14 @@ mod instruction_set;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod pair;
+mod real;
 mod scalar;
+mod single;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
 
 pub use baseline::{first_equal, prefetch};
 pub use instruction_set::InstructionSet;
+pub use real::{Int, MAX_LANES, Mask, Real};
 pub use scalar::F32x1;
-pub use simd::{Simd, Task, Vector};
+pub use simd::{Kernel, Simd, Task, Vector};

@@ -7,6 +7,7 @@ use std::arch::is_aarch64_feature_detected;
 instruction_set! {
     Neon, is_aarch64_feature_detected ["neon"];
     F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
+    f32;
 }
 
 /// A bit for each lane of a mask.

@@ -8,6 +8,7 @@ type F32x4 = Pair<F32x2>;
 instruction_set! {
     Scalar, is_detected [];
     F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
+    f32;
 }
 
 vector! {

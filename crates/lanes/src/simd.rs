@@ -1,5 +1,7 @@
 //! What every instruction set offers, and macros that implement it from a table of intrinsics.
 
+use crate::Real;
+
 /// `N` floats, one in each lane.
 pub trait Vector<const N: usize>: Copy {
     /// The same number in all lanes.
@@ -58,6 +60,8 @@ pub trait Simd: Copy {
     type F32x8: Vector<8>;
     /// Sixteen floats.
     type F32x16: Vector<16>;
+    /// As many floats as a register holds.
+    type Real: Real;
 
     /// The four lanes of `from` whose indices are in byte `BYTE` of each element of `indices`. Only
     /// the low three bits of an index count.
@@ -80,6 +84,28 @@ pub trait Task {
     /// # Safety
     /// The processor must have the instruction set `S`.
     unsafe fn run<S: Simd>(self) -> Self::Output;
+}
+
+/// A computation that is written for any number of lanes. This and everything it calls must be
+/// `#[inline(always)]`, as for a [`Task`].
+pub trait Kernel {
+    /// The result.
+    type Output;
+
+    /// Computes it with as many lanes as `R` has.
+    fn run<R: Real>(self) -> Self::Output;
+}
+
+/// Runs a kernel with the widest vectors of an instruction set.
+pub(crate) struct Widest<K>(pub K);
+
+impl<K: Kernel> Task for Widest<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> K::Output {
+        self.0.run::<S::Real>()
+    }
 }
 
 /// Defines a vector as a newtype over a register. Each operation is an expression of registers;
@@ -147,6 +173,7 @@ macro_rules! instruction_set {
     (
         $name:ident, $is_detected:ident [$($feature:tt)*];
         $f32x4:ty, $f32x8:ty, $f32x16:ty;
+        $real:ty;
         $($item:item)*
     ) => {
         #[doc = concat!("See [`crate::InstructionSet::", stringify!($name), "`].")]
@@ -157,6 +184,7 @@ macro_rules! instruction_set {
             type F32x4 = $f32x4;
             type F32x8 = $f32x8;
             type F32x16 = $f32x16;
+            type Real = $real;
             $($item)*
         }
 

@@ -7,6 +7,7 @@ use std::arch::x86_64::*;
 instruction_set! {
     Sse2, is_x86_feature_detected ["sse2"];
     F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
+    f32;
 }
 
 vector! {

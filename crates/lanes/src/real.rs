@@ -1,0 +1,277 @@
+//! Numbers that are one `f32`, `u32` or `bool`, or one for each lane of a vector.
+//!
+//! Physics is written once for any [`Real`]. With `f32` it reads and runs as scalar code; with the
+//! vectors of an instruction set it computes as many samples at once as there are lanes. No
+//! operation combines lanes, except for the explicit tests of a [`Mask`], and all have the same
+//! bits on every instruction set, so that the number of lanes never changes a result.
+
+use std::fmt::Debug;
+use std::ops::{
+    Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign,
+};
+
+/// A float for each lane.
+///
+/// Arithmetic is that of IEEE 754, rounded to nearest. There is no contraction: a fused
+/// multiply-add is made by [`mul_add`](Self::mul_add) alone, which is slow on processors without
+/// the instruction.
+pub trait Real:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// The number of lanes.
+    const LANES: usize;
+
+    /// A bool for each lane.
+    type Mask: Mask;
+
+    /// A 32-bit integer for each lane.
+    type Int: Int<Real = Self, Mask = Self::Mask>;
+
+    /// The same number in all lanes.
+    fn splat(x: f32) -> Self;
+
+    /// The first numbers of a slice, which must have one for each lane.
+    fn load(from: &[f32]) -> Self;
+
+    /// Writes the lanes to the start of a slice, which must have a place for each.
+    fn store(self, to: &mut [f32]);
+
+    /// The numbers of a table at these indices.
+    ///
+    /// # Panics
+    /// If any index lies outside of the table.
+    fn gather(table: &[f32], indices: Self::Int) -> Self;
+
+    /// `a` where the mask is true, else `b`.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+
+    /// |`self`|.
+    fn abs(self) -> Self;
+
+    /// √`self`, correctly rounded; NaN below zero.
+    fn sqrt(self) -> Self;
+
+    /// The greatest integer that is at most `self`.
+    fn floor(self) -> Self;
+
+    /// The smaller of the two; `b` where either is NaN or both are zeros.
+    fn min(self, b: Self) -> Self;
+
+    /// The larger of the two; `b` where either is NaN or both are zeros.
+    fn max(self, b: Self) -> Self;
+
+    /// The magnitude of `self` with the sign of `sign`.
+    fn copysign(self, sign: Self) -> Self;
+
+    /// `self`·b + c, rounded once.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+
+    /// `self` < b; false where either is NaN, as in all comparisons but `ne`.
+    fn lt(self, b: Self) -> Self::Mask;
+
+    /// `self` ≤ b.
+    fn le(self, b: Self) -> Self::Mask;
+
+    /// `self` > b.
+    #[inline(always)]
+    fn gt(self, b: Self) -> Self::Mask {
+        b.lt(self)
+    }
+
+    /// `self` ≥ b.
+    #[inline(always)]
+    fn ge(self, b: Self) -> Self::Mask {
+        b.le(self)
+    }
+
+    /// `self` = b.
+    fn eq(self, b: Self) -> Self::Mask;
+
+    /// `self` ≠ b; true where either is NaN.
+    #[inline(always)]
+    fn ne(self, b: Self) -> Self::Mask {
+        !self.eq(b)
+    }
+
+    /// The bits of the floats.
+    fn to_bits(self) -> Self::Int;
+
+    /// The floats that have these bits.
+    fn from_bits(bits: Self::Int) -> Self;
+
+    /// Rounded towards zero; a negative number is its two's complement. Only for numbers above −2³¹
+    /// and below 2³¹: what others give depends on the instruction set.
+    fn to_int(self) -> Self::Int;
+
+    /// A number for each lane.
+    #[inline(always)]
+    fn from_fn(lane: impl FnMut(usize) -> f32) -> Self {
+        let mut values = [0.0; MAX_LANES];
+        values[..Self::LANES].iter_mut().enumerate().for_each(write(lane));
+        Self::load(&values)
+    }
+
+    /// The number of each lane, in the first places of an array.
+    #[inline(always)]
+    fn to_array(self) -> [f32; MAX_LANES] {
+        let mut values = [0.0; MAX_LANES];
+        self.store(&mut values);
+        values
+    }
+
+    /// Zero in all lanes.
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::splat(0.0)
+    }
+
+    /// One in all lanes.
+    #[inline(always)]
+    fn one() -> Self {
+        Self::splat(1.0)
+    }
+
+    /// Limited to the range from `low` to `high`; `low` for NaN.
+    #[inline(always)]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+}
+
+/// A 32-bit integer for each lane, unsigned where that matters. Arithmetic wraps.
+pub trait Int:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Not<Output = Self>
+{
+    /// Floats of as many lanes.
+    type Real: Real<Int = Self, Mask = Self::Mask>;
+
+    /// A bool for each lane.
+    type Mask: Mask;
+
+    /// The same integer in all lanes.
+    fn splat(x: u32) -> Self;
+
+    /// The first integers of a slice, which must have one for each lane.
+    fn load(from: &[u32]) -> Self;
+
+    /// Writes the lanes to the start of a slice, which must have a place for each.
+    fn store(self, to: &mut [u32]);
+
+    /// The integers of a table at these indices.
+    ///
+    /// # Panics
+    /// If any index lies outside of the table.
+    fn gather(table: &[u32], indices: Self) -> Self;
+
+    /// `a` where the mask is true, else `b`.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+
+    /// Writes the lanes where the mask is true one after another to the start of a slice, which
+    /// must have a place for every lane of the vector; gives their number. Places after them may
+    /// be overwritten.
+    fn compress(self, mask: Self::Mask, to: &mut [u32]) -> usize;
+
+    /// The sum modulo 2³².
+    fn wrapping_add(self, b: Self) -> Self;
+
+    /// The difference modulo 2³².
+    fn wrapping_sub(self, b: Self) -> Self;
+
+    /// The product modulo 2³².
+    fn wrapping_mul(self, b: Self) -> Self;
+
+    /// Shifted left by `bits` < 32.
+    fn shl(self, bits: u32) -> Self;
+
+    /// Shifted right by `bits` < 32; zeros come in.
+    fn shr(self, bits: u32) -> Self;
+
+    /// `self` = b.
+    fn eq(self, b: Self) -> Self::Mask;
+
+    /// `self` < b, as unsigned integers.
+    fn lt(self, b: Self) -> Self::Mask;
+
+    /// As floats, of signed integers in two's complement: rounded to nearest.
+    fn to_real(self) -> Self::Real;
+
+    /// An integer for each lane.
+    #[inline(always)]
+    fn from_fn(lane: impl FnMut(usize) -> u32) -> Self {
+        let mut values = [0; MAX_LANES];
+        values[..Self::Real::LANES].iter_mut().enumerate().for_each(write(lane));
+        Self::load(&values)
+    }
+
+    /// The integer of each lane, in the first places of an array.
+    #[inline(always)]
+    fn to_array(self) -> [u32; MAX_LANES] {
+        let mut values = [0; MAX_LANES];
+        self.store(&mut values);
+        values
+    }
+}
+
+/// A bool for each lane.
+pub trait Mask:
+    Copy
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Not<Output = Self>
+{
+    /// The same bool in all lanes.
+    fn splat(x: bool) -> Self;
+
+    /// The lanes whose bits are set, the first lane in the lowest bit.
+    fn from_bits(bits: u32) -> Self;
+
+    /// A bit for each lane where the mask is true; no others.
+    fn bits(self) -> u32;
+
+    /// Whether any lane is true.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+
+    /// Whether every lane is true.
+    #[inline(always)]
+    fn all(self) -> bool {
+        (!self).bits() == 0
+    }
+}
+
+/// The most lanes of any vector.
+pub const MAX_LANES: usize = 16;
+
+fn write<T>(mut lane: impl FnMut(usize) -> T) -> impl FnMut((usize, &mut T)) {
+    move |(i, to)| *to = lane(i)
+}

@@ -1,0 +1,193 @@
+//! One lane: `f32`, `u32` and `bool` themselves.
+
+use crate::{Int, Mask, Real};
+
+impl Real for f32 {
+    const LANES: usize = 1;
+
+    type Mask = bool;
+    type Int = u32;
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn load(from: &[f32]) -> Self {
+        from[0]
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f32]) {
+        to[0] = self;
+    }
+
+    #[inline(always)]
+    fn gather(table: &[f32], index: u32) -> Self {
+        table[index as usize]
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32::abs(self)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn floor(self) -> Self {
+        f32::floor(self)
+    }
+
+    #[inline(always)]
+    fn min(self, b: Self) -> Self {
+        if self < b { self } else { b }
+    }
+
+    #[inline(always)]
+    fn max(self, b: Self) -> Self {
+        if self > b { self } else { b }
+    }
+
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        f32::copysign(self, sign)
+    }
+
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        f32::mul_add(self, b, c)
+    }
+
+    #[inline(always)]
+    fn lt(self, b: Self) -> bool {
+        self < b
+    }
+
+    #[inline(always)]
+    fn le(self, b: Self) -> bool {
+        self <= b
+    }
+
+    #[inline(always)]
+    fn eq(self, b: Self) -> bool {
+        self == b
+    }
+
+    #[inline(always)]
+    fn to_bits(self) -> u32 {
+        f32::to_bits(self)
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        f32::from_bits(bits)
+    }
+
+    #[inline(always)]
+    fn to_int(self) -> u32 {
+        self as i32 as u32
+    }
+}
+
+impl Int for u32 {
+    type Real = f32;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(x: u32) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn load(from: &[u32]) -> Self {
+        from[0]
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [u32]) {
+        to[0] = self;
+    }
+
+    #[inline(always)]
+    fn gather(table: &[u32], index: Self) -> Self {
+        table[index as usize]
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+
+    #[inline(always)]
+    fn compress(self, mask: bool, to: &mut [u32]) -> usize {
+        to[0] = self;
+        mask.into()
+    }
+
+    #[inline(always)]
+    fn wrapping_add(self, b: Self) -> Self {
+        u32::wrapping_add(self, b)
+    }
+
+    #[inline(always)]
+    fn wrapping_sub(self, b: Self) -> Self {
+        u32::wrapping_sub(self, b)
+    }
+
+    #[inline(always)]
+    fn wrapping_mul(self, b: Self) -> Self {
+        u32::wrapping_mul(self, b)
+    }
+
+    #[inline(always)]
+    fn shl(self, bits: u32) -> Self {
+        self << bits
+    }
+
+    #[inline(always)]
+    fn shr(self, bits: u32) -> Self {
+        self >> bits
+    }
+
+    #[inline(always)]
+    fn eq(self, b: Self) -> bool {
+        self == b
+    }
+
+    #[inline(always)]
+    fn lt(self, b: Self) -> bool {
+        self < b
+    }
+
+    #[inline(always)]
+    fn to_real(self) -> f32 {
+        self as i32 as f32
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn splat(x: bool) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        bits & 1 == 1
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.into()
+    }
+}
