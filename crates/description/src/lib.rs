@@ -53,7 +53,7 @@ pub use material::{
     MaterialDesc, MaterialKind, MaterialType, RoughnessDesc, SubsurfaceScattering,
 };
 pub use medium::{CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, TemperatureDesc};
-pub use options::{OptionsDesc, RenderSpace};
+pub use options::{Engine, OptionsDesc, RenderSpace};
 pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
 pub use shape::{

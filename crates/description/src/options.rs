@@ -15,6 +15,17 @@ choices! {
     }
 }
 
+choices! {
+    /// How paths from the camera are traced. Engines give the same picture within rounding.
+    pub enum Engine {
+        /// Many paths at once, stage by stage, several in the lanes of vectors.
+        #[default]
+        Wavefront = "wavefront",
+        /// One path after another.
+        Scalar = "scalar",
+    }
+}
+
 settings! {
     /// The values of the `Option` directives.
     #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +38,8 @@ settings! {
         disable_wavelength_jitter: bool = false => ["disablewavelengthjitter"];
         /// Factor on the edge length to which displaced surfaces are tessellated.
         displacement_edge_scale: f32 = 1.0 => ["displacementedgescale": above(0.0)];
+        /// How paths from the camera are traced.
+        engine: Engine = Engine::Wavefront => ["engine"];
         /// Replace every BSDF by a diffuse one of the same albedo.
         force_diffuse: bool = false => ["forcediffuse"];
         /// Image to measure the error against after each pass.

@@ -2,8 +2,8 @@
 
 use description::schema::Settings;
 use description::{
-    BdptDesc, Diagnostic, HaltonRandomization, IntegratorDesc, LightSamplerDesc, PathDesc, Randomization,
-    SamplerKind, SceneDesc,
+    BdptDesc, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc, PathDesc,
+    Randomization, SamplerKind, SceneDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
@@ -13,7 +13,7 @@ use scene::texture::color_space;
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
     AmbientOcclusion, Bdpt, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping, PixelLoop,
-    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, Whitted,
+    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, Wavefront, Whitted,
 };
 
 /// The result of [`build`].
@@ -178,7 +178,10 @@ impl Builder<'_> {
             let span = self.desc.integrator.origin.parameter("lightsampler");
             self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
         }
-        pixels(Path::new(desc, interfaces), sampler)
+        match self.desc.options.engine {
+            Engine::Wavefront => Box::new(Wavefront::new(desc, interfaces, sampler)),
+            Engine::Scalar => pixels(Path::new(desc, interfaces), sampler),
+        }
     }
 }
 

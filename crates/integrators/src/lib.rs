@@ -36,6 +36,7 @@ mod photons;
 mod radiosity;
 mod session;
 mod transport;
+mod wavefront;
 
 pub use bidirectional::Bdpt;
 pub use build::{Built, build};
@@ -50,3 +51,4 @@ pub use photons::{MAX_PHOTON_PATHS, PhotonMapping, Sppm, Vcm};
 pub use radiosity::Radiosity;
 pub use session::{Limits, Progress, Session, SessionState, Stop};
 pub use transport::Tracer;
+pub use wavefront::Wavefront;

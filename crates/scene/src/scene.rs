@@ -223,11 +223,36 @@ impl Scene {
 
     /// Whether an occluding surface lies at 0 < t < `t_max`.
     pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
-        let stops = |hit: &Hit, ray: &Ray| {
-            let passes = interfaces == Interfaces::Pass && self.is_interface(hit, ray);
-            !passes && self.passes_alpha_test(hit, ray)
-        };
-        self.world.occluded(ray, t_max, &stops, stats)
+        self.world.occluded(ray, t_max, &|hit, ray| self.stops(hit, ray, interfaces), stats)
+    }
+
+    /// [`hit`](Self::hit) for each ray and its `t_max`.
+    ///
+    /// # Panics
+    /// If `hits` and `rays` differ in length.
+    pub fn hit_batch(&self, rays: &[(Ray, f32)], hits: &mut [Option<Hit>], stats: &mut RayStats) {
+        self.world.intersect_batch(rays, &|hit, ray| self.passes_alpha_test(hit, ray), hits, stats);
+    }
+
+    /// [`occluded`](Self::occluded) for each ray and its `t_max`.
+    ///
+    /// # Panics
+    /// If `occluded` and `rays` differ in length.
+    pub fn occluded_batch(
+        &self,
+        rays: &[(Ray, f32)],
+        interfaces: Interfaces,
+        occluded: &mut [bool],
+        stats: &mut RayStats,
+    ) {
+        let stops = |hit: &Hit, ray: &Ray| self.stops(hit, ray, interfaces);
+        self.world.occluded_batch(rays, &stops, occluded, stats);
+    }
+
+    /// Whether a hit stops a shadow ray.
+    fn stops(&self, hit: &Hit, ray: &Ray, interfaces: Interfaces) -> bool {
+        let passes = interfaces == Interfaces::Pass && self.is_interface(hit, ray);
+        !passes && self.passes_alpha_test(hit, ray)
     }
 
     /// Whether the point or direction of a light sample is visible from a surface.
@@ -238,10 +263,7 @@ impl Scene {
         interfaces: Interfaces,
         stats: &mut RayStats,
     ) -> bool {
-        let (ray, t_max) = match sample.p {
-            Some(p) => (Ray::between(from.p, from.n, p, sample.n, from.time), Ray::SHADOW_END),
-            None => (from.spawn_ray(sample.wi), f32::INFINITY),
-        };
+        let (ray, t_max) = sample.shadow_ray(from);
         !self.occluded(&ray, t_max, interfaces, stats)
     }
 

@@ -8,7 +8,8 @@
 //! (`allow_incomplete`): their density is then zero there.
 
 use description::LightSamplerDesc;
-use math::{Point3Error, RayDifferential, Vector3, offset_ray_origin};
+use math::{Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
+use sampling::Sampler;
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightLiSample, LightSampleContext};
 use scene::light_sampler::LightSampler;
@@ -85,31 +86,59 @@ impl DirectLighting {
     pub fn sample<B: Scatter>(
         &self,
         tracer: &mut Tracer,
-        (surface, context): (&SurfaceInteraction, &LightSampleContext),
+        vertex: (&SurfaceInteraction, &LightSampleContext),
         bsdf: &Bsdf<B>,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        let scene = tracer.scene;
-        let (u, u_light) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
-        let Some((light, pmf)) = self.lights.sample(context, u) else { return SampledSpectrum::ZERO };
-        let Some(sample) = scene.sample_light(light, context, u_light, lambda, true) else {
-            return SampledSpectrum::ZERO;
-        };
+        match self.connect(tracer.scene, tracer.sampler, vertex, bsdf, lambda) {
+            Some(Connection { ray, t_max, interfaces, l }) if !tracer.occluded(&ray, t_max, interfaces) => l,
+            _ => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// [`sample`](Self::sample) before its shadow ray is traced; `None` if no light arrives.
+    pub fn connect<B: Scatter>(
+        &self,
+        scene: &Scene,
+        sampler: &mut Sampler,
+        (surface, context): (&SurfaceInteraction, &LightSampleContext),
+        bsdf: &Bsdf<B>,
+        lambda: &SampledWavelengths,
+    ) -> Option<Connection> {
+        let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
+        let (light, pmf) = self.lights.sample(context, u)?;
+        let sample = scene.sample_light(light, context, u_light, lambda, true)?;
         let l = scattered(surface, bsdf, &sample);
-        let interfaces = match self.interfaces {
-            Interfaces::Stop => Interfaces::before(scene.light(light)),
-            Interfaces::Pass => Interfaces::Pass,
-        };
-        if l.is_black() || !tracer.sees(&surface.surface, &sample, interfaces) {
-            return SampledSpectrum::ZERO;
+        if l.is_black() {
+            return None;
         }
         let p_l = pmf * sample.pdf;
-        if scene.light(light).is_delta() {
-            return l / p_l;
-        }
-        let p_b = bsdf.pdf(surface.surface.wo, sample.wi, TransportMode::Radiance, Directions::All);
-        l * (power_heuristic(p_l, p_b) / p_l)
+        let light = scene.light(light);
+        let l = if light.is_delta() {
+            l / p_l
+        } else {
+            let p_b = bsdf.pdf(surface.surface.wo, sample.wi, TransportMode::Radiance, Directions::All);
+            l * (power_heuristic(p_l, p_b) / p_l)
+        };
+        let interfaces = match self.interfaces {
+            Interfaces::Stop => Interfaces::before(light),
+            Interfaces::Pass => Interfaces::Pass,
+        };
+        let (ray, t_max) = sample.shadow_ray(&surface.surface);
+        Some(Connection { ray, t_max, interfaces, l })
     }
+}
+
+/// A vertex connected to a point on a light.
+pub(crate) struct Connection {
+    /// The shadow ray.
+    pub ray: Ray,
+    /// Its end.
+    pub t_max: f32,
+    /// Whether interfaces occlude it.
+    pub interfaces: Interfaces,
+    /// The weighted light that the vertex scatters if nothing occludes the ray.
+    pub l: SampledSpectrum,
 }
 
 /// Whether surfaces cast shadows.

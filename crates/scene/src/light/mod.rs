@@ -56,6 +56,7 @@ pub(crate) use table::LightTable;
 pub use table::{LightPart, LightRef, Lights};
 pub use uniform_infinite::UniformInfiniteLight;
 
+use geometry::SurfacePoint;
 use math::{Normal3, Point2, Point3, Point3Error, Ray, Vector3};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -209,6 +210,16 @@ pub struct LightLiSample {
     pub p: Option<Point3Error>,
     /// Normal of the light's surface there; zero where it has none.
     pub n: Normal3,
+}
+
+impl LightLiSample {
+    /// The shadow ray from a surface to the light, and its end.
+    pub fn shadow_ray(&self, from: &SurfacePoint) -> (Ray, f32) {
+        match self.p {
+            Some(p) => (Ray::between(from.p, from.n, p, self.n, from.time), Ray::SHADOW_END),
+            None => (from.spawn_ray(self.wi), f32::INFINITY),
+        }
+    }
 }
 
 /// A sampled ray that leaves a light.
