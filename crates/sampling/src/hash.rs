@@ -2,7 +2,10 @@
 //!
 //! [`mix_bits`] is one of Stafford's variants of MurmurHash3's finaliser, [`hash`] is Appleby's
 //! MurmurHash64A, and [`permutation_element`] evaluates one element of a pseudo-random permutation
-//! in constant memory by cycle walking [Kensler 2013].
+//! in constant memory by cycle walking [Kensler 2013]. [`mix_word`] and [`mix_quadruple`] compute
+//! with 32-bit words, in any number of lanes.
+
+use lanes::{Int, Real};
 
 /// A bijection of 64-bit words under which each input bit changes about half of the output bits.
 #[inline]
@@ -31,10 +34,35 @@ pub fn hash(words: &[u32]) -> u64 {
     h ^ (h >> 47)
 }
 
+/// A bijection of 32-bit words under which each input bit changes about half of the output bits:
+/// `lowbias32` of [Wellons 2018].
+#[inline(always)]
+pub fn mix_word<I: Int>(v: I) -> I {
+    let v = (v ^ v.shr(16)).wrapping_mul(I::splat(0x7feb_352d));
+    let v = (v ^ v.shr(15)).wrapping_mul(I::splat(0x846c_a68b));
+    v ^ v.shr(16)
+}
+
+/// A bijection of quadruples of words whose images look independent: `pcg4d` of [Jarzynski 2020].
+#[inline(always)]
+pub fn mix_quadruple<I: Int>(words: [I; 4]) -> [I; 4] {
+    let step = |v: I| v.wrapping_mul(I::splat(1_664_525)).wrapping_add(I::splat(1_013_904_223));
+    let stir = |[x, y, z, w]: [I; 4]| {
+        let x = x.wrapping_add(y.wrapping_mul(w));
+        let y = y.wrapping_add(z.wrapping_mul(x));
+        let z = z.wrapping_add(x.wrapping_mul(y));
+        [x, y, z, w.wrapping_add(y.wrapping_mul(z))]
+    };
+    stir(stir(words.map(step)).map(|v| v ^ v.shr(16)))
+}
+
 /// 32 bits as a binary fraction in [0, 1).
-#[inline]
-pub(crate) fn unit_interval(bits: u32) -> f32 {
-    (bits as f32 * (1.0 / 4_294_967_296.0)).min(math::ONE_MINUS_EPSILON)
+#[inline(always)]
+pub(crate) fn unit_interval<I: Int>(bits: I) -> I::Real {
+    let (high, low) = (bits.shr(16).to_real(), (bits & I::splat(0xffff)).to_real());
+    // The product is exact, so that the sum is the word rounded once.
+    let rounded = high * I::Real::splat(65_536.0) + low;
+    (rounded * I::Real::splat(1.0 / 4_294_967_296.0)).min(I::Real::splat(math::ONE_MINUS_EPSILON))
 }
 
 /// A number in [0, 1) from a sequence of words.

@@ -17,7 +17,7 @@ pub mod warp;
 
 pub use alias_table::AliasTable;
 pub use discrete::{DiscreteSample, sample_discrete};
-pub use hash::{hash, hash_float, mix_bits, permutation_element};
+pub use hash::{hash, hash_float, mix_bits, mix_quadruple, mix_word, permutation_element};
 pub use piecewise_constant::{PiecewiseConstant1d, PiecewiseConstant2d};
 pub use reservoir::WeightedReservoir;
 pub use rng::Rng;

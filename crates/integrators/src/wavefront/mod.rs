@@ -3,7 +3,7 @@
 //! The paths of a batch of tiles go through each stage together: all are extended by a ray, then
 //! all are shaded, then all shadow rays are traced, and so on until none is left. A stage does one
 //! thing to many paths, which keeps its code and data in the cache, lets rays be traced in batches,
-//! and lets lanes of a vector each hold a path. [Laine et al. 2013]
+//! and lets lanes of a vector each hold a path. [Laine 2013]
 //!
 //! | stage | what it does |
 //! |---|---|

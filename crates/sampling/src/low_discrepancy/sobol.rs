@@ -6,7 +6,8 @@
 //! a₁v_{k−1} ⊕ … ⊕ a_{s−1}v_{k−s+1} ⊕ v_{k−s} ⊕ (v_{k−s} ≫ s). Scrambling follows [Owen 1995]; the
 //! fast form is a hash of [Laine 2011] with constants of [Vegdahl 2021].
 
-use crate::mix_bits;
+use crate::mix_word;
+use lanes::Int;
 use std::sync::LazyLock;
 
 /// The number of dimensions with direction numbers.
@@ -48,7 +49,7 @@ fn matrix(line: &str) -> [u32; COLUMNS] {
 pub fn sobol_digits(index: u64, dimension: usize) -> u32 {
     match dimension {
         0 => index as u32,
-        1 => pascal(index),
+        1 => pascal_digits(index as u32, (index >> 32) as u32),
         _ => product(&MATRICES[dimension], index),
     }
 }
@@ -64,50 +65,53 @@ fn product(matrix: &[u32; COLUMNS], mut index: u64) -> u32 {
     digits
 }
 
-/// The coordinate in dimension 1. Its matrix is Pascal's triangle modulo 2: digit r is the sum over
-/// k of C(k, r)·bit k of the index. That is the Kronecker power of ((1, 1), (0, 1)), applied level
-/// by level without branches.
-#[inline]
-fn pascal(index: u64) -> u32 {
-    const EVEN: [u64; 6] = [
-        0x5555_5555_5555_5555,
-        0x3333_3333_3333_3333,
-        0x0f0f_0f0f_0f0f_0f0f,
-        0x00ff_00ff_00ff_00ff,
-        0x0000_ffff_0000_ffff,
-        0x0000_0000_ffff_ffff,
-    ];
-    let levels = EVEN.iter().enumerate();
-    levels.fold(index, |digits, (level, even)| digits ^ ((digits >> (1 << level)) & even)) as u32
+/// The digits of the coordinate in dimension 1 of the point whose index has these two words. Its
+/// matrix is Pascal's triangle modulo 2: digit r is the sum over k of C(k, r)·bit k of the index.
+/// That is the Kronecker power of ((1, 1), (0, 1)), applied level by level without branches: the
+/// last level adds the digits of the high word to those of the low one.
+#[inline(always)]
+pub fn pascal_digits<I: Int>(low: I, high: I) -> I {
+    const EVEN: [u32; 5] = [0x5555_5555, 0x3333_3333, 0x0f0f_0f0f, 0x00ff_00ff, 0x0000_ffff];
+    let mut digits = low ^ high;
+    for (level, even) in EVEN.into_iter().enumerate() {
+        digits = digits ^ (digits.shr(1 << level) & I::splat(even));
+    }
+    digits
 }
 
 /// Owen scrambling of binary digits, the first of which is the lowest bit: each is flipped or not
 /// by a hash of the digits before it and `seed`.
-#[inline]
-pub fn owen_scramble(digits: u32, seed: u32) -> u32 {
-    let mut v = digits.reverse_bits();
-    if seed & 1 == 1 {
-        v ^= 1 << 31;
+#[inline(always)]
+pub fn owen_scramble<I: Int>(digits: I, seed: I) -> I {
+    let mut v = digits;
+    let mut before = I::splat(0);
+    for b in 0..32 {
+        // Of each level another bit, because levels whose digits before it are zeros share a hash.
+        v = v ^ (mix_word((v & before) ^ seed) & I::splat(1 << b));
+        before = before.shl(1) | I::splat(1);
     }
-    for b in 1..32 {
-        let above = u32::MAX << (32 - b);
-        if mix_bits(((v & above) ^ seed) as u64) as u32 & (1 << b) != 0 {
-            v ^= 1 << (31 - b);
-        }
-    }
-    v.reverse_bits()
+    v
 }
 
 /// A scrambling of the same form as [`owen_scramble`], by a hash in which bits act only on higher
 /// ones.
-#[inline]
-pub fn fast_owen_scramble(digits: u32, seed: u32) -> u32 {
-    let mut v = digits;
-    v ^= v.wrapping_mul(0x3d20_adea);
-    v = v.wrapping_add(seed);
-    v = v.wrapping_mul((seed >> 16) | 1);
-    v ^= v.wrapping_mul(0x0552_6c56);
-    v ^ v.wrapping_mul(0x53a2_2864)
+#[inline(always)]
+pub fn fast_owen_scramble<I: Int>(digits: I, seed: I) -> I {
+    let mul = |v: I, factor: u32| v ^ v.wrapping_mul(I::splat(factor));
+    let v = mul(digits, 0x3d20_adea).wrapping_add(seed);
+    let v = v.wrapping_mul(seed.shr(16) | I::splat(1));
+    mul(mul(v, 0x0552_6c56), 0x53a2_2864)
+}
+
+/// The word whose bits are in reverse order.
+#[inline(always)]
+pub fn reverse_bits<I: Int>(v: I) -> I {
+    let swap = |v: I, bits: u32, even: u32| (v.shr(bits) & I::splat(even)) | (v & I::splat(even)).shl(bits);
+    let v = swap(v, 1, 0x5555_5555);
+    let v = swap(v, 2, 0x3333_3333);
+    let v = swap(v, 4, 0x0f0f_0f0f);
+    let v = swap(v, 8, 0x00ff_00ff);
+    v.shr(16) | v.shl(16)
 }
 
 #[cfg(test)]
@@ -131,8 +135,8 @@ mod tests {
 
     #[test]
     fn the_second_dimension_is_pascals_triangle() {
-        for index in (0..10_000).chain((0..10_000).map(mix_bits)) {
-            assert_eq!(pascal(index), product(&MATRICES[1], index), "index {index:#x}");
+        for index in (0..10_000).chain((0..10_000).map(crate::mix_bits)) {
+            assert_eq!(sobol_digits(index, 1), product(&MATRICES[1], index), "index {index:#x}");
         }
     }
 
@@ -146,7 +150,7 @@ mod tests {
 
     #[test]
     fn scrambling_permutes_every_level_of_strata() {
-        for scramble in [owen_scramble, fast_owen_scramble] {
+        for scramble in [owen_scramble::<u32>, fast_owen_scramble::<u32>] {
             for seed in [0, 1, 0x1234_5678, u32::MAX] {
                 for level in [1, 4, 9] {
                     let strata: HashSet<u32> = (0..1 << level)

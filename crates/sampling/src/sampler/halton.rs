@@ -6,7 +6,7 @@
 //! of a pixel have the low discrepancy of the sequence, and the errors of pixels are independent.
 //! No number of samples is preferred, and beyond it the sequence continues.
 
-use super::randomize::Randomize;
+use super::randomize::{Randomize, wrapped};
 use crate::low_discrepancy::{
     PRIME_COUNT, owen_scrambled_radical_inverse, permuted_radical_inverse, radical_inverse,
 };
@@ -59,10 +59,7 @@ impl Halton {
 
     /// Allocates dimensions, starting again from the third when all are used.
     fn next_dimension(&mut self, count: usize) -> usize {
-        if self.dimension + count > PRIME_COUNT {
-            self.dimension = 2;
-        }
-        let dimension = self.dimension;
+        let dimension = wrapped(self.dimension, count, PRIME_COUNT);
         self.dimension += count;
         dimension
     }

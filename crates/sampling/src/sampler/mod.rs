@@ -10,6 +10,7 @@
 //! except with [`Randomize::None`] in [`PaddedSobol`], [`Sobol`] and [`ZSobol`], where nothing is
 //! random.
 
+mod address;
 mod halton;
 mod independent;
 mod padded_sobol;
@@ -19,6 +20,7 @@ mod sobol;
 mod stratified;
 mod zsobol;
 
+pub use address::Address;
 pub use halton::Halton;
 pub use independent::Independent;
 pub use padded_sobol::PaddedSobol;
@@ -28,6 +30,7 @@ pub use sobol::Sobol;
 pub use stratified::Stratified;
 pub use zsobol::ZSobol;
 
+use lanes::{MAX_LANES, Real};
 use math::Vec2;
 
 /// The source of a pixel sample's coordinates.
@@ -87,6 +90,51 @@ impl Sampler {
     #[inline]
     pub fn get_2d(&mut self) -> Vec2 {
         each_sampler!(self, sampler => sampler.get_2d())
+    }
+
+    /// The coordinate at an address, which [`get_1d`](Self::get_1d) gives there.
+    #[inline(always)]
+    pub fn at_1d<R: Real>(&self, address: &Address<R::Int>) -> R {
+        match self {
+            Self::Independent(sampler) => sampler.at_1d(address),
+            Self::ZSobol(sampler) => sampler.at_1d(address),
+            _ => R::from_fn(|lane| self.started(&address.lane(lane)).get_1d()),
+        }
+    }
+
+    /// The two coordinates at an address, which [`get_2d`](Self::get_2d) gives there.
+    #[inline(always)]
+    pub fn at_2d<R: Real>(&self, address: &Address<R::Int>) -> [R; 2] {
+        match self {
+            Self::Independent(sampler) => sampler.at_2d(address),
+            Self::ZSobol(sampler) => sampler.at_2d(address),
+            _ => self.each_lane(|lane| self.started(&address.lane(lane)).get_2d()),
+        }
+    }
+
+    /// The position in the pixel of the sample at an address, which
+    /// [`get_pixel_2d`](Self::get_pixel_2d) gives there.
+    #[inline(always)]
+    pub fn at_pixel_2d<R: Real>(&self, address: &Address<R::Int>) -> [R; 2] {
+        match self {
+            Self::Halton(_) | Self::Sobol(_) => {
+                self.each_lane(|lane| self.started(&address.lane(lane)).get_pixel_2d())
+            }
+            _ => self.at_2d(address),
+        }
+    }
+
+    /// A clone at an address.
+    fn started(&self, address: &Address) -> Self {
+        let mut sampler = self.clone();
+        sampler.start_pixel_sample(address.pixel.map(|x| x as i32), address.index, address.dimension);
+        sampler
+    }
+
+    fn each_lane<R: Real>(&self, pair: impl Fn(usize) -> Vec2) -> [R; 2] {
+        let mut pairs = [Vec2::ZERO; MAX_LANES];
+        pairs[..R::LANES].iter_mut().enumerate().for_each(|(lane, to)| *to = pair(lane));
+        [R::from_fn(|lane| pairs[lane].x), R::from_fn(|lane| pairs[lane].y)]
     }
 
     /// The coordinates of the sample within its pixel.

@@ -1,7 +1,8 @@
 //! Randomisation that samplers share: scrambled Sobol' coordinates, and shuffled sets of samples.
 
 use crate::hash::{hash, permutation_element, unit_interval};
-use crate::low_discrepancy::{fast_owen_scramble, owen_scramble, sobol_digits};
+use crate::low_discrepancy::{fast_owen_scramble, owen_scramble, reverse_bits, sobol_digits};
+use lanes::Int;
 
 /// How a low-discrepancy sequence is randomised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -26,16 +27,23 @@ impl Randomize {
 
     /// The number with these 32 binary digits, the first of which is the lowest bit, randomised by
     /// `seed`.
-    #[inline]
-    pub(super) fn digits(self, digits: u32, seed: u32) -> f32 {
+    #[inline(always)]
+    pub(super) fn digits<I: Int>(self, digits: I, seed: I) -> I::Real {
         let digits = match self {
             Randomize::None => digits,
-            Randomize::PermuteDigits => digits ^ seed.reverse_bits(),
+            Randomize::PermuteDigits => digits ^ reverse_bits(seed),
             Randomize::FastOwen => fast_owen_scramble(digits, seed),
             Randomize::Owen => owen_scramble(digits, seed),
         };
-        unit_interval(digits.reverse_bits())
+        unit_interval(reverse_bits(digits))
     }
+}
+
+/// The first of `count` dimensions from `dimension` on where there are `total`: those beyond start
+/// again from the third.
+#[inline]
+pub(super) fn wrapped(dimension: usize, count: usize, total: usize) -> usize {
+    if dimension + count <= total { dimension } else { 2 + (dimension - 2) % (total - 3) }
 }
 
 /// A hash of one dimension of one pixel.

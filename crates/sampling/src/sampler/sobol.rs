@@ -6,7 +6,7 @@
 //! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
 //! sequence continues.
 
-use super::randomize::Randomize;
+use super::randomize::{Randomize, wrapped};
 use crate::hash::hash;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_digits};
 use math::Vec2;
@@ -84,10 +84,7 @@ impl Sobol {
 
     /// Allocates dimensions, starting again from the third when all are used.
     fn next_dimension(&mut self, count: usize) -> usize {
-        if self.dimension + count > SOBOL_DIMENSIONS {
-            self.dimension = 2;
-        }
-        let dimension = self.dimension;
+        let dimension = wrapped(self.dimension, count, SOBOL_DIMENSIONS);
         self.dimension += count;
         dimension
     }

@@ -5,26 +5,29 @@
 //! The seed selects both the permutations and the scrambles: all pixels share the scrambles, so
 //! that by them alone the errors of two seeds would be correlated. A number of samples that is no
 //! power of two is rounded up to one. Beyond it, each further round has scrambles and permutations
-//! of its own.
+//! of its own. All hashes are of 32 bits, so that lanes of a vector can each compute a coordinate.
 
+use super::address::Address;
 use super::randomize::Randomize;
-use crate::{hash, mix_bits};
+use crate::low_discrepancy::pascal_digits;
+use crate::mix_word;
+use lanes::Int;
 use math::Vec2;
+
+/// Separates the hash of scrambles from that of permutations.
+const SCRAMBLES: u32 = 0x9e37_79b9;
 
 /// Two-dimensional Sobol' points distributed over the picture along a Morton curve. The number of
 /// samples is rounded up to a power of two; beyond it each round has scrambles of its own.
 #[derive(Clone, Debug)]
 pub struct ZSobol {
     log2_samples: u32,
-    base4_digits: u32,
+    /// Base-4 digits of a pixel's Morton code.
+    log2_side: u32,
     randomize: Randomize,
-    seed: u32,
-    /// Changes the permutations by the seed; 0 for seed 0.
-    seed_key: u32,
-    morton_index: u64,
-    dimension: u32,
-    /// Changes scrambles and permutations by the round; 0 for the first.
-    round: u32,
+    /// A hash of the seed.
+    key: u32,
+    address: Address,
 }
 
 impl ZSobol {
@@ -32,17 +35,12 @@ impl ZSobol {
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> ZSobol {
         let log2_samples = samples_per_pixel.clamp(1, 1 << 31).next_power_of_two().ilog2();
         let side = resolution[0].max(resolution[1]).max(1) as u32;
-        let base4_digits = side.next_power_of_two().ilog2() + log2_samples.div_ceil(2);
-        let seed_key = key(seed);
         ZSobol {
             log2_samples,
-            base4_digits,
+            log2_side: side.next_power_of_two().ilog2(),
             randomize,
-            seed,
-            seed_key,
-            morton_index: 0,
-            dimension: 0,
-            round: 0,
+            key: mix_word(seed),
+            address: Address::new([0; 2], 0, 0),
         }
     }
 
@@ -51,102 +49,141 @@ impl ZSobol {
     }
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
-        let round = index >> self.log2_samples;
-        let index = index & (self.samples_per_pixel() - 1);
-        self.round = key(round);
-        self.morton_index = (encode_morton(pixel) << self.log2_samples) | index as u64;
-        self.dimension = dimension;
+        self.address = Address::new(pixel, index, dimension);
     }
 
     pub(super) fn get_1d(&mut self) -> f32 {
-        let (index, hash) = self.next_index(1);
-        self.randomize.sobol(index, 0, hash as u32)
+        let address = self.address.advance(1);
+        self.at_1d(&address)
     }
 
     pub(super) fn get_2d(&mut self) -> Vec2 {
-        let (index, hash) = self.next_index(2);
-        let x = self.randomize.sobol(index, 0, hash as u32);
-        Vec2::new(x, self.randomize.sobol(index, 1, (hash >> 32) as u32))
+        let address = self.address.advance(2);
+        let [x, y] = self.at_2d(&address);
+        Vec2::new(x, y)
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
         self.get_2d()
     }
 
-    /// The point of the sequence that this sample takes in the next dimensions, and their hash.
-    fn next_index(&mut self, dimensions: u32) -> (u64, u64) {
-        let index = self.permuted_index();
-        self.dimension += dimensions;
-        (index, hash(&[self.dimension, self.seed ^ self.round]))
+    /// The coordinate at an address.
+    #[inline(always)]
+    pub(super) fn at_1d<I: Int>(&self, address: &Address<I>) -> I::Real {
+        let [low, _] = self.point(address);
+        self.randomize.digits(low, mix_word(self.hash(address, SCRAMBLES)))
     }
 
-    /// The Morton index with each base-4 digit permuted by the digits above it; below them there is
-    /// one binary digit if the number of samples is not a power of four.
-    fn permuted_index(&self) -> u64 {
-        let key = 0x5555_5555u32.wrapping_mul(self.dimension) ^ self.round ^ self.seed_key;
-        let choose = |above: u64| mix_bits(above ^ key as u64);
-        let last = self.log2_samples & 1;
-        let mut index = 0;
-        for place in (last..self.base4_digits).rev() {
-            let shift = 2 * place - last;
-            let digit = (self.morton_index >> shift) & 3;
-            let permutation = (choose(self.morton_index >> (shift + 2)) >> 24) % 24;
-            index |= permute_digit(digit, permutation) << shift;
+    /// The two coordinates at an address.
+    #[inline(always)]
+    pub(super) fn at_2d<I: Int>(&self, address: &Address<I>) -> [I::Real; 2] {
+        let [low, high] = self.point(address);
+        let seed = mix_word(self.hash(address, SCRAMBLES));
+        let other = mix_word(seed.wrapping_add(I::splat(SCRAMBLES)));
+        [self.randomize.digits(low, seed), self.randomize.digits(pascal_digits(low, high), other)]
+    }
+
+    /// A hash of dimension, seed and round.
+    #[inline(always)]
+    fn hash<I: Int>(&self, address: &Address<I>, purpose: u32) -> I {
+        let round = address.index >> self.log2_samples;
+        let key = mix_word(self.key ^ mix_word(round.wrapping_add(purpose)));
+        mix_word(address.dimension ^ I::splat(key))
+    }
+
+    /// The point of the sequence that a sample takes in these dimensions, as low and high word of
+    /// its index: the Morton code of the pixel and the index of the sample, each base-4 digit
+    /// permuted by a hash of the digits above it. Below them there is one binary digit if the
+    /// number of samples is not a power of four.
+    #[inline(always)]
+    fn point<I: Int>(&self, address: &Address<I>) -> [I; 2] {
+        if 2 * self.log2_side + self.log2_samples > 32 {
+            let code = self.code(address);
+            let above = |shift| shifted_right(code, shift);
+            self.permuted_code(address, above, |[low, high]: [I; 2]| low ^ mix_word(high))
+        } else {
+            let [code, _] = self.code(address);
+            let above = |shift: u32| [if shift < 32 { code.shr(shift) } else { I::splat(0) }; 2];
+            let [low, _] = self.permuted_code(address, above, |[low, _]: [I; 2]| low);
+            [low, I::splat(0)]
         }
-        if last == 1 {
-            index |= (self.morton_index & 1) ^ (choose(self.morton_index >> 1) & 1);
+    }
+
+    /// The Morton code of the pixel above the index of the sample, as low and high word.
+    #[inline(always)]
+    fn code<I: Int>(&self, address: &Address<I>) -> [I; 2] {
+        let kept = I::splat(if self.log2_side < 32 { (1 << self.log2_side) - 1 } else { u32::MAX });
+        let [x, y] = address.pixel.map(|x| x & kept);
+        let interleaved = |x: I, y: I| spread(x) | spread(y).shl(1);
+        let [low, high] = [interleaved(x, y), interleaved(x.shr(16), y.shr(16))];
+        let log2 = self.log2_samples;
+        let index = I::splat(address.index & (self.samples_per_pixel() - 1));
+        if log2 == 0 {
+            return [low, high];
         }
-        index
+        [low.shl(log2) | index, high.shl(log2) | low.shr(32 - log2)]
+    }
+
+    /// Permutes the digits of a code. `above(shift)` is the code without its lowest bits, and
+    /// `word` a hash of it.
+    #[inline(always)]
+    fn permuted_code<I: Int>(
+        &self,
+        address: &Address<I>,
+        above: impl Fn(u32) -> [I; 2],
+        word: impl Fn([I; 2]) -> I,
+    ) -> [I; 2] {
+        let key = self.hash(address, 0);
+        let hash = |shift: u32| mix_word(word(above(shift)) ^ key.wrapping_add(I::splat(shift)));
+        let one = I::splat(1);
+        let (mut low, mut high) = (I::splat(0), I::splat(0));
+        let odd = self.log2_samples & 1;
+        let digits = self.log2_side.min(32) + self.log2_samples / 2;
+        for place in (0..digits).rev() {
+            let shift = 2 * place + odd;
+            let [bits, _] = above(shift);
+            high = high.shl(2) | low.shr(30);
+            low = low.shl(2) | permuted([bits & one, bits.shr(1) & one], hash(shift + 2));
+        }
+        if odd == 1 {
+            high = high.shl(1) | low.shr(31);
+            low = low.shl(1) | ((above(0)[0] ^ hash(1)) & one);
+        }
+        [low, high]
     }
 }
 
-/// A hash of a seed or round; 0 for 0.
-fn key(number: u32) -> u32 {
-    if number == 0 { 0 } else { hash(&[number]) as u32 }
-}
-
-/// The image of a base-4 digit under permutation number `permutation` of 24.
-#[inline]
-fn permute_digit(digit: u64, permutation: u64) -> u64 {
-    const PERMUTATIONS: [[u8; 4]; 24] = permutations();
-    PERMUTATIONS[permutation as usize][digit as usize] as u64
-}
-
-/// All permutations of four digits.
-const fn permutations() -> [[u8; 4]; 24] {
-    let mut all = [[0; 4]; 24];
-    let (mut count, mut code) = (0, 0u8);
-    // Each code of four base-4 digits without a repeated digit is a permutation.
-    loop {
-        let digits = [code >> 6, (code >> 4) & 3, (code >> 2) & 3, code & 3];
-        if (1 << digits[0]) | (1 << digits[1]) | (1 << digits[2]) | (1 << digits[3]) == 15u8 {
-            all[count] = digits;
-            count += 1;
-        }
-        if code == u8::MAX {
-            return all;
-        }
-        code += 1;
+/// Two words shifted right together, by less than 64.
+#[inline(always)]
+fn shifted_right<I: Int>([low, high]: [I; 2], shift: u32) -> [I; 2] {
+    match shift {
+        0 => [low, high],
+        1..32 => [low.shr(shift) | high.shl(32 - shift), high.shr(shift)],
+        32 => [high, I::splat(0)],
+        33..64 => [high.shr(shift - 32), I::splat(0)],
+        _ => [I::splat(0); 2],
     }
 }
 
-/// The bits of both coordinates interleaved, x lowest.
-#[inline]
-fn encode_morton(pixel: [i32; 2]) -> u64 {
-    fn spread(x: i32) -> u64 {
-        let mut x = x as u32 as u64;
-        for (shift, mask) in [
-            (16, 0x0000_ffff_0000_ffff),
-            (8, 0x00ff_00ff_00ff_00ff),
-            (4, 0x0f0f_0f0f_0f0f_0f0f),
-            (2, 0x3333_3333_3333_3333),
-            (1, 0x5555_5555_5555_5555),
-        ] {
-            x = (x | x << shift) & mask;
-        }
-        x
-    }
-    spread(pixel[1]) << 1 | spread(pixel[0])
+/// The lower 16 bits at the even places.
+#[inline(always)]
+fn spread<I: Int>(x: I) -> I {
+    let steps = [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)];
+    let low = x & I::splat(0xffff);
+    steps.into_iter().fold(low, |x, (shift, mask)| (x | x.shl(shift)) & I::splat(mask))
+}
+
+/// A base-4 digit, given by its two bits, under one of the 24 permutations. Permutations of four
+/// digits are the affine maps of two bits: a·low ⊕ b·high ⊕ c, where a and b differ and are not 0.
+#[inline(always)]
+fn permuted<I: Int>([low, high]: [I; 2], hash: I) -> I {
+    let [zero, one, three] = [0, 1, 3].map(I::splat);
+    // One of three by 16 bits of the hash.
+    let a = hash.shr(16).wrapping_mul(three).shr(16).wrapping_add(one);
+    let next = I::select(a.eq(three), one, a.wrapping_add(one));
+    let b = next ^ (a & zero.wrapping_sub(hash.shr(2) & one));
+    let c = hash & three;
+    (a & zero.wrapping_sub(low)) ^ (b & zero.wrapping_sub(high)) ^ c
 }
 
 #[cfg(test)]
@@ -154,11 +191,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn morton_interleaves() {
-        assert_eq!(encode_morton([0b101, 0b011]), 0b01_10_11);
-        assert_eq!(encode_morton([1, 0]), 1);
-        assert_eq!(encode_morton([0, 1]), 2);
-        assert_eq!(encode_morton([2, 2]), 12);
+    fn codes_interleave() {
+        let sampler = ZSobol::new(8, [1 << 20, 1], Randomize::FastOwen, 0);
+        let at = |x, y, index| sampler.code(&Address::new([x, y], index, 0));
+        assert_eq!(at(0b101, 0b011, 6), [0b01_10_11_110, 0]);
+        assert_eq!(at(1 << 19, 0, 0), [0, 1 << (38 + 3 - 32)]);
+        assert_eq!(at(0, 1 << 15, 9), [1, 1 << (31 + 3 - 32)]);
     }
 
     #[test]
@@ -182,13 +220,40 @@ mod tests {
     }
 
     #[test]
-    fn permutations_are_all_and_different() {
-        let mut all = permutations();
-        all.sort();
-        assert!(all.windows(2).all(|pair| pair[0] != pair[1]));
-        for mut permutation in all {
-            permutation.sort();
-            assert_eq!(permutation, [0, 1, 2, 3]);
+    fn permutations_are_all_alike_frequent() {
+        const TRIES: usize = 24 * 4096;
+        let mut counts = std::collections::BTreeMap::new();
+        for hash in (0..TRIES as u32).map(mix_word) {
+            let image = [0, 1, 2, 3].map(|digit: u32| permuted([digit & 1, digit >> 1], hash));
+            *counts.entry(image).or_insert(0) += 1;
+            let mut sorted = image;
+            sorted.sort();
+            assert_eq!(sorted, [0, 1, 2, 3]);
+        }
+        let counts: Vec<u64> = counts.into_values().collect();
+        testkit::Chi2::default().counts(&counts, &[4096.0; 24]).unwrap();
+    }
+
+    #[test]
+    fn the_samples_of_all_pixels_are_points_of_one_net() {
+        // The samples of a square of pixels take successive points of the sequence, once each.
+        for (spp, side) in [(8, 4), (16, 2), (1, 8), (1 << 20, 1 << 14)] {
+            let sampler = ZSobol::new(spp, [side, 1], Randomize::FastOwen, 3);
+            let spp = spp.min(16);
+            for dimension in [0, 1, 17] {
+                let pixels = (0..16).map(|i| [i % 4, i / 4]).filter(|&[x, y]| x.max(y) < side);
+                let addresses = pixels.flat_map(|p| (0..spp).map(move |i| Address::new(p, i, dimension)));
+                let points: Vec<_> = addresses.map(|address| sampler.point(&address)).collect();
+                let different: std::collections::BTreeSet<_> = points.iter().collect();
+                assert_eq!(different.len(), points.len());
+                if points.len() == (sampler.samples_per_pixel() as i32 * side * side) as usize {
+                    assert!(
+                        different
+                            .into_iter()
+                            .eq(&(0..points.len() as u32).map(|i| [i, 0]).collect::<Vec<_>>())
+                    );
+                }
+            }
         }
     }
 }

@@ -320,3 +320,28 @@ fn stratified_samples_have_one_sample_per_cell() {
         assert_eq!(line.len(), 15);
     }
 }
+
+#[test]
+fn addresses_give_what_draws_give() {
+    for (name, mut sampler) in all_samplers(SPP, 7) {
+        if name == PRIMARY {
+            continue;
+        }
+        let again = sampler.clone();
+        for (pixel, index) in [([0, 0], 0), ([19, 12], 5), ([-3, 700], SPP + 2)] {
+            sampler.start_pixel_sample(pixel, index, 0);
+            let mut dimension = 0_u32;
+            let mut address = |count| {
+                dimension += count;
+                Address { pixel: pixel.map(|x| x as u32), index, dimension: dimension - count }
+            };
+            assert_eq!(sampler.get_1d(), again.at_1d::<f32>(&address(1)), "{name}");
+            assert_eq!(sampler.get_pixel_2d().to_array(), again.at_pixel_2d::<f32>(&address(2)), "{name}");
+            // More than any sampler has.
+            for _ in 0..700 {
+                assert_eq!(sampler.get_1d(), again.at_1d::<f32>(&address(1)), "{name}");
+                assert_eq!(sampler.get_2d().to_array(), again.at_2d::<f32>(&address(2)), "{name}");
+            }
+        }
+    }
+}

@@ -10,7 +10,7 @@ const EDGES: [(&str, &[&str]); 17] = [
     ("lanes", &[]),
     ("testkit", &[]),
     ("spectrum", &["math"]),
-    ("sampling", &["math"]),
+    ("sampling", &["math", "lanes"]),
     ("image", &["math", "spectrum"]),
     ("geometry", &["math", "lanes", "sampling"]),
     ("scattering", &["math", "spectrum", "sampling"]),
