@@ -95,7 +95,7 @@ impl SphericalTriangle {
         let height = u.y as f64 * one_minus_dot(cut, b);
         let sin_theta = (height * (2.0 - height)).max(0.0).sqrt();
         let w = (1.0 - height) * b + sin_theta * perpendicular(cut, b);
-        (w.as_vec3(), self.barycentric(w))
+        (w.as_vec3().into(), self.barycentric(w))
     }
 
     /// The `u` that [`sample`](Self::sample) sends to the direction `w`, which must meet the
