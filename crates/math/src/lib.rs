@@ -6,6 +6,7 @@
 mod animated;
 mod bounds;
 mod cone;
+mod elementary;
 mod error;
 mod float;
 mod frame;
@@ -20,6 +21,7 @@ mod vector;
 pub use animated::AnimatedTransform;
 pub use bounds::{Bounds2, Bounds2i, Bounds3};
 pub use cone::{DirectionCone, bound_subtended_directions};
+pub use elementary::{exp, ln, map_lanes, sin_cos};
 pub use error::{Point3Error, offset_ray_origin};
 pub use float::*;
 pub use frame::{Frame, coordinate_system};
