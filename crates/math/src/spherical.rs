@@ -1,14 +1,14 @@
 //! Spherical coordinates, θ from +z and φ from +x towards +y, and the trigonometry of local shading
 //! frames.
 
-use crate::{Vec3, Vector3, safe_acos, safe_sqrt};
+use crate::{Vec3, Vector3, safe_acos, safe_sqrt, sin_cos};
 use lanes::Real;
 use std::f32::consts::TAU;
 
 /// The unit vector with the given sine and cosine of θ, and φ in radians.
-#[inline]
-pub fn spherical_direction(sin_theta: f32, cos_theta: f32, phi: f32) -> Vector3 {
-    let (sin_phi, cos_phi) = phi.sin_cos();
+#[inline(always)]
+pub fn spherical_direction<R: Real>(sin_theta: R, cos_theta: R, phi: R) -> Vector3<R> {
+    let (sin_phi, cos_phi) = sin_cos(phi);
     Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }
 
