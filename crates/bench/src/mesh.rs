@@ -114,17 +114,17 @@ impl Arrays {
     /// south pole.
     fn push_blob(&mut self, meridians: u32, bands: u32, shift: f64, place: impl Fn(DVec3) -> DVec3) {
         let north = self.positions.len() as u32;
-        self.positions.push(place(DVec3::Y * radius(DVec3::Y, shift)).as_vec3());
+        self.positions.push(place(DVec3::Y * radius(DVec3::Y, shift)).as_vec3().into());
         for band in 1..bands {
             let (sin_theta, cos_theta) = (PI * band as f64 / bands as f64).sin_cos();
             for meridian in 0..meridians {
                 let (sin_phi, cos_phi) = (TAU * meridian as f64 / meridians as f64).sin_cos();
                 let d = DVec3::new(sin_theta * cos_phi, cos_theta, sin_theta * sin_phi);
-                self.positions.push(place(d * radius(d, shift)).as_vec3());
+                self.positions.push(place(d * radius(d, shift)).as_vec3().into());
             }
         }
         let south = self.positions.len() as u32;
-        self.positions.push(place(DVec3::NEG_Y * radius(DVec3::NEG_Y, shift)).as_vec3());
+        self.positions.push(place(DVec3::NEG_Y * radius(DVec3::NEG_Y, shift)).as_vec3().into());
         let at = |band: u32, meridian: u32| north + 1 + (band - 1) * meridians + meridian % meridians;
         for i in 0..meridians {
             self.indices.push([north, at(1, i + 1), at(1, i)]);
@@ -148,7 +148,7 @@ impl Arrays {
 /// Random spheres in the unit cube, which fill a hundredth of its volume.
 pub fn spheres(count: usize) -> Result<SphereSet, SphereSetError> {
     let random = &mut SplitMix64(7);
-    let point = |_| DVec3::from_array([0; 3].map(|_| random.uniform())).as_vec3();
+    let point = |_| DVec3::from_array([0; 3].map(|_| random.uniform())).as_vec3().into();
     let centers = (0..count).map(point).collect();
     let radius = (0.01 * 3.0 / (4.0 * PI * count as f64)).cbrt() as f32;
     SphereSet::new(centers, [radius].into(), &Transform::IDENTITY, false)

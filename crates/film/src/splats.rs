@@ -122,7 +122,7 @@ impl<'film> Splatter<'film> {
     /// Adds the light `l` of one path that arrives at a film position.
     pub fn add(&self, film: Point2, l: &SampledSpectrum, lambda: &SampledWavelengths) {
         let Some(rgb) = self.measure(l, lambda) else {
-            let center = film.clamp(Vec2::splat(-1e9), Vec2::splat(1e9)).floor();
+            let center = film.clamp(Vec2::splat(-1e9), Vec2::splat(1e9)).map(f32::floor);
             self.exposure.reject([center.x as i32, center.y as i32]);
             return;
         };
@@ -168,7 +168,7 @@ impl<'film> Splatter<'film> {
         }
         let radius = self.filter.radius();
         // Pixel x has its centre at x + ½.
-        let (first, last) = ((film - radius - 0.5).ceil(), (film + radius - 0.5).floor());
+        let (first, last) = ((film - radius - 0.5).map(f32::ceil), (film + radius - 0.5).map(f32::floor));
         let reached = Bounds2i::new(
             [first.x as i32, first.y as i32],
             [(last.x as i32).saturating_add(1), (last.y as i32).saturating_add(1)],

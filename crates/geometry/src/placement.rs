@@ -42,7 +42,7 @@ impl Placement {
     #[inline]
     pub fn ray(&self, ray: &Ray) -> Ray {
         let (o, d) = self.ray_inward(ray);
-        Ray::new(o.as_vec3(), d.as_vec3(), ray.time)
+        Ray::new(o.as_vec3().into(), d.as_vec3().into(), ray.time)
     }
 
     /// An outer point in inner space.
@@ -78,7 +78,7 @@ impl Placement {
     /// Transforms an inner direction to outer space.
     #[inline]
     pub fn vector(&self, v: DVec3) -> Vec3 {
-        self.forward.transform_vector3(v).as_vec3()
+        self.forward.transform_vector3(v).as_vec3().into()
     }
 
     /// Transforms an inner normal to outer space (by the inverse transpose), not normalised.
@@ -94,13 +94,13 @@ impl Placement {
         let (n, dn) = (self.normal(n), self.normal(dn));
         let squared = n.length_squared();
         let change = (dn - n * (n.dot(dn) / squared)) / squared.sqrt();
-        if change.is_finite() { change.as_vec3() } else { Vec3::ZERO }
+        if change.is_finite() { change.as_vec3().into() } else { Vec3::ZERO }
     }
 
     /// The unit normal in outer space; zero where it is undefined.
     #[inline]
     pub fn unit_normal(&self, n: DVec3) -> Normal3 {
-        self.normal(n).normalize_or_zero().as_vec3()
+        self.normal(n).normalize_or_zero().as_vec3().into()
     }
 
     /// The ratio of outer to inner area of a surface element with inner unit normal `n`:
@@ -132,7 +132,7 @@ impl Placement {
 /// largest coordinate.
 #[inline]
 pub(crate) fn rounded(p: DVec3, error: DVec3) -> Point3Error {
-    let q = p.as_vec3();
+    let q = Vec3::from(p.as_vec3());
     let mixed = p.abs().max_element() * ROUNDING;
-    Point3Error::new(q, q.abs() * (2.0 * MACHINE_EPSILON) + (error + mixed).as_vec3() * 1.001)
+    Point3Error::new(q, q.abs() * (2.0 * MACHINE_EPSILON) + Vec3::from((error + mixed).as_vec3()) * 1.001)
 }

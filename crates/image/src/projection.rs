@@ -203,7 +203,8 @@ impl Source<'_> {
     fn add(&self, st: Point2, weight: f64, sum: &mut [f64]) {
         let [width, height] = self.size;
         let position = st * Vec2::new(width as f32, height as f32) - 0.5;
-        let (first, d) = (position.floor(), (position - position.floor()).as_dvec2());
+        let first = position.map(f32::floor);
+        let d = (position - first).as_dvec2();
         for (x, y, part) in [
             (0, 0, (1.0 - d.x) * (1.0 - d.y)),
             (1, 0, d.x * (1.0 - d.y)),

@@ -168,7 +168,7 @@ impl Pyramid {
         let determinant = 4.0 * a * c - b * b;
         let reach = 2.0 / determinant
             * Vec2::new((determinant * c).max(0.0).sqrt(), (determinant * a).max(0.0).sqrt());
-        let (first, last) = ((center - reach).ceil(), (center + reach).floor());
+        let (first, last) = ((center - reach).map(f32::ceil), (center + reach).map(f32::floor));
         let (mut sum, mut weight_sum) = (T::ZERO, 0.0);
         for y in first.y as i32..=last.y as i32 {
             let t = y as f32 - center.y;

@@ -6,7 +6,7 @@ use std::arch::x86_64::*;
 instruction_set! {
     Avx2, is_x86_feature_detected ["avx2" "fma" "bmi1" "bmi2" "popcnt" "lzcnt"];
     F32x4, F32x8, Pair<F32x8>;
-    f32;
+    F32x8;
 
     #[inline(always)]
     fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {
@@ -67,4 +67,95 @@ vector! {
     -> u32:
     le(a, b) = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b)) as u32;
     lt(a, b) = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)) as u32;
+}
+
+real! {
+    F32x8, U32x8, Mask8: 8;
+    select(mask, a, b) = _mm256_blendv_ps(b, a, _mm256_castsi256_ps(mask));
+    from_bits(bits) = _mm256_castsi256_ps(bits);
+    sqrt(a) = _mm256_sqrt_ps(a);
+    floor(a) = _mm256_floor_ps(a);
+    -> Mask:
+    lt(a, b) = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b));
+    le(a, b) = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_LE_OQ>(a, b));
+    eq(a, b) = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_EQ_OQ>(a, b));
+    -> Int:
+    to_bits(a) = _mm256_castps_si256(a);
+    to_int(a) = _mm256_cvttps_epi32(a);
+    -> Self, if there is an instruction:
+    gather(table, indices) = _mm256_i32gather_ps::<4>(table, indices);
+}
+
+int! {
+    /// Eight integers.
+    U32x8(__m256i), F32x8, Mask8: 8;
+    splat(x) = _mm256_set1_epi32(x);
+    load(from) = _mm256_loadu_si256(from.cast());
+    store(to, a) = _mm256_storeu_si256(to.cast(), a);
+    select(mask, a, b) = _mm256_blendv_epi8(b, a, mask);
+    shl(a, bits) = _mm256_sll_epi32(a, _mm_cvtsi32_si128(bits));
+    shr(a, bits) = _mm256_srl_epi32(a, _mm_cvtsi32_si128(bits));
+    to_real(a) = _mm256_cvtepi32_ps(a);
+    wrapping_add(a, b) = _mm256_add_epi32(a, b);
+    wrapping_sub(a, b) = _mm256_sub_epi32(a, b);
+    wrapping_mul(a, b) = _mm256_mullo_epi32(a, b);
+    -> Mask:
+    eq(a, b) = _mm256_cmpeq_epi32(a, b);
+    lt(a, b) = _mm256_cmpgt_epi32(flip_sign(b), flip_sign(a));
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = _mm256_and_si256(a, b);
+    BitOr::bitor(a, b) = _mm256_or_si256(a, b);
+    BitXor::bitxor(a, b) = _mm256_xor_si256(a, b);
+    -> Self, if there is an instruction:
+    gather(table, indices) = _mm256_i32gather_epi32::<4>(table.cast(), indices);
+    compress(a, mask) = _mm256_permutevar8x32_epi32(a, true_lanes(mask));
+}
+
+mask! {
+    /// Eight bools: all bits of a lane are set or clear.
+    Mask8(__m256i): 8;
+    splat(x) = _mm256_set1_epi32(-i32::from(x));
+    from_bits(bits) = _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(bits), lane_bits()), lane_bits());
+    bits(a) = _mm256_movemask_ps(_mm256_castsi256_ps(a)) as u32;
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = _mm256_and_si256(a, b);
+    BitOr::bitor(a, b) = _mm256_or_si256(a, b);
+    BitXor::bitxor(a, b) = _mm256_xor_si256(a, b);
+}
+
+// SAFETY of what follows: only operations of the vectors above call it.
+
+/// A bit for each lane.
+#[inline(always)]
+unsafe fn lane_bits() -> __m256i {
+    unsafe { _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128) }
+}
+
+/// Comparisons are of signed integers: exchanges the lower half of all integers with the upper.
+#[inline(always)]
+unsafe fn flip_sign(a: __m256i) -> __m256i {
+    unsafe { _mm256_xor_si256(a, _mm256_set1_epi32(i32::MIN)) }
+}
+
+/// The indices of the lanes that are true.
+#[inline(always)]
+unsafe fn true_lanes(mask: __m256i) -> __m256i {
+    /// For each eight bits the indices of those that are set, a byte each.
+    const TRUE_LANES: [u64; 256] = {
+        let mut table = [0; 256];
+        let mut index = 0_usize;
+        while index < 8 * 256 {
+            let (bits, lane) = (index / 8, index % 8);
+            if bits >> lane & 1 == 1 {
+                let before = (bits & ((1 << lane) - 1)).count_ones();
+                table[bits] |= (lane as u64) << (8 * before);
+            }
+            index += 1;
+        }
+        table
+    };
+    unsafe {
+        let bits = _mm256_movemask_ps(_mm256_castsi256_ps(mask)) as u8;
+        _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(TRUE_LANES[usize::from(bits)] as i64))
+    }
 }

@@ -9,7 +9,7 @@ instruction_set! {
         "avx512f" "avx512vl" "avx512dq" "avx512bw" "avx2" "fma" "bmi1" "bmi2" "popcnt" "lzcnt"
     ];
     F32x4, F32x8, F32x16;
-    f32;
+    F32x16;
 
     #[inline(always)]
     fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {
@@ -36,4 +36,58 @@ vector! {
     -> u32:
     le(a, b) = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b) as u32;
     lt(a, b) = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b) as u32;
+}
+
+real! {
+    F32x16, U32x16, Mask16: 16;
+    select(mask, a, b) = _mm512_mask_blend_ps(mask, b, a);
+    from_bits(bits) = _mm512_castsi512_ps(bits);
+    sqrt(a) = _mm512_sqrt_ps(a);
+    floor(a) = _mm512_roundscale_ps::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(a);
+    -> Mask:
+    lt(a, b) = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b);
+    le(a, b) = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(a, b);
+    eq(a, b) = _mm512_cmp_ps_mask::<_CMP_EQ_OQ>(a, b);
+    -> Int:
+    to_bits(a) = _mm512_castps_si512(a);
+    to_int(a) = _mm512_cvttps_epi32(a);
+    -> Self, if there is an instruction:
+    gather(table, indices) = _mm512_i32gather_ps::<4>(indices, table);
+}
+
+int! {
+    /// Sixteen integers.
+    U32x16(__m512i), F32x16, Mask16: 16;
+    splat(x) = _mm512_set1_epi32(x);
+    load(from) = _mm512_loadu_si512(from.cast());
+    store(to, a) = _mm512_storeu_si512(to.cast(), a);
+    select(mask, a, b) = _mm512_mask_blend_epi32(mask, b, a);
+    shl(a, bits) = _mm512_sll_epi32(a, _mm_cvtsi32_si128(bits));
+    shr(a, bits) = _mm512_srl_epi32(a, _mm_cvtsi32_si128(bits));
+    to_real(a) = _mm512_cvtepi32_ps(a);
+    wrapping_add(a, b) = _mm512_add_epi32(a, b);
+    wrapping_sub(a, b) = _mm512_sub_epi32(a, b);
+    wrapping_mul(a, b) = _mm512_mullo_epi32(a, b);
+    -> Mask:
+    eq(a, b) = _mm512_cmpeq_epi32_mask(a, b);
+    lt(a, b) = _mm512_cmplt_epu32_mask(a, b);
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = _mm512_and_si512(a, b);
+    BitOr::bitor(a, b) = _mm512_or_si512(a, b);
+    BitXor::bitxor(a, b) = _mm512_xor_si512(a, b);
+    -> Self, if there is an instruction:
+    gather(table, indices) = _mm512_i32gather_epi32::<4>(indices, table.cast());
+    compress(a, mask) = _mm512_maskz_compress_epi32(mask, a);
+}
+
+mask! {
+    /// Sixteen bools, a bit each.
+    Mask16(__mmask16): 16;
+    splat(x) = if x { u16::MAX } else { 0 };
+    from_bits(bits) = bits;
+    bits(a) = a.into();
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = a & b;
+    BitOr::bitor(a, b) = a | b;
+    BitXor::bitxor(a, b) = a ^ b;
 }

@@ -2,16 +2,18 @@
 
 #[cfg(target_arch = "aarch64")]
 use crate::neon;
-use crate::scalar;
 use crate::simd::{Kernel, Task, Widest};
 #[cfg(target_arch = "x86_64")]
 use crate::{avx2, avx512, sse2};
+use crate::{portable, scalar};
 
 /// An instruction set. All give the same results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum InstructionSet {
     /// One float at a time: every processor.
     Scalar,
+    /// Arrays of eight floats, of which the compiler makes vectors where it can: every processor.
+    Portable,
     /// Four floats at once: every x86-64 processor.
     Sse2,
     /// Eight floats at once, with fused multiply-add: x86-64 since 2013.
@@ -24,7 +26,8 @@ pub enum InstructionSet {
 
 impl InstructionSet {
     /// All instruction sets, the best first.
-    pub const ALL: [Self; 5] = [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Scalar];
+    pub const ALL: [Self; 6] =
+        [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Portable, Self::Scalar];
 
     /// The best one that this processor has.
     pub fn detect() -> Self {
@@ -35,6 +38,7 @@ impl InstructionSet {
     pub fn is_available(self) -> bool {
         match self {
             Self::Scalar => scalar::is_available(),
+            Self::Portable => portable::is_available(),
             #[cfg(target_arch = "x86_64")]
             Self::Sse2 => sse2::is_available(),
             #[cfg(target_arch = "x86_64")]
@@ -76,6 +80,7 @@ impl InstructionSet {
                 Self::Sse2 => sse2::run(task),
                 #[cfg(target_arch = "aarch64")]
                 Self::Neon => neon::run(task),
+                Self::Portable => portable::run(task),
                 _ => scalar::run(task),
             }
         }

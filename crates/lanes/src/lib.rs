@@ -6,14 +6,20 @@
 //! included, so that results do not depend on the machine. The one exception is
 //! [`Vector::relaxed_mul_sub`], for bounds that are conservative anyway.
 //!
-//! Only what makes a vector is unsafe: a vector is the proof that the processor has the
-//! instructions that compute with it.
+//! A [`Kernel`] is written for a number with any number of lanes, a [`Real`], be it a single `f32`;
+//! [`InstructionSet::dispatch`] runs it with the widest vectors of an instruction set.
+//!
+//! A vector is the proof that the processor has the instructions that compute with it. What makes a
+//! [`Vector`] is unsafe, so that whoever names the type gives the proof. What makes a [`Real`] is
+//! safe, because the types of an instruction set are private and no other code can name them: they
+//! are reached only as parameters of a `Kernel` or `Task`, which runs on a processor that has the
+//! set.
 
 // Vector intrinsics are unsafe; only this crate calls them.
 #![allow(unsafe_code)]
 
 #[macro_use]
-mod simd;
+mod tables;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -24,8 +30,10 @@ mod instruction_set;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod pair;
+mod portable;
 mod real;
 mod scalar;
+mod simd;
 mod single;
 #[cfg(target_arch = "x86_64")]
 mod sse2;

@@ -7,13 +7,15 @@ use std::arch::is_aarch64_feature_detected;
 instruction_set! {
     Neon, is_aarch64_feature_detected ["neon"];
     F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
-    f32;
+    F32x4;
 }
+
+/// A bit for each lane.
+const BITS: [u32; 4] = [1, 2, 4, 8];
 
 /// A bit for each lane of a mask.
 #[inline(always)]
 unsafe fn bits(mask: uint32x4_t) -> u32 {
-    const BITS: [u32; 4] = [1, 2, 4, 8];
     // SAFETY: masks are made by NEON alone; the array has as many elements as are read.
     unsafe { vaddvq_u32(vandq_u32(mask, vld1q_u32(BITS.as_ptr()))) }
 }
@@ -37,4 +39,53 @@ vector! {
     -> u32:
     le(a, b) = bits(vcleq_f32(a, b));
     lt(a, b) = bits(vcltq_f32(a, b));
+}
+
+real! {
+    F32x4, U32x4, Mask4: 4;
+    select(mask, a, b) = vbslq_f32(mask, a, b);
+    from_bits(bits) = vreinterpretq_f32_u32(bits);
+    sqrt(a) = vsqrtq_f32(a);
+    floor(a) = vrndmq_f32(a);
+    -> Mask:
+    lt(a, b) = vcltq_f32(a, b);
+    le(a, b) = vcleq_f32(a, b);
+    eq(a, b) = vceqq_f32(a, b);
+    -> Int:
+    to_bits(a) = vreinterpretq_u32_f32(a);
+    to_int(a) = vreinterpretq_u32_s32(vcvtq_s32_f32(a));
+}
+
+int! {
+    /// Four integers.
+    U32x4(uint32x4_t), F32x4, Mask4: 4;
+    splat(x) = vdupq_n_u32(x);
+    load(from) = vld1q_u32(from);
+    store(to, a) = vst1q_u32(to, a);
+    select(mask, a, b) = vbslq_u32(mask, a, b);
+    shl(a, bits) = vshlq_u32(a, vdupq_n_s32(bits));
+    shr(a, bits) = vshlq_u32(a, vdupq_n_s32(-bits));
+    to_real(a) = vcvtq_f32_s32(vreinterpretq_s32_u32(a));
+    wrapping_add(a, b) = vaddq_u32(a, b);
+    wrapping_sub(a, b) = vsubq_u32(a, b);
+    wrapping_mul(a, b) = vmulq_u32(a, b);
+    -> Mask:
+    eq(a, b) = vceqq_u32(a, b);
+    lt(a, b) = vcltq_u32(a, b);
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = vandq_u32(a, b);
+    BitOr::bitor(a, b) = vorrq_u32(a, b);
+    BitXor::bitxor(a, b) = veorq_u32(a, b);
+}
+
+mask! {
+    /// Four bools: all bits of a lane are set or clear.
+    Mask4(uint32x4_t): 4;
+    splat(x) = vdupq_n_u32(if x { u32::MAX } else { 0 });
+    from_bits(bits) = vtstq_u32(vdupq_n_u32(bits), vld1q_u32(BITS.as_ptr()));
+    bits(a) = bits(a);
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = vandq_u32(a, b);
+    BitOr::bitor(a, b) = vorrq_u32(a, b);
+    BitXor::bitxor(a, b) = veorq_u32(a, b);
 }

@@ -54,7 +54,11 @@ pub trait Real:
     ///
     /// # Panics
     /// If any index lies outside of the table.
-    fn gather(table: &[f32], indices: Self::Int) -> Self;
+    #[inline(always)]
+    fn gather(table: &[f32], indices: Self::Int) -> Self {
+        let indices = indices.to_array();
+        Self::from_fn(|lane| table[indices[lane] as usize])
+    }
 
     /// `a` where the mask is true, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
@@ -75,7 +79,11 @@ pub trait Real:
     fn max(self, b: Self) -> Self;
 
     /// The magnitude of `self` with the sign of `sign`.
-    fn copysign(self, sign: Self) -> Self;
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        let mask = Self::Int::splat(1 << 31);
+        Self::from_bits(self.to_bits() & !mask | sign.to_bits() & mask)
+    }
 
     /// `self`·b + c, rounded once.
     fn mul_add(self, b: Self, c: Self) -> Self;
@@ -184,7 +192,11 @@ pub trait Int:
     ///
     /// # Panics
     /// If any index lies outside of the table.
-    fn gather(table: &[u32], indices: Self) -> Self;
+    #[inline(always)]
+    fn gather(table: &[u32], indices: Self) -> Self {
+        let indices = indices.to_array();
+        Self::from_fn(|lane| table[indices[lane] as usize])
+    }
 
     /// `a` where the mask is true, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
@@ -192,7 +204,17 @@ pub trait Int:
     /// Writes the lanes where the mask is true one after another to the start of a slice, which
     /// must have a place for every lane of the vector; gives their number. Places after them may
     /// be overwritten.
-    fn compress(self, mask: Self::Mask, to: &mut [u32]) -> usize;
+    #[inline(always)]
+    fn compress(self, mask: Self::Mask, to: &mut [u32]) -> usize {
+        let to = &mut to[..Self::Real::LANES];
+        let (lanes, bits) = (self.to_array(), mask.bits());
+        let mut count = 0;
+        for (lane, &integer) in lanes[..Self::Real::LANES].iter().enumerate() {
+            to[count] = integer;
+            count += (bits >> lane & 1) as usize;
+        }
+        count
+    }
 
     /// The sum modulo 2³².
     fn wrapping_add(self, b: Self) -> Self;

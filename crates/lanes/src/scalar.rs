@@ -3,7 +3,8 @@
 use crate::pair::Pair;
 
 type F32x2 = Pair<F32x1>;
-type F32x4 = Pair<F32x2>;
+/// Four floats.
+pub type F32x4 = Pair<F32x2>;
 
 instruction_set! {
     Scalar, is_detected [];

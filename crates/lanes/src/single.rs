@@ -24,11 +24,6 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn gather(table: &[f32], index: u32) -> Self {
-        table[index as usize]
-    }
-
-    #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
     }
@@ -56,11 +51,6 @@ impl Real for f32 {
     #[inline(always)]
     fn max(self, b: Self) -> Self {
         if self > b { self } else { b }
-    }
-
-    #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        f32::copysign(self, sign)
     }
 
     #[inline(always)]
@@ -119,19 +109,8 @@ impl Int for u32 {
     }
 
     #[inline(always)]
-    fn gather(table: &[u32], index: Self) -> Self {
-        table[index as usize]
-    }
-
-    #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
-    }
-
-    #[inline(always)]
-    fn compress(self, mask: bool, to: &mut [u32]) -> usize {
-        to[0] = self;
-        mask.into()
     }
 
     #[inline(always)]

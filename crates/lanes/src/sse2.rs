@@ -7,7 +7,7 @@ use std::arch::x86_64::*;
 instruction_set! {
     Sse2, is_x86_feature_detected ["sse2"];
     F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
-    f32;
+    F32x4;
 }
 
 vector! {
@@ -30,6 +30,103 @@ vector! {
     -> u32:
     le(a, b) = _mm_movemask_ps(_mm_cmple_ps(a, b)) as u32;
     lt(a, b) = _mm_movemask_ps(_mm_cmplt_ps(a, b)) as u32;
+}
+
+real! {
+    F32x4, U32x4, Mask4: 4;
+    select(mask, a, b) = blend(mask, a, b);
+    from_bits(bits) = _mm_castsi128_ps(bits);
+    sqrt(a) = _mm_sqrt_ps(a);
+    floor(a) = floor(a);
+    -> Mask:
+    lt(a, b) = _mm_castps_si128(_mm_cmplt_ps(a, b));
+    le(a, b) = _mm_castps_si128(_mm_cmple_ps(a, b));
+    eq(a, b) = _mm_castps_si128(_mm_cmpeq_ps(a, b));
+    -> Int:
+    to_bits(a) = _mm_castps_si128(a);
+    to_int(a) = _mm_cvttps_epi32(a);
+}
+
+int! {
+    /// Four integers.
+    U32x4(__m128i), F32x4, Mask4: 4;
+    splat(x) = _mm_set1_epi32(x);
+    load(from) = _mm_loadu_si128(from.cast());
+    store(to, a) = _mm_storeu_si128(to.cast(), a);
+    select(mask, a, b) = _mm_or_si128(_mm_and_si128(mask, a), _mm_andnot_si128(mask, b));
+    shl(a, bits) = _mm_sll_epi32(a, _mm_cvtsi32_si128(bits));
+    shr(a, bits) = _mm_srl_epi32(a, _mm_cvtsi32_si128(bits));
+    to_real(a) = _mm_cvtepi32_ps(a);
+    wrapping_add(a, b) = _mm_add_epi32(a, b);
+    wrapping_sub(a, b) = _mm_sub_epi32(a, b);
+    wrapping_mul(a, b) = multiply(a, b);
+    -> Mask:
+    eq(a, b) = _mm_cmpeq_epi32(a, b);
+    lt(a, b) = _mm_cmplt_epi32(flip_sign(a), flip_sign(b));
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = _mm_and_si128(a, b);
+    BitOr::bitor(a, b) = _mm_or_si128(a, b);
+    BitXor::bitxor(a, b) = _mm_xor_si128(a, b);
+}
+
+mask! {
+    /// Four bools: all bits of a lane are set or clear.
+    Mask4(__m128i): 4;
+    splat(x) = _mm_set1_epi32(-i32::from(x));
+    from_bits(bits) = _mm_cmpeq_epi32(_mm_and_si128(_mm_set1_epi32(bits), lane_bits()), lane_bits());
+    bits(a) = _mm_movemask_ps(_mm_castsi128_ps(a)) as u32;
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = _mm_and_si128(a, b);
+    BitOr::bitor(a, b) = _mm_or_si128(a, b);
+    BitXor::bitxor(a, b) = _mm_xor_si128(a, b);
+}
+
+// SAFETY of what follows: every x86-64 processor has SSE2.
+
+/// A bit for each lane.
+#[inline(always)]
+unsafe fn lane_bits() -> __m128i {
+    unsafe { _mm_setr_epi32(1, 2, 4, 8) }
+}
+
+/// Comparisons are of signed integers: exchanges the lower half of all integers with the upper.
+#[inline(always)]
+unsafe fn flip_sign(a: __m128i) -> __m128i {
+    unsafe { _mm_xor_si128(a, _mm_set1_epi32(i32::MIN)) }
+}
+
+/// `a` where the mask is true, else `b`.
+#[inline(always)]
+unsafe fn blend(mask: __m128i, a: __m128, b: __m128) -> __m128 {
+    unsafe {
+        let mask = _mm_castsi128_ps(mask);
+        _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b))
+    }
+}
+
+/// The low halves of the products, of which an instruction makes every second.
+#[inline(always)]
+unsafe fn multiply(a: __m128i, b: __m128i) -> __m128i {
+    unsafe {
+        let even = _mm_mul_epu32(a, b);
+        let odd = _mm_mul_epu32(_mm_srli_epi64::<32>(a), _mm_srli_epi64::<32>(b));
+        let [even, odd] = [even, odd].map(|products| _mm_shuffle_epi32::<0b1000>(products));
+        _mm_unpacklo_epi32(even, odd)
+    }
+}
+
+/// The greatest integer that is at most `a`: `a` itself from 2²³ on, and where it is NaN; else the
+/// integer next to it towards zero, or one less. The sign is that of `a`, for the sake of −0.
+#[inline(always)]
+unsafe fn floor(a: __m128) -> __m128 {
+    unsafe {
+        let sign = _mm_and_ps(a, _mm_set1_ps(-0.0));
+        let truncated = _mm_cvtepi32_ps(_mm_cvttps_epi32(a));
+        let above = _mm_and_ps(_mm_cmplt_ps(a, truncated), _mm_set1_ps(1.0));
+        let rounded = _mm_or_ps(_mm_sub_ps(truncated, above), sign);
+        let has_fraction = _mm_cmplt_ps(_mm_xor_ps(a, sign), _mm_set1_ps(8_388_608.0));
+        blend(_mm_castps_si128(has_fraction), rounded, a)
+    }
 }
 
 /// a·b + c, rounded once. The product of two floats is exact in doubles. The sum is rounded *to

@@ -107,7 +107,7 @@ impl Motion {
         let change = ((self.stretch[1] - self.stretch[0]) * p).length();
         let stray = (angle * angle * reach + 2.0 * angle * change) / (8.0 * (STEPS * STEPS) as f64);
         let keys = (0..=STEPS).map(|i| self.matrix(i as f64 / STEPS as f64).transform_point3(p));
-        let path = Bounds3::around(keys.map(|q| q.as_vec3()));
+        let path = Bounds3::around(keys.map(|q| q.as_vec3().into()));
         let size = path.min.abs().max(path.max.abs()).max_element();
         path.expand(stray as f32 + size * crate::gamma(4))
     }

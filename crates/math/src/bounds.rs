@@ -124,9 +124,17 @@ impl Bounds3 {
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, f32)> {
         let inverse = ray.d.recip();
-        let backwards = inverse.cmplt(Vec3::ZERO);
-        let near = (Vec3::select(backwards, self.max, self.min) - ray.o) * inverse;
-        let far = (Vec3::select(backwards, self.min, self.max) - ray.o) * inverse * (1.0 + 2.0 * gamma(3));
+        let backwards = inverse.map(|c| c < 0.0);
+        let pick = |backwards, a, b| if backwards { a } else { b };
+        let ends = |a: Point3, b: Point3| {
+            Vec3::new(
+                pick(backwards.x, a.x, b.x),
+                pick(backwards.y, a.y, b.y),
+                pick(backwards.z, a.z, b.z),
+            )
+        };
+        let near = (ends(self.max, self.min) - ray.o) * inverse;
+        let far = (ends(self.min, self.max) - ray.o) * inverse * (1.0 + 2.0 * gamma(3));
         // `f32::max` drops the NaN of 0 · ∞, which arises when the origin lies on a slab that the
         // ray is parallel to.
         let t0 = near.x.max(near.y).max(near.z).max(0.0);

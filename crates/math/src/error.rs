@@ -5,40 +5,46 @@
 //! error, on the side that it leaves to ([Pharr 2023 §6.8.6]).
 
 use crate::{Normal3, Point3, Vec3, Vector3};
+use lanes::Real;
 
 /// A point with the bound of the absolute error of each of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point3Error {
+pub struct Point3Error<R = f32> {
     /// The computed position.
-    pub p: Point3,
+    pub p: Point3<R>,
     /// Bound of |computed − exact|, per axis, ≥ 0.
-    pub error: Vector3,
+    pub error: Vector3<R>,
 }
 
-impl Point3Error {
+impl<R: Real> Point3Error<R> {
     /// A point that is known exactly.
-    #[inline]
-    pub fn exact(p: Point3) -> Self {
-        Self { p, error: Vec3::ZERO }
+    #[inline(always)]
+    pub fn exact(p: Point3<R>) -> Self {
+        Self { p, error: Vec3::splat(R::zero()) }
     }
 
     /// A point with its error bound.
-    #[inline]
-    pub fn new(p: Point3, error: Vector3) -> Self {
+    #[inline(always)]
+    pub fn new(p: Point3<R>, error: Vector3<R>) -> Self {
         Self { p, error }
     }
 }
 
 /// The origin of a ray in direction `w` that cannot intersect the surface with geometric normal `n`
 /// at `p` again.
-#[inline]
-pub fn offset_ray_origin(p: Point3Error, n: Normal3, w: Vector3) -> Point3 {
+#[inline(always)]
+pub fn offset_ray_origin<R: Real>(p: Point3Error<R>, n: Normal3<R>, w: Vector3<R>) -> Point3<R> {
     let distance = n.abs().dot(p.error);
-    let offset = if w.dot(n) < 0.0 { -n * distance } else { n * distance };
+    let offset = n * R::select(w.dot(n).lt(R::zero()), -distance, distance);
     let q = p.p + offset;
     // One float further than the rounded sum, along the axes that are offset.
-    let step = (q.abs() * f32::EPSILON).copysign(offset);
-    Vec3::select(offset.cmpeq(Vec3::ZERO), q, q + step)
+    let step = (q.abs() * R::splat(f32::EPSILON)).copysign(offset);
+    let along = |offset: R, q: R, step: R| R::select(offset.eq(R::zero()), q, q + step);
+    Vec3::new(
+        along(offset.x, q.x, step.x),
+        along(offset.y, q.y, step.y),
+        along(offset.z, q.z, step.z),
+    )
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 //!
 //! Sources: [Higham 2002 §3.1] for γ(n); [Kahan 2004] for the difference of products.
 
+use lanes::Real;
+
 /// Half of the distance from 1 to the next float: the largest relative rounding error of one
 /// operation.
 pub const MACHINE_EPSILON: f32 = f32::EPSILON * 0.5;
@@ -16,15 +18,15 @@ pub const fn gamma(n: u32) -> f32 {
 }
 
 /// `x²`.
-#[inline]
-pub fn sqr(x: f32) -> f32 {
+#[inline(always)]
+pub fn sqr<R: Real>(x: R) -> R {
     x * x
 }
 
 /// Square root; values below zero, which are due to rounding, count as zero.
-#[inline]
-pub fn safe_sqrt(x: f32) -> f32 {
-    x.max(0.0).sqrt()
+#[inline(always)]
+pub fn safe_sqrt<R: Real>(x: R) -> R {
+    x.max(R::zero()).sqrt()
 }
 
 /// Arc cosine of a value that rounding may have pushed out of [−1, 1].
@@ -40,9 +42,9 @@ pub fn safe_asin(x: f32) -> f32 {
 }
 
 /// `(1 − t)·a + t·b`.
-#[inline]
-pub fn lerp(t: f32, a: f32, b: f32) -> f32 {
-    (1.0 - t) * a + t * b
+#[inline(always)]
+pub fn lerp<R: Real>(t: R, a: R, b: R) -> R {
+    (R::one() - t) * a + t * b
 }
 
 /// Hermite step: 0 below `a`, 1 above `b`, smooth between.
@@ -56,8 +58,8 @@ pub fn smooth_step(x: f32, a: f32, b: f32) -> f32 {
 }
 
 /// `a·b − c·d`, correct to about one unit in the last place even when the products nearly cancel.
-#[inline]
-pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
+#[inline(always)]
+pub fn difference_of_products<R: Real>(a: R, b: R, c: R, d: R) -> R {
     let cd = c * d;
     let difference = a.mul_add(b, -cd);
     let error = (-c).mul_add(d, cd);
@@ -65,14 +67,14 @@ pub fn difference_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
 }
 
 /// `a·b + c·d`, correct to about one unit in the last place.
-#[inline]
-pub fn sum_of_products(a: f32, b: f32, c: f32, d: f32) -> f32 {
+#[inline(always)]
+pub fn sum_of_products<R: Real>(a: R, b: R, c: R, d: R) -> R {
     difference_of_products(a, b, -c, d)
 }
 
 /// Cross product without the cancellation of the naive formula.
-#[inline]
-pub fn cross(a: crate::Vec3, b: crate::Vec3) -> crate::Vec3 {
+#[inline(always)]
+pub fn cross<R: Real>(a: crate::Vec3<R>, b: crate::Vec3<R>) -> crate::Vec3<R> {
     crate::Vec3::new(
         difference_of_products(a.y, b.z, a.z, b.y),
         difference_of_products(a.z, b.x, a.x, b.z),

@@ -1,63 +1,68 @@
 //! Right-handed orthonormal frames.
 
 use crate::{Vec3, Vector3};
+use lanes::{Mask, Real};
 
 /// Three orthonormal axes; local +z is the main axis (the normal of a surface, the axis of a beam).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct Frame<R = f32> {
     /// Local +x in outer coordinates.
-    pub x: Vector3,
+    pub x: Vector3<R>,
     /// Local +y in outer coordinates.
-    pub y: Vector3,
+    pub y: Vector3<R>,
     /// Local +z in outer coordinates.
-    pub z: Vector3,
+    pub z: Vector3<R>,
 }
 
-impl Frame {
+impl<R: Real> Frame<R> {
     /// A frame with the unit vector `z`, and any x and y.
-    #[inline]
-    pub fn from_z(z: Vector3) -> Self {
+    #[inline(always)]
+    pub fn from_z(z: Vector3<R>) -> Self {
         let (x, y) = coordinate_system(z);
         Self { x, y, z }
     }
 
     /// The frame with the unit vector `z`, and the direction nearest to `x` that is perpendicular
     /// to it; [`Frame::from_z`] where `x` is zero or parallel to `z`.
-    #[inline]
-    pub fn from_z_and_x(z: Vector3, x: Vector3) -> Self {
-        let across = |x: Vector3| x - z * z.dot(x);
-        match across(x).try_normalize() {
-            Some(x) => {
-                // Where x is almost parallel to z, rounding errors along z remain: orthogonalise
-                // again.
-                let x = across(x).normalize();
-                Self { x, y: z.cross(x), z }
-            }
-            None => Self::from_z(z),
-        }
+    #[inline(always)]
+    pub fn from_z_and_x(z: Vector3<R>, x: Vector3<R>) -> Self {
+        let across = |x: Vector3<R>| x - z * z.dot(x);
+        let (x, valid) = across(x).normalize_masked();
+        // Where x is almost parallel to z, rounding errors along z remain: orthogonalise again.
+        let x = across(x).normalize();
+        let frame = Self { x, y: z.cross(x), z };
+        if valid.all() { frame } else { Self::select(valid, frame, Self::from_z(z)) }
+    }
+
+    /// `a` where the mask is true, else `b`.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        let axis = |a, b| Vec3::select(mask, a, b);
+        Self { x: axis(a.x, b.x), y: axis(a.y, b.y), z: axis(a.z, b.z) }
     }
 
     /// Outer coordinates to local ones.
-    #[inline]
-    pub fn to_local(&self, v: Vector3) -> Vector3 {
+    #[inline(always)]
+    pub fn to_local(&self, v: Vector3<R>) -> Vector3<R> {
         Vec3::new(v.dot(self.x), v.dot(self.y), v.dot(self.z))
     }
 
     /// Local coordinates to outer ones.
-    #[inline]
-    pub fn from_local(&self, v: Vector3) -> Vector3 {
+    #[inline(always)]
+    pub fn from_local(&self, v: Vector3<R>) -> Vector3<R> {
         self.x * v.x + self.y * v.y + self.z * v.z
     }
 }
 
 /// Two unit vectors that make a right-handed frame with the unit vector `z`, without a branch
 /// ([Duff et al. 2017]).
-#[inline]
-pub fn coordinate_system(z: Vector3) -> (Vector3, Vector3) {
-    let sign = 1f32.copysign(z.z);
-    let a = -1.0 / (sign + z.z);
+#[inline(always)]
+pub fn coordinate_system<R: Real>(z: Vector3<R>) -> (Vector3<R>, Vector3<R>) {
+    let sign = R::one().copysign(z.z);
+    let a = -R::one() / (sign + z.z);
     let b = z.x * z.y * a;
-    (Vec3::new(1.0 + sign * z.x * z.x * a, sign * b, -sign * z.x), Vec3::new(b, sign + z.y * z.y * a, -z.y))
+    let x = Vec3::new(R::one() + sign * z.x * z.x * a, sign * b, -sign * z.x);
+    (x, Vec3::new(b, sign + z.y * z.y * a, -z.y))
 }
 
 #[cfg(test)]

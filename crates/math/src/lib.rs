@@ -6,6 +6,7 @@
 mod animated;
 mod bounds;
 mod cone;
+mod elementary;
 mod error;
 mod float;
 mod frame;
@@ -15,26 +16,29 @@ mod quadratic;
 mod ray;
 mod spherical;
 mod transform;
+mod vector;
 
 pub use animated::AnimatedTransform;
 pub use bounds::{Bounds2, Bounds2i, Bounds3};
 pub use cone::{DirectionCone, bound_subtended_directions};
+pub use elementary::{exp, ln, map_lanes, sin_cos};
 pub use error::{Point3Error, offset_ray_origin};
 pub use float::*;
 pub use frame::{Frame, coordinate_system};
-pub use glam::{DMat3, DMat4, DVec3, Mat3, Mat4, Vec2, Vec3, Vec4};
+pub use glam::{DMat3, DMat4, DVec3, Mat3, Mat4, Vec4};
 pub use interval::Interval;
 pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere, wrap_equal_area_square};
 pub use quadratic::solve_quadratic;
 pub use ray::{Differentials, Ray, RayDifferential};
 pub use spherical::*;
 pub use transform::Transform;
+pub use vector::{Vec2, Vec3};
 
 /// A point in the plane, or a pair of sample values.
-pub type Point2 = Vec2;
+pub type Point2<R = f32> = Vec2<R>;
 /// A position.
-pub type Point3 = Vec3;
+pub type Point3<R = f32> = Vec3<R>;
 /// A difference of positions, or a direction.
-pub type Vector3 = Vec3;
+pub type Vector3<R = f32> = Vec3<R>;
 /// A surface normal; transforms by the inverse transpose.
-pub type Normal3 = Vec3;
+pub type Normal3<R = f32> = Vec3<R>;

@@ -1,46 +1,55 @@
 //! Rays r(t) = o + t·d at a shutter time, and ray differentials.
 
 use crate::{Normal3, Point3, Point3Error, Vector3, offset_ray_origin};
+use lanes::Real;
 
 /// A ray. The direction need not have unit length; t is in lengths of the direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
+pub struct Ray<R = f32> {
     /// Origin.
-    pub o: Point3,
+    pub o: Point3<R>,
     /// Direction, of any length but zero.
-    pub d: Vector3,
+    pub d: Vector3<R>,
     /// Shutter time.
-    pub time: f32,
+    pub time: R,
 }
 
 impl Ray {
     /// The end of a shadow ray as a fraction of the distance to its target: just short of the
     /// target's own surface.
     pub const SHADOW_END: f32 = 1.0 - 1e-4;
+}
 
+impl<R: Real> Ray<R> {
     /// A ray from `o` along `d`.
-    #[inline]
-    pub fn new(o: Point3, d: Vector3, time: f32) -> Self {
+    #[inline(always)]
+    pub fn new(o: Point3<R>, d: Vector3<R>, time: R) -> Self {
         Self { o, d, time }
     }
 
     /// The point o + t·d.
-    #[inline]
-    pub fn at(&self, t: f32) -> Point3 {
+    #[inline(always)]
+    pub fn at(&self, t: R) -> Point3<R> {
         self.o + self.d * t
     }
 
     /// The ray that leaves a surface at `p` with geometric normal `n` along `d`.
-    #[inline]
-    pub fn spawn(p: Point3Error, n: Normal3, d: Vector3, time: f32) -> Self {
+    #[inline(always)]
+    pub fn spawn(p: Point3Error<R>, n: Normal3<R>, d: Vector3<R>, time: R) -> Self {
         Self::new(offset_ray_origin(p, n, d), d, time)
     }
 
     /// The ray from one surface to another, on which t = 1 is the (offset) target; pass
     /// [`Ray::SHADOW_END`] as its end. An end without a surface (a point light, a camera) has the
     /// normal zero.
-    #[inline]
-    pub fn between(from: Point3Error, from_n: Normal3, to: Point3Error, to_n: Normal3, time: f32) -> Self {
+    #[inline(always)]
+    pub fn between(
+        from: Point3Error<R>,
+        from_n: Normal3<R>,
+        to: Point3Error<R>,
+        to_n: Normal3<R>,
+        time: R,
+    ) -> Self {
         let o = offset_ray_origin(from, from_n, to.p - from.p);
         let target = offset_ray_origin(to, to_n, o - to.p);
         Self::new(o, target - o, time)

@@ -1,13 +1,14 @@
 //! Spherical coordinates, θ from +z and φ from +x towards +y, and the trigonometry of local shading
 //! frames.
 
-use crate::{Vec3, Vector3, safe_acos, safe_sqrt};
+use crate::{Vec3, Vector3, safe_acos, safe_sqrt, sin_cos};
+use lanes::Real;
 use std::f32::consts::TAU;
 
 /// The unit vector with the given sine and cosine of θ, and φ in radians.
-#[inline]
-pub fn spherical_direction(sin_theta: f32, cos_theta: f32, phi: f32) -> Vector3 {
-    let (sin_phi, cos_phi) = phi.sin_cos();
+#[inline(always)]
+pub fn spherical_direction<R: Real>(sin_theta: R, cos_theta: R, phi: R) -> Vector3<R> {
+    let (sin_phi, cos_phi) = sin_cos(phi);
     Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }
 
@@ -25,53 +26,53 @@ pub fn spherical_phi(v: Vector3) -> f32 {
 }
 
 /// cos²θ of a local direction.
-#[inline]
-pub fn cos2_theta(w: Vector3) -> f32 {
+#[inline(always)]
+pub fn cos2_theta<R: Real>(w: Vector3<R>) -> R {
     w.z * w.z
 }
 
 /// sin²θ of a local direction.
-#[inline]
-pub fn sin2_theta(w: Vector3) -> f32 {
-    (1.0 - cos2_theta(w)).max(0.0)
+#[inline(always)]
+pub fn sin2_theta<R: Real>(w: Vector3<R>) -> R {
+    (R::one() - cos2_theta(w)).max(R::zero())
 }
 
 /// sin θ ≥ 0 of a local direction.
-#[inline]
-pub fn sin_theta(w: Vector3) -> f32 {
-    safe_sqrt(1.0 - cos2_theta(w))
+#[inline(always)]
+pub fn sin_theta<R: Real>(w: Vector3<R>) -> R {
+    safe_sqrt(R::one() - cos2_theta(w))
 }
 
 /// tan²θ of a local direction; infinite at the horizon.
-#[inline]
-pub fn tan2_theta(w: Vector3) -> f32 {
+#[inline(always)]
+pub fn tan2_theta<R: Real>(w: Vector3<R>) -> R {
     sin2_theta(w) / cos2_theta(w)
 }
 
 /// cos φ of a local direction; 1 at the pole.
-#[inline]
-pub fn cos_phi(w: Vector3) -> f32 {
+#[inline(always)]
+pub fn cos_phi<R: Real>(w: Vector3<R>) -> R {
     let sin = sin_theta(w);
-    if sin == 0.0 { 1.0 } else { (w.x / sin).clamp(-1.0, 1.0) }
+    R::select(sin.eq(R::zero()), R::one(), (w.x / sin).clamp(-R::one(), R::one()))
 }
 
 /// sin φ of a local direction; 0 at the pole.
-#[inline]
-pub fn sin_phi(w: Vector3) -> f32 {
+#[inline(always)]
+pub fn sin_phi<R: Real>(w: Vector3<R>) -> R {
     let sin = sin_theta(w);
-    if sin == 0.0 { 0.0 } else { (w.y / sin).clamp(-1.0, 1.0) }
+    R::select(sin.eq(R::zero()), R::zero(), (w.y / sin).clamp(-R::one(), R::one()))
 }
 
 /// Whether two local directions lie on the same side of the surface.
-#[inline]
-pub fn same_hemisphere(a: Vector3, b: Vector3) -> bool {
-    a.z * b.z > 0.0
+#[inline(always)]
+pub fn same_hemisphere<R: Real>(a: Vector3<R>, b: Vector3<R>) -> R::Mask {
+    (a.z * b.z).gt(R::zero())
 }
 
 /// `v` or −`v`, whichever lies on the side of `reference`.
-#[inline]
-pub fn face_forward(v: Vector3, reference: Vector3) -> Vector3 {
-    if v.dot(reference) < 0.0 { -v } else { v }
+#[inline(always)]
+pub fn face_forward<R: Real>(v: Vector3<R>, reference: Vector3<R>) -> Vector3<R> {
+    Vec3::select(v.dot(reference).lt(R::zero()), -v, v)
 }
 
 /// The angle between two unit vectors in radians, accurate near 0 and π too.

@@ -36,17 +36,17 @@ impl Transform {
 
     /// A translation by `v`.
     pub fn translate(v: Vector3) -> Self {
-        Self { m: Mat4::from_translation(v), inverse: Mat4::from_translation(-v) }
+        Self { m: Mat4::from_translation(v.into()), inverse: Mat4::from_translation((-v).into()) }
     }
 
     /// A scale of each axis; no factor may be zero.
     pub fn scale(s: Vec3) -> Self {
-        Self { m: Mat4::from_scale(s), inverse: Mat4::from_scale(s.recip()) }
+        Self { m: Mat4::from_scale(s.into()), inverse: Mat4::from_scale(s.recip().into()) }
     }
 
     /// A rotation by `angle` radians around `axis`, counter-clockwise as seen from its tip.
     pub fn rotate(angle: f32, axis: Vector3) -> Self {
-        let m = Mat4::from_axis_angle(axis.normalize(), angle);
+        let m = Mat4::from_axis_angle(axis.normalize().into(), angle);
         Self { m, inverse: m.transpose() }
     }
 
@@ -82,32 +82,33 @@ impl Transform {
     #[inline]
     pub fn point(&self, p: Point3) -> Point3 {
         let q = self.m * p.extend(1.0);
-        if q.w == 1.0 { q.truncate() } else { q.truncate() / q.w }
+        let p = q.truncate().into();
+        if q.w == 1.0 { p } else { p / q.w }
+    }
+
+    #[inline]
+    fn affine_point(&self, p: Point3) -> Point3 {
+        self.m.transform_point3(p.into()).into()
     }
 
     /// Maps a difference of positions.
     #[inline]
     pub fn vector(&self, v: Vector3) -> Vector3 {
-        self.m.transform_vector3(v)
+        self.m.transform_vector3(v.into()).into()
     }
 
     /// Maps a normal (by the inverse transpose), not normalised.
     #[inline]
     pub fn normal(&self, n: Normal3) -> Normal3 {
-        let i = &self.inverse;
-        Vec3::new(i.x_axis.truncate().dot(n), i.y_axis.truncate().dot(n), i.z_axis.truncate().dot(n))
+        let [x, y, z, _] = columns(&self.inverse);
+        Vec3::new(x.dot(n), y.dot(n), z.dot(n))
     }
 
     /// Maps a point by an affine map, and bounds the error: that of the product and that of the
     /// point.
     #[inline]
     pub fn point_with_error(&self, p: Point3Error) -> Point3Error {
-        let (x, y, z, t) = (
-            self.m.x_axis.truncate(),
-            self.m.y_axis.truncate(),
-            self.m.z_axis.truncate(),
-            self.m.w_axis.truncate(),
-        );
+        let [x, y, z, t] = columns(&self.m);
         let a = p.p.abs();
         let rounding = x.abs() * a.x + y.abs() * a.y + z.abs() * a.z + t.abs();
         let carried = x.abs() * p.error.x + y.abs() * p.error.y + z.abs() * p.error.z;
@@ -120,7 +121,7 @@ impl Transform {
     /// Maps a ray; t is unchanged.
     #[inline]
     pub fn ray(&self, ray: &Ray) -> Ray {
-        Ray::new(self.m.transform_point3(ray.o), self.vector(ray.d), ray.time)
+        Ray::new(self.affine_point(ray.o), self.vector(ray.d), ray.time)
     }
 
     /// Maps a ray and its differentials.
@@ -128,9 +129,9 @@ impl Transform {
         RayDifferential {
             ray: self.ray(&r.ray),
             differentials: r.differentials.map(|d| Differentials {
-                rx_origin: self.m.transform_point3(d.rx_origin),
+                rx_origin: self.affine_point(d.rx_origin),
                 rx_direction: self.vector(d.rx_direction),
-                ry_origin: self.m.transform_point3(d.ry_origin),
+                ry_origin: self.affine_point(d.ry_origin),
                 ry_direction: self.vector(d.ry_direction),
             }),
         }
@@ -140,6 +141,12 @@ impl Transform {
     pub fn bounds(&self, b: &Bounds3) -> Bounds3 {
         if b.is_empty() { *b } else { Bounds3::around(b.corners().map(|p| self.point(p))) }
     }
+}
+
+/// The columns of a matrix, without their last coordinates.
+#[inline]
+fn columns(m: &Mat4) -> [Vec3; 4] {
+    [m.x_axis, m.y_axis, m.z_axis, m.w_axis].map(|c| c.truncate().into())
 }
 
 #[cfg(test)]

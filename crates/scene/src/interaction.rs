@@ -148,7 +148,7 @@ impl SurfaceInteraction {
         let mut n = s.shading.n;
         let mut dndx = s.shading.dndu * f.dudx + s.shading.dndv * f.dvdx;
         let mut dndy = s.shading.dndu * f.dudy + s.shading.dndv * f.dvdy;
-        let unit = from.ray.d.length_recip();
+        let unit = 1.0 / from.ray.d.length();
         let dwodx = -d.rx_direction * unit - wo;
         let dwody = -d.ry_direction * unit - wo;
         let (rx_direction, ry_direction) = if sample.flags.is_reflective() {

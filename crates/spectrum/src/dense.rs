@@ -1,6 +1,7 @@
 //! Spectra with a value at each whole nanometre of the range of wavelengths.
 
 use crate::sampled::{LAMBDA_MAX, LAMBDA_MIN};
+use lanes::Real;
 
 /// Number of whole nanometres in the range.
 pub(crate) const COUNT: usize = (LAMBDA_MAX - LAMBDA_MIN) as usize + 1;
@@ -18,10 +19,12 @@ impl DenselySampled {
     }
 
     /// The value at the whole nanometre nearest to `lambda`.
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
-        let offset = lambda - (LAMBDA_MIN - 0.5);
-        if (0.0..COUNT as f32).contains(&offset) { self.values[offset as usize] } else { 0.0 }
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
+        let offset = lambda - R::splat(LAMBDA_MIN - 0.5);
+        let inside = offset.ge(R::zero()) & offset.lt(R::splat(COUNT as f32));
+        let index = R::select(inside, offset, R::zero()).to_int();
+        R::select(inside, R::gather(&self.values[..], index), R::zero())
     }
 
     /// The values at 360, 361, … 830 nanometres.

@@ -4,6 +4,7 @@
 //! Text: numbers separated by white space, alternately wavelength and value, wavelengths in
 //! nanometres and strictly increasing; `#` starts a comment to the end of the line.
 
+use lanes::{Int, Real};
 use std::fmt;
 
 use crate::dense::DenselySampled;
@@ -136,15 +137,33 @@ impl PiecewiseLinear {
     }
 
     /// The value at `lambda` nanometres.
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
-        let above = self.lambdas.partition_point(|&l| l <= lambda);
-        let Some(below) = above.checked_sub(1) else { return 0.0 };
-        let Some(&next) = self.lambdas.get(above) else {
-            return if lambda == self.lambdas[below] { self.values[below] } else { 0.0 };
-        };
-        let t = (lambda - self.lambdas[below]) / (next - self.lambdas[below]);
-        self.values[below] * (1.0 - t) + self.values[above] * t
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
+        let below = self.interval(lambda);
+        let above = below.wrapping_add(R::Int::splat(1));
+        let last = R::Int::splat(self.lambdas.len() as u32 - 1);
+        let above = R::Int::select(above.lt(last), above, last);
+        let [l0, l1] = [below, above].map(|i| R::gather(&self.lambdas, i));
+        let [v0, v1] = [below, above].map(|i| R::gather(&self.values, i));
+        let t = (lambda - l0) / (l1 - l0);
+        let inside = lambda.ge(l0) & lambda.lt(l1);
+        // At the end of the last interval the division is 0/0.
+        let value = R::select(inside, v0 * (R::one() - t) + v1 * t, v0);
+        R::select(inside | lambda.eq(l0), value, R::zero())
+    }
+
+    /// The last of the given wavelengths that is at most `lambda`, or the first, by binary search
+    /// with the same steps in all lanes.
+    #[inline(always)]
+    fn interval<R: Real>(&self, lambda: R) -> R::Int {
+        let (mut first, mut size) = (R::Int::splat(0), self.lambdas.len() as u32);
+        while size > 1 {
+            let half = size / 2;
+            let middle = first.wrapping_add(R::Int::splat(half));
+            first = R::Int::select(R::gather(&self.lambdas, middle).le(lambda), middle, first);
+            size -= half;
+        }
+        first
     }
 
     /// The largest of the given values.

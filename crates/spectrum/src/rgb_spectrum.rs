@@ -10,6 +10,7 @@ use crate::color_space::RgbColorSpace;
 use crate::dense::DenselySampled;
 use crate::rgb::Rgb;
 use crate::uplift::RgbSigmoidPolynomial;
+use lanes::Real;
 
 /// A reflectance or transmittance, in [0, 1].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +25,8 @@ impl RgbAlbedoSpectrum {
     }
 
     /// The value at `lambda` nanometres.
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
         self.polynomial.at(lambda)
     }
 
@@ -52,9 +53,9 @@ impl RgbUnboundedSpectrum {
     }
 
     /// The value at `lambda` nanometres.
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
-        self.scale * self.polynomial.at(lambda)
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
+        self.polynomial.at(lambda) * R::splat(self.scale)
     }
 
     /// The largest value.
@@ -77,8 +78,8 @@ impl RgbIlluminantSpectrum {
     }
 
     /// The value at `lambda` nanometres.
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
         self.factor.at(lambda) * self.illuminant.at(lambda)
     }
 

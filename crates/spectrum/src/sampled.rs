@@ -9,6 +9,7 @@
 //! Sources: [Wilkie 2014], [Pharr 2023 §4.5.4]; the density proportional to sech² that follows the
 //! eye's response is from [Radziszewski 2009].
 
+use lanes::Real;
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Number of wavelengths that a path carries.
@@ -24,7 +25,7 @@ pub const LAMBDA_MAX: f32 = 830.0;
 ///
 /// Arithmetic is per wavelength. The values are meaningless without their wavelengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SampledSpectrum(pub [f32; N]);
+pub struct SampledSpectrum<R = f32>(pub [R; N]);
 
 impl SampledSpectrum {
     /// Zero at every wavelength.
@@ -32,78 +33,6 @@ impl SampledSpectrum {
 
     /// One at every wavelength.
     pub const ONE: Self = Self([1.0; N]);
-
-    /// From one value per wavelength.
-    #[inline]
-    pub const fn new(values: [f32; N]) -> Self {
-        Self(values)
-    }
-
-    /// The same value at every wavelength.
-    #[inline]
-    pub const fn splat(value: f32) -> Self {
-        Self([value; N])
-    }
-
-    /// Applies `f` to each value.
-    #[inline]
-    pub fn map(self, mut f: impl FnMut(f32) -> f32) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i])))
-    }
-
-    /// Applies `f` to each pair of values.
-    #[inline]
-    pub fn zip(self, other: Self, mut f: impl FnMut(f32, f32) -> f32) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
-    }
-
-    /// The largest value.
-    #[inline]
-    pub fn max_component(self) -> f32 {
-        self.0.into_iter().fold(f32::NEG_INFINITY, f32::max)
-    }
-
-    /// The smallest value.
-    #[inline]
-    pub fn min_component(self) -> f32 {
-        self.0.into_iter().fold(f32::INFINITY, f32::min)
-    }
-
-    /// The smaller of both at each wavelength.
-    #[inline]
-    pub fn min(self, other: Self) -> Self {
-        self.zip(other, f32::min)
-    }
-
-    /// The larger of both at each wavelength.
-    #[inline]
-    pub fn max(self, other: Self) -> Self {
-        self.zip(other, f32::max)
-    }
-
-    /// The mean of the values.
-    #[inline]
-    pub fn average(self) -> f32 {
-        self.0.iter().sum::<f32>() / N as f32
-    }
-
-    /// Whether every value is zero.
-    #[inline]
-    pub fn is_black(self) -> bool {
-        self.0.iter().all(|&v| v == 0.0)
-    }
-
-    /// Whether all values are finite.
-    #[inline]
-    pub fn is_finite(self) -> bool {
-        self.0.iter().all(|v| v.is_finite())
-    }
-
-    /// The square root of each value.
-    #[inline]
-    pub fn sqrt(self) -> Self {
-        self.map(f32::sqrt)
-    }
 
     /// The exponential of each value.
     #[inline]
@@ -122,29 +51,124 @@ impl SampledSpectrum {
     pub fn powf(self, exponent: f32) -> Self {
         self.map(|v| v.powf(exponent))
     }
+}
+
+impl<R: Real> SampledSpectrum<R> {
+    /// From one value per wavelength.
+    #[inline(always)]
+    pub const fn new(values: [R; N]) -> Self {
+        Self(values)
+    }
+
+    /// The same value at every wavelength.
+    #[inline(always)]
+    pub const fn splat(value: R) -> Self {
+        Self([value; N])
+    }
+
+    /// Zero at every wavelength.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::splat(R::zero())
+    }
+
+    /// The same spectrum in all lanes.
+    #[inline(always)]
+    pub fn broadcast(s: SampledSpectrum) -> Self {
+        Self(s.0.map(R::splat))
+    }
+
+    /// `a` where the mask is true, else `b`.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        a.zip(b, |a, b| R::select(mask, a, b))
+    }
+
+    /// Applies `f` to each value.
+    #[inline(always)]
+    pub fn map(self, mut f: impl FnMut(R) -> R) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i])))
+    }
+
+    /// Applies `f` to each pair of values.
+    #[inline(always)]
+    pub fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+
+    /// The largest value.
+    #[inline(always)]
+    pub fn max_component(self) -> R {
+        self.0.into_iter().fold(R::splat(f32::NEG_INFINITY), |max, v| v.max(max))
+    }
+
+    /// The smallest value.
+    #[inline(always)]
+    pub fn min_component(self) -> R {
+        self.0.into_iter().fold(R::splat(f32::INFINITY), |min, v| v.min(min))
+    }
+
+    /// The smaller of both at each wavelength.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        self.zip(other, R::min)
+    }
+
+    /// The larger of both at each wavelength.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        self.zip(other, R::max)
+    }
+
+    /// The mean of the values.
+    #[inline(always)]
+    pub fn average(self) -> R {
+        let [a, b, c, d] = self.0;
+        (a + b + c + d) / R::splat(N as f32)
+    }
+
+    /// Whether every value is zero.
+    #[inline(always)]
+    pub fn is_black(self) -> R::Mask {
+        let [a, b, c, d] = self.0.map(|v| v.eq(R::zero()));
+        a & b & c & d
+    }
+
+    /// Whether all values are finite.
+    #[inline(always)]
+    pub fn is_finite(self) -> R::Mask {
+        let [a, b, c, d] = self.0.map(|v| v.abs().lt(R::splat(f32::INFINITY)));
+        a & b & c & d
+    }
+
+    /// The square root of each value.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        self.map(R::sqrt)
+    }
 
     /// Each value between `low` and `high`.
-    #[inline]
-    pub fn clamp(self, low: f32, high: f32) -> Self {
+    #[inline(always)]
+    pub fn clamp(self, low: R, high: R) -> Self {
         self.map(|v| v.clamp(low, high))
     }
 
     /// Negative values become zero.
-    #[inline]
+    #[inline(always)]
     pub fn clamp_zero(self) -> Self {
-        self.map(|v| v.max(0.0))
+        self.map(|v| v.max(R::zero()))
     }
 
     /// The quotient where the divisor is not zero, zero elsewhere.
-    #[inline]
+    #[inline(always)]
     pub fn safe_div(self, divisor: Self) -> Self {
-        self.zip(divisor, |a, b| if b == 0.0 { 0.0 } else { a / b })
+        self.zip(divisor, |a, b| R::select(b.eq(R::zero()), R::zero(), a / b))
     }
 
     /// (1 − t)·`self` + t·`other`.
-    #[inline]
-    pub fn lerp(self, other: Self, t: f32) -> Self {
-        self * (1.0 - t) + other * t
+    #[inline(always)]
+    pub fn lerp(self, other: Self, t: R) -> Self {
+        self * (R::one() - t) + other * t
     }
 }
 
@@ -155,26 +179,26 @@ impl From<f32> for SampledSpectrum {
     }
 }
 
-impl Index<usize> for SampledSpectrum {
-    type Output = f32;
+impl<R> Index<usize> for SampledSpectrum<R> {
+    type Output = R;
 
-    #[inline]
-    fn index(&self, i: usize) -> &f32 {
+    #[inline(always)]
+    fn index(&self, i: usize) -> &R {
         &self.0[i]
     }
 }
 
-impl IndexMut<usize> for SampledSpectrum {
-    #[inline]
-    fn index_mut(&mut self, i: usize) -> &mut f32 {
+impl<R> IndexMut<usize> for SampledSpectrum<R> {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut R {
         &mut self.0[i]
     }
 }
 
-impl Neg for SampledSpectrum {
+impl<R: Real> Neg for SampledSpectrum<R> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self.map(|v| -v)
     }
@@ -196,20 +220,20 @@ impl std::iter::Product for SampledSpectrum {
 /// form.
 macro_rules! operator {
     ($trait:ident $method:ident $assign_trait:ident $assign_method:ident $op:tt) => {
-        impl $trait for SampledSpectrum {
+        impl<R: Real> $trait for SampledSpectrum<R> {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn $method(self, other: Self) -> Self {
                 self.zip(other, |a, b| a $op b)
             }
         }
 
-        impl $trait<f32> for SampledSpectrum {
+        impl<R: Real> $trait<R> for SampledSpectrum<R> {
             type Output = Self;
 
-            #[inline]
-            fn $method(self, other: f32) -> Self {
+            #[inline(always)]
+            fn $method(self, other: R) -> Self {
                 self.map(|a| a $op other)
             }
         }
@@ -217,22 +241,22 @@ macro_rules! operator {
         impl $trait<SampledSpectrum> for f32 {
             type Output = SampledSpectrum;
 
-            #[inline]
+            #[inline(always)]
             fn $method(self, other: SampledSpectrum) -> SampledSpectrum {
                 other.map(|b| self $op b)
             }
         }
 
-        impl $assign_trait for SampledSpectrum {
-            #[inline]
+        impl<R: Real> $assign_trait for SampledSpectrum<R> {
+            #[inline(always)]
             fn $assign_method(&mut self, other: Self) {
                 *self = *self $op other;
             }
         }
 
-        impl $assign_trait<f32> for SampledSpectrum {
-            #[inline]
-            fn $assign_method(&mut self, other: f32) {
+        impl<R: Real> $assign_trait<R> for SampledSpectrum<R> {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: R) {
                 *self = *self $op other;
             }
         }
@@ -246,90 +270,104 @@ operator!(Div div DivAssign div_assign /);
 
 /// The wavelengths of a path, in nanometres, and their sampling densities, per nanometre.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampledWavelengths {
-    lambda: [f32; N],
-    pdf: [f32; N],
+pub struct SampledWavelengths<R = f32> {
+    lambda: [R; N],
+    pdf: [R; N],
 }
 
-impl SampledWavelengths {
+impl<R: Real> SampledWavelengths<R> {
     /// Wavelengths sampled uniformly over the range, from `u` in [0, 1).
-    pub fn sample_uniform(u: f32) -> Self {
+    #[inline(always)]
+    pub fn sample_uniform(u: R) -> Self {
         Self::sample_uniform_in(u, LAMBDA_MIN, LAMBDA_MAX)
     }
 
     /// Wavelengths sampled uniformly over `min..max`, from `u` in [0, 1).
-    pub fn sample_uniform_in(u: f32, min: f32, max: f32) -> Self {
-        let lambda = rotations(u).map(|u| min + u * (max - min));
-        Self { lambda, pdf: [1.0 / (max - min); N] }
+    #[inline(always)]
+    pub fn sample_uniform_in(u: R, min: f32, max: f32) -> Self {
+        let lambda = rotations(u).map(|u| R::splat(min) + u * R::splat(max - min));
+        Self { lambda, pdf: [R::splat(1.0 / (max - min)); N] }
     }
 
     /// Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
-    pub fn sample_visible(u: f32) -> Self {
+    #[inline(always)]
+    pub fn sample_visible(u: R) -> Self {
         let lambda = rotations(u).map(sample_visible_wavelength);
         Self { lambda, pdf: lambda.map(visible_wavelength_pdf) }
     }
 
+    /// `a` where the mask is true, else `b`.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        let pick = |a: [R; N], b: [R; N]| std::array::from_fn(|i| R::select(mask, a[i], b[i]));
+        Self { lambda: pick(a.lambda, b.lambda), pdf: pick(a.pdf, b.pdf) }
+    }
+
     /// The wavelengths in nanometres.
-    #[inline]
-    pub fn lambda(&self) -> &[f32; N] {
+    #[inline(always)]
+    pub fn lambda(&self) -> &[R; N] {
         &self.lambda
     }
 
     /// The density of each wavelength, per nanometre; zero for secondary wavelengths that were
     /// terminated.
-    #[inline]
-    pub fn pdf(&self) -> SampledSpectrum {
+    #[inline(always)]
+    pub fn pdf(&self) -> SampledSpectrum<R> {
         SampledSpectrum(self.pdf)
     }
 
     /// Keeps only the first wavelength, for dispersion, and divides its density by N.
+    #[inline(always)]
     pub fn terminate_secondary(&mut self) {
-        if !self.secondary_terminated() {
-            let hero = self.pdf[0] / N as f32;
-            self.pdf = [0.0; N];
-            self.pdf[0] = hero;
-        }
+        let terminated = self.secondary_terminated();
+        let [hero, ..] = self.pdf;
+        self.pdf = [R::zero(); N];
+        self.pdf[0] = R::select(terminated, hero, hero / R::splat(N as f32));
     }
 
     /// Whether the secondary wavelengths are terminated.
-    #[inline]
-    pub fn secondary_terminated(&self) -> bool {
-        self.pdf[1..].iter().all(|&p| p == 0.0)
+    #[inline(always)]
+    pub fn secondary_terminated(&self) -> R::Mask {
+        let [_, a, b, c] = self.pdf.map(|p| p.eq(R::zero()));
+        a & b & c
     }
 }
 
-impl Index<usize> for SampledWavelengths {
-    type Output = f32;
+impl<R> Index<usize> for SampledWavelengths<R> {
+    type Output = R;
 
     /// The `i`th wavelength in nanometres.
-    #[inline]
-    fn index(&self, i: usize) -> &f32 {
+    #[inline(always)]
+    fn index(&self, i: usize) -> &R {
         &self.lambda[i]
     }
 }
 
 /// `u` and its rotations by 1/N, 2/N, … within [0, 1).
-fn rotations(u: f32) -> [f32; N] {
+#[inline(always)]
+fn rotations<R: Real>(u: R) -> [R; N] {
     std::array::from_fn(|i| {
-        let rotated = u + i as f32 / N as f32;
-        if rotated >= 1.0 { rotated - 1.0 } else { rotated }
+        let rotated = u + R::splat(i as f32 / N as f32);
+        R::select(rotated.ge(R::one()), rotated - R::one(), rotated)
     })
 }
 
 /// A wavelength with the density of [`visible_wavelength_pdf`].
-pub fn sample_visible_wavelength(u: f32) -> f32 {
-    let tanh = 0.856_910_62 - 1.827_502 * u;
-    (538.0 - 69.444_44 * ((1.0 + tanh) / (1.0 - tanh)).ln()).clamp(LAMBDA_MIN, LAMBDA_MAX)
+#[inline(always)]
+pub fn sample_visible_wavelength<R: Real>(u: R) -> R {
+    let tanh = R::splat(0.856_910_62) - u * R::splat(1.827_502);
+    let log = math::ln((R::one() + tanh) / (R::one() - tanh));
+    (R::splat(538.0) - log * R::splat(69.444_44)).clamp(R::splat(LAMBDA_MIN), R::splat(LAMBDA_MAX))
 }
 
 /// p(λ) ∝ sech²(0.0072 (λ − 538)) on the range of wavelengths, per nanometre.
-pub fn visible_wavelength_pdf(lambda: f32) -> f32 {
-    if !(LAMBDA_MIN..=LAMBDA_MAX).contains(&lambda) {
-        return 0.0;
-    }
+#[inline(always)]
+pub fn visible_wavelength_pdf<R: Real>(lambda: R) -> R {
+    let inside = lambda.ge(R::splat(LAMBDA_MIN)) & lambda.le(R::splat(LAMBDA_MAX));
     // sech² x = 4e²ˣ / (1 + e²ˣ)²
-    let e = (0.0144 * (lambda - 538.0)).exp();
-    4.0 * 0.003_939_804 * e / ((1.0 + e) * (1.0 + e))
+    let e = math::exp((lambda - R::splat(538.0)) * R::splat(0.0144));
+    let pdf = e * R::splat(4.0 * 0.003_939_804) / ((e + R::one()) * (e + R::one()));
+    R::select(inside, pdf, R::zero())
 }
 
 #[cfg(test)]

@@ -11,6 +11,8 @@ use crate::piecewise::{PiecewiseLinear, SpectrumError};
 use crate::rgb::{Rgb, Xyz};
 use crate::rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};
 use crate::sampled::{SampledSpectrum, SampledWavelengths};
+use lanes::Real;
+use math::map_lanes;
 
 /// A function of wavelength in nanometres. Cheap to clone: tables are shared.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,13 +63,13 @@ impl Spectrum {
     }
 
     /// The value at `lambda` nanometres.
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
         match self {
-            Self::Constant(value) => *value,
+            Self::Constant(value) => R::splat(*value),
             Self::PiecewiseLinear(s) => s.at(lambda),
             Self::DenselySampled(s) => s.at(lambda),
-            Self::Blackbody(s) => s.at(lambda),
+            Self::Blackbody(s) => map_lanes(lambda, |l| s.at(l)),
             Self::RgbAlbedo(s) => s.at(lambda),
             Self::RgbUnbounded(s) => s.at(lambda),
             Self::RgbIlluminant(s) => s.at(lambda),
@@ -75,14 +77,14 @@ impl Spectrum {
     }
 
     /// The values at sampled wavelengths.
-    #[inline]
-    pub fn sample(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, lambda: &SampledWavelengths<R>) -> SampledSpectrum<R> {
         let lambda = SampledSpectrum(*lambda.lambda());
         match self {
-            Self::Constant(value) => SampledSpectrum::splat(*value),
+            Self::Constant(value) => SampledSpectrum::splat(R::splat(*value)),
             Self::PiecewiseLinear(s) => lambda.map(|l| s.at(l)),
             Self::DenselySampled(s) => lambda.map(|l| s.at(l)),
-            Self::Blackbody(s) => lambda.map(|l| s.at(l)),
+            Self::Blackbody(s) => lambda.map(|l| map_lanes(l, |l| s.at(l))),
             Self::RgbAlbedo(s) => lambda.map(|l| s.at(l)),
             Self::RgbUnbounded(s) => lambda.map(|l| s.at(l)),
             Self::RgbIlluminant(s) => lambda.map(|l| s.at(l)),

@@ -15,6 +15,7 @@
 
 use crate::rgb::Rgb;
 use crate::sampled::{LAMBDA_MAX, LAMBDA_MIN};
+use lanes::Real;
 
 /// A reflectance made from RGB: a sigmoid of a quadratic polynomial of wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,10 +32,10 @@ impl RgbSigmoidPolynomial {
     }
 
     /// The reflectance at `lambda` nanometres, in [0, 1].
-    #[inline]
-    pub fn at(&self, lambda: f32) -> f32 {
-        let [c0, c1, c2] = self.coefficients;
-        let t = (lambda - 540.0) / 100.0;
+    #[inline(always)]
+    pub fn at<R: Real>(&self, lambda: R) -> R {
+        let [c0, c1, c2] = self.coefficients.map(R::splat);
+        let t = (lambda - R::splat(540.0)) / R::splat(100.0);
         sigmoid((c0 * t + c1) * t + c2)
     }
 
@@ -48,10 +49,10 @@ impl RgbSigmoidPolynomial {
 }
 
 /// s(x) = ½ + x / (2√(1 + x²)), right for infinite x too: beyond 10⁹ it is 0 or 1 to all digits.
-#[inline]
-fn sigmoid(x: f32) -> f32 {
-    let x = x.clamp(-1e9, 1e9);
-    0.5 + x / (2.0 * (1.0 + x * x).sqrt())
+#[inline(always)]
+fn sigmoid<R: Real>(x: R) -> R {
+    let x = x.clamp(R::splat(-1e9), R::splat(1e9));
+    R::splat(0.5) + x / ((R::one() + x * x).sqrt() * R::splat(2.0))
 }
 
 /// Number of nodes over the largest component.

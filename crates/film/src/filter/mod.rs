@@ -178,7 +178,7 @@ impl Filter {
 fn separable_integral(radius: Vec2, f: impl Fn(Vec2) -> f32) -> f32 {
     const STEPS: i32 = 4096;
     let along = |axis: Vec2| -> f64 {
-        let width = 2.0 * f64::from((axis * radius).element_sum());
+        let width = 2.0 * f64::from(axis.dot(radius));
         let at = |i| f64::from(f(axis * radius * ((2 * i + 1) as f32 / STEPS as f32 - 1.0)));
         (0..STEPS).map(at).sum::<f64>() * width / f64::from(STEPS)
     };

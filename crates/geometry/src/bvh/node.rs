@@ -163,7 +163,7 @@ fn inverse(d: Vec3) -> Vec3 {
     // A ray parallel to a slab is inside of it or outside for all its length; a direction that is
     // almost parallel gives the same answer within the margin, and has an inverse.
     let least = Vec3::splat(d.abs().max_element() * 1e-12);
-    Vec3::select(d.abs().cmplt(least), least.copysign(d), d).recip()
+    d.zip(least, |d, least| if d.abs() < least { least.copysign(d) } else { d }).recip()
 }
 
 #[inline(always)]

@@ -34,7 +34,7 @@ pub fn bezier_segments(points: &[Point3], degree: usize, basis: SplineBasis) -> 
             (&[a, b, c, d], SplineBasis::BSpline) => from_b_spline([a, b, c, d]),
             _ => [p[0], p[1], p[2], p[3]],
         };
-        cubic.map(|p| p.as_vec3())
+        cubic.map(|p| p.as_vec3().into())
     };
     points.windows(degree + 1).step_by(step).map(cubic).collect()
 }

@@ -115,7 +115,7 @@ impl Curves {
         let (segment, u) = self.part(primitive);
         let points = part(&segment.cubic(), u);
         let radius = 0.5 * u.map(|u| segment.width_at(u)).into_iter().fold(0.0, f64::max);
-        let reach = self.placement.ball_extent(radius).as_vec3();
+        let reach = Vec3::from(self.placement.ball_extent(radius).as_vec3());
         points.iter().map(|&p| self.placement.point(p, DVec3::ZERO)).fold(Bounds3::EMPTY, |all, p| {
             let reach = reach * (1.0 + f32::EPSILON) + p.error;
             all.union(Bounds3 { min: p.p - reach, max: p.p + reach })
@@ -286,5 +286,5 @@ fn depth(p: &Cubic, width: f64) -> i32 {
 
 /// A unit vector perpendicular to a unit vector.
 fn across(z: DVec3) -> DVec3 {
-    coordinate_system(z.as_vec3()).0.as_dvec3()
+    coordinate_system(Vec3::from(z.as_vec3())).0.as_dvec3()
 }

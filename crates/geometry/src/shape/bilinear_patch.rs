@@ -54,7 +54,7 @@ impl Flat {
         let [p00, p10, p01, p11] = p.map(|p| p.as_dvec3());
         let (right, up) = (p10 - p00, p01 - p00);
         let cross = right.cross(up);
-        let n = cross.try_normalize()?.as_vec3();
+        let n = cross.try_normalize()?.as_vec3().into();
         (p11 - p01 == right && p11 - p10 == up).then_some(Self { corner: p00, right, up, cross, n })
     }
 
@@ -138,7 +138,7 @@ impl BilinearPatch {
         let geometric = self.normal(uv);
         let n = if self.flips { -geometric } else { geometric };
         if let (Some(flat), None, None) = (&self.flat, &self.uv, &self.n) {
-            let sides = [flat.right.as_vec3(), flat.up.as_vec3()];
+            let sides = [flat.right.as_vec3().into(), flat.up.as_vec3().into()];
             return SurfacePoint::new(self.point(uv), n, uv, sides, [Vec3::ZERO; 2], ray);
         }
         let p = self.p.map(|p| p.as_dvec3());
@@ -147,7 +147,7 @@ impl BilinearPatch {
             None => Some(d),
             Some(st) => {
                 let st = st.map(|st| st.extend(0.0).as_dvec3());
-                let [du, dv] = derivatives(&st).map(|d| d.truncate().as_vec2());
+                let [du, dv] = derivatives(&st).map(|d| d.truncate().as_vec2().into());
                 by_texture(d, du, dv)
             }
         };
@@ -162,15 +162,15 @@ impl BilinearPatch {
             self.point(uv),
             n,
             self.texture(uv),
-            dp.map(|d| d.as_vec3()),
-            dn.map(|d| (d * side).as_vec3()),
+            dp.map(|d| d.as_vec3().into()),
+            dn.map(|d| (d * side).as_vec3().into()),
             ray,
         );
         if let Some(normals) = &self.n {
             let normals = normals.map(|n| n.as_dvec3());
             let Some(ns) = at(&normals, uv).try_normalize() else { return surface };
-            let dn = by_texture(derivatives(&normals)).unwrap_or([DVec3::ZERO; 2]).map(|d| d.as_vec3());
-            let ns = ns.as_vec3();
+            let dn = by_texture(derivatives(&normals)).unwrap_or([DVec3::ZERO; 2]).map(|d| d.as_vec3().into());
+            let ns = ns.as_vec3().into();
             let turned = |v: Vec3| turn(v, face_forward(n, ns), ns);
             surface.set_shading(Shading {
                 n: ns,
@@ -253,7 +253,7 @@ impl BilinearPatch {
     /// between those of the corners.
     pub(super) fn normal_bounds(&self) -> DirectionCone {
         let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|uv| self.outside(uv));
-        let w = corners.iter().sum::<Vec3>().normalize_or_zero();
+        let w = corners.into_iter().sum::<Vec3>().normalize_or_zero();
         let cos = corners.iter().fold(1.0, |cos, n| w.dot(*n).min(cos));
         if cos > 0.0 { DirectionCone::new(w, cos) } else { DirectionCone::ENTIRE_SPHERE }
     }
@@ -290,7 +290,7 @@ impl BilinearPatch {
 
     fn texture(&self, uv: Vec2) -> Vec2 {
         match &self.uv {
-            Some(st) => at(&st.map(|st| st.extend(0.0).as_dvec3()), uv).truncate().as_vec2(),
+            Some(st) => at(&st.map(|st| st.extend(0.0).as_dvec3()), uv).truncate().as_vec2().into(),
             None => uv,
         }
     }
@@ -299,7 +299,7 @@ impl BilinearPatch {
     fn outside(&self, uv: Vec2) -> Normal3 {
         let n = self.normal(uv);
         match &self.n {
-            Some(normals) => face_forward(n, at(&normals.map(|n| n.as_dvec3()), uv).as_vec3()),
+            Some(normals) => face_forward(n, at(&normals.map(|n| n.as_dvec3()), uv).as_vec3().into()),
             None if self.flips => -n,
             None => n,
         }
@@ -310,7 +310,7 @@ impl BilinearPatch {
     fn normal(&self, uv: Vec2) -> Normal3 {
         match &self.flat {
             Some(flat) => flat.n,
-            None => self.cross(uv).normalize_or_zero().as_vec3(),
+            None => self.cross(uv).normalize_or_zero().as_vec3().into(),
         }
     }
 

@@ -49,7 +49,7 @@ impl Level {
         if determinant.abs() > 1e-3 * grad_u.length() * grad_v.length() {
             [grad_v.cross(n) / determinant, n.cross(grad_u) / determinant]
         } else {
-            any_tangents(n.as_vec3()).map(|tangent| tangent.as_dvec3())
+            any_tangents(n.as_vec3().into()).map(|tangent| tangent.as_dvec3())
         }
     }
 

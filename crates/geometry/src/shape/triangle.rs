@@ -49,19 +49,19 @@ impl Triangle {
     }
 
     pub(crate) fn surface(&self, ray: &Ray, b: Vec2) -> SurfacePoint {
-        let mut n = self.cross().normalize_or_zero().as_vec3();
+        let mut n = Normal3::from(self.cross().normalize_or_zero().as_vec3());
         if self.flips {
             n = -n;
         }
         let [st_du, st_dv] = self.sides(&self.uv);
         let [p_du, p_dv] = self.sides(&self.p).map(|e| e.as_dvec3());
-        let by_texture = |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| d.as_vec3()));
+        let by_texture = |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| Vec3::from(d.as_vec3())));
         let tangents = by_texture([p_du, p_dv]).filter(|d| d[0].cross(d[1]).length_squared() > 0.0);
         let [dpdu, dpdv] = tangents.unwrap_or_else(|| any_tangents(n));
         let mut surface =
             SurfacePoint::new(self.point(b), n, self.texture(b), [dpdu, dpdv], [Vec3::ZERO; 2], ray);
         if self.n.is_some() || self.s.is_some() {
-            let mix = |v: &[Vec3; 3]| barycentric(v, b).as_vec3();
+            let mix = |v: &[Vec3; 3]| Vec3::from(barycentric(v, b).as_vec3());
             let ns = self.n.and_then(|n| mix(&n).try_normalize()).unwrap_or(n);
             let ss = self.s.map(|s| mix(&s)).filter(|s| s.length_squared() > 0.0).unwrap_or(dpdu);
             let ts = ns.cross(ss);
@@ -135,9 +135,9 @@ impl Triangle {
 
     /// The unit normal on the side of the shading normals, where there are any.
     pub(super) fn outside(&self, b: Vec2) -> Normal3 {
-        let n = self.cross().normalize_or_zero().as_vec3();
+        let n = self.cross().normalize_or_zero().as_vec3().into();
         match &self.n {
-            Some(normals) => face_forward(n, barycentric(normals, b).as_vec3()),
+            Some(normals) => face_forward(n, barycentric(normals, b).as_vec3().into()),
             None if self.flips => -n,
             None => n,
         }

@@ -53,7 +53,7 @@ fn vertex_normals(mesh: &MeshArrays) -> Vec<Normal3> {
     let mut normals = vec![Normal3::ZERO; mesh.positions.len()];
     for corners in &mesh.indices {
         let [a, b, c] = corners.map(|i| mesh.positions[i as usize].as_dvec3());
-        let n = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        let n = Normal3::from((b - a).cross(c - a).normalize_or_zero().as_vec3());
         corners.iter().for_each(|&i| normals[i as usize] += n);
     }
     normals.into_iter().map(|n| n.normalize_or_zero()).collect()

@@ -38,8 +38,8 @@ pub fn loop_subdivision(
         mesh = mesh.divided();
     }
     mesh.points = mesh.vertices().map(|v| mesh.limit(v)).collect();
-    let positions = mesh.points.iter().map(|p| p.as_vec3()).collect();
-    let normals = mesh.vertices().map(|v| mesh.normal(v).as_vec3()).collect();
+    let positions = mesh.points.iter().map(|p| p.as_vec3().into()).collect();
+    let normals = mesh.vertices().map(|v| mesh.normal(v).as_vec3().into()).collect();
     Ok(MeshArrays { positions, indices: mesh.faces, normals, uvs: Vec::new() })
 }
 

@@ -95,7 +95,7 @@ impl<V: Vector<{ SphereBlock::WIDTH }>> UnitRay<V> {
         let length = d.length();
         // SAFETY: as the caller promises.
         let lanes = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
-        Self { o: lanes(ray.o), d: lanes((d / length).as_vec3()), length: length as f32 }
+        Self { o: lanes(ray.o), d: lanes((d / length).as_vec3().into()), length: length as f32 }
     }
 }
 

@@ -179,7 +179,7 @@ fn refit_skips_non_finite_vertices() {
     };
     assert_eq!(refit(positions.clone()), Some(4.0));
     assert_eq!(refit(vec![Vec3::NAN; 8]), None);
-    assert_eq!(refit(positions.iter().map(|p| p * 2.0).collect()), Some(3.0));
+    assert_eq!(refit(positions.iter().map(|&p| p * 2.0).collect()), Some(3.0));
 }
 
 #[test]

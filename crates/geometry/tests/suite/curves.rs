@@ -62,7 +62,7 @@ fn ray_near(rng: &mut Rng, segment: &CurveSegment) -> Ray {
     let u = rng.uniform_f32();
     let target = at(&segment.points, u) + direction(rng) * between(rng, 0.0, 0.3);
     let o = target
-        + (direction(rng) + direction(rng).reject_from(Vec3::X).normalize() * 1.5) * between(rng, 0.0, 3.0);
+        + (direction(rng) + Vec3 { x: 0.0, ..direction(rng) }.normalize() * 1.5) * between(rng, 0.0, 3.0);
     Ray::new(o, (target - o) * between(rng, 0.3, 3.0), 0.0)
 }
 

@@ -222,7 +222,7 @@ fn singular_points() {
         for target in points {
             for _ in 0..300 {
                 // On a grid, so that the ray passes through the point without rounding.
-                let o = target + (direction(rng) * 320.0).round() / 64.0;
+                let o = target + (direction(rng) * 320.0).map(f32::round) / 64.0;
                 let ray = Ray::new(o, target - o, 0.0);
                 let hit = shape
                     .intersect(&ray, f32::INFINITY)

@@ -8,7 +8,14 @@ use std::collections::HashMap;
 
 const OCTAHEDRON: [[u32; 3]; 8] =
     [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
-const CORNERS: [Vec3; 6] = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z];
+const CORNERS: [Vec3; 6] = [
+    Vec3::X,
+    Vec3::Y,
+    Vec3::Z,
+    Vec3::new(-1.0, 0.0, 0.0),
+    Vec3::new(0.0, -1.0, 0.0),
+    Vec3::new(0.0, 0.0, -1.0),
+];
 
 /// A closed mesh with vertices of valence three to seven: an octahedron with pyramids on some of
 /// its faces.

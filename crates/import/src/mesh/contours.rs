@@ -312,7 +312,7 @@ mod tests {
                 }));
             }
             let place = |[x, y]: [f64; 2]| DVec3::new(x, x * tilt.0 + y * tilt.1, y);
-            let points: Vec<Point3> = flat.iter().map(|&p| place(p).as_vec3()).collect();
+            let points: Vec<Point3> = flat.iter().map(|&p| place(p).as_vec3().into()).collect();
             let triangles = triangulate_contours(&points, &lengths).expect("a polygon");
             prop_assert_eq!(triangles.len(), points.len() + 2 * (lengths.len() - 1) - 2);
             let mut contours = Vec::new();

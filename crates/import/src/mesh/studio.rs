@@ -65,7 +65,7 @@ pub(super) fn furnish(desc: &mut SceneDesc, low: DVec3, high: DVec3) {
     desc.sampler.kind.set_samples_per_pixel(64);
     add_ground(desc, DVec3::new(center.x, low.y, center.z), radius);
     let key = (0.3 * -direction + 0.75 * up - 0.75 * right).normalize();
-    let image = Arc::new(environment(key.as_vec3()));
+    let image = Arc::new(environment(key.as_vec3().into()));
     let radiance = InfiniteRadiance::Image(desc.images.push(ImageDesc { name: "studio".into(), image }));
     desc.lights.push(LightKind::Infinite { radiance, illuminance: None, portal: None }.into());
 }

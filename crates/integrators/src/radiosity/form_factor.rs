@@ -114,7 +114,7 @@ impl Emitter {
         let mut corners: Vec<Point3> =
             cell.corners().iter().map(|corner| mesh.vertices()[corner.vertex as usize].p).collect();
         let turn = if side == 0 { 1.0 } else { -1.0 };
-        let center = corners.iter().sum::<Point3>() / corners.len() as f32;
+        let center = corners.iter().copied().sum::<Point3>() / corners.len() as f32;
         let point = |domain: &Domain| {
             let surface = mesh.surface(world, cell.primitive, domain.center());
             surface.map_or((Point3Error::exact(center), Normal3::ZERO), |s: SurfacePoint| (s.p, s.n * turn))

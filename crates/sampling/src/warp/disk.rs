@@ -1,14 +1,15 @@
 //! Uniform sampling of the unit disk, by polar coordinates and by the concentric map, which
 //! preserves stratification [Shirley 1997].
 
-use math::Vec2;
+use lanes::Real;
+use math::{Vec2, sin_cos};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
 
 /// A point of the unit disk: radius √u₀ at the angle 2π·u₁.
-#[inline]
-pub fn sample_uniform_disk_polar(u: Vec2) -> Vec2 {
-    let (sin, cos) = (TAU * u.y).sin_cos();
-    u.x.sqrt() * Vec2::new(cos, sin)
+#[inline(always)]
+pub fn sample_uniform_disk_polar<R: Real>(u: Vec2<R>) -> Vec2<R> {
+    let (sin, cos) = sin_cos(u.y * R::splat(TAU));
+    Vec2::new(cos, sin) * u.x.sqrt()
 }
 
 /// Inverse of [`sample_uniform_disk_polar`].
@@ -18,19 +19,16 @@ pub fn invert_uniform_disk_polar(p: Vec2) -> Vec2 {
 }
 
 /// A point of the unit disk: squares around the centre of the unit square are mapped to circles.
-#[inline]
-pub fn sample_uniform_disk_concentric(u: Vec2) -> Vec2 {
-    let p = 2.0 * u - Vec2::ONE;
-    if p == Vec2::ZERO {
-        return Vec2::ZERO;
-    }
-    let (r, theta) = if p.x.abs() > p.y.abs() {
-        (p.x, FRAC_PI_4 * (p.y / p.x))
-    } else {
-        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
-    };
-    let (sin, cos) = theta.sin_cos();
-    r * Vec2::new(cos, sin)
+#[inline(always)]
+pub fn sample_uniform_disk_concentric<R: Real>(u: Vec2<R>) -> Vec2<R> {
+    let p = u * R::splat(2.0) - R::one();
+    let along_x = p.x.abs().gt(p.y.abs());
+    let r = R::select(along_x, p.x, p.y);
+    // The centre has the radius 0 at any angle.
+    let slope = R::select(r.eq(R::zero()), R::zero(), R::select(along_x, p.y, p.x) / r);
+    let turn = slope * R::splat(FRAC_PI_4);
+    let (sin, cos) = sin_cos(R::select(along_x, turn, R::splat(FRAC_PI_2) - turn));
+    Vec2::new(cos, sin) * r
 }
 
 /// Inverse of [`sample_uniform_disk_concentric`].

@@ -3,32 +3,26 @@
 //!
 //! Sources: [Pharr 2023 §2.4, §A.4]; [Box 1958] for the normal pair.
 
+use lanes::Real;
 use math::{ONE_MINUS_EPSILON, Vec2, lerp, smooth_step};
 use std::f32::consts::TAU;
 
 /// A number in [0, 1] with density proportional to `lerp(x, a, b)`, for a, b ≥ 0.
-#[inline]
-pub fn sample_linear(u: f32, a: f32, b: f32) -> f32 {
-    if a + b <= 0.0 {
-        return u;
-    }
-    if u == 0.0 && a == 0.0 {
-        return 0.0;
-    }
+#[inline(always)]
+pub fn sample_linear<R: Real>(u: R, a: R, b: R) -> R {
     let x = u * (a + b) / (a + lerp(u, a * a, b * b).sqrt());
-    x.min(ONE_MINUS_EPSILON)
+    let x = x.min(R::splat(ONE_MINUS_EPSILON));
+    let at_zero = u.eq(R::zero()) & a.eq(R::zero());
+    R::select((a + b).le(R::zero()), u, R::select(at_zero, R::zero(), x))
 }
 
 /// Density of [`sample_linear`].
-#[inline]
-pub fn linear_pdf(x: f32, a: f32, b: f32) -> f32 {
-    if !(0.0..=1.0).contains(&x) {
-        0.0
-    } else if a + b <= 0.0 {
-        1.0
-    } else {
-        2.0 * lerp(x, a, b) / (a + b)
-    }
+#[inline(always)]
+pub fn linear_pdf<R: Real>(x: R, a: R, b: R) -> R {
+    let inside = x.ge(R::zero()) & x.le(R::one());
+    let pdf = lerp(x, a, b) * R::splat(2.0) / (a + b);
+    let pdf = R::select((a + b).le(R::zero()), R::one(), pdf);
+    R::select(inside, pdf, R::zero())
 }
 
 /// Inverse of [`sample_linear`].

@@ -78,7 +78,7 @@ impl SphericalRectangle {
         let h = h0 + u.y as f64 * (h1 - h0);
         let y = (h * (distance2 / (1.0 - h * h).max(1e-300)).sqrt()).clamp(y0, y1);
         let [axis_x, axis_y, axis_z] = self.axes;
-        (self.origin + x * axis_x + y * axis_y + z * axis_z).as_vec3()
+        (self.origin + x * axis_x + y * axis_y + z * axis_z).as_vec3().into()
     }
 
     /// The `u` that [`sample`](Self::sample) sends to a point of the rectangle.

@@ -6,15 +6,17 @@
 
 use super::disk::turn;
 use super::{invert_uniform_disk_concentric, sample_uniform_disk_concentric};
+use lanes::Real;
 use math::{Vec2, Vec3, Vector3, safe_sqrt, spherical_direction};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
 /// A direction of the sphere.
-#[inline]
-pub fn sample_uniform_sphere(u: Vec2) -> Vector3 {
-    let z = 1.0 - 2.0 * u.x;
+#[inline(always)]
+pub fn sample_uniform_sphere<R: Real>(u: Vec2<R>) -> Vector3<R> {
+    let [one, two] = [1.0, 2.0].map(R::splat);
+    let z = one - two * u.x;
     // 1 − z² without cancellation at the poles.
-    spherical_direction(2.0 * safe_sqrt(u.x * (1.0 - u.x)), z, TAU * u.y)
+    spherical_direction(two * safe_sqrt(u.x * (one - u.x)), z, u.y * R::splat(TAU))
 }
 
 /// Density of [`sample_uniform_sphere`].
@@ -30,9 +32,9 @@ pub fn invert_uniform_sphere(w: Vector3) -> Vec2 {
 }
 
 /// A direction of the hemisphere z ≥ 0.
-#[inline]
-pub fn sample_uniform_hemisphere(u: Vec2) -> Vector3 {
-    spherical_direction(safe_sqrt(1.0 - u.x * u.x), u.x, TAU * u.y)
+#[inline(always)]
+pub fn sample_uniform_hemisphere<R: Real>(u: Vec2<R>) -> Vector3<R> {
+    spherical_direction(safe_sqrt(R::one() - u.x * u.x), u.x, u.y * R::splat(TAU))
 }
 
 /// Density of [`sample_uniform_hemisphere`] where z ≥ 0.
@@ -48,16 +50,16 @@ pub fn invert_uniform_hemisphere(w: Vector3) -> Vec2 {
 }
 
 /// A direction of the hemisphere z ≥ 0 with density proportional to z.
-#[inline]
-pub fn sample_cosine_hemisphere(u: Vec2) -> Vector3 {
+#[inline(always)]
+pub fn sample_cosine_hemisphere<R: Real>(u: Vec2<R>) -> Vector3<R> {
     let d = sample_uniform_disk_concentric(u);
-    Vec3::new(d.x, d.y, safe_sqrt(1.0 - d.length_squared()))
+    Vec3::new(d.x, d.y, safe_sqrt(R::one() - d.length_squared()))
 }
 
 /// Density of [`sample_cosine_hemisphere`] at a direction with this z; 0 below the horizon.
-#[inline]
-pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
-    cos_theta.max(0.0) * FRAC_1_PI
+#[inline(always)]
+pub fn cosine_hemisphere_pdf<R: Real>(cos_theta: R) -> R {
+    cos_theta.max(R::zero()) * R::splat(FRAC_1_PI)
 }
 
 /// Inverse of [`sample_cosine_hemisphere`].
@@ -67,17 +69,18 @@ pub fn invert_cosine_hemisphere(w: Vector3) -> Vec2 {
 }
 
 /// A direction whose angle with +z has at least the cosine `cos_theta_max`.
-#[inline]
-pub fn sample_uniform_cone(u: Vec2, cos_theta_max: f32) -> Vector3 {
+#[inline(always)]
+pub fn sample_uniform_cone<R: Real>(u: Vec2<R>, cos_theta_max: R) -> Vector3<R> {
+    let [one, two] = [1.0, 2.0].map(R::splat);
     // 1 − cos θ, which is accurate for narrow cones.
-    let lost = u.x * (1.0 - cos_theta_max);
-    spherical_direction(safe_sqrt(lost * (2.0 - lost)), 1.0 - lost, TAU * u.y)
+    let lost = u.x * (one - cos_theta_max);
+    spherical_direction(safe_sqrt(lost * (two - lost)), one - lost, u.y * R::splat(TAU))
 }
 
 /// Density of [`sample_uniform_cone`] inside the cone.
-#[inline]
-pub fn uniform_cone_pdf(cos_theta_max: f32) -> f32 {
-    1.0 / (2.0 * PI * (1.0 - cos_theta_max))
+#[inline(always)]
+pub fn uniform_cone_pdf<R: Real>(cos_theta_max: R) -> R {
+    R::one() / (R::splat(2.0 * PI) * (R::one() - cos_theta_max))
 }
 
 /// Inverse of [`sample_uniform_cone`].

@@ -2,19 +2,20 @@
 //! so is x given y.
 
 use super::{invert_linear, linear_pdf, sample_linear};
+use lanes::Real;
 use math::{Vec2, lerp};
 
 /// A point of [0, 1]² with density proportional to the bilinear interpolation of weights ≥ 0 at
 /// (0,0), (1,0), (0,1), (1,1).
-#[inline]
-pub fn sample_bilinear(u: Vec2, w: [f32; 4]) -> Vec2 {
+#[inline(always)]
+pub fn sample_bilinear<R: Real>(u: Vec2<R>, w: [R; 4]) -> Vec2<R> {
     let y = sample_linear(u.y, w[0] + w[1], w[2] + w[3]);
     Vec2::new(sample_linear(u.x, lerp(y, w[0], w[2]), lerp(y, w[1], w[3])), y)
 }
 
 /// Density of [`sample_bilinear`].
-#[inline]
-pub fn bilinear_pdf(p: Vec2, w: [f32; 4]) -> f32 {
+#[inline(always)]
+pub fn bilinear_pdf<R: Real>(p: Vec2<R>, w: [R; 4]) -> R {
     let pdf_y = linear_pdf(p.y, w[0] + w[1], w[2] + w[3]);
     pdf_y * linear_pdf(p.x, lerp(p.y, w[0], w[2]), lerp(p.y, w[1], w[3]))
 }

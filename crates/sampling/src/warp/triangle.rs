@@ -6,13 +6,17 @@
 //! [Van Oosterom 1983]; arithmetic is in double precision, so that small and thin triangles need no
 //! special case.
 
+use lanes::Real;
 use math::{DVec3, Point3, Vec2, Vector3};
 
 /// Barycentric coordinates, uniform over a triangle.
-#[inline]
-pub fn sample_uniform_triangle(u: Vec2) -> [f32; 3] {
-    let (b0, b1) = if u.x < u.y { (0.5 * u.x, u.y - 0.5 * u.x) } else { (u.x - 0.5 * u.y, 0.5 * u.y) };
-    [b0, b1, 1.0 - b0 - b1]
+#[inline(always)]
+pub fn sample_uniform_triangle<R: Real>(u: Vec2<R>) -> [R; 3] {
+    let below = u.x.lt(u.y);
+    let half = R::select(below, u.x, u.y) * R::splat(0.5);
+    let rest = R::select(below, u.y, u.x) - half;
+    let (b0, b1) = (R::select(below, half, rest), R::select(below, rest, half));
+    [b0, b1, R::one() - b0 - b1]
 }
 
 /// Density of [`sample_uniform_triangle`] per area of the (b₀, b₁) plane.
@@ -95,7 +99,7 @@ impl SphericalTriangle {
         let height = u.y as f64 * one_minus_dot(cut, b);
         let sin_theta = (height * (2.0 - height)).max(0.0).sqrt();
         let w = (1.0 - height) * b + sin_theta * perpendicular(cut, b);
-        (w.as_vec3(), self.barycentric(w))
+        (w.as_vec3().into(), self.barycentric(w))
     }
 
     /// The `u` that [`sample`](Self::sample) sends to the direction `w`, which must meet the

@@ -79,7 +79,9 @@ fn repeated(position: Point2, period: Option<Vec2>, bounds: Bounds2) -> impl Ite
     let (low, high, period) = match period {
         None => (Vec2::ZERO, Vec2::ZERO, Vec2::ZERO),
         Some(period) => {
-            (((bounds.min - position) / period).ceil(), ((bounds.max - position) / period).floor(), period)
+            let low = (bounds.min - position) / period;
+            let high = (bounds.max - position) / period;
+            (low.map(f32::ceil), high.map(f32::floor), period)
         }
     };
     let columns = move || (low.x as i32)..=(high.x as i32);

@@ -68,11 +68,11 @@ fn film_positions_of_a_ray_generate_the_same_ray() {
             let ray = camera.generate_ray(&from).unwrap().ray;
             let (_, found) = camera.we(&ray).unwrap();
             let places: Vec<_> = camera.film_positions(found).within(around).collect();
-            assert!(places.iter().any(|place| (place - film).length() < 2e-3), "{name}: {film} {places:?}");
+            assert!(places.iter().any(|&place| (place - film).length() < 2e-3), "{name}: {film} {places:?}");
             for (i, &place) in places.iter().enumerate() {
                 let again = camera.generate_ray(&CameraSample { film: place, ..from }).unwrap().ray;
                 assert!((again.d - ray.d).length() < 1e-3, "{name}: {film} {place}");
-                let is_new = places[..i].iter().all(|other| (other - place).length() > 1e-3);
+                let is_new = places[..i].iter().all(|&other| (other - place).length() > 1e-3);
                 assert!(is_new, "{name}: {place} counts twice");
             }
             beyond += usize::from(places.len() > 1);

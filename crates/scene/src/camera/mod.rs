@@ -145,7 +145,7 @@ impl Camera {
         let mut ray = self.transform.render_from_camera(time).ray_differential(&ray);
         // A transform that scales changes the length of directions. All three are divided by the
         // same factor, to keep their differences.
-        let factor = ray.ray.d.length_recip();
+        let factor = 1.0 / ray.ray.d.length();
         ray.ray.d *= factor;
         if let Some(d) = &mut ray.differentials {
             d.rx_direction *= factor;

@@ -108,6 +108,6 @@ impl ThinLens {
         if self.radius <= 0.0 {
             return d / d.z;
         }
-        (o + d * (self.focal_distance / d.z)).with_z(self.focal_distance)
+        (o + d * (self.focal_distance / d.z)).truncate().extend(self.focal_distance)
     }
 }

@@ -214,7 +214,7 @@ fn the_picture_does_not_depend_on_the_render_space() {
             let world = camera.transform().world_from_render();
             let ray = camera.generate_ray(&sample(70.0, 31.0, Vec2::new(0.3, 0.8), 0.0)).unwrap().ray;
             let p = camera.transform().camera_from_world(0.0).inverse().transform_point3(DVec3::Z * 3.0);
-            let p = camera.transform().world_from_render().inverse().transform_point3(p).as_vec3();
+            let p = camera.transform().world_from_render().inverse().transform_point3(p).as_vec3().into();
             let [dpdx, dpdy] = camera.approximate_dp_dxy(p, ray.d, 0.0, 0.5);
             (
                 world.transform_point3(ray.o.as_dvec3()),

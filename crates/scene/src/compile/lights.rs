@@ -44,7 +44,7 @@ impl Compiler<'_> {
             None => self.render_from_world * desc.world_from_light.start,
         };
         let placement = Transform::from_f64(at_rest)?;
-        let place = |p: Point3| at_rest.transform_point3(p.as_dvec3()).as_vec3();
+        let place = |p: Point3| at_rest.transform_point3(p.as_dvec3()).as_vec3().into();
         Some(match &desc.kind {
             LightKind::Point { intensity, power, from } => {
                 let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);

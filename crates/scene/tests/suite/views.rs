@@ -22,7 +22,7 @@ fn seen(scene: &Scene, view: &View, film: Vec2) -> (f32, Vec3) {
     let sample = CameraSample { film, lens: Vec2::ZERO, time: 0.0, filter_weight: 1.0 };
     let ray = view.camera.generate_ray(&sample).expect("a ray").ray;
     let (surface, t) = scene.intersect(&ray, f32::INFINITY, &mut Default::default()).expect("the ball");
-    (t, scene.world_from_render().transform_point3(surface.p().as_dvec3()).as_vec3())
+    (t, scene.world_from_render().transform_point3(surface.p().as_dvec3()).as_vec3().into())
 }
 
 #[test]

@@ -111,7 +111,7 @@ impl Extent {
     }
 
     pub fn bounds(&self) -> Bounds3 {
-        Bounds3 { min: self.low.truncate(), max: self.high().truncate() }
+        Bounds3 { min: self.low.truncate().into(), max: self.high().truncate().into() }
     }
 }
 

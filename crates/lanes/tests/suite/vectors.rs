@@ -1,8 +1,7 @@
 //! Every operation gives the bits of the same operation on single floats, on every instruction set
 //! that this processor has.
 
-#![allow(unsafe_code)]
-
+use crate::numbers::{available, hash, number};
 use alhazen_lanes::*;
 
 /// All operations on three vectors: results, then bits of comparisons.
@@ -37,7 +36,7 @@ fn expected<const N: usize>([a, b, c]: [[f32; N]; 3]) -> (Vec<[f32; N]>, [u32; 2
         each(|a, b, c| (-a).mul_add(b, c)),
         each(|a, b, c| a.mul_add(b, -c)),
     ];
-    (vectors.to_vec(), [bits(f32::le), bits(f32::lt)])
+    (vectors.to_vec(), [bits(|a, b| a <= b), bits(|a, b| a < b)])
 }
 
 /// Compares all operations on vectors of `N` floats; the bound of the unfused product separately.
@@ -93,29 +92,6 @@ impl Task for Permute {
         let indices = [0, 1, 2, 3].map(|i| self.0 >> i);
         [S::permute::<0>(from, &indices).store(), S::permute::<2>(from, &indices).store()]
     }
-}
-
-/// A small hash of a counter.
-fn hash(counter: u32) -> u32 {
-    let x = counter.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995;
-    let x = (x ^ x >> 16).wrapping_mul(0x85eb_ca6b);
-    (x ^ x >> 13).wrapping_mul(0xc2b2_ae35)
-}
-
-/// Floats of all sizes, numbers near to each other, and special ones.
-fn number(counter: u32) -> f32 {
-    const SPECIAL: [f32; 10] =
-        [0.0, -0.0, 1.0, -1.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, f32::MAX, 1e-42, 1e-30];
-    let bits = hash(counter);
-    match bits % 4 {
-        0 => SPECIAL[(bits >> 8) as usize % SPECIAL.len()],
-        1 => f32::from_bits(bits),
-        _ => 1.0 + (bits >> 16) as f32 * f32::EPSILON,
-    }
-}
-
-fn available() -> impl Iterator<Item = InstructionSet> {
-    InstructionSet::ALL.into_iter().filter(|set| set.is_available())
 }
 
 #[test]

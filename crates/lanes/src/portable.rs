@@ -1,0 +1,92 @@
+//! Eight floats as an array: for processors whose instructions no other set knows. The compiler
+//! makes vectors of it where it can.
+
+use crate::pair::Pair;
+use crate::scalar::F32x4;
+
+instruction_set! {
+    Portable, is_detected [];
+    F32x4, F32x8, Pair<F32x8>;
+    F32x8;
+}
+
+vector! {
+    /// Eight floats.
+    F32x8([f32; 8]): Vector<8>;
+    splat(x) = [x; 8];
+    load(from) = from.cast::<[f32; 8]>().read();
+    store(to, a) = to.cast::<[f32; 8]>().write(a);
+    add(a, b) = each(|i| a[i] + b[i]);
+    sub(a, b) = each(|i| a[i] - b[i]);
+    mul(a, b) = each(|i| a[i] * b[i]);
+    div(a, b) = each(|i| a[i] / b[i]);
+    abs(a) = each(|i| a[i].abs());
+    min(a, b) = each(|i| if a[i] < b[i] { a[i] } else { b[i] });
+    max(a, b) = each(|i| if a[i] > b[i] { a[i] } else { b[i] });
+    mul_add(a, b, c) = each(|i| a[i].mul_add(b[i], c[i]));
+    neg_mul_add(a, b, c) = each(|i| (-a[i]).mul_add(b[i], c[i]));
+    mul_sub(a, b, c) = each(|i| a[i].mul_add(b[i], -c[i]));
+    relaxed_mul_sub(a, b, c) = each(|i| a[i] * b[i] - c[i]);
+    -> u32:
+    le(a, b) = (0..8).map(|i| u32::from(a[i] <= b[i]) << i).sum();
+    lt(a, b) = (0..8).map(|i| u32::from(a[i] < b[i]) << i).sum();
+}
+
+real! {
+    F32x8, U32x8, Mask8: 8;
+    select(mask, a, b) = each(|i| if mask[i] { a[i] } else { b[i] });
+    from_bits(bits) = each(|i| f32::from_bits(bits[i]));
+    sqrt(a) = each(|i| a[i].sqrt());
+    floor(a) = each(|i| a[i].floor());
+    -> Mask:
+    lt(a, b) = each(|i| a[i] < b[i]);
+    le(a, b) = each(|i| a[i] <= b[i]);
+    eq(a, b) = each(|i| a[i] == b[i]);
+    -> Int:
+    to_bits(a) = each(|i| a[i].to_bits());
+    to_int(a) = each(|i| a[i] as i32 as u32);
+}
+
+int! {
+    /// Eight integers.
+    U32x8([u32; 8]), F32x8, Mask8: 8;
+    splat(x) = [x; 8];
+    load(from) = from.cast::<[u32; 8]>().read();
+    store(to, a) = to.cast::<[u32; 8]>().write(a);
+    select(mask, a, b) = each(|i| if mask[i] { a[i] } else { b[i] });
+    shl(a, bits) = each(|i| a[i] << bits);
+    shr(a, bits) = each(|i| a[i] >> bits);
+    to_real(a) = each(|i| a[i] as i32 as f32);
+    wrapping_add(a, b) = each(|i| a[i].wrapping_add(b[i]));
+    wrapping_sub(a, b) = each(|i| a[i].wrapping_sub(b[i]));
+    wrapping_mul(a, b) = each(|i| a[i].wrapping_mul(b[i]));
+    -> Mask:
+    eq(a, b) = each(|i| a[i] == b[i]);
+    lt(a, b) = each(|i| a[i] < b[i]);
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = each(|i| a[i] & b[i]);
+    BitOr::bitor(a, b) = each(|i| a[i] | b[i]);
+    BitXor::bitxor(a, b) = each(|i| a[i] ^ b[i]);
+}
+
+mask! {
+    /// Eight bools.
+    Mask8([bool; 8]): 8;
+    splat(x) = [x; 8];
+    from_bits(bits) = bools(bits);
+    bits(a) = (0..8).map(|i| u32::from(a[i]) << i).sum();
+    -> Self, as operators:
+    BitAnd::bitand(a, b) = each(|i| a[i] & b[i]);
+    BitOr::bitor(a, b) = each(|i| a[i] | b[i]);
+    BitXor::bitxor(a, b) = each(|i| a[i] ^ b[i]);
+}
+
+/// What a function gives for each lane.
+#[inline(always)]
+fn each<T>(lane: impl Fn(usize) -> T) -> [T; 8] {
+    std::array::from_fn(lane)
+}
+
+fn bools(bits: u32) -> [bool; 8] {
+    each(|i| bits >> i & 1 == 1)
+}

@@ -1,0 +1,491 @@
+//! Macros that implement an instruction set from a table of intrinsics.
+
+#[cfg(target_arch = "x86_64")]
+use crate::{Int, Mask};
+
+/// Defines a vector as a newtype over a register. Each operation is an expression of registers;
+/// `load` and `store` have pointers.
+macro_rules! vector {
+    (
+        $(#[$doc:meta])* $name:ident($register:ty): Vector<$n:literal>;
+        splat($x:ident) = $splat:expr;
+        load($from:ident) = $load:expr;
+        store($to:ident, $value:ident) = $store:expr;
+        $($operation:ident($a:ident $(, $b:ident)*) = $result:expr;)*
+        -> u32:
+        $($comparison:ident($left:ident, $right:ident) = $bits:expr;)*
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub struct $name($register);
+
+        // SAFETY, for every block: the caller of the constructor promised the instruction set, and
+        // a vector is the proof of it. Arrays have as many floats as are read or written.
+        #[allow(unused_unsafe)]
+        impl $crate::simd::Vector<$n> for $name {
+            #[inline(always)]
+            unsafe fn splat($x: f32) -> Self {
+                unsafe { Self($splat) }
+            }
+
+            #[inline(always)]
+            unsafe fn load(from: &[f32; $n]) -> Self {
+                let $from = from.as_ptr();
+                unsafe { Self($load) }
+            }
+
+            #[inline(always)]
+            fn store(self) -> [f32; $n] {
+                let mut to = [0.0; $n];
+                let ($to, $value) = (to.as_mut_ptr(), self.0);
+                unsafe { $store };
+                to
+            }
+
+            $(
+                #[inline(always)]
+                fn $operation(self $(, $b: Self)*) -> Self {
+                    let $a = self.0;
+                    $(let $b = $b.0;)*
+                    unsafe { Self($result) }
+                }
+            )*
+
+            $(
+                #[inline(always)]
+                fn $comparison(self, $right: Self) -> u32 {
+                    let ($left, $right) = (self.0, $right.0);
+                    unsafe { $bits }
+                }
+            )*
+        }
+    };
+}
+
+/// Defines an instruction set: its processor features, which are detected and enabled alike, and
+/// its vectors.
+macro_rules! instruction_set {
+    (
+        $name:ident, $is_detected:ident [$($feature:tt)*];
+        $f32x4:ty, $f32x8:ty, $f32x16:ty;
+        $real:ty;
+        $($item:item)*
+    ) => {
+        #[doc = concat!("See [`crate::InstructionSet::", stringify!($name), "`].")]
+        #[derive(Clone, Copy)]
+        pub struct $name;
+
+        impl $crate::simd::Simd for $name {
+            type F32x4 = $f32x4;
+            type F32x8 = $f32x8;
+            type F32x16 = $f32x16;
+            type Real = $real;
+            $($item)*
+        }
+
+        /// Whether the processor has the instruction set.
+        pub fn is_available() -> bool {
+            true $(&& $is_detected!($feature))*
+        }
+
+        /// Runs a task.
+        ///
+        /// # Safety
+        /// The processor must have the instruction set.
+        $(#[target_feature(enable = $feature)])*
+        pub unsafe fn run<T: $crate::simd::Task>(task: T) -> T::Output {
+            // SAFETY: the caller promises the instruction set.
+            unsafe { task.run::<$name>() }
+        }
+    };
+}
+
+/// Makes a vector of `vector!` a [`Real`](crate::Real), which has the arithmetic of that table.
+/// Masks and integers are those that `mask!` and `int!` define. `gather` has a pointer, and indices
+/// that lie inside of the table.
+macro_rules! real {
+    (
+        $real:ident, $int:ident, $mask:ident: $n:literal;
+        select($which:ident, $x:ident, $y:ident) = $select:expr;
+        from_bits($bits:ident) = $from_bits:expr;
+        $($operation:ident($a:ident) = $result:expr;)*
+        -> Mask: $($comparison:ident($left:ident, $right:ident) = $compared:expr;)*
+        -> Int: $($conversion:ident($from:ident) = $converted:expr;)*
+        $(-> Self, if there is an instruction: gather($table:ident, $indices:ident) = $gather:expr;)?
+    ) => {
+        #[allow(unused_unsafe)]
+        impl $crate::Real for $real {
+            const LANES: usize = $n;
+
+            type Mask = $mask;
+            type Int = $int;
+
+            #[inline(always)]
+            fn splat(x: f32) -> Self {
+                // SAFETY: as for every block: see the head of the crate.
+                unsafe { $crate::Vector::splat(x) }
+            }
+
+            #[inline(always)]
+            fn load(from: &[f32]) -> Self {
+                unsafe { $crate::Vector::load($crate::tables::lanes(from)) }
+            }
+
+            #[inline(always)]
+            fn store(self, to: &mut [f32]) {
+                *$crate::tables::lanes_mut(to) = $crate::Vector::<$n>::store(self);
+            }
+
+            #[inline(always)]
+            fn select($which: $mask, a: Self, b: Self) -> Self {
+                let ($which, $x, $y) = ($which.0, a.0, b.0);
+                unsafe { Self($select) }
+            }
+
+            #[inline(always)]
+            fn from_bits(bits: $int) -> Self {
+                let $bits = bits.0;
+                unsafe { Self($from_bits) }
+            }
+
+            $(
+                #[inline(always)]
+                fn gather(table: &[f32], indices: $int) -> Self {
+                    if !$crate::tables::are_inside(table.len(), indices) {
+                        let indices = $crate::Int::to_array(indices);
+                        return $crate::Real::load(&$crate::tables::gather_each::<_, $n>(table, &indices));
+                    }
+                    let ($table, $indices) = (table.as_ptr(), indices.0);
+                    unsafe { Self($gather) }
+                }
+            )?
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $crate::Vector::abs(self)
+            }
+
+            #[inline(always)]
+            fn min(self, b: Self) -> Self {
+                $crate::Vector::min(self, b)
+            }
+
+            #[inline(always)]
+            fn max(self, b: Self) -> Self {
+                $crate::Vector::max(self, b)
+            }
+
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                $crate::Vector::mul_add(self, b, c)
+            }
+
+            $(
+                #[inline(always)]
+                fn $operation(self) -> Self {
+                    let $a = self.0;
+                    unsafe { Self($result) }
+                }
+            )*
+
+            $(
+                #[inline(always)]
+                fn $comparison(self, b: Self) -> $mask {
+                    let ($left, $right) = (self.0, b.0);
+                    unsafe { $mask($compared) }
+                }
+            )*
+
+            $(
+                #[inline(always)]
+                fn $conversion(self) -> $int {
+                    let $from = self.0;
+                    unsafe { $int($converted) }
+                }
+            )*
+        }
+
+        arithmetic! { $real: Add::add, AddAssign::add_assign }
+        arithmetic! { $real: Sub::sub, SubAssign::sub_assign }
+        arithmetic! { $real: Mul::mul, MulAssign::mul_assign }
+        arithmetic! { $real: Div::div, DivAssign::div_assign }
+
+        impl std::ops::Neg for $real {
+            type Output = Self;
+
+            #[inline(always)]
+            fn neg(self) -> Self {
+                let bits = $crate::Real::to_bits(self) ^ <$int as $crate::Int>::splat(1 << 31);
+                $crate::Real::from_bits(bits)
+            }
+        }
+
+        impl Default for $real {
+            #[inline(always)]
+            fn default() -> Self {
+                $crate::Real::splat(0.0)
+            }
+        }
+
+        impl std::fmt::Debug for $real {
+            fn fmt(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
+                $crate::Vector::<$n>::store(*self).fmt(to)
+            }
+        }
+    };
+}
+
+/// An operator of floats, which is the operation of the vector.
+macro_rules! arithmetic {
+    ($real:ident: $operator:ident::$operation:ident, $assign:ident::$assignment:ident) => {
+        impl std::ops::$operator for $real {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $operation(self, b: Self) -> Self {
+                $crate::Vector::$operation(self, b)
+            }
+        }
+
+        impl std::ops::$assign for $real {
+            #[inline(always)]
+            fn $assignment(&mut self, b: Self) {
+                *self = $crate::Vector::$operation(*self, b);
+            }
+        }
+    };
+}
+
+/// Defines integers for the lanes of a `real!` as a newtype over a register. `gather` has a
+/// pointer, and indices that lie inside of the table.
+macro_rules! int {
+    (
+        $(#[$doc:meta])* $int:ident($register:ty), $real:ident, $mask:ident: $n:literal;
+        splat($x:ident) = $splat:expr;
+        load($from:ident) = $load:expr;
+        store($to:ident, $value:ident) = $store:expr;
+        select($which:ident, $sx:ident, $sy:ident) = $select:expr;
+        shl($left:ident, $shl_bits:ident) = $shl:expr;
+        shr($right:ident, $shr_bits:ident) = $shr:expr;
+        to_real($signed:ident) = $to_real:expr;
+        $($operation:ident($a:ident, $b:ident) = $result:expr;)*
+        -> Mask: $($comparison:ident($cx:ident, $cy:ident) = $compared:expr;)*
+        -> Self, as operators: $($operator:ident::$bitwise:ident($bx:ident, $by:ident) = $bits:expr;)*
+        $(
+            -> Self, if there is an instruction:
+            gather($table:ident, $indices:ident) = $gather:expr;
+            compress($all:ident, $kept:ident) = $compress:expr;
+        )?
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub struct $int($register);
+
+        #[allow(unused_unsafe)]
+        impl $crate::Int for $int {
+            type Real = $real;
+            type Mask = $mask;
+
+            #[inline(always)]
+            fn splat(x: u32) -> Self {
+                let $x = x as _;
+                // SAFETY: as for every block: see the head of the crate.
+                unsafe { Self($splat) }
+            }
+
+            #[inline(always)]
+            fn load(from: &[u32]) -> Self {
+                let $from = $crate::tables::lanes::<_, $n>(from).as_ptr();
+                unsafe { Self($load) }
+            }
+
+            #[inline(always)]
+            fn store(self, to: &mut [u32]) {
+                let ($to, $value) = ($crate::tables::lanes_mut::<_, $n>(to).as_mut_ptr(), self.0);
+                unsafe { $store }
+            }
+
+            #[inline(always)]
+            fn select($which: $mask, a: Self, b: Self) -> Self {
+                let ($which, $sx, $sy) = ($which.0, a.0, b.0);
+                unsafe { Self($select) }
+            }
+
+            $(
+                #[inline(always)]
+                fn gather(table: &[u32], indices: Self) -> Self {
+                    if !$crate::tables::are_inside(table.len(), indices) {
+                        let indices = $crate::Int::to_array(indices);
+                        return $crate::Int::load(&$crate::tables::gather_each::<_, $n>(table, &indices));
+                    }
+                    let ($table, $indices) = (table.as_ptr(), indices.0);
+                    unsafe { Self($gather) }
+                }
+
+                #[inline(always)]
+                fn compress(self, mask: $mask, to: &mut [u32]) -> usize {
+                    let ($all, $kept) = (self.0, mask.0);
+                    $crate::Int::store(unsafe { Self($compress) }, to);
+                    $crate::Mask::bits(mask).count_ones() as usize
+                }
+            )?
+
+            #[inline(always)]
+            fn shl(self, bits: u32) -> Self {
+                debug_assert!(bits < 32);
+                let ($left, $shl_bits) = (self.0, bits as i32);
+                unsafe { Self($shl) }
+            }
+
+            #[inline(always)]
+            fn shr(self, bits: u32) -> Self {
+                debug_assert!(bits < 32);
+                let ($right, $shr_bits) = (self.0, bits as i32);
+                unsafe { Self($shr) }
+            }
+
+            #[inline(always)]
+            fn to_real(self) -> $real {
+                let $signed = self.0;
+                unsafe { $real($to_real) }
+            }
+
+            $(
+                #[inline(always)]
+                fn $operation(self, b: Self) -> Self {
+                    let ($a, $b) = (self.0, b.0);
+                    unsafe { Self($result) }
+                }
+            )*
+
+            $(
+                #[inline(always)]
+                fn $comparison(self, b: Self) -> $mask {
+                    let ($cx, $cy) = (self.0, b.0);
+                    unsafe { $mask($compared) }
+                }
+            )*
+        }
+
+        bitwise! { $int, $crate::Int::splat(u32::MAX);
+            $($operator::$bitwise($bx, $by) = $bits;)* }
+
+        impl Default for $int {
+            #[inline(always)]
+            fn default() -> Self {
+                $crate::Int::splat(0)
+            }
+        }
+
+        impl std::fmt::Debug for $int {
+            fn fmt(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
+                $crate::Int::to_array(*self)[..$n].fmt(to)
+            }
+        }
+    };
+}
+
+/// Defines bools for the lanes of a `real!` as a newtype over a register.
+macro_rules! mask {
+    (
+        $(#[$doc:meta])* $mask:ident($register:ty): $n:literal;
+        splat($x:ident) = $splat:expr;
+        from_bits($set:ident) = $from_bits:expr;
+        bits($a:ident) = $bits:expr;
+        -> Self, as operators: $($operator:ident::$bitwise:ident($bx:ident, $by:ident) = $result:expr;)*
+    ) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub struct $mask($register);
+
+        #[allow(unused_unsafe)]
+        impl $crate::Mask for $mask {
+            #[inline(always)]
+            fn splat($x: bool) -> Self {
+                // SAFETY: as for every block: see the head of the crate.
+                unsafe { Self($splat) }
+            }
+
+            #[inline(always)]
+            fn from_bits(bits: u32) -> Self {
+                let $set = bits as _;
+                unsafe { Self($from_bits) }
+            }
+
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                let $a = self.0;
+                unsafe { $bits }
+            }
+        }
+
+        bitwise! { $mask, $crate::Mask::splat(true);
+            $($operator::$bitwise($bx, $by) = $result;)* }
+
+        impl std::fmt::Debug for $mask {
+            fn fmt(&self, to: &mut std::fmt::Formatter) -> std::fmt::Result {
+                let bits = $crate::Mask::bits(*self);
+                std::array::from_fn::<bool, $n, _>(|lane| bits >> lane & 1 == 1).fmt(to)
+            }
+        }
+    };
+}
+
+/// Operators of a newtype over a register; the complement differs from it in all bits.
+macro_rules! bitwise {
+    (
+        $type:ident, $all:expr;
+        $($operator:ident::$operation:ident($a:ident, $b:ident) = $result:expr;)*
+    ) => {
+        $(
+            #[allow(unused_unsafe)]
+            impl std::ops::$operator for $type {
+                type Output = Self;
+
+                #[inline(always)]
+                fn $operation(self, b: Self) -> Self {
+                    let ($a, $b) = (self.0, b.0);
+                    // SAFETY: see the head of the crate.
+                    unsafe { Self($result) }
+                }
+            }
+        )*
+
+        impl std::ops::Not for $type {
+            type Output = Self;
+
+            #[inline(always)]
+            fn not(self) -> Self {
+                self ^ $all
+            }
+        }
+    };
+}
+
+/// The first `N` elements of a slice.
+#[inline(always)]
+pub fn lanes<T, const N: usize>(from: &[T]) -> &[T; N] {
+    from.first_chunk().expect("an element for each lane")
+}
+
+/// The first `N` elements of a slice.
+#[inline(always)]
+pub fn lanes_mut<T, const N: usize>(to: &mut [T]) -> &mut [T; N] {
+    to.first_chunk_mut().expect("an element for each lane")
+}
+
+/// Whether all indices lie in a table of that length, and below 2³¹: the instructions take them as
+/// signed integers.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub fn are_inside(length: usize, indices: impl Int) -> bool {
+    indices.lt(Int::splat(length.min(1 << 31) as u32)).all()
+}
+
+/// The elements at the first `N` indices, read one by one.
+#[cfg(target_arch = "x86_64")]
+#[cold]
+#[inline(never)]
+pub fn gather_each<T: Copy, const N: usize>(table: &[T], indices: &[u32]) -> [T; N] {
+    std::array::from_fn(|lane| table[indices[lane] as usize])
+}

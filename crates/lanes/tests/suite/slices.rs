@@ -1,0 +1,215 @@
+//! Slices and tables that numbers are read from and written to, and masks as bits.
+
+use crate::numbers::{available, hash};
+use alhazen_lanes::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The numbers of a table at random indices, and those of the table's bits.
+struct Gather<'a> {
+    reals: &'a [f32],
+    ints: &'a [u32],
+    indices: [u32; MAX_LANES],
+}
+
+impl Kernel for Gather<'_> {
+    type Output = Vec<(f32, u32)>;
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let indices = R::Int::load(&self.indices);
+        let reals = R::gather(self.reals, indices).to_array();
+        let ints = R::Int::gather(self.ints, indices).to_array();
+        (0..R::LANES).map(|lane| (reals[lane], ints[lane])).collect()
+    }
+}
+
+#[test]
+fn tables_are_read_at_indices() {
+    for round in 0..1000 {
+        let length = 1 + hash(round) % 100;
+        let ints: Vec<u32> = (0..length).map(hash).collect();
+        let reals: Vec<f32> = (0..length).map(|i| hash(i) as f32).collect();
+        let indices = std::array::from_fn(|lane| hash(16 * round + lane as u32) % length);
+        for set in available() {
+            let found = set.dispatch(Gather { reals: &reals, ints: &ints, indices });
+            for (lane, (real, int)) in found.into_iter().enumerate() {
+                let index = indices[lane] as usize;
+                assert_eq!((real, int), (reals[index], ints[index]), "{set:?}: {index} of {length}");
+            }
+        }
+    }
+}
+
+#[test]
+fn indices_outside_of_a_table_panic() {
+    for length in [0, 1, 5] {
+        let (reals, ints) = (vec![1.0; length], vec![1; length]);
+        for wrong in [length as u32, 7, 1 << 30, (1 << 31) - 1, 1 << 31, u32::MAX - 1, u32::MAX] {
+            for set in available() {
+                for lane in 0..LaneCount::of(set) {
+                    let mut indices = [0; MAX_LANES];
+                    indices[lane] = wrong;
+                    for (reals, ints) in [(&reals[..], &[1][..]), (&[1.0], &ints)] {
+                        let gather = || set.dispatch(Gather { reals, ints, indices });
+                        let is_panic = catch_unwind(AssertUnwindSafe(gather)).is_err();
+                        assert!(is_panic, "{set:?}: {wrong} in lane {lane}, table of {length}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "takes 16 GiB of address space"]
+fn tables_may_have_more_numbers_than_signed_indices_reach() {
+    let length = (1 << 31) + 100;
+    let (mut reals, mut ints) = (vec![0.0; length], vec![0; length]);
+    let indices = std::array::from_fn(|lane| [0, 1 << 20, (1 << 31) + 7][lane % 3]);
+    for &index in &indices {
+        (reals[index as usize], ints[index as usize]) = (index as f32, index);
+    }
+    for set in available() {
+        for (lane, found) in
+            set.dispatch(Gather { reals: &reals, ints: &ints, indices }).into_iter().enumerate()
+        {
+            assert_eq!(found, (indices[lane] as f32, indices[lane]), "{set:?}");
+        }
+    }
+}
+
+struct LaneCount;
+
+impl LaneCount {
+    fn of(set: InstructionSet) -> usize {
+        set.dispatch(Self)
+    }
+}
+
+impl Kernel for LaneCount {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> usize {
+        R::LANES
+    }
+}
+
+/// The lanes of a mask of integers, and how many.
+struct Compress([u32; MAX_LANES], u32);
+
+const UNTOUCHED: u32 = 0xdead_beef;
+
+impl Kernel for Compress {
+    type Output = ([u32; MAX_LANES + 1], usize);
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let mut to = [UNTOUCHED; MAX_LANES + 1];
+        let count = R::Int::load(&self.0).compress(Mask::from_bits(self.1), &mut to);
+        (to, count)
+    }
+}
+
+#[test]
+fn the_lanes_of_a_mask_are_written_one_after_another() {
+    for set in available() {
+        let lanes = LaneCount::of(set);
+        for bits in 0..1 << lanes {
+            let integers = std::array::from_fn(|lane| hash(16 * bits + lane as u32));
+            let (to, count) = set.dispatch(Compress(integers, bits));
+            let kept: Vec<u32> = (0..lanes).filter(|i| bits >> i & 1 == 1).map(|i| integers[i]).collect();
+            assert_eq!(to[..count], kept, "{set:?}: {bits:b}");
+            assert!(to[lanes..].iter().all(|&x| x == UNTOUCHED), "{set:?}: {bits:b}");
+        }
+    }
+}
+
+/// What a mask says of its bits: them, and whether any or all are set.
+struct Bits(u32);
+
+impl Kernel for Bits {
+    type Output = [(u32, bool, bool); 4];
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let mask = R::Mask::from_bits(self.0);
+        [mask, !mask, R::Mask::splat(true), R::Mask::splat(false)]
+            .map(|mask| (mask.bits(), mask.any(), mask.all()))
+    }
+}
+
+#[test]
+fn masks_have_a_bit_for_each_lane() {
+    for set in available() {
+        let all = u32::MAX >> (32 - LaneCount::of(set));
+        for bits in (0..=all).chain([u32::MAX, !all, 1 << 31]) {
+            let expected = [bits & all, !bits & all, all, 0].map(|bits| (bits, bits != 0, bits == all));
+            assert_eq!(set.dispatch(Bits(bits)), expected, "{set:?}: {bits:b}");
+        }
+    }
+}
+
+/// Reads and writes slices of one number less than there are lanes.
+#[derive(Clone, Copy)]
+enum Short {
+    LoadReals,
+    LoadInts,
+    StoreReals,
+    StoreInts,
+    Compress,
+}
+
+impl Kernel for Short {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let (mut reals, mut ints) = ([0.0; MAX_LANES], [0; MAX_LANES]);
+        let (reals, ints) = (&mut reals[..R::LANES - 1], &mut ints[..R::LANES - 1]);
+        match self {
+            Self::LoadReals => drop(R::load(reals)),
+            Self::LoadInts => drop(R::Int::load(ints)),
+            Self::StoreReals => R::one().store(reals),
+            Self::StoreInts => R::Int::default().store(ints),
+            Self::Compress => drop(R::Int::default().compress(Mask::splat(false), ints)),
+        }
+    }
+}
+
+#[test]
+fn slices_shorter_than_the_lanes_panic() {
+    use Short::*;
+    for set in available() {
+        for short in [LoadReals, LoadInts, StoreReals, StoreInts, Compress] {
+            assert!(catch_unwind(|| set.dispatch(short)).is_err(), "{set:?}");
+        }
+    }
+}
+
+/// How numbers are printed.
+struct Print;
+
+impl Kernel for Print {
+    type Output = [String; 3];
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let (real, int) = (R::splat(1.5), R::Int::from_fn(|lane| lane as u32));
+        [format!("{real:?}"), format!("{int:?}"), format!("{:?}", int.eq(R::Int::splat(1)))]
+    }
+}
+
+#[test]
+fn numbers_are_printed_lane_by_lane() {
+    for set in available().filter(|&set| set != InstructionSet::Scalar) {
+        let lanes = LaneCount::of(set) as u32;
+        let integers = (0..lanes).collect::<Vec<u32>>();
+        let bools = integers.iter().map(|&lane| lane == 1).collect::<Vec<bool>>();
+        let reals = vec![1.5; lanes as usize];
+        assert_eq!(
+            set.dispatch(Print),
+            [format!("{reals:?}"), format!("{integers:?}"), format!("{bools:?}")]
+        );
+    }
+}
