@@ -12,6 +12,7 @@
 mod bvh;
 mod curve;
 mod placement;
+mod planar;
 mod shape;
 mod sphere_set;
 mod surface;
@@ -22,6 +23,7 @@ mod world;
 pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use lanes::InstructionSet;
+pub use planar::{Planar, PlanarLanes, PlanarPoints};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
     MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,

@@ -276,6 +276,12 @@ pub struct SampledWavelengths<R = f32> {
 }
 
 impl<R: Real> SampledWavelengths<R> {
+    /// These wavelengths, with the density of each.
+    #[inline(always)]
+    pub fn new(lambda: [R; N], pdf: [R; N]) -> Self {
+        Self { lambda, pdf }
+    }
+
     /// Wavelengths sampled uniformly over the range, from `u` in [0, 1).
     #[inline(always)]
     pub fn sample_uniform(u: R) -> Self {

@@ -12,6 +12,7 @@
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
+use crate::planar::Planar;
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{
     Bounds3, DVec3, DirectionCone, Normal3, Point3, Point3Error, Ray, Transform, Vec2, Vec3, face_forward,
@@ -181,6 +182,15 @@ impl BilinearPatch {
             });
         }
         surface
+    }
+
+    /// As a flat primitive, if it is a parallelogram without normals and texture coordinates.
+    #[inline]
+    pub(crate) fn planar(&self) -> Option<Planar> {
+        let (Some(flat), None, None) = (&self.flat, &self.uv, &self.n) else { return None };
+        let sides = [flat.right.as_vec3().into(), flat.up.as_vec3().into()];
+        let (corner, dpdu) = (self.p[0], sides[0]);
+        Some(Planar { corner, sides, normals: None, dpdu, flips: self.flips })
     }
 
     pub(super) fn area(&self) -> f32 {

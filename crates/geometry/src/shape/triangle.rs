@@ -8,6 +8,7 @@ use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
 use crate::watertight::Sheared;
+use crate::planar::{Planar, tangent};
 use math::{
     Bounds3, DVec3, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, coordinate_system, face_forward,
 };
@@ -71,6 +72,18 @@ impl Triangle {
             surface.set_shading(Shading { n: ns, dpdu: ss, dpdv: ts, dndu, dndv });
         }
         surface
+    }
+
+    /// As a flat primitive; `None` with shading tangents, or without area.
+    #[inline]
+    pub(crate) fn planar(&self) -> Option<Planar> {
+        let sides = self.sides(&self.p);
+        let n = sides[0].cross(sides[1]);
+        if self.s.is_some() || n.length_squared() < f32::MIN_POSITIVE {
+            return None;
+        }
+        let dpdu = tangent(sides, &self.uv, n);
+        Some(Planar { corner: self.p[0], sides, normals: self.n, dpdu, flips: self.flips })
     }
 
     pub(super) fn area(&self) -> f32 {

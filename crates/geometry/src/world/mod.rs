@@ -23,7 +23,8 @@ mod triangle_block;
 mod triangle_numbering;
 mod triangles;
 
-use crate::shape::ShapeHit;
+use crate::planar::Planar;
+use crate::shape::{Shape, ShapeHit};
 use crate::surface::SurfacePoint;
 use group::Group;
 use lanes::InstructionSet;
@@ -116,6 +117,23 @@ impl World {
     /// The surface at a hit of `ray`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         self.surface_within(hit.instance.ids(), ray, hit)
+    }
+
+    /// The flat primitive of a hit: a triangle, or a parallelogram without texture coordinates, of
+    /// the top group.
+    #[inline]
+    pub fn planar(&self, hit: &Hit) -> Option<Planar> {
+        if !hit.instance.is_top() {
+            return None;
+        }
+        match self.geometry(hit.geometry) {
+            Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).planar(),
+            Geometry::Shapes(shapes) => match &shapes[hit.primitive as usize] {
+                Shape::BilinearPatch(patch) => patch.planar(),
+                _ => None,
+            },
+            _ => None,
+        }
     }
 
     fn surface_within(&self, path: &[InstanceId], ray: &Ray, hit: &Hit) -> SurfacePoint {

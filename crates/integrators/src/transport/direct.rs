@@ -11,7 +11,7 @@ use description::LightSamplerDesc;
 use math::{Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
 use sampling::Sampler;
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
-use scene::light::{LightId, LightLiSample, LightSampleContext};
+use scene::light::{LightId, LightLiSample, LightRef, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -43,6 +43,19 @@ impl DirectLighting {
     /// For no lights.
     pub fn none() -> Self {
         Self { lights: LightSampler::default(), interfaces: Interfaces::Stop }
+    }
+
+    /// The choice of lights.
+    pub fn lights(&self) -> &LightSampler {
+        &self.lights
+    }
+
+    /// Whether interfaces occlude a light.
+    pub fn interfaces(&self, light: LightRef) -> Interfaces {
+        match self.interfaces {
+            Interfaces::Stop => Interfaces::before(light),
+            Interfaces::Pass => Interfaces::Pass,
+        }
     }
 
     /// The MIS weight of light from `light` that a ray along `wi` hits; 1 without an `origin`,
@@ -120,12 +133,8 @@ impl DirectLighting {
             let p_b = bsdf.pdf(surface.surface.wo, sample.wi, TransportMode::Radiance, Directions::All);
             l * (power_heuristic(p_l, p_b) / p_l)
         };
-        let interfaces = match self.interfaces {
-            Interfaces::Stop => Interfaces::before(light),
-            Interfaces::Pass => Interfaces::Pass,
-        };
         let (ray, t_max) = sample.shadow_ray(&surface.surface);
-        Some(Connection { ray, t_max, interfaces, l })
+        Some(Connection { ray, t_max, interfaces: self.interfaces(light), l })
     }
 }
 

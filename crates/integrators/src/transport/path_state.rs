@@ -21,7 +21,7 @@ pub(crate) struct PathState {
     pub origin: Option<Origin>,
     /// The product of η² over the refractions: β times this is without the scaling of radiance by
     /// refraction.
-    eta_scale: f32,
+    pub eta_scale: f32,
 }
 
 /// The vertex that a ray starts at, as a context of light sampling, and the density of the ray's

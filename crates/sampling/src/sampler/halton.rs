@@ -43,6 +43,11 @@ impl Halton {
         self.dimension = dimension as usize;
     }
 
+    #[inline]
+    pub(super) fn dimension(&self) -> u32 {
+        self.dimension as u32
+    }
+
     pub(super) fn get_1d(&mut self) -> f32 {
         let dimension = self.next_dimension(1);
         self.coordinate(dimension)

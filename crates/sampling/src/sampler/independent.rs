@@ -32,6 +32,11 @@ impl Independent {
         self.address = Address::new(pixel, index, dimension);
     }
 
+    #[inline]
+    pub(super) fn dimension(&self) -> u32 {
+        self.address.dimension
+    }
+
     pub(super) fn get_1d(&mut self) -> f32 {
         let address = self.address.advance(1);
         self.at_1d(&address)

@@ -80,6 +80,12 @@ impl Sampler {
         each_sampler!(self, sampler => sampler.start_pixel_sample(pixel, index, dimension));
     }
 
+    /// The dimension of the next coordinate.
+    #[inline]
+    pub fn dimension(&self) -> u32 {
+        each_sampler!(self, sampler => sampler.dimension())
+    }
+
     /// The next coordinate.
     #[inline]
     pub fn get_1d(&mut self) -> f32 {

@@ -35,6 +35,11 @@ impl PaddedSobol {
         (self.pixel, self.index, self.dimension) = (pixel, index, dimension);
     }
 
+    #[inline]
+    pub(super) fn dimension(&self) -> u32 {
+        self.dimension
+    }
+
     pub(super) fn get_1d(&mut self) -> f32 {
         let (index, hash) = self.next_index(1);
         self.randomize.sobol(index, 0, (hash >> 32) as u32)

@@ -87,6 +87,11 @@ impl PrimarySample {
         self.propose(true);
     }
 
+    #[inline]
+    pub(super) fn dimension(&self) -> u32 {
+        self.proposed.len() as u32
+    }
+
     pub(super) fn get_1d(&mut self) -> f32 {
         let x = match self.origin() {
             None => self.rng.uniform_f32(),

@@ -62,6 +62,11 @@ impl Sobol {
         self.dimension = (dimension as usize).max(2);
     }
 
+    #[inline]
+    pub(super) fn dimension(&self) -> u32 {
+        self.dimension as u32
+    }
+
     pub(super) fn get_1d(&mut self) -> f32 {
         let dimension = self.next_dimension(1);
         self.coordinate(dimension)

@@ -36,6 +36,11 @@ impl Stratified {
         self.rng = pixel_rng(pixel, index, dimension, self.seed);
     }
 
+    #[inline]
+    pub(super) fn dimension(&self) -> u32 {
+        self.dimension
+    }
+
     pub(super) fn get_1d(&mut self) -> f32 {
         let count = self.samples_per_pixel();
         let cell = self.next_cell(1);

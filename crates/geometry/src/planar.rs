@@ -1,0 +1,93 @@
+//! Flat primitives as plain data, from which lanes compute surface points.
+
+use crate::surface::any_tangents;
+use lanes::{MAX_LANES, Real};
+use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, face_forward, gamma};
+
+/// A flat primitive, p(a, b) = corner + a·sides[0] + b·sides[1].
+#[derive(Clone, Copy, Debug)]
+pub struct Planar {
+    /// p(0, 0).
+    pub corner: Point3,
+    /// To p(1, 0) and to p(0, 1).
+    pub sides: [Vector3; 2],
+    /// Shading normals at p(0, 0), p(1, 0) and p(0, 1).
+    pub normals: Option<[Normal3; 3]>,
+    /// ∂p/∂u.
+    pub dpdu: Vector3,
+    /// Whether the outside is not on the side of sides[0] × sides[1].
+    pub flips: bool,
+}
+
+/// Points of flat primitives, one for each lane.
+#[derive(Clone, Copy, Debug)]
+pub struct PlanarPoints<R: Real> {
+    /// Position, with a bound of its error.
+    pub p: Point3Error<R>,
+    /// Unit geometric normal, on the side of the shading normal.
+    pub n: Normal3<R>,
+    /// Unit shading normal.
+    pub ns: Normal3<R>,
+    /// ∂p/∂u of the shading geometry.
+    pub dpdu: Vector3<R>,
+}
+
+/// Flat primitives, one for each lane, with the parameters of the hits.
+#[derive(Clone, Debug)]
+pub struct PlanarLanes {
+    values: [[f32; MAX_LANES]; Self::COLUMNS],
+}
+
+impl PlanarLanes {
+    /// Corner, sides, normals, ∂p/∂u, parameters, and the signs of the normals.
+    const COLUMNS: usize = 3 + 6 + 9 + 3 + 2 + 1;
+
+    /// No primitives.
+    #[inline(always)]
+    pub fn new() -> Self {
+        Self { values: [[0.0; MAX_LANES]; Self::COLUMNS] }
+    }
+
+    /// Sets a lane.
+    #[inline]
+    pub fn set(&mut self, lane: usize, planar: &Planar, uv: Vec2) {
+        let normals = planar.normals.unwrap_or([Vec3::ZERO; 3]);
+        let vectors = [&[planar.corner], &planar.sides[..], &normals[..], &[planar.dpdu]].concat();
+        let numbers = [uv.x, uv.y, if planar.flips { -1.0 } else { 1.0 }];
+        let values = vectors.iter().flat_map(|v| v.to_array()).chain(numbers);
+        self.values.iter_mut().zip(values).for_each(|(column, value)| column[lane] = value);
+    }
+
+    /// The points of the hits.
+    #[inline(always)]
+    pub fn points<R: Real>(&self) -> PlanarPoints<R> {
+        let number = |column: usize| R::load(&self.values[column]);
+        let vector = |column: usize| Vec3::new(number(column), number(column + 1), number(column + 2));
+        let (corner, sides) = (vector(0), [vector(3), vector(6)]);
+        let normals = [vector(9), vector(12), vector(15)];
+        let (dpdu, [a, b], sign) = (vector(18), [number(21), number(22)], number(23));
+        let [along, across] = [sides[0] * a, sides[1] * b];
+        let error = (corner.abs() + along.abs() + across.abs()) * R::splat(gamma(4));
+        let p = Point3Error::new(corner + along + across, error);
+        let cross = sides[0].cross(sides[1]);
+        let n = cross.normalize() * sign;
+        let mixed = normals[0] * (R::one() - a - b) + normals[1] * a + normals[2] * b;
+        let (ns, is_smooth) = mixed.normalize_masked();
+        let ns = Vec3::select(is_smooth, ns, n);
+        PlanarPoints { p, n: face_forward(n, ns), ns, dpdu }
+    }
+}
+
+impl Default for PlanarLanes {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// ∂p/∂u of a triangle by its texture coordinates, or any tangent.
+pub(crate) fn tangent(sides: [Vector3; 2], uv: &[Vec2; 3], n: Normal3) -> Vector3 {
+    let (du, dv) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let determinant = du.x * dv.y - dv.x * du.y;
+    let dpdu = (sides[0] * dv.y - sides[1] * du.y) / determinant;
+    if dpdu.is_finite() && dpdu.length_squared() > 0.0 { dpdu } else { any_tangents(n)[0] }
+}

@@ -1,0 +1,121 @@
+//! The state of paths as structures of arrays.
+
+use lanes::{Int, MAX_LANES, Mask, Real};
+use math::{Vec3, Vector3};
+use spectrum::{N, SampledSpectrum, SampledWavelengths};
+
+/// Rows of columns, one for each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Rows<R: Real> {
+    /// The indices of the rows; lanes that are not active repeat one of them.
+    pub indices: R::Int,
+    /// The lanes in use.
+    pub active: R::Mask,
+}
+
+impl<R: Real> Rows<R> {
+    /// The first rows of a queue, which must not be empty.
+    #[inline(always)]
+    pub fn first(queue: &[u32]) -> Self {
+        let count = queue.len().min(R::LANES);
+        let indices = if queue.len() >= R::LANES {
+            R::Int::load(queue)
+        } else {
+            R::Int::from_fn(|lane| queue[lane.min(count - 1)])
+        };
+        Self { indices, active: R::Mask::from_bits(u32::MAX >> (32 - count)) }
+    }
+
+    /// Calls `f` with lane and row of each active lane.
+    #[inline(always)]
+    pub fn each(&self, f: impl FnMut(usize, usize)) {
+        self.each_of(self.active, f);
+    }
+
+    /// Calls `f` with lane and row of each lane of a mask.
+    #[inline(always)]
+    pub fn each_of(&self, mask: R::Mask, mut f: impl FnMut(usize, usize)) {
+        let rows = self.indices.to_array();
+        let mut bits = mask.bits();
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize;
+            f(lane, rows[lane] as usize);
+            bits &= bits - 1;
+        }
+    }
+}
+
+/// A number for each path.
+pub(super) type Column = Vec<f32>;
+
+/// Numbers for each path, in several columns.
+pub(super) struct Columns<const C: usize>([Column; C]);
+
+impl<const C: usize> Default for Columns<C> {
+    fn default() -> Self {
+        Self(std::array::from_fn(|_| Vec::new()))
+    }
+}
+
+impl<const C: usize> Columns<C> {
+    /// Appends a row.
+    pub fn push(&mut self, row: [f32; C]) {
+        self.0.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+
+    /// A row.
+    pub fn row(&self, row: usize) -> [f32; C] {
+        std::array::from_fn(|c| self.0[c][row])
+    }
+
+    /// Changes a row.
+    pub fn set_row(&mut self, row: usize, values: [f32; C]) {
+        self.0.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
+    }
+
+    /// Removes all rows.
+    pub fn clear(&mut self) {
+        self.0.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Rows in lanes.
+    #[inline(always)]
+    pub fn get<R: Real>(&self, rows: Rows<R>) -> [R; C] {
+        let mut values = [R::zero(); C];
+        for (value, column) in values.iter_mut().zip(&self.0) {
+            *value = R::gather(column, rows.indices);
+        }
+        values
+    }
+
+    /// Changes the rows of a mask's lanes.
+    #[inline(always)]
+    pub fn set<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, values: [R; C]) {
+        for (column, value) in self.0.iter_mut().zip(values) {
+            let value = value.to_array();
+            rows.each_of(mask, |lane, row| column[row] = value[lane]);
+        }
+    }
+}
+
+impl Columns<3> {
+    /// Vectors in lanes.
+    #[inline(always)]
+    pub fn vector<R: Real>(&self, rows: Rows<R>) -> Vector3<R> {
+        Vec3::from_array(self.get(rows))
+    }
+}
+
+impl Columns<N> {
+    /// Spectra in lanes.
+    #[inline(always)]
+    pub fn spectrum<R: Real>(&self, rows: Rows<R>) -> SampledSpectrum<R> {
+        SampledSpectrum(self.get(rows))
+    }
+}
+
+/// Reads one lane of a vector.
+#[inline(always)]
+pub(super) fn lane_of<R: Real>(v: Vector3<R>, lane: usize) -> Vector3 {
+    v.map(|x| x.to_array()[lane])
+}
