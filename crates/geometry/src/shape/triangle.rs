@@ -6,9 +6,9 @@
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::placement::{ROUNDING, rounded};
+use crate::planar::{Planar, tangent};
 use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
 use crate::watertight::Sheared;
-use crate::planar::{Planar, tangent};
 use math::{
     Bounds3, DVec3, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, coordinate_system, face_forward,
 };
@@ -56,7 +56,8 @@ impl Triangle {
         }
         let [st_du, st_dv] = self.sides(&self.uv);
         let [p_du, p_dv] = self.sides(&self.p).map(|e| e.as_dvec3());
-        let by_texture = |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| Vec3::from(d.as_vec3())));
+        let by_texture =
+            |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| Vec3::from(d.as_vec3())));
         let tangents = by_texture([p_du, p_dv]).filter(|d| d[0].cross(d[1]).length_squared() > 0.0);
         let [dpdu, dpdv] = tangents.unwrap_or_else(|| any_tangents(n));
         let mut surface =

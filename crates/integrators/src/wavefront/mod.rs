@@ -15,17 +15,24 @@
 //!
 //! Estimates and random numbers are those of [`Path`](crate::Path), whichever paths share a batch.
 
+mod columns;
+mod diffuse;
+mod lights;
+mod materials;
 mod paths;
+mod queues;
 mod stages;
 
 use description::PathDesc;
 use film::{Film, FilmTile};
 use geometry::RayStats;
+use lanes::InstructionSet;
 use rayon::prelude::*;
 use sampling::Sampler;
 use scene::{Interfaces, Scene, View};
 
-use self::stages::Stages;
+use self::materials::LaneMaterials;
+use self::stages::{Pass, Stages};
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
 use crate::{Cancelled, Control, Integrator, PassError};
@@ -43,13 +50,27 @@ pub struct Wavefront {
     interfaces: Interfaces,
     sampler: Sampler,
     direct: DirectLighting,
+    materials: LaneMaterials,
+    instruction_set: InstructionSet,
 }
 
 impl Wavefront {
     /// Has no lights before [`prepare`](Integrator::prepare). `interfaces` says whether interfaces
     /// occlude delta lights.
     pub fn new(settings: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Self {
-        Self { settings, interfaces, sampler, direct: DirectLighting::none() }
+        Self {
+            settings,
+            interfaces,
+            sampler,
+            direct: DirectLighting::none(),
+            materials: LaneMaterials::default(),
+            instruction_set: InstructionSet::detect(),
+        }
+    }
+
+    /// With another instruction set, which gives the same picture.
+    pub fn with_instruction_set(self, instruction_set: InstructionSet) -> Self {
+        Self { instruction_set, ..self }
     }
 }
 
@@ -58,8 +79,9 @@ impl Integrator for Wavefront {
         self.sampler.samples_per_pixel()
     }
 
-    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
+        self.materials = LaneMaterials::new(scene, view);
         Ok(())
     }
 
@@ -77,7 +99,14 @@ impl Integrator for Wavefront {
         let batches = BATCHES_PER_THREAD * rayon::current_num_threads();
         let batch_tiles = tiles.len().div_ceil(batches).clamp(1, BATCH_TILES);
         let batch = |tiles: Vec<FilmTile>| {
-            let mut stages = Stages::new(&self.settings, &self.direct, &pixels, control);
+            let mut stages = Stages::new(Pass {
+                settings: &self.settings,
+                direct: &self.direct,
+                materials: &self.materials,
+                pixels: &pixels,
+                control,
+                instruction_set: self.instruction_set,
+            });
             let done = stages.run(tiles);
             control.count(&stages.stats);
             done.map(|()| stages.stats)

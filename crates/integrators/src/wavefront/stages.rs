@@ -1,62 +1,68 @@
-//! The stages.
+//! The stages of a batch.
 
 use description::PathDesc;
 use film::FilmTile;
 use geometry::{Hit, RayStats};
-use math::{Point3, Ray, Vector3};
+use lanes::InstructionSet;
+use math::Ray;
+use sampling::Sampler;
 use scattering::{Bsdf, each_bxdf};
-use scene::{Interfaces, SurfaceInteraction};
+use scene::Interfaces;
+use scene::material::MaterialId;
 use spectrum::SampledSpectrum;
 
-use super::paths::PathRecord;
+use super::diffuse::ShadeDiffuse;
+use super::materials::{LaneMaterial, LaneMaterials};
+use super::paths::Paths;
+use super::queues::{Queues, ShadowRay};
 use crate::transport::direct::{Connection, DirectLighting, light_context};
-use crate::transport::path_state::{PathState, Scattered};
-use crate::transport::pixel_samples::PixelSamples;
+use crate::transport::path_state::Scattered;
+use crate::transport::pixel_samples::{PixelSample, PixelSamples};
 use crate::{Cancelled, Control, Tracer};
 
-/// The stages of one batch, with their queues.
+/// What all batches of a pass share.
+#[derive(Clone, Copy)]
+pub(super) struct Pass<'a> {
+    pub settings: &'a PathDesc,
+    pub direct: &'a DirectLighting,
+    pub materials: &'a LaneMaterials,
+    pub pixels: &'a PixelSamples<'a>,
+    pub control: &'a Control,
+    pub instruction_set: InstructionSet,
+}
+
+/// The stages of one batch.
 pub(super) struct Stages<'a> {
-    settings: &'a PathDesc,
-    direct: &'a DirectLighting,
-    pixels: &'a PixelSamples<'a>,
-    control: &'a Control,
-    paths: Vec<PathRecord>,
+    pass: Pass<'a>,
+    sampler: Sampler,
+    paths: Paths,
+    queues: Queues,
     /// The paths under way.
     active: Vec<u32>,
     rays: Vec<(Ray, f32)>,
     hits: Vec<Option<Hit>>,
-    /// Shadow rays, apart for the two kinds of `Interfaces`.
-    shadows: [Vec<Shadow>; 2],
+    /// Hits to be shaded in lanes: material, index of the hit, path.
+    lanes: Vec<(u32, u32, u32)>,
+    turns: Vec<u32>,
+    rows: Vec<u32>,
     occluded: Vec<bool>,
     /// Counts the rays.
     pub stats: RayStats,
 }
 
-/// A shadow ray in its queue.
-struct Shadow {
-    path: u32,
-    l: SampledSpectrum,
-    ray: Ray,
-    t_max: f32,
-}
-
 impl<'a> Stages<'a> {
-    pub fn new(
-        settings: &'a PathDesc,
-        direct: &'a DirectLighting,
-        pixels: &'a PixelSamples,
-        control: &'a Control,
-    ) -> Self {
+    pub fn new(pass: Pass<'a>) -> Self {
         Self {
-            settings,
-            direct,
-            pixels,
-            control,
-            paths: Vec::new(),
+            pass,
+            sampler: pass.pixels.sampler.clone(),
+            paths: Paths::default(),
+            queues: Queues::default(),
             active: Vec::new(),
             rays: Vec::new(),
             hits: Vec::new(),
-            shadows: [Vec::new(), Vec::new()],
+            lanes: Vec::new(),
+            turns: Vec::new(),
+            rows: Vec::new(),
             occluded: Vec::new(),
             stats: RayStats::default(),
         }
@@ -66,10 +72,10 @@ impl<'a> Stages<'a> {
     pub fn run(&mut self, mut tiles: Vec<FilmTile>) -> Result<(), Cancelled> {
         self.begin(&tiles);
         while !self.active.is_empty() {
-            self.control.check()?;
+            self.pass.control.check()?;
             self.extend();
             self.shade();
-            self.control.check()?;
+            self.pass.control.check()?;
             self.connect();
         }
         self.finish(&mut tiles)
@@ -77,19 +83,17 @@ impl<'a> Stages<'a> {
 
     /// Starts a path for each pixel.
     fn begin(&mut self, tiles: &[FilmTile]) {
+        let PixelSamples { scene, view, .. } = *self.pass.pixels;
+        let with_differentials = scene.needs_footprints(view);
         for (tile, bounds) in tiles.iter().map(FilmTile::bounds).enumerate() {
             for y in bounds.min[1]..bounds.max[1] {
                 for x in bounds.min[0]..bounds.max[0] {
-                    let mut sampler = self.pixels.sampler.clone();
-                    let sample = self.pixels.begin(None, [x, y], &mut sampler);
-                    let (ray, l) =
-                        (sample.camera_ray.as_ref().map(|camera| camera.ray), SampledSpectrum::ZERO);
-                    if ray.is_some() {
+                    let sample = self.pass.pixels.begin(None, [x, y], &mut self.sampler);
+                    if sample.camera_ray.is_some() {
                         self.active.push(self.paths.len() as u32);
                     }
-                    let nowhere = Ray::new(Point3::ZERO, Vector3::Z, 0.0).into();
-                    let state = PathState::new(ray.unwrap_or(nowhere), 0);
-                    self.paths.push(PathRecord { tile, sample, sampler, state, l, rough_before: false });
+                    let dimension = self.sampler.dimension();
+                    self.paths.push(tile as u32, &sample, dimension, with_differentials);
                 }
             }
         }
@@ -98,82 +102,136 @@ impl<'a> Stages<'a> {
     /// Finds the nearest hit of each path's ray.
     fn extend(&mut self) {
         self.rays.clear();
-        let rays = self.active.iter().map(|&path| (self.paths[path as usize].state.ray.ray, f32::INFINITY));
-        self.rays.extend(rays);
+        self.rays.extend(self.active.iter().map(|&row| (self.paths.ray(row as usize), f32::INFINITY)));
         self.hits.clear();
         self.hits.resize(self.rays.len(), None);
-        self.pixels.scene.hit_batch(&self.rays, &mut self.hits, &mut self.stats);
+        self.pass.pixels.scene.hit_batch(&self.rays, &mut self.hits, &mut self.stats);
     }
 
     /// Continues each path from its hit.
     fn shade(&mut self) {
-        let mut active = std::mem::take(&mut self.active);
-        let mut turn = 0;
-        active.retain(|&path| {
-            let hit = self.hits[turn].take();
-            turn += 1;
-            self.shade_path(path, hit)
-        });
-        self.active = active;
+        let scene = self.pass.pixels.scene;
+        self.lanes.clear();
+        for (turn, (&row, hit)) in self.active.iter().zip(&self.hits).enumerate() {
+            let entry = hit.as_ref().map(|hit| &scene.geometries()[hit.geometry.0 as usize]);
+            match entry {
+                Some(entry)
+                    if self.pass.materials.is_in_lanes(entry.material)
+                        && entry.first_light.is_none()
+                        && self.paths.depth[row as usize] < self.pass.settings.max_depth =>
+                {
+                    self.lanes.push((entry.material.0, turn as u32, row));
+                }
+                _ => self.queues.scalar.push((row, turn as u32)),
+            }
+        }
+        self.lanes.sort_unstable();
+        let lanes = std::mem::take(&mut self.lanes);
+        for group in lanes.chunk_by(|a, b| a.0 == b.0) {
+            self.shade_in_lanes(MaterialId(group[0].0), group);
+        }
+        self.lanes = lanes;
+        let scalar = std::mem::take(&mut self.queues.scalar);
+        for &(row, turn) in &scalar {
+            let hit = self.hits[turn as usize].take();
+            self.shade_path(row, hit);
+        }
+        self.queues.scalar = scalar;
+        self.queues.scalar.clear();
+        self.active.clear();
+        std::mem::swap(&mut self.active, &mut self.queues.next);
     }
 
-    /// Shades one path; whether it goes on.
-    fn shade_path(&mut self, index: u32, hit: Option<Hit>) -> bool {
-        let (scene, direct) = (self.pixels.scene, self.direct);
-        let path = &mut self.paths[index as usize];
-        let lambda = &mut path.sample.lambda;
-        let Some(hit) = hit else {
-            let (ray, origin) = (&path.state.ray, path.state.origin.as_ref());
-            path.l += path.state.beta * direct.escaped(scene, ray, origin, lambda);
-            return false;
-        };
-        let mut surface: SurfaceInteraction =
-            scene.interaction(&hit, scene.world().surface(&path.state.ray.ray, &hit));
-        path.l += path.state.beta * direct.emitted(scene, &surface, path.state.origin.as_ref(), lambda);
-        let view = self.pixels.view;
-        let Some(mut bsdf) = scene.bsdf(view, &mut surface, &path.state.ray, lambda, &mut path.sampler)
-        else {
-            path.state.pass_through(&surface, hit.t);
-            return true;
-        };
-        if path.state.depth == self.settings.max_depth {
-            return false;
+    /// Shades hits of one material.
+    fn shade_in_lanes(&mut self, material: MaterialId, group: &[(u32, u32, u32)]) {
+        self.turns.clear();
+        self.rows.clear();
+        self.turns.extend(group.iter().map(|&(_, turn, _)| turn));
+        self.rows.extend(group.iter().map(|&(_, _, row)| row));
+        let Pass { direct, pixels, materials, instruction_set, .. } = self.pass;
+        match materials.get(material) {
+            Some(LaneMaterial::Diffuse { reflectance }) => instruction_set.dispatch(ShadeDiffuse {
+                pixels,
+                direct,
+                reflectance: &pixels.scene.textures().spectra()[*reflectance as usize],
+                hits: &self.hits,
+                turns: &self.turns,
+                rows: &self.rows,
+                paths: &mut self.paths,
+                queues: &mut self.queues,
+            }),
+            None => {}
         }
-        path.state.depth += 1;
-        if self.settings.regularize && path.rough_before {
+    }
+
+    /// Shades one path.
+    fn shade_path(&mut self, path: u32, hit: Option<Hit>) {
+        let Pass { settings, direct, pixels: &PixelSamples { scene, view, index, .. }, .. } = self.pass;
+        let row = path as usize;
+        let mut state = self.paths.state(row);
+        let mut lambda = self.paths.lambda(row);
+        let Some(hit) = hit else {
+            let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
+            self.paths.add_light(row, l);
+            return;
+        };
+        let mut surface = scene.interaction(&hit, scene.world().surface(&state.ray.ray, &hit));
+        if surface.area_light.is_some() {
+            let l = state.beta * direct.emitted(scene, &surface, state.origin.as_ref(), &lambda);
+            self.paths.add_light(row, l);
+        }
+        let pixel = self.paths.pixel.each_ref().map(|column| column[row] as i32);
+        self.sampler.start_pixel_sample(pixel, index, self.paths.dimension[row]);
+        let sampler = &mut self.sampler;
+        let Some(mut bsdf) = scene.bsdf(view, &mut surface, &state.ray, &mut lambda, sampler) else {
+            state.pass_through(&surface, hit.t);
+            self.paths.set_state(row, &state);
+            self.queues.next.push(path);
+            return;
+        };
+        if state.depth == settings.max_depth {
+            self.paths.set_lambda(row, &lambda);
+            return;
+        }
+        state.depth += 1;
+        if settings.regularize && self.paths.rough_before[row] {
             bsdf.regularize();
         }
         let context = light_context(&surface, bsdf.flags());
         let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
             let bsdf = Bsdf { bxdf, frame: bsdf.frame };
             if bsdf.flags().is_non_specular() {
-                let vertex = (&surface, &context);
-                let connection = direct.connect(scene, &mut path.sampler, vertex, &bsdf, lambda);
+                let connection = direct.connect(scene, sampler, (&surface, &context), &bsdf, &lambda);
                 if let Some(Connection { ray, t_max, interfaces, l }) = connection {
-                    let queue = &mut self.shadows[(interfaces == Interfaces::Pass) as usize];
-                    queue.push(Shadow { path: index, l: path.state.beta * l, ray, t_max });
+                    let queue = &mut self.queues.shadows[(interfaces == Interfaces::Pass) as usize];
+                    queue.push(ShadowRay { path, l: state.beta * l, ray, t_max });
                 }
             }
-            Scattered::sample(&surface, &bsdf, &mut path.sampler)
+            Scattered::sample(&surface, &bsdf, sampler)
         });
-        let Some(scattered) = scattered else { return false };
-        path.rough_before |= !scattered.sample.flags.is_specular();
-        path.state.scatter(&surface, context, &scattered);
-        path.state.survives(&mut path.sampler)
+        self.paths.set_lambda(row, &lambda);
+        let Some(scattered) = scattered else { return };
+        self.paths.rough_before[row] |= !scattered.sample.flags.is_specular();
+        state.scatter(&surface, context, &scattered);
+        if state.survives(sampler) {
+            self.paths.dimension[row] = sampler.dimension();
+            self.paths.set_state(row, &state);
+            self.queues.next.push(path);
+        }
     }
 
     /// Traces the shadow rays.
     fn connect(&mut self) {
-        for (queue, interfaces) in self.shadows.iter_mut().zip([Interfaces::Stop, Interfaces::Pass]) {
+        for (queue, interfaces) in self.queues.shadows.iter_mut().zip([Interfaces::Stop, Interfaces::Pass]) {
             self.rays.clear();
             self.rays.extend(queue.iter().map(|shadow| (shadow.ray, shadow.t_max)));
             self.occluded.clear();
             self.occluded.resize(queue.len(), false);
-            let scene = self.pixels.scene;
+            let scene = self.pass.pixels.scene;
             scene.occluded_batch(&self.rays, interfaces, &mut self.occluded, &mut self.stats);
             for (shadow, occluded) in queue.drain(..).zip(&self.occluded) {
                 if !occluded {
-                    self.paths[shadow.path as usize].l += shadow.l;
+                    self.paths.add_light(shadow.path as usize, shadow.l);
                 }
             }
         }
@@ -181,16 +239,28 @@ impl<'a> Stages<'a> {
 
     /// Adds the radiance of all paths to the film.
     fn finish(&mut self, tiles: &mut [FilmTile]) -> Result<(), Cancelled> {
-        let PixelSamples { scene, view, .. } = *self.pixels;
-        for path in &mut self.paths {
-            let (tile, sample) = (&mut tiles[path.tile], &path.sample);
-            let mut tracer = Tracer::new(scene, view, self.control, &mut path.sampler, &mut self.stats);
-            let first_hit = self.pixels.first_hit(tile, sample, &sample.lambda, &mut tracer);
-            tracer.finish()?;
-            let l = path.l * sample.camera_ray.as_ref().map_or(0.0, |camera| camera.weight);
+        let pixels = self.pass.pixels;
+        for row in 0..self.paths.len() {
+            let tile = &mut tiles[self.paths.tile[row] as usize];
+            let pixel = self.paths.pixel.each_ref().map(|column| column[row] as i32);
+            let lambda = self.paths.lambda(row);
+            let first_hit = if tile.wants_first_hit() {
+                let mut sample: PixelSample = pixels.begin(None, pixel, &mut self.sampler);
+                sample.lambda = lambda;
+                self.sampler.start_pixel_sample(pixel, pixels.index, self.paths.dimension[row]);
+                let (control, stats) = (self.pass.control, &mut self.stats);
+                let mut tracer = Tracer::new(pixels.scene, pixels.view, control, &mut self.sampler, stats);
+                let first_hit = pixels.first_hit(tile, &sample, &lambda, &mut tracer);
+                tracer.finish()?;
+                first_hit
+            } else {
+                None
+            };
+            let [filter_weight, camera_weight] = self.paths.weights.row(row);
+            let l = SampledSpectrum(self.paths.l.row(row)) * camera_weight;
             let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
-            let radiance = film::Sample::new(&l, &sample.lambda, sample.filter_weight);
-            tile.add(sample.pixel, &film::Sample { alpha, first_hit, ..radiance });
+            let radiance = film::Sample::new(&l, &lambda, filter_weight);
+            tile.add(pixel, &film::Sample { alpha, first_hit, ..radiance });
         }
         Ok(())
     }

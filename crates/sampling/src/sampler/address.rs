@@ -28,6 +28,12 @@ impl Address {
 }
 
 impl<I: Int> Address<I> {
+    /// Continues after `dimensions` more.
+    #[inline(always)]
+    pub fn skip(&mut self, dimensions: u32) {
+        self.dimension = self.dimension.wrapping_add(I::splat(dimensions));
+    }
+
     /// The address in one lane.
     #[inline]
     pub(super) fn lane(&self, lane: usize) -> Address {
