@@ -127,11 +127,7 @@ impl Bounds3 {
         let backwards = inverse.map(|c| c < 0.0);
         let pick = |backwards, a, b| if backwards { a } else { b };
         let ends = |a: Point3, b: Point3| {
-            Vec3::new(
-                pick(backwards.x, a.x, b.x),
-                pick(backwards.y, a.y, b.y),
-                pick(backwards.z, a.z, b.z),
-            )
+            Vec3::new(pick(backwards.x, a.x, b.x), pick(backwards.y, a.y, b.y), pick(backwards.z, a.z, b.z))
         };
         let near = (ends(self.max, self.min) - ray.o) * inverse;
         let far = (ends(self.min, self.max) - ray.o) * inverse * (1.0 + 2.0 * gamma(3));

@@ -40,11 +40,7 @@ pub fn offset_ray_origin<R: Real>(p: Point3Error<R>, n: Normal3<R>, w: Vector3<R
     // One float further than the rounded sum, along the axes that are offset.
     let step = (q.abs() * R::splat(f32::EPSILON)).copysign(offset);
     let along = |offset: R, q: R, step: R| R::select(offset.eq(R::zero()), q, q + step);
-    Vec3::new(
-        along(offset.x, q.x, step.x),
-        along(offset.y, q.y, step.y),
-        along(offset.z, q.z, step.z),
-    )
+    Vec3::new(along(offset.x, q.x, step.x), along(offset.y, q.y, step.y), along(offset.z, q.z, step.z))
 }
 
 #[cfg(test)]

@@ -7,9 +7,7 @@ use glam::{BVec2, BVec3, DVec2, DVec3, Vec4};
 use lanes::Real;
 use std::fmt;
 use std::iter::Sum;
-use std::ops::{
-    Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign,
-};
+use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Two coordinates.
 #[derive(Clone, Copy, Default, PartialEq)]

@@ -169,7 +169,8 @@ impl BilinearPatch {
         if let Some(normals) = &self.n {
             let normals = normals.map(|n| n.as_dvec3());
             let Some(ns) = at(&normals, uv).try_normalize() else { return surface };
-            let dn = by_texture(derivatives(&normals)).unwrap_or([DVec3::ZERO; 2]).map(|d| d.as_vec3().into());
+            let dn =
+                by_texture(derivatives(&normals)).unwrap_or([DVec3::ZERO; 2]).map(|d| d.as_vec3().into());
             let ns = ns.as_vec3().into();
             let turned = |v: Vec3| turn(v, face_forward(n, ns), ns);
             surface.set_shading(Shading {

@@ -55,7 +55,8 @@ impl Triangle {
         }
         let [st_du, st_dv] = self.sides(&self.uv);
         let [p_du, p_dv] = self.sides(&self.p).map(|e| e.as_dvec3());
-        let by_texture = |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| Vec3::from(d.as_vec3())));
+        let by_texture =
+            |d: [DVec3; 2]| by_texture(d, st_du, st_dv).map(|d| d.map(|d| Vec3::from(d.as_vec3())));
         let tangents = by_texture([p_du, p_dv]).filter(|d| d[0].cross(d[1]).length_squared() > 0.0);
         let [dpdu, dpdv] = tangents.unwrap_or_else(|| any_tangents(n));
         let mut surface =
