@@ -1,6 +1,7 @@
 //! A BxDF in the shading frame of a point, for directions in render space.
 
 use crate::{BsdfSample, Bxdf, BxdfFlags, Directions, Scatter, TransportMode};
+use lanes::{Mask, Real};
 use math::{Frame, Normal3, Vec2, Vector3};
 use spectrum::SampledSpectrum;
 
@@ -9,51 +10,99 @@ use spectrum::SampledSpectrum;
 /// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) dispatches once around
 /// a whole shading step, within which `Bsdf { bxdf, frame }` has a concrete type.
 #[derive(Clone, Copy, Debug)]
-pub struct Bsdf<B = Bxdf> {
+pub struct Bsdf<B = Bxdf, R = f32> {
     /// The BxDF, in the local frame.
     pub bxdf: B,
     /// The local frame in render space: z is the shading normal, x follows ∂p/∂u.
-    pub frame: Frame,
+    pub frame: Frame<R>,
 }
 
-impl<B: Scatter> Bsdf<B> {
+impl<R: Real, B: Scatter<R>> Bsdf<B, R> {
     /// Around the unit shading normal `ns`, with x along the shading ∂p/∂u `dpdus`.
-    #[inline]
-    pub fn new(ns: Normal3, dpdus: Vector3, bxdf: B) -> Self {
+    #[inline(always)]
+    pub fn new(ns: Normal3<R>, dpdus: Vector3<R>, bxdf: B) -> Self {
         Self { bxdf, frame: Frame::from_z_and_x(ns, dpdus) }
     }
 
     /// The flags of all lobes.
-    #[inline]
-    pub fn flags(&self) -> BxdfFlags {
+    #[inline(always)]
+    pub fn flags(&self) -> BxdfFlags<R> {
         self.bxdf.flags()
     }
 
     /// A direction of render space in the local frame.
-    #[inline]
-    pub fn render_to_local(&self, v: Vector3) -> Vector3 {
+    #[inline(always)]
+    pub fn render_to_local(&self, v: Vector3<R>) -> Vector3<R> {
         self.frame.to_local(v)
     }
 
     /// A direction of the local frame in render space.
-    #[inline]
-    pub fn local_to_render(&self, v: Vector3) -> Vector3 {
+    #[inline(always)]
+    pub fn local_to_render(&self, v: Vector3<R>) -> Vector3<R> {
         self.frame.from_local(v)
     }
 
     /// [`Scatter::f`]; black if `wo` lies on the horizon.
-    #[inline]
-    pub fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
+    #[inline(always)]
+    pub fn f(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> SampledSpectrum<R> {
         let (wo, wi) = (self.render_to_local(wo), self.render_to_local(wi));
-        if !wo.z.is_normal() {
-            return SampledSpectrum::ZERO;
+        let valid = is_normal(wo.z);
+        if !valid.any() {
+            return SampledSpectrum::zero();
         }
-        self.bxdf.f(wo, wi, mode)
+        SampledSpectrum::select(valid, self.bxdf.f(wo, wi, mode), SampledSpectrum::zero())
     }
 
-    /// [`Scatter::sample_f`]; `None` too if `wo` or the sample lies on the horizon, or the sample
-    /// carries no light.
-    #[inline]
+    /// [`Scatter::sample_f`]; invalid too where `wo` or the sample lies on the horizon, or the
+    /// sample carries no light.
+    #[inline(always)]
+    pub fn sample_lanes(
+        &self,
+        wo: Vector3<R>,
+        uc: R,
+        u: Vec2<R>,
+        mode: TransportMode,
+        directions: Directions,
+    ) -> BsdfSample<R> {
+        let wo = self.render_to_local(wo);
+        let valid = is_normal(wo.z) & directions.meet(self.flags());
+        if !valid.any() {
+            return BsdfSample::invalid();
+        }
+        let sample = self.bxdf.sample_f(wo, uc, u, mode, directions);
+        let carries_light = !sample.f.is_black() & sample.pdf.ne(R::zero()) & is_normal(sample.wi.z);
+        let valid = valid & sample.valid & carries_light;
+        BsdfSample { wi: self.local_to_render(sample.wi), valid, ..sample }
+    }
+
+    /// [`Scatter::pdf`]; zero if `wo` lies on the horizon.
+    #[inline(always)]
+    #[doc(alias = "PDF")]
+    pub fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode, directions: Directions) -> R {
+        let (wo, wi) = (self.render_to_local(wo), self.render_to_local(wi));
+        let valid = is_normal(wo.z);
+        if !valid.any() {
+            return R::zero();
+        }
+        R::select(valid, self.bxdf.pdf(wo, wi, mode, directions), R::zero())
+    }
+
+    /// [`Scatter::rho_hd`]: the albedo towards `wo`.
+    #[inline(always)]
+    pub fn rho(&self, wo: Vector3<R>, samples: impl IntoIterator<Item = (R, Vec2<R>)>) -> SampledSpectrum<R> {
+        self.bxdf.rho_hd(self.render_to_local(wo), samples)
+    }
+
+    /// [`Scatter::regularize`].
+    #[inline(always)]
+    pub fn regularize(&mut self, mask: R::Mask) {
+        self.bxdf.regularize(mask);
+    }
+}
+
+impl<B: Scatter> Bsdf<B> {
+    /// [`sample_lanes`](Self::sample_lanes) of one lane: `None` where the sample is invalid.
+    #[inline(always)]
     #[doc(alias = "Sample_f")]
     pub fn sample_f(
         &self,
@@ -63,36 +112,12 @@ impl<B: Scatter> Bsdf<B> {
         mode: TransportMode,
         directions: Directions,
     ) -> Option<BsdfSample> {
-        let wo = self.render_to_local(wo);
-        if !wo.z.is_normal() || !directions.meet(self.flags()) {
-            return None;
-        }
-        let sample = self.bxdf.sample_f(wo, uc, u, mode, directions)?;
-        if sample.f.is_black() || sample.pdf == 0.0 || !sample.wi.z.is_normal() {
-            return None;
-        }
-        Some(BsdfSample { wi: self.local_to_render(sample.wi), ..sample })
+        self.sample_lanes(wo, uc, u, mode, directions).into_option()
     }
+}
 
-    /// [`Scatter::pdf`]; zero if `wo` lies on the horizon.
-    #[inline]
-    #[doc(alias = "PDF")]
-    pub fn pdf(&self, wo: Vector3, wi: Vector3, mode: TransportMode, directions: Directions) -> f32 {
-        let (wo, wi) = (self.render_to_local(wo), self.render_to_local(wi));
-        if !wo.z.is_normal() {
-            return 0.0;
-        }
-        self.bxdf.pdf(wo, wi, mode, directions)
-    }
-
-    /// [`Scatter::rho_hd`]: the albedo towards `wo`.
-    pub fn rho(&self, wo: Vector3, samples: impl IntoIterator<Item = (f32, Vec2)>) -> SampledSpectrum {
-        self.bxdf.rho_hd(self.render_to_local(wo), samples)
-    }
-
-    /// [`Scatter::regularize`].
-    #[inline]
-    pub fn regularize(&mut self) {
-        self.bxdf.regularize();
-    }
+/// Neither zero, subnormal, infinite nor NaN.
+#[inline(always)]
+fn is_normal<R: Real>(x: R) -> R::Mask {
+    x.abs().ge(R::splat(f32::MIN_POSITIVE)) & x.abs().lt(R::splat(f32::INFINITY))
 }

@@ -1,13 +1,14 @@
 //! The kinds of scattering of a BxDF, and those requested of it.
 
+use lanes::{Int, Real};
 use std::ops::{BitAnd, BitOr, BitOrAssign, Not};
 
-/// A set of kinds of scattering: where to (reflection, transmission) and how widely (diffuse,
-/// glossy, specular).
+/// A set of kinds of scattering, for each lane: where to (reflection, transmission) and how widely
+/// (diffuse, glossy, specular).
 ///
 /// The set of a sample names one lobe; that of a BxDF names all of its lobes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct BxdfFlags(u8);
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BxdfFlags<R: Real = f32>(R::Int);
 
 impl BxdfFlags {
     /// No scattering at all.
@@ -22,82 +23,121 @@ impl BxdfFlags {
     pub const GLOSSY: Self = Self(1 << 3);
     /// Specular: one direction, a Dirac delta.
     pub const SPECULAR: Self = Self(1 << 4);
+    /// Diffuse reflection.
+    pub const DIFFUSE_REFLECTION: Self = Self(Self::DIFFUSE.0 | Self::REFLECTION.0);
+    /// Diffuse transmission.
+    pub const DIFFUSE_TRANSMISSION: Self = Self(Self::DIFFUSE.0 | Self::TRANSMISSION.0);
+    /// Glossy reflection.
+    pub const GLOSSY_REFLECTION: Self = Self(Self::GLOSSY.0 | Self::REFLECTION.0);
+    /// Glossy transmission.
+    pub const GLOSSY_TRANSMISSION: Self = Self(Self::GLOSSY.0 | Self::TRANSMISSION.0);
+    /// Specular reflection.
+    pub const SPECULAR_REFLECTION: Self = Self(Self::SPECULAR.0 | Self::REFLECTION.0);
+    /// Specular transmission.
+    pub const SPECULAR_TRANSMISSION: Self = Self(Self::SPECULAR.0 | Self::TRANSMISSION.0);
+}
+
+impl<R: Real> BxdfFlags<R> {
+    /// The same set in all lanes.
+    #[inline(always)]
+    pub fn splat(flags: BxdfFlags) -> Self {
+        Self(R::Int::splat(flags.0))
+    }
+
+    /// `flags` where the mask is true, else no scattering.
+    #[inline(always)]
+    pub fn only_where(mask: R::Mask, flags: BxdfFlags) -> Self {
+        Self::choose(mask, flags, BxdfFlags::NONE)
+    }
+
+    /// `a` where the mask is true, else `b`.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        Self(R::Int::select(mask, a.0, b.0))
+    }
+
+    /// `a` where the mask is true, else `b`, each the same in all lanes.
+    #[inline(always)]
+    pub fn choose(mask: R::Mask, a: BxdfFlags, b: BxdfFlags) -> Self {
+        Self::select(mask, Self::splat(a), Self::splat(b))
+    }
 
     /// Whether every kind of `other` is in this set.
-    #[inline]
-    pub const fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
+    #[inline(always)]
+    pub fn contains(self, other: BxdfFlags) -> R::Mask {
+        let other = R::Int::splat(other.0);
+        (self.0 & other).eq(other)
     }
 
     /// Whether some kind of `other` is in this set.
-    #[inline]
-    pub const fn intersects(self, other: Self) -> bool {
-        self.0 & other.0 != 0
+    #[inline(always)]
+    pub fn intersects(self, other: BxdfFlags) -> R::Mask {
+        !(self.0 & R::Int::splat(other.0)).eq(R::Int::splat(0))
     }
 
     /// Whether the set is empty.
-    #[inline]
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
+    #[inline(always)]
+    pub fn is_empty(self) -> R::Mask {
+        self.0.eq(R::Int::splat(0))
     }
 
     /// Whether light is reflected.
-    #[inline]
-    pub const fn is_reflective(self) -> bool {
-        self.contains(Self::REFLECTION)
+    #[inline(always)]
+    pub fn is_reflective(self) -> R::Mask {
+        self.contains(BxdfFlags::REFLECTION)
     }
 
     /// Whether light is transmitted.
-    #[inline]
-    pub const fn is_transmissive(self) -> bool {
-        self.contains(Self::TRANSMISSION)
+    #[inline(always)]
+    pub fn is_transmissive(self) -> R::Mask {
+        self.contains(BxdfFlags::TRANSMISSION)
     }
 
     /// Whether there is a diffuse lobe.
-    #[inline]
-    pub const fn is_diffuse(self) -> bool {
-        self.contains(Self::DIFFUSE)
+    #[inline(always)]
+    pub fn is_diffuse(self) -> R::Mask {
+        self.contains(BxdfFlags::DIFFUSE)
     }
 
     /// Whether there is a glossy lobe.
-    #[inline]
-    pub const fn is_glossy(self) -> bool {
-        self.contains(Self::GLOSSY)
+    #[inline(always)]
+    pub fn is_glossy(self) -> R::Mask {
+        self.contains(BxdfFlags::GLOSSY)
     }
 
     /// Whether there is a specular lobe.
-    #[inline]
-    pub const fn is_specular(self) -> bool {
-        self.contains(Self::SPECULAR)
+    #[inline(always)]
+    pub fn is_specular(self) -> R::Mask {
+        self.contains(BxdfFlags::SPECULAR)
     }
 
     /// Whether there is a lobe for which `f` is not zero: a diffuse or glossy one.
-    #[inline]
-    pub const fn is_non_specular(self) -> bool {
-        self.0 & (Self::DIFFUSE.0 | Self::GLOSSY.0) != 0
+    #[inline(always)]
+    pub fn is_non_specular(self) -> R::Mask {
+        self.intersects(BxdfFlags::DIFFUSE | BxdfFlags::GLOSSY)
     }
 }
 
-impl BitOr for BxdfFlags {
+impl<R: Real> BitOr for BxdfFlags<R> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn bitor(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }
 
-impl BitOrAssign for BxdfFlags {
-    #[inline]
+impl<R: Real> BitOrAssign for BxdfFlags<R> {
+    #[inline(always)]
     fn bitor_assign(&mut self, other: Self) {
         *self = *self | other;
     }
 }
 
-impl BitAnd for BxdfFlags {
+impl<R: Real> BitAnd for BxdfFlags<R> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn bitand(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
@@ -130,18 +170,23 @@ impl Directions {
     }
 
     /// Whether a BxDF with `flags` scatters to some of these directions.
-    #[inline]
-    pub const fn meet(self, flags: BxdfFlags) -> bool {
-        self.reflection() && flags.is_reflective() || self.transmission() && flags.is_transmissive()
+    #[inline(always)]
+    pub fn meet<R: Real>(self, flags: BxdfFlags<R>) -> R::Mask {
+        match self {
+            Self::All => flags.intersects(BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION),
+            Self::Reflection => flags.is_reflective(),
+            Self::Transmission => flags.is_transmissive(),
+        }
     }
 
     /// The probability of reflection, where reflection has the weight `r` and transmission `t`, and
-    /// lobes that are not requested the weight 0; `None` if all weights are 0.
-    #[inline]
-    pub fn probability_of_reflection(self, r: f32, t: f32) -> Option<f32> {
-        let r = if self.reflection() { r } else { 0.0 };
-        let t = if self.transmission() { t } else { 0.0 };
-        (r + t > 0.0).then(|| r / (r + t))
+    /// lobes that are not requested the weight 0; and where there is one: not where all weights are
+    /// 0.
+    #[inline(always)]
+    pub fn probability_of_reflection<R: Real>(self, r: R, t: R) -> (R, R::Mask) {
+        let r = if self.reflection() { r } else { R::zero() };
+        let t = if self.transmission() { t } else { R::zero() };
+        (r / (r + t), (r + t).gt(R::zero()))
     }
 }
 
@@ -194,9 +239,9 @@ mod tests {
 
     #[test]
     fn lobe_probabilities_exclude_other_lobes() {
-        assert_eq!(Directions::All.probability_of_reflection(1.0, 3.0), Some(0.25));
-        assert_eq!(Directions::Reflection.probability_of_reflection(1.0, 3.0), Some(1.0));
-        assert_eq!(Directions::Transmission.probability_of_reflection(1.0, 3.0), Some(0.0));
-        assert_eq!(Directions::Transmission.probability_of_reflection(1.0, 0.0), None);
+        assert_eq!(Directions::All.probability_of_reflection(1.0, 3.0), (0.25, true));
+        assert_eq!(Directions::Reflection.probability_of_reflection(1.0, 3.0), (1.0, true));
+        assert_eq!(Directions::Transmission.probability_of_reflection(1.0, 3.0), (0.0, true));
+        assert!(!Directions::Transmission.probability_of_reflection(1.0, 0.0).1);
     }
 }

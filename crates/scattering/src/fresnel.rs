@@ -18,73 +18,79 @@
 //!
 //! Sources: [Pharr 2023 §9.3.5, §9.3.6], [Born 1999 §1.5.2, §14.2].
 
+use lanes::Real;
 use math::{Normal3, Vector3, safe_sqrt, sqr};
 use spectrum::SampledSpectrum;
 
 /// The mirror image of `wo` about `n`; both point away from the surface.
-#[inline]
-pub fn reflect(wo: Vector3, n: Normal3) -> Vector3 {
-    2.0 * wo.dot(n) * n - wo
+#[inline(always)]
+pub fn reflect<R: Real>(wo: Vector3<R>, n: Normal3<R>) -> Vector3<R> {
+    n * (wo.dot(n) * R::splat(2.0)) - wo
 }
 
 /// The refraction of `wi` through a surface with unit normal `n`, and the relative index η_t/η_i
-/// along it: `eta` if `wi` is on the side of `n`, else its inverse. `None` where all light is
-/// reflected inside.
-#[inline]
-pub fn refract(wi: Vector3, n: Normal3, eta: f32) -> Option<(Vector3, f32)> {
+/// along it: `eta` if `wi` is on the side of `n`, else its inverse; and where there is one: not
+/// where all light is reflected inside.
+#[inline(always)]
+pub fn refract<R: Real>(wi: Vector3<R>, n: Normal3<R>, eta: R) -> (Vector3<R>, R, R::Mask) {
     let cos = n.dot(wi);
-    let (n, cos_i, eta) = if cos < 0.0 { (-n, -cos, 1.0 / eta) } else { (n, cos, eta) };
-    let sin2_t = (1.0 - sqr(cos_i)).max(0.0) / sqr(eta);
-    if sin2_t >= 1.0 {
-        return None;
-    }
-    let cos_t = safe_sqrt(1.0 - sin2_t);
-    Some((n * (cos_i / eta - cos_t) - wi / eta, eta))
+    let below = cos.lt(R::zero());
+    let n = Vector3::select(below, -n, n);
+    let cos_i = R::select(below, -cos, cos);
+    let eta = R::select(below, R::one() / eta, eta);
+    let sin2_t = (R::one() - sqr(cos_i)).max(R::zero()) / sqr(eta);
+    let cos_t = safe_sqrt(R::one() - sin2_t);
+    (n * (cos_i / eta - cos_t) - wi / eta, eta, !sin2_t.ge(R::one()))
 }
 
 /// The reflectance of an interface between dielectrics; `eta` is the relative index met by light
 /// with `cos_theta_i` > 0.
-#[inline]
+#[inline(always)]
 #[doc(alias = "FrDielectric")]
-pub fn fr_dielectric(cos_theta_i: f32, eta: f32) -> f32 {
-    let (cos_i, eta) = if cos_theta_i < 0.0 { (-cos_theta_i, 1.0 / eta) } else { (cos_theta_i, eta) };
-    let cos_i = cos_i.min(1.0);
-    let sin2_t = (1.0 - sqr(cos_i)) / sqr(eta);
-    if sin2_t >= 1.0 {
-        return 1.0;
-    }
-    let cos_t = safe_sqrt(1.0 - sin2_t);
+pub fn fr_dielectric<R: Real>(cos_theta_i: R, eta: R) -> R {
+    let below = cos_theta_i.lt(R::zero());
+    let cos_i = R::select(below, -cos_theta_i, cos_theta_i).min(R::one());
+    let eta = R::select(below, R::one() / eta, eta);
+    let sin2_t = (R::one() - sqr(cos_i)) / sqr(eta);
+    let cos_t = safe_sqrt(R::one() - sin2_t);
     let parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
     let perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-    0.5 * (sqr(parallel) + sqr(perpendicular))
+    let reflectance = (sqr(parallel) + sqr(perpendicular)) * R::splat(0.5);
+    R::select(sin2_t.ge(R::one()), R::one(), reflectance)
 }
 
 /// The reflectance of an interface to a medium of complex index `eta` + i `k`, relative to the
 /// medium of the light; `cos_theta_i` in [0, 1].
-#[inline]
+#[inline(always)]
 #[doc(alias = "FrComplex")]
-pub fn fr_complex(cos_theta_i: f32, eta: f32, k: f32) -> f32 {
+pub fn fr_complex<R: Real>(cos_theta_i: R, eta: R, k: R) -> R {
+    let [half, one, two] = [0.5, 1.0, 2.0].map(R::splat);
     // A cosine whose square underflows would give 0/0 for an index of 1.
-    let cos = cos_theta_i.clamp(1e-12, 1.0);
+    let cos = cos_theta_i.clamp(R::splat(1e-12), one);
     let cos2 = sqr(cos);
-    let sin2 = 1.0 - cos2;
-    let real = (eta - 1.0) * (eta + 1.0) - sqr(k) + cos2;
-    let imaginary = 2.0 * eta * k;
+    let sin2 = one - cos2;
+    let real = (eta - one) * (eta + one) - sqr(k) + cos2;
+    let imaginary = two * eta * k;
     let modulus = (sqr(real) + sqr(imaginary)).sqrt();
     // The larger part of the root by the half-angle formula, the smaller from the larger, to avoid
     // cancellation.
-    let larger = (0.5 * (modulus + real.abs())).sqrt();
-    let a = if real >= 0.0 || larger == 0.0 { larger } else { 0.5 * imaginary / larger };
-    let (sum, cross) = (modulus + cos2, 2.0 * cos * a);
+    let larger = (half * (modulus + real.abs())).sqrt();
+    let is_real_part = real.ge(R::zero()) | larger.eq(R::zero());
+    let a = R::select(is_real_part, larger, half * imaginary / larger);
+    let (sum, cross) = (modulus + cos2, two * cos * a);
     let perpendicular = (sum - cross) / (sum + cross);
     let (sum, cross) = (cos2 * modulus + sqr(sin2), cross * sin2);
     let parallel = perpendicular * (sum - cross) / (sum + cross);
-    0.5 * (parallel + perpendicular)
+    half * (parallel + perpendicular)
 }
 
 /// [`fr_complex`] at each wavelength.
-#[inline]
-pub fn fr_conductor(cos_theta_i: f32, eta: SampledSpectrum, k: SampledSpectrum) -> SampledSpectrum {
+#[inline(always)]
+pub fn fr_conductor<R: Real>(
+    cos_theta_i: R,
+    eta: SampledSpectrum<R>,
+    k: SampledSpectrum<R>,
+) -> SampledSpectrum<R> {
     eta.zip(k, |eta, k| fr_complex(cos_theta_i, eta, k))
 }
 
@@ -123,7 +129,7 @@ mod tests {
         let critical = (1.0 - sqr(1.0 / 1.5f32)).sqrt();
         assert_eq!(fr_dielectric(-(critical - 1e-3), 1.5), 1.0);
         assert!(fr_dielectric(-(critical + 1e-3), 1.5) < 0.9);
-        assert!(refract(Vec3::new(0.8, 0.0, -0.6), Vec3::Z, 1.5).is_none());
+        assert!(!refract(Vec3::new(0.8, 0.0, -0.6), Vec3::Z, 1.5).2);
         assert_eq!(fr_dielectric(0.0, 1.5), 1.0, "grazing");
     }
 
@@ -166,13 +172,14 @@ mod tests {
         #[test]
         fn refraction_obeys_snell_and_reverses(x in -1f32..1.0, y in -1f32..1.0, z in -1f32..1.0, eta in 0.4f32..2.5) {
             let Some(wi) = Vec3::new(x, y, z).try_normalize() else { return Ok(()) };
-            let Some((wt, met)) = refract(wi, Vec3::Z, eta) else { return Ok(()) };
+            let (wt, met, true) = refract(wi, Vec3::Z, eta) else { return Ok(()) };
             prop_assert_eq!(met, if wi.z < 0.0 { 1.0 / eta } else { eta });
             prop_assert!((wt.length() - 1.0).abs() < 1e-4);
             prop_assert!(wt.z * wi.z <= 0.0);
             prop_assert!((wt.x * met + wi.x).abs() < 1e-5 && (wt.y * met + wi.y).abs() < 1e-5);
             if wt.z.abs() > 0.05 && wi.z.abs() > 0.05 {
-                let (back, _) = refract(wt, Vec3::Z, eta).expect("refraction is reversible");
+                let (back, _, reversible) = refract(wt, Vec3::Z, eta);
+                prop_assert!(reversible);
                 prop_assert!((back - wi).length() < 1e-4);
                 prop_assert!((fr_dielectric(wi.z, eta) - fr_dielectric(wt.z, eta)).abs() < 1e-4);
             }

@@ -144,9 +144,7 @@ impl<'a> Walk<'a> {
             }
             return None;
         };
-        if self.paths.regularize && self.rough_before {
-            bsdf.regularize();
-        }
+        bsdf.regularize(self.paths.regularize && self.rough_before);
         self.depth += 1;
         let s = &surface.surface;
         let mut vertex = Vertex {

@@ -62,9 +62,7 @@ impl Path {
                 return l;
             }
             path.depth += 1;
-            if self.settings.regularize && rough_before {
-                bsdf.regularize();
-            }
+            bsdf.regularize(self.settings.regularize && rough_before);
 
             let context = light_context(&surface, bsdf.flags());
             let scattered = each_bxdf!(bsdf.bxdf, bxdf => {

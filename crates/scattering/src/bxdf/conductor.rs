@@ -11,91 +11,118 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_conductor, reflect};
+use lanes::{Mask, Real};
 use math::{Vec2, Vec3, Vector3, same_hemisphere};
 use spectrum::SampledSpectrum;
 
 /// A metal of index `eta` + i `k`.
 #[derive(Clone, Copy, Debug)]
-pub struct Conductor {
+pub struct Conductor<R = f32> {
     /// Roughness.
-    pub distribution: TrowbridgeReitz,
+    pub distribution: TrowbridgeReitz<R>,
     /// Real part of the index of refraction, relative to the medium above.
-    pub eta: SampledSpectrum,
+    pub eta: SampledSpectrum<R>,
     /// Imaginary part of the index: absorption.
-    pub k: SampledSpectrum,
+    pub k: SampledSpectrum<R>,
 }
 
-impl Conductor {
+impl<R: Real> Conductor<R> {
     /// The value where microfacets of normal `wm` turn `wo` into `wi`, on one side of the surface
     /// and off the horizon.
-    #[inline]
-    fn f_microfacet(&self, wo: Vector3, wi: Vector3, wm: Vector3) -> SampledSpectrum {
+    #[inline(always)]
+    fn f_microfacet(&self, wo: Vector3<R>, wi: Vector3<R>, wm: Vector3<R>) -> SampledSpectrum<R> {
         let fresnel = fr_conductor(wo.dot(wm).abs(), self.eta, self.k);
-        fresnel * (self.distribution.d(wm) * self.distribution.g(wo, wi) / (4.0 * wi.z * wo.z))
+        let facets = self.distribution.d(wm) * self.distribution.g(wo, wi);
+        fresnel * (facets / (R::splat(4.0) * wi.z * wo.z))
     }
 
     /// The density of the reflection of `wo` in sampled microfacets of normal `wm`.
-    #[inline]
-    fn pdf_microfacet(&self, wo: Vector3, wm: Vector3) -> f32 {
-        self.distribution.pdf(wo, wm) / (4.0 * wo.dot(wm).abs())
+    #[inline(always)]
+    fn pdf_microfacet(&self, wo: Vector3<R>, wm: Vector3<R>) -> R {
+        self.distribution.pdf(wo, wm) / (R::splat(4.0) * wo.dot(wm).abs())
+    }
+
+    /// The normal of microfacets that turn `wo` into `wi`, and where there are any that are not
+    /// those of a smooth surface.
+    #[inline(always)]
+    fn facet(&self, wo: Vector3<R>, wi: Vector3<R>) -> (Vector3<R>, R::Mask) {
+        let (wm, valid) = (wo + wi).normalize_masked();
+        (wm, valid & same_hemisphere(wo, wi) & !self.distribution.effectively_smooth())
+    }
+
+    #[inline(always)]
+    fn sample_specular(&self, wo: Vector3<R>) -> BsdfSample<R> {
+        let wi = Vec3::new(-wo.x, -wo.y, wo.z);
+        let f = fr_conductor(wi.z.abs(), self.eta, self.k) / wi.z.abs();
+        BsdfSample::new(f, wi, R::one(), BxdfFlags::splat(BxdfFlags::SPECULAR_REFLECTION))
+    }
+
+    #[inline(always)]
+    fn sample_glossy(&self, wo: Vector3<R>, u: Vec2<R>) -> BsdfSample<R> {
+        let wm = self.distribution.sample_wm(wo, u);
+        let wi = reflect(wo, wm);
+        let valid = same_hemisphere(wo, wi);
+        if !valid.any() {
+            return BsdfSample::invalid();
+        }
+        let (f, pdf) = (self.f_microfacet(wo, wi, wm), self.pdf_microfacet(wo, wm));
+        let lobe = BxdfFlags::splat(BxdfFlags::GLOSSY_REFLECTION);
+        BsdfSample { valid, ..BsdfSample::new(f, wi, pdf, lobe) }
     }
 }
 
-impl Scatter for Conductor {
-    #[inline]
-    fn flags(&self) -> BxdfFlags {
-        let width =
-            if self.distribution.effectively_smooth() { BxdfFlags::SPECULAR } else { BxdfFlags::GLOSSY };
-        width | BxdfFlags::REFLECTION
+impl<R: Real> Scatter<R> for Conductor<R> {
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        BxdfFlags::choose(
+            self.distribution.effectively_smooth(),
+            BxdfFlags::SPECULAR_REFLECTION,
+            BxdfFlags::GLOSSY_REFLECTION,
+        )
     }
 
-    #[inline]
-    fn f(&self, wo: Vector3, wi: Vector3, _: TransportMode) -> SampledSpectrum {
-        if !same_hemisphere(wo, wi) || self.distribution.effectively_smooth() {
-            return SampledSpectrum::ZERO;
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode) -> SampledSpectrum<R> {
+        let (wm, valid) = self.facet(wo, wi);
+        if !valid.any() {
+            return SampledSpectrum::zero();
         }
-        match (wo + wi).try_normalize() {
-            Some(wm) => self.f_microfacet(wo, wi, wm),
-            None => SampledSpectrum::ZERO,
-        }
+        SampledSpectrum::select(valid, self.f_microfacet(wo, wi, wm), SampledSpectrum::zero())
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        _: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        _: R,
+        u: Vec2<R>,
         _: TransportMode,
         directions: Directions,
-    ) -> Option<BsdfSample> {
-        if !directions.reflection() || wo.z == 0.0 {
-            return None;
+    ) -> BsdfSample<R> {
+        if !directions.reflection() {
+            return BsdfSample::invalid();
         }
-        let lobe = self.flags();
-        if lobe.is_specular() {
-            let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-            let f = fr_conductor(wi.z.abs(), self.eta, self.k) / wi.z.abs();
-            return Some(BsdfSample::new(f, wi, 1.0, lobe));
-        }
-        let wm = self.distribution.sample_wm(wo, u);
-        let wi = reflect(wo, wm);
-        if !same_hemisphere(wo, wi) {
-            return None;
-        }
-        Some(BsdfSample::new(self.f_microfacet(wo, wi, wm), wi, self.pdf_microfacet(wo, wm), lobe))
+        let smooth = self.distribution.effectively_smooth();
+        let sample = if smooth.all() {
+            self.sample_specular(wo)
+        } else {
+            let glossy = self.sample_glossy(wo, u);
+            if smooth.any() { BsdfSample::select(smooth, self.sample_specular(wo), glossy) } else { glossy }
+        };
+        BsdfSample { valid: sample.valid & wo.z.ne(R::zero()), ..sample }
     }
 
-    #[inline]
-    fn pdf(&self, wo: Vector3, wi: Vector3, _: TransportMode, directions: Directions) -> f32 {
-        if !directions.reflection() || !same_hemisphere(wo, wi) || self.distribution.effectively_smooth() {
-            return 0.0;
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode, directions: Directions) -> R {
+        let (wm, valid) = self.facet(wo, wi);
+        if !directions.reflection() || !valid.any() {
+            return R::zero();
         }
-        (wo + wi).try_normalize().map_or(0.0, |wm| self.pdf_microfacet(wo, wm))
+        R::select(valid, self.pdf_microfacet(wo, wm), R::zero())
     }
 
-    #[inline]
-    fn regularize(&mut self) {
-        self.distribution.regularize();
+    #[inline(always)]
+    fn regularize(&mut self, mask: R::Mask) {
+        self.distribution.regularize(mask);
     }
 }

@@ -19,166 +19,201 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_dielectric, reflect, refract};
+use lanes::{Mask, Real};
 use math::{Vec2, Vec3, Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 
 /// An interface between dielectrics.
 #[derive(Clone, Copy, Debug)]
-pub struct Dielectric {
+pub struct Dielectric<R = f32> {
     /// Index of refraction below the surface over that above; > 0.
-    pub eta: f32,
+    pub eta: R,
     /// Roughness.
-    pub distribution: TrowbridgeReitz,
+    pub distribution: TrowbridgeReitz<R>,
 }
 
 /// What turns `wo` into `wi`: microfacets of normal `wm` in the upper hemisphere.
-struct Facet {
-    wm: Vector3,
-    /// The relative index met from `wo` to `wi`; `None` if the facet reflects.
-    refraction: Option<f32>,
+struct Facet<R: Real> {
+    wm: Vector3<R>,
+    /// Whether the facet reflects; else it refracts.
+    reflects: R::Mask,
+    /// The relative index met from `wo` to `wi`; 1 where the facet reflects.
+    eta: R,
 }
 
-impl Dielectric {
-    #[inline]
-    fn is_specular(&self) -> bool {
-        self.eta == 1.0 || self.distribution.effectively_smooth()
+impl<R: Real> Dielectric<R> {
+    #[inline(always)]
+    fn is_specular(&self) -> R::Mask {
+        self.eta.eq(R::one()) | self.distribution.effectively_smooth()
     }
 
-    /// The facets that turn `wo` into `wi`, if there are any and both directions are on their front
-    /// side.
-    #[inline]
-    fn facet(&self, wo: Vector3, wi: Vector3) -> Option<Facet> {
-        if wo.z == 0.0 || wi.z == 0.0 {
-            return None;
-        }
-        let refraction =
-            (!same_hemisphere(wo, wi)).then_some(if wo.z > 0.0 { self.eta } else { 1.0 / self.eta });
-        let wm = (wi * refraction.unwrap_or(1.0) + wo).try_normalize()?;
-        let wm = if wm.z < 0.0 { -wm } else { wm };
-        let front = wm.dot(wi) * wi.z >= 0.0 && wm.dot(wo) * wo.z >= 0.0;
-        front.then_some(Facet { wm, refraction })
+    /// The facets that turn `wo` into `wi`, and where there are any that are not those of a smooth
+    /// surface and both directions are on their front side.
+    #[inline(always)]
+    fn facet(&self, wo: Vector3<R>, wi: Vector3<R>) -> (Facet<R>, R::Mask) {
+        let reflects = same_hemisphere(wo, wi);
+        let eta = R::select(wo.z.gt(R::zero()), self.eta, R::one() / self.eta);
+        let eta = R::select(reflects, R::one(), eta);
+        let (wm, valid) = (wi * eta + wo).normalize_masked();
+        let wm = Vec3::select(wm.z.lt(R::zero()), -wm, wm);
+        let [o, i] = [wo, wi].map(|w| w.z.ne(R::zero()) & (wm.dot(w) * w.z).ge(R::zero()));
+        (Facet { wm, reflects, eta }, valid & o & i & !self.is_specular())
     }
 
     /// The value at `facet`, which reflects the share `fresnel`.
-    #[inline]
-    fn f_facet(&self, wo: Vector3, wi: Vector3, facet: &Facet, fresnel: f32, mode: TransportMode) -> f32 {
-        let wm = facet.wm;
+    #[inline(always)]
+    fn f_facet(
+        &self,
+        wo: Vector3<R>,
+        wi: Vector3<R>,
+        facet: &Facet<R>,
+        fresnel: R,
+        mode: TransportMode,
+    ) -> R {
+        let Facet { wm, reflects, eta } = *facet;
         let facets = self.distribution.d(wm) * self.distribution.g(wo, wi) / (wi.z * wo.z).abs();
-        let Some(eta) = facet.refraction else { return 0.25 * facets * fresnel };
-        let ft =
-            facets * (1.0 - fresnel) * (wi.dot(wm) * wo.dot(wm)).abs() / sqr(wi.dot(wm) + wo.dot(wm) / eta);
-        match mode {
+        let fr = R::splat(0.25) * facets * fresnel;
+        if reflects.all() {
+            return fr;
+        }
+        let (cos_i, cos_o) = (wi.dot(wm), wo.dot(wm));
+        let ft = facets * (R::one() - fresnel) * (cos_i * cos_o).abs() / sqr(cos_i + cos_o / eta);
+        let ft = match mode {
             TransportMode::Radiance => ft / sqr(eta),
             TransportMode::Importance => ft,
-        }
+        };
+        R::select(reflects, fr, ft)
     }
 
     /// The density of `wi` where `facet` is sampled and reflects with probability `pr`.
-    #[inline]
-    fn pdf_facet(&self, wo: Vector3, wi: Vector3, facet: &Facet, pr: f32) -> f32 {
-        let wm = facet.wm;
+    #[inline(always)]
+    fn pdf_facet(&self, wo: Vector3<R>, wi: Vector3<R>, facet: &Facet<R>, pr: R) -> R {
+        let Facet { wm, reflects, eta } = *facet;
         let pdf_wm = self.distribution.pdf(wo, wm);
-        match facet.refraction {
-            None => pr * pdf_wm / (4.0 * wo.dot(wm).abs()),
-            Some(eta) => (1.0 - pr) * pdf_wm * wi.dot(wm).abs() / sqr(wi.dot(wm) + wo.dot(wm) / eta),
+        let reflection = pr * pdf_wm / (R::splat(4.0) * wo.dot(wm).abs());
+        if reflects.all() {
+            return reflection;
         }
+        let (cos_i, cos_o) = (wi.dot(wm), wo.dot(wm));
+        let refraction = (R::one() - pr) * pdf_wm * cos_i.abs() / sqr(cos_i + cos_o / eta);
+        R::select(reflects, reflection, refraction)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_specular(
         &self,
-        wo: Vector3,
-        uc: f32,
+        wo: Vector3<R>,
+        uc: R,
         mode: TransportMode,
         directions: Directions,
-    ) -> Option<BsdfSample> {
-        let fresnel = if self.eta == 1.0 { 0.0 } else { fr_dielectric(wo.z, self.eta) };
-        let pr = directions.probability_of_reflection(fresnel, 1.0 - fresnel)?;
-        if uc < pr {
-            let wi = Vec3::new(-wo.x, -wo.y, wo.z);
-            let f = SampledSpectrum::splat(fresnel / wi.z.abs());
-            return Some(BsdfSample::new(f, wi, pr, BxdfFlags::SPECULAR | BxdfFlags::REFLECTION));
-        }
-        let (wi, eta) = refract(wo, Vec3::Z, self.eta)?;
+    ) -> BsdfSample<R> {
+        let fresnel = fr_dielectric(wo.z, self.eta);
+        let fresnel = R::select(self.eta.eq(R::one()), R::zero(), fresnel);
+        let (pr, valid) = directions.probability_of_reflection(fresnel, R::one() - fresnel);
+        let reflects = uc.lt(pr);
+        let mirrored = Vec3::new(-wo.x, -wo.y, wo.z);
+        let (refracted, eta, not_total) = refract(wo, Vec3::broadcast(Vec3::Z), self.eta);
+        let wi = Vec3::select(reflects, mirrored, refracted);
         let scale = match mode {
-            TransportMode::Radiance => 1.0 / sqr(eta),
-            TransportMode::Importance => 1.0,
+            TransportMode::Radiance => R::one() / sqr(eta),
+            TransportMode::Importance => R::one(),
         };
-        let f = SampledSpectrum::splat(scale * (1.0 - fresnel) / wi.z.abs());
-        let lobe = BxdfFlags::SPECULAR | BxdfFlags::TRANSMISSION;
-        Some(BsdfSample { eta, ..BsdfSample::new(f, wi, 1.0 - pr, lobe) })
+        let share = R::select(reflects, fresnel, scale * (R::one() - fresnel));
+        let lobe =
+            BxdfFlags::choose(reflects, BxdfFlags::SPECULAR_REFLECTION, BxdfFlags::SPECULAR_TRANSMISSION);
+        let f = SampledSpectrum::splat(share / wi.z.abs());
+        let pdf = R::select(reflects, pr, R::one() - pr);
+        let eta = R::select(reflects, R::one(), eta);
+        BsdfSample { eta, valid: valid & (reflects | not_total), ..BsdfSample::new(f, wi, pdf, lobe) }
+    }
+
+    #[inline(always)]
+    fn sample_glossy(
+        &self,
+        wo: Vector3<R>,
+        uc: R,
+        u: Vec2<R>,
+        mode: TransportMode,
+        directions: Directions,
+    ) -> BsdfSample<R> {
+        let wm = self.distribution.sample_wm(wo, u);
+        let fresnel = fr_dielectric(wo.dot(wm), self.eta);
+        let (pr, valid) = directions.probability_of_reflection(fresnel, R::one() - fresnel);
+        let reflects = uc.lt(pr);
+        let (refracted, eta, not_total) = refract(wo, wm, self.eta);
+        let wi = Vec3::select(reflects, reflect(wo, wm), refracted);
+        let eta = R::select(reflects, R::one(), eta);
+        let on_its_side = !(same_hemisphere(wo, wi) ^ reflects) & wi.z.ne(R::zero());
+        let valid = valid & (reflects | not_total) & on_its_side;
+        if !valid.any() {
+            return BsdfSample::invalid();
+        }
+        let facet = Facet { wm, reflects, eta };
+        let f = SampledSpectrum::splat(self.f_facet(wo, wi, &facet, fresnel, mode));
+        let pdf = self.pdf_facet(wo, wi, &facet, pr);
+        let lobe = BxdfFlags::choose(reflects, BxdfFlags::GLOSSY_REFLECTION, BxdfFlags::GLOSSY_TRANSMISSION);
+        BsdfSample { eta, valid, ..BsdfSample::new(f, wi, pdf, lobe) }
     }
 }
 
-impl Scatter for Dielectric {
-    #[inline]
-    fn flags(&self) -> BxdfFlags {
-        let width = if self.is_specular() { BxdfFlags::SPECULAR } else { BxdfFlags::GLOSSY };
-        let reflection = if self.eta == 1.0 { BxdfFlags::NONE } else { BxdfFlags::REFLECTION };
-        width | reflection | BxdfFlags::TRANSMISSION
+impl<R: Real> Scatter<R> for Dielectric<R> {
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        let width = BxdfFlags::choose(
+            self.is_specular(),
+            BxdfFlags::SPECULAR_TRANSMISSION,
+            BxdfFlags::GLOSSY_TRANSMISSION,
+        );
+        width | BxdfFlags::only_where(self.eta.ne(R::one()), BxdfFlags::REFLECTION)
     }
 
-    #[inline]
-    fn f(&self, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
-        if self.is_specular() {
-            return SampledSpectrum::ZERO;
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> SampledSpectrum<R> {
+        let (facet, valid) = self.facet(wo, wi);
+        if !valid.any() {
+            return SampledSpectrum::zero();
         }
-        let Some(facet) = self.facet(wo, wi) else { return SampledSpectrum::ZERO };
         let fresnel = fr_dielectric(wo.dot(facet.wm), self.eta);
-        SampledSpectrum::splat(self.f_facet(wo, wi, &facet, fresnel, mode))
+        let f = self.f_facet(wo, wi, &facet, fresnel, mode);
+        SampledSpectrum::splat(R::select(valid, f, R::zero()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        uc: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        uc: R,
+        u: Vec2<R>,
         mode: TransportMode,
         directions: Directions,
-    ) -> Option<BsdfSample> {
-        if wo.z == 0.0 {
-            return None;
-        }
-        if self.is_specular() {
-            return self.sample_specular(wo, uc, mode, directions);
-        }
-        let wm = self.distribution.sample_wm(wo, u);
-        let fresnel = fr_dielectric(wo.dot(wm), self.eta);
-        let pr = directions.probability_of_reflection(fresnel, 1.0 - fresnel)?;
-        let (wi, refraction, lobe) = if uc < pr {
-            (reflect(wo, wm), None, BxdfFlags::REFLECTION)
+    ) -> BsdfSample<R> {
+        let specular = self.is_specular();
+        let sample = if specular.all() {
+            self.sample_specular(wo, uc, mode, directions)
         } else {
-            let (wi, eta) = refract(wo, wm, self.eta)?;
-            (wi, Some(eta), BxdfFlags::TRANSMISSION)
+            let glossy = self.sample_glossy(wo, uc, u, mode, directions);
+            if specular.any() {
+                BsdfSample::select(specular, self.sample_specular(wo, uc, mode, directions), glossy)
+            } else {
+                glossy
+            }
         };
-        if wi.z == 0.0 || same_hemisphere(wo, wi) != refraction.is_none() {
-            return None;
-        }
-        let facet = Facet { wm, refraction };
-        let f = SampledSpectrum::splat(self.f_facet(wo, wi, &facet, fresnel, mode));
-        let pdf = self.pdf_facet(wo, wi, &facet, pr);
-        Some(BsdfSample {
-            eta: refraction.unwrap_or(1.0),
-            ..BsdfSample::new(f, wi, pdf, BxdfFlags::GLOSSY | lobe)
-        })
+        BsdfSample { valid: sample.valid & wo.z.ne(R::zero()), ..sample }
     }
 
-    #[inline]
-    fn pdf(&self, wo: Vector3, wi: Vector3, _: TransportMode, directions: Directions) -> f32 {
-        if self.is_specular() {
-            return 0.0;
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode, directions: Directions) -> R {
+        let (facet, valid) = self.facet(wo, wi);
+        if !valid.any() {
+            return R::zero();
         }
-        let Some(facet) = self.facet(wo, wi) else { return 0.0 };
         let fresnel = fr_dielectric(wo.dot(facet.wm), self.eta);
-        match directions.probability_of_reflection(fresnel, 1.0 - fresnel) {
-            Some(pr) => self.pdf_facet(wo, wi, &facet, pr),
-            None => 0.0,
-        }
+        let (pr, scatters) = directions.probability_of_reflection(fresnel, R::one() - fresnel);
+        R::select(valid & scatters, self.pdf_facet(wo, wi, &facet, pr), R::zero())
     }
 
-    #[inline]
-    fn regularize(&mut self) {
-        self.distribution.regularize();
+    #[inline(always)]
+    fn regularize(&mut self, mask: R::Mask) {
+        self.distribution.regularize(mask);
     }
 }

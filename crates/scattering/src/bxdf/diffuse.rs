@@ -5,6 +5,7 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode};
+use lanes::Real;
 use math::{Vec2, Vector3, same_hemisphere};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
@@ -12,51 +13,49 @@ use std::f32::consts::FRAC_1_PI;
 
 /// Lambertian reflection.
 #[derive(Clone, Copy, Debug)]
-pub struct Diffuse {
+pub struct Diffuse<R = f32> {
     /// Share of light that is reflected, in [0, 1].
-    pub reflectance: SampledSpectrum,
+    pub reflectance: SampledSpectrum<R>,
 }
 
-impl Scatter for Diffuse {
-    #[inline]
-    fn flags(&self) -> BxdfFlags {
-        if self.reflectance.is_black() { BxdfFlags::NONE } else { BxdfFlags::DIFFUSE | BxdfFlags::REFLECTION }
+const LOBE: BxdfFlags = BxdfFlags::DIFFUSE_REFLECTION;
+
+impl<R: Real> Scatter<R> for Diffuse<R> {
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        BxdfFlags::only_where(!self.reflectance.is_black(), LOBE)
     }
 
-    #[inline]
-    fn f(&self, wo: Vector3, wi: Vector3, _: TransportMode) -> SampledSpectrum {
-        if same_hemisphere(wo, wi) { self.reflectance * FRAC_1_PI } else { SampledSpectrum::ZERO }
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode) -> SampledSpectrum<R> {
+        let f = self.reflectance * R::splat(FRAC_1_PI);
+        SampledSpectrum::select(same_hemisphere(wo, wi), f, SampledSpectrum::zero())
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        _: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        _: R,
+        u: Vec2<R>,
         _: TransportMode,
         directions: Directions,
-    ) -> Option<BsdfSample> {
+    ) -> BsdfSample<R> {
         if !directions.reflection() {
-            return None;
+            return BsdfSample::invalid();
         }
         let mut wi = sample_cosine_hemisphere(u);
         let pdf = cosine_hemisphere_pdf(wi.z);
         wi.z = wi.z.copysign(wo.z);
-        Some(BsdfSample::new(
-            self.reflectance * FRAC_1_PI,
-            wi,
-            pdf,
-            BxdfFlags::DIFFUSE | BxdfFlags::REFLECTION,
-        ))
+        let f = self.reflectance * R::splat(FRAC_1_PI);
+        BsdfSample::new(f, wi, pdf, BxdfFlags::splat(LOBE))
     }
 
-    #[inline]
-    fn pdf(&self, wo: Vector3, wi: Vector3, _: TransportMode, directions: Directions) -> f32 {
-        if directions.reflection() && same_hemisphere(wo, wi) {
-            cosine_hemisphere_pdf(wi.z.abs())
-        } else {
-            0.0
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode, directions: Directions) -> R {
+        if !directions.reflection() {
+            return R::zero();
         }
+        R::select(same_hemisphere(wo, wi), cosine_hemisphere_pdf(wi.z.abs()), R::zero())
     }
 }

@@ -6,6 +6,7 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode};
+use lanes::{Mask, Real};
 use math::{Vec2, Vector3, same_hemisphere};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
@@ -13,65 +14,63 @@ use std::f32::consts::FRAC_1_PI;
 
 /// Lambertian reflection and transmission. Energy is conserved if the sum of both is at most 1.
 #[derive(Clone, Copy, Debug)]
-pub struct DiffuseTransmission {
+pub struct DiffuseTransmission<R = f32> {
     /// Share of light that is reflected, in [0, 1].
-    pub reflectance: SampledSpectrum,
+    pub reflectance: SampledSpectrum<R>,
     /// Share of light that is transmitted, in [0, 1].
-    pub transmittance: SampledSpectrum,
+    pub transmittance: SampledSpectrum<R>,
 }
 
-impl DiffuseTransmission {
-    #[inline]
-    fn probability_of_reflection(&self, directions: Directions) -> Option<f32> {
+impl<R: Real> DiffuseTransmission<R> {
+    #[inline(always)]
+    fn probability_of_reflection(&self, directions: Directions) -> (R, R::Mask) {
         let (r, t) = (self.reflectance.max_component(), self.transmittance.max_component());
         directions.probability_of_reflection(r, t)
     }
 }
 
-impl Scatter for DiffuseTransmission {
-    #[inline]
-    fn flags(&self) -> BxdfFlags {
-        let mut flags = BxdfFlags::NONE;
-        if !self.reflectance.is_black() {
-            flags |= BxdfFlags::DIFFUSE | BxdfFlags::REFLECTION;
-        }
-        if !self.transmittance.is_black() {
-            flags |= BxdfFlags::DIFFUSE | BxdfFlags::TRANSMISSION;
-        }
-        flags
+impl<R: Real> Scatter<R> for DiffuseTransmission<R> {
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        BxdfFlags::only_where(!self.reflectance.is_black(), BxdfFlags::DIFFUSE_REFLECTION)
+            | BxdfFlags::only_where(!self.transmittance.is_black(), BxdfFlags::DIFFUSE_TRANSMISSION)
     }
 
-    #[inline]
-    fn f(&self, wo: Vector3, wi: Vector3, _: TransportMode) -> SampledSpectrum {
-        let share = if same_hemisphere(wo, wi) { self.reflectance } else { self.transmittance };
-        share * FRAC_1_PI
+    #[inline(always)]
+    fn f(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode) -> SampledSpectrum<R> {
+        let reflects = same_hemisphere(wo, wi);
+        SampledSpectrum::select(reflects, self.reflectance, self.transmittance) * R::splat(FRAC_1_PI)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        uc: f32,
-        u: Vec2,
+        wo: Vector3<R>,
+        uc: R,
+        u: Vec2<R>,
         _: TransportMode,
         directions: Directions,
-    ) -> Option<BsdfSample> {
-        let pr = self.probability_of_reflection(directions)?;
+    ) -> BsdfSample<R> {
+        let (pr, valid) = self.probability_of_reflection(directions);
+        if !valid.any() {
+            return BsdfSample::invalid();
+        }
         let mut wi = sample_cosine_hemisphere(u);
         let pdf = cosine_hemisphere_pdf(wi.z);
-        let (side, share, probability, lobe) = if uc < pr {
-            (wo.z, self.reflectance, pr, BxdfFlags::REFLECTION)
-        } else {
-            (-wo.z, self.transmittance, 1.0 - pr, BxdfFlags::TRANSMISSION)
-        };
-        wi.z = wi.z.copysign(side);
-        Some(BsdfSample::new(share * FRAC_1_PI, wi, pdf * probability, BxdfFlags::DIFFUSE | lobe))
+        let reflects = uc.lt(pr);
+        wi.z = wi.z.copysign(R::select(reflects, wo.z, -wo.z));
+        let share = SampledSpectrum::select(reflects, self.reflectance, self.transmittance);
+        let probability = R::select(reflects, pr, R::one() - pr);
+        let lobe =
+            BxdfFlags::choose(reflects, BxdfFlags::DIFFUSE_REFLECTION, BxdfFlags::DIFFUSE_TRANSMISSION);
+        let f = share * R::splat(FRAC_1_PI);
+        BsdfSample { valid, ..BsdfSample::new(f, wi, pdf * probability, lobe) }
     }
 
-    #[inline]
-    fn pdf(&self, wo: Vector3, wi: Vector3, _: TransportMode, directions: Directions) -> f32 {
-        let Some(pr) = self.probability_of_reflection(directions) else { return 0.0 };
-        let probability = if same_hemisphere(wo, wi) { pr } else { 1.0 - pr };
-        probability * cosine_hemisphere_pdf(wi.z.abs())
+    #[inline(always)]
+    fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, _: TransportMode, directions: Directions) -> R {
+        let (pr, valid) = self.probability_of_reflection(directions);
+        let probability = R::select(same_hemisphere(wo, wi), pr, R::one() - pr);
+        R::select(valid, probability * cosine_hemisphere_pdf(wi.z.abs()), R::zero())
     }
 }

@@ -7,53 +7,53 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, fr_dielectric};
+use lanes::Real;
 use math::{Vec2, Vec3, Vector3};
 use spectrum::SampledSpectrum;
 
 /// Two parallel smooth interfaces as one.
 #[derive(Clone, Copy, Debug)]
-pub struct ThinDielectric {
+pub struct ThinDielectric<R = f32> {
     /// Index of refraction of the pane over that of what surrounds it; > 0.
-    pub eta: f32,
+    pub eta: R,
 }
 
-impl Scatter for ThinDielectric {
-    #[inline]
-    fn flags(&self) -> BxdfFlags {
-        BxdfFlags::SPECULAR | BxdfFlags::REFLECTION | BxdfFlags::TRANSMISSION
+impl<R: Real> Scatter<R> for ThinDielectric<R> {
+    #[inline(always)]
+    fn flags(&self) -> BxdfFlags<R> {
+        BxdfFlags::splat(BxdfFlags::SPECULAR_REFLECTION | BxdfFlags::SPECULAR_TRANSMISSION)
     }
 
-    #[inline]
-    fn f(&self, _: Vector3, _: Vector3, _: TransportMode) -> SampledSpectrum {
-        SampledSpectrum::ZERO
+    #[inline(always)]
+    fn f(&self, _: Vector3<R>, _: Vector3<R>, _: TransportMode) -> SampledSpectrum<R> {
+        SampledSpectrum::zero()
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_f(
         &self,
-        wo: Vector3,
-        uc: f32,
-        _: Vec2,
+        wo: Vector3<R>,
+        uc: R,
+        _: Vec2<R>,
         _: TransportMode,
         directions: Directions,
-    ) -> Option<BsdfSample> {
-        if wo.z == 0.0 {
-            return None;
-        }
+    ) -> BsdfSample<R> {
         let fresnel = fr_dielectric(wo.z.abs(), self.eta);
-        let r = 2.0 * fresnel / (1.0 + fresnel);
-        let pr = directions.probability_of_reflection(r, 1.0 - r)?;
-        let (wi, share, probability, lobe) = if uc < pr {
-            (Vec3::new(-wo.x, -wo.y, wo.z), r, pr, BxdfFlags::REFLECTION)
-        } else {
-            (-wo, 1.0 - r, 1.0 - pr, BxdfFlags::TRANSMISSION)
-        };
+        let r = fresnel * R::splat(2.0) / (R::one() + fresnel);
+        let (pr, valid) = directions.probability_of_reflection(r, R::one() - r);
+        let reflects = uc.lt(pr);
+        let wi = Vec3::select(reflects, Vec3::new(-wo.x, -wo.y, wo.z), -wo);
+        let share = R::select(reflects, r, R::one() - r);
+        let probability = R::select(reflects, pr, R::one() - pr);
+        let lobe =
+            BxdfFlags::choose(reflects, BxdfFlags::SPECULAR_REFLECTION, BxdfFlags::SPECULAR_TRANSMISSION);
         let f = SampledSpectrum::splat(share / wi.z.abs());
-        Some(BsdfSample::new(f, wi, probability, BxdfFlags::SPECULAR | lobe))
+        let valid = valid & wo.z.ne(R::zero());
+        BsdfSample { valid, ..BsdfSample::new(f, wi, probability, lobe) }
     }
 
-    #[inline]
-    fn pdf(&self, _: Vector3, _: Vector3, _: TransportMode, _: Directions) -> f32 {
-        0.0
+    #[inline(always)]
+    fn pdf(&self, _: Vector3<R>, _: Vector3<R>, _: TransportMode, _: Directions) -> R {
+        R::zero()
     }
 }

@@ -84,7 +84,7 @@ fn parameters() {
     );
     for (alpha, expected) in [(0.0, 0.1), (0.04, 0.1), (0.1, 0.2), (0.2, 0.3), (0.5, 0.5)] {
         let mut distribution = TrowbridgeReitz::new(alpha, alpha);
-        distribution.regularize();
+        distribution.regularize(true);
         assert_eq!(distribution, TrowbridgeReitz::new(expected, expected));
     }
 }
