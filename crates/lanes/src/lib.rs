@@ -26,6 +26,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod baseline;
+mod each;
 mod instruction_set;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -39,6 +40,7 @@ mod single;
 mod sse2;
 
 pub use baseline::{first_equal, prefetch};
+pub use each::Each;
 pub use instruction_set::InstructionSet;
 pub use real::{Int, MAX_LANES, Mask, Real};
 pub use scalar::F32x1;

@@ -127,9 +127,11 @@ pub trait Real:
 
     /// A number for each lane.
     #[inline(always)]
-    fn from_fn(lane: impl FnMut(usize) -> f32) -> Self {
+    fn from_fn(mut lane: impl FnMut(usize) -> f32) -> Self {
         let mut values = [0.0; MAX_LANES];
-        values[..Self::LANES].iter_mut().enumerate().for_each(write(lane));
+        for (i, value) in values[..Self::LANES].iter_mut().enumerate() {
+            *value = lane(i);
+        }
         Self::load(&values)
     }
 
@@ -242,9 +244,11 @@ pub trait Int:
 
     /// An integer for each lane.
     #[inline(always)]
-    fn from_fn(lane: impl FnMut(usize) -> u32) -> Self {
+    fn from_fn(mut lane: impl FnMut(usize) -> u32) -> Self {
         let mut values = [0; MAX_LANES];
-        values[..Self::Real::LANES].iter_mut().enumerate().for_each(write(lane));
+        for (i, value) in values[..Self::Real::LANES].iter_mut().enumerate() {
+            *value = lane(i);
+        }
         Self::load(&values)
     }
 
@@ -293,7 +297,3 @@ pub trait Mask:
 
 /// The most lanes of any vector.
 pub const MAX_LANES: usize = 16;
-
-fn write<T>(mut lane: impl FnMut(usize) -> T) -> impl FnMut((usize, &mut T)) {
-    move |(i, to)| *to = lane(i)
-}

@@ -5,7 +5,7 @@
 //! in constant memory by cycle walking [Kensler 2013]. [`mix_word`] and [`mix_quadruple`] compute
 //! with 32-bit words, in any number of lanes.
 
-use lanes::{Int, Real};
+use lanes::{Each, Int, Real};
 
 /// A bijection of 64-bit words under which each input bit changes about half of the output bits.
 #[inline]
@@ -53,7 +53,7 @@ pub fn mix_quadruple<I: Int>(words: [I; 4]) -> [I; 4] {
         let z = z.wrapping_add(x.wrapping_mul(y));
         [x, y, z, w.wrapping_add(y.wrapping_mul(z))]
     };
-    stir(stir(words.map(step)).map(|v| v ^ v.shr(16)))
+    stir(stir(words.each(step)).each(|v| v ^ v.shr(16)))
 }
 
 /// 32 bits as a binary fraction in [0, 1).

@@ -18,7 +18,7 @@
 //!
 //! Sources: [Pharr 2023 §9.3.5, §9.3.6], [Born 1999 §1.5.2, §14.2].
 
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{Normal3, Vector3, safe_sqrt, sqr};
 use spectrum::SampledSpectrum;
 
@@ -64,7 +64,7 @@ pub fn fr_dielectric<R: Real>(cos_theta_i: R, eta: R) -> R {
 #[inline(always)]
 #[doc(alias = "FrComplex")]
 pub fn fr_complex<R: Real>(cos_theta_i: R, eta: R, k: R) -> R {
-    let [half, one, two] = [0.5, 1.0, 2.0].map(R::splat);
+    let [half, one, two] = [0.5, 1.0, 2.0].each(R::splat);
     // A cosine whose square underflows would give 0/0 for an index of 1.
     let cos = cos_theta_i.clamp(R::splat(1e-12), one);
     let cos2 = sqr(cos);

@@ -14,7 +14,7 @@
 //! Sources: [Trowbridge 1975], [Walter 2007], [Heitz 2014], [Heitz 2018] for the sampling,
 //! [Pharr 2023 §9.6].
 
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{Vec2, Vec3, Vector3, lerp, safe_sqrt, sqr};
 use sampling::warp::sample_uniform_disk_polar;
 use std::f32::consts::PI;
@@ -33,7 +33,7 @@ impl<R: Real> TrowbridgeReitz<R> {
     pub fn new(alpha_x: R, alpha_y: R) -> Self {
         let smooth = Self { alpha_x, alpha_y }.effectively_smooth();
         let [alpha_x, alpha_y] =
-            [alpha_x, alpha_y].map(|alpha| R::select(smooth, alpha, alpha.max(R::splat(1e-4))));
+            [alpha_x, alpha_y].each(|alpha| R::select(smooth, alpha, alpha.max(R::splat(1e-4))));
         Self { alpha_x, alpha_y }
     }
 

@@ -4,7 +4,7 @@
 //! Text: numbers separated by white space, alternately wavelength and value, wavelengths in
 //! nanometres and strictly increasing; `#` starts a comment to the end of the line.
 
-use lanes::{Int, Real};
+use lanes::{Each, Int, Real};
 use std::fmt;
 
 use crate::dense::DenselySampled;
@@ -143,8 +143,8 @@ impl PiecewiseLinear {
         let above = below.wrapping_add(R::Int::splat(1));
         let last = R::Int::splat(self.lambdas.len() as u32 - 1);
         let above = R::Int::select(above.lt(last), above, last);
-        let [l0, l1] = [below, above].map(|i| R::gather(&self.lambdas, i));
-        let [v0, v1] = [below, above].map(|i| R::gather(&self.values, i));
+        let [l0, l1] = [below, above].each(|i| R::gather(&self.lambdas, i));
+        let [v0, v1] = [below, above].each(|i| R::gather(&self.values, i));
         let t = (lambda - l0) / (l1 - l0);
         let inside = lambda.ge(l0) & lambda.lt(l1);
         // At the end of the last interval the division is 0/0.

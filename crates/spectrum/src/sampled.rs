@@ -9,7 +9,7 @@
 //! Sources: [Wilkie 2014], [Pharr 2023 §4.5.4]; the density proportional to sech² that follows the
 //! eye's response is from [Radziszewski 2009].
 
-use lanes::Real;
+use lanes::{Each, Real};
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// Number of wavelengths that a path carries.
@@ -75,7 +75,7 @@ impl<R: Real> SampledSpectrum<R> {
     /// The same spectrum in all lanes.
     #[inline(always)]
     pub fn broadcast(s: SampledSpectrum) -> Self {
-        Self(s.0.map(R::splat))
+        Self(s.0.each(R::splat))
     }
 
     /// `a` where the mask is true, else `b`.
@@ -86,26 +86,29 @@ impl<R: Real> SampledSpectrum<R> {
 
     /// Applies `f` to each value.
     #[inline(always)]
-    pub fn map(self, mut f: impl FnMut(R) -> R) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i])))
+    pub fn map(self, f: impl FnMut(R) -> R) -> Self {
+        Self(self.0.each(f))
     }
 
     /// Applies `f` to each pair of values.
     #[inline(always)]
     pub fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+        let ([a, b, c, d], [e, g, h, i]) = (self.0, other.0);
+        Self([f(a, e), f(b, g), f(c, h), f(d, i)])
     }
 
     /// The largest value.
     #[inline(always)]
     pub fn max_component(self) -> R {
-        self.0.into_iter().fold(R::splat(f32::NEG_INFINITY), |max, v| v.max(max))
+        let [a, b, c, d] = self.0;
+        d.max(c.max(b.max(a.max(R::splat(f32::NEG_INFINITY)))))
     }
 
     /// The smallest value.
     #[inline(always)]
     pub fn min_component(self) -> R {
-        self.0.into_iter().fold(R::splat(f32::INFINITY), |min, v| v.min(min))
+        let [a, b, c, d] = self.0;
+        d.min(c.min(b.min(a.min(R::splat(f32::INFINITY)))))
     }
 
     /// The smaller of both at each wavelength.
@@ -130,14 +133,14 @@ impl<R: Real> SampledSpectrum<R> {
     /// Whether every value is zero.
     #[inline(always)]
     pub fn is_black(self) -> R::Mask {
-        let [a, b, c, d] = self.0.map(|v| v.eq(R::zero()));
+        let [a, b, c, d] = self.0.each(|v| v.eq(R::zero()));
         a & b & c & d
     }
 
     /// Whether all values are finite.
     #[inline(always)]
     pub fn is_finite(self) -> R::Mask {
-        let [a, b, c, d] = self.0.map(|v| v.abs().lt(R::splat(f32::INFINITY)));
+        let [a, b, c, d] = self.0.each(|v| v.abs().lt(R::splat(f32::INFINITY)));
         a & b & c & d
     }
 
@@ -291,21 +294,21 @@ impl<R: Real> SampledWavelengths<R> {
     /// Wavelengths sampled uniformly over `min..max`, from `u` in [0, 1).
     #[inline(always)]
     pub fn sample_uniform_in(u: R, min: f32, max: f32) -> Self {
-        let lambda = rotations(u).map(|u| R::splat(min) + u * R::splat(max - min));
+        let lambda = rotations(u).each(|u| R::splat(min) + u * R::splat(max - min));
         Self { lambda, pdf: [R::splat(1.0 / (max - min)); N] }
     }
 
     /// Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
     #[inline(always)]
     pub fn sample_visible(u: R) -> Self {
-        let lambda = rotations(u).map(sample_visible_wavelength);
-        Self { lambda, pdf: lambda.map(visible_wavelength_pdf) }
+        let lambda = rotations(u).each(sample_visible_wavelength);
+        Self { lambda, pdf: lambda.each(visible_wavelength_pdf) }
     }
 
     /// `a` where the mask is true, else `b`.
     #[inline(always)]
     pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
-        let pick = |a: [R; N], b: [R; N]| std::array::from_fn(|i| R::select(mask, a[i], b[i]));
+        let pick = |a, b| SampledSpectrum::select(mask, SampledSpectrum(a), SampledSpectrum(b)).0;
         Self { lambda: pick(a.lambda, b.lambda), pdf: pick(a.pdf, b.pdf) }
     }
 
@@ -334,7 +337,7 @@ impl<R: Real> SampledWavelengths<R> {
     /// Whether the secondary wavelengths are terminated.
     #[inline(always)]
     pub fn secondary_terminated(&self) -> R::Mask {
-        let [_, a, b, c] = self.pdf.map(|p| p.eq(R::zero()));
+        let [_, a, b, c] = self.pdf.each(|p| p.eq(R::zero()));
         a & b & c
     }
 }
@@ -349,11 +352,11 @@ impl<R> Index<usize> for SampledWavelengths<R> {
     }
 }
 
-/// `u` and its rotations by 1/N, 2/N, … within [0, 1).
+/// `u` and its rotations by 1/4, 2/4 and 3/4 within [0, 1).
 #[inline(always)]
 fn rotations<R: Real>(u: R) -> [R; N] {
-    std::array::from_fn(|i| {
-        let rotated = u + R::splat(i as f32 / N as f32);
+    [0.0, 0.25, 0.5, 0.75].each(|turn| {
+        let rotated = u + R::splat(turn);
         R::select(rotated.ge(R::one()), rotated - R::one(), rotated)
     })
 }

@@ -1,8 +1,8 @@
 //! The state of paths as structures of arrays.
 
-use lanes::{Int, MAX_LANES, Mask, Real};
+use lanes::{Int, Mask, Real};
 use math::{Vec3, Vector3};
-use spectrum::{N, SampledSpectrum, SampledWavelengths};
+use spectrum::{N, SampledSpectrum};
 
 /// Rows of columns, one for each lane.
 #[derive(Clone, Copy)]
@@ -24,12 +24,6 @@ impl<R: Real> Rows<R> {
             R::Int::from_fn(|lane| queue[lane.min(count - 1)])
         };
         Self { indices, active: R::Mask::from_bits(u32::MAX >> (32 - count)) }
-    }
-
-    /// Calls `f` with lane and row of each active lane.
-    #[inline(always)]
-    pub fn each(&self, f: impl FnMut(usize, usize)) {
-        self.each_of(self.active, f);
     }
 
     /// Calls `f` with lane and row of each lane of a mask.
@@ -73,11 +67,6 @@ impl<const C: usize> Columns<C> {
         self.0.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
     }
 
-    /// Removes all rows.
-    pub fn clear(&mut self) {
-        self.0.iter_mut().for_each(Vec::clear);
-    }
-
     /// Rows in lanes.
     #[inline(always)]
     pub fn get<R: Real>(&self, rows: Rows<R>) -> [R; C] {
@@ -112,10 +101,4 @@ impl Columns<N> {
     pub fn spectrum<R: Real>(&self, rows: Rows<R>) -> SampledSpectrum<R> {
         SampledSpectrum(self.get(rows))
     }
-}
-
-/// Reads one lane of a vector.
-#[inline(always)]
-pub(super) fn lane_of<R: Real>(v: Vector3<R>, lane: usize) -> Vector3 {
-    v.map(|x| x.to_array()[lane])
 }

@@ -7,8 +7,7 @@ use lanes::{Kernel, Mask, Real};
 use math::{Frame, Point3Error, Ray, Vec2, Vec3, offset_ray_origin};
 use sampling::sampler::Address;
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
-use scene::{Interfaces, Scene};
-use spectrum::{N, SampledSpectrum, SampledWavelengths, Spectrum};
+use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
 
 use super::columns::Rows;
 use super::lights::{self, Contexts};
@@ -166,9 +165,8 @@ impl ShadeDiffuse<'_, '_> {
 
 #[inline(always)]
 fn wavelengths<R: Real>(paths: &Paths, rows: Rows<R>) -> SampledWavelengths<R> {
-    let values = paths.wavelengths.get(rows);
-    let [lambda, pdf] = [0, N].map(|first| std::array::from_fn(|i| values[first + i]));
-    SampledWavelengths::new(lambda, pdf)
+    let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
+    SampledWavelengths::new([a, b, c, d], pdf)
 }
 
 /// Whether a path has more than one scattering event with the present one.

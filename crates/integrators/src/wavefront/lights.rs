@@ -1,6 +1,6 @@
 //! Samples of lights, one for each lane.
 
-use lanes::{MAX_LANES, Mask, Real};
+use lanes::{Each, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Vec2, Vec3, Vector3};
 use scene::light::{LightLiSample, LightSampleContext};
 use scene::{Interfaces, Scene};
@@ -62,21 +62,21 @@ pub(super) fn sample<R: Real>(
     active: R::Mask,
 ) -> LightLanes<R> {
     let inputs = Inputs {
-        context: [context.p.p, context.p.error, context.n, context.ns].map(arrays),
+        context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
         time: context.time.to_array(),
-        u: [u, u_light.x, u_light.y].map(R::to_array),
-        lambda: lambda.lambda().map(R::to_array),
-        lambda_pdf: lambda.pdf().0.map(R::to_array),
+        u: [u, u_light.x, u_light.y].each(R::to_array),
+        lambda: lambda.lambda().each(R::to_array),
+        lambda_pdf: lambda.pdf().0.each(R::to_array),
     };
     let mut values = Columns([[0.0; MAX_LANES]; 17]);
     let mut masks = [0; 4];
     each(active.bits(), |lane| inputs.sample(scene, direct, lane, &mut values, &mut masks));
     let number = |column: usize| R::load(&values.0[column]);
     let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
-    let [valid, is_delta, is_distant, passes] = masks.map(R::Mask::from_bits);
+    let [valid, is_delta, is_distant, passes] = masks.each(R::Mask::from_bits);
     LightLanes {
         valid,
-        l: SampledSpectrum(std::array::from_fn(number)),
+        l: SampledSpectrum([0, 1, 2, 3].each(number)),
         wi: vector(N),
         pdf: number(N + 3),
         p: Point3Error::new(vector(N + 4), vector(N + 7)),
@@ -131,7 +131,7 @@ impl Inputs {
 
 #[inline(always)]
 fn arrays<R: Real>(v: Vector3<R>) -> [[f32; MAX_LANES]; 3] {
-    v.to_array().map(R::to_array)
+    v.to_array().each(R::to_array)
 }
 
 /// Calls `f` with the index of each bit that is set.

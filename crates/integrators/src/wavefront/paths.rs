@@ -51,22 +51,6 @@ impl Paths {
         self.tile.len()
     }
 
-    /// Removes all paths.
-    pub fn clear(&mut self) {
-        let Self { tile, pixel: [x, y], weights, dimension, wavelengths, time, .. } = self;
-        [tile, x, y, dimension].into_iter().for_each(Vec::clear);
-        weights.clear();
-        wavelengths.clear();
-        time.clear();
-        [&mut self.eta_scale, &mut self.pdf].into_iter().for_each(Vec::clear);
-        [&mut self.origin, &mut self.direction].into_iter().for_each(Columns::clear);
-        [&mut self.beta, &mut self.l].into_iter().for_each(Columns::clear);
-        self.vertex.iter_mut().for_each(Columns::clear);
-        self.differentials.clear();
-        self.depth.clear();
-        self.rough_before.clear();
-    }
-
     /// Appends a path that starts with a sample of a pixel.
     pub fn push(&mut self, tile: u32, sample: &PixelSample, dimension: u32, with_differentials: bool) {
         self.tile.push(tile);

@@ -1,6 +1,6 @@
 //! What stages hand to each other.
 
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{Ray, Vec3};
 use spectrum::SampledSpectrum;
 
@@ -44,14 +44,14 @@ impl Queues {
     ) {
         use lanes::Mask;
         let Shadow { l, ray, t_max } = shadow;
-        let l = l.0.map(R::to_array);
-        let [o, d] = [ray.o, ray.d].map(|v| v.to_array().map(R::to_array));
+        let l = l.0.each(R::to_array);
+        let [o, d] = [ray.o, ray.d].each(|v| v.to_array().each(R::to_array));
         let (time, t_max, passes) = (ray.time.to_array(), t_max.to_array(), passes.bits());
         rows.each_of(mask, |lane, row| {
-            let vector = |v: &[[f32; lanes::MAX_LANES]; 3]| Vec3::from_array(v.map(|c| c[lane]));
+            let vector = |v: &[[f32; lanes::MAX_LANES]; 3]| Vec3::from_array(v.each(|c| c[lane]));
             self.shadows[(passes >> lane & 1) as usize].push(ShadowRay {
                 path: row as u32,
-                l: SampledSpectrum(l.map(|l| l[lane])),
+                l: SampledSpectrum(l.each(|l| l[lane])),
                 ray: Ray::new(vector(&o), vector(&d), time[lane]),
                 t_max: t_max[lane],
             });

@@ -194,9 +194,7 @@ impl<'a> Stages<'a> {
             return;
         }
         state.depth += 1;
-        if settings.regularize && self.paths.rough_before[row] {
-            bsdf.regularize();
-        }
+        bsdf.regularize(settings.regularize && self.paths.rough_before[row]);
         let context = light_context(&surface, bsdf.flags());
         let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
             let bsdf = Bsdf { bxdf, frame: bsdf.frame };

@@ -11,7 +11,7 @@ use super::address::Address;
 use super::randomize::Randomize;
 use crate::low_discrepancy::pascal_digits;
 use crate::mix_word;
-use lanes::Int;
+use lanes::{Each, Int};
 use math::Vec2;
 
 /// Separates the hash of scrambles from that of permutations.
@@ -118,7 +118,7 @@ impl ZSobol {
     #[inline(always)]
     fn code<I: Int>(&self, address: &Address<I>) -> [I; 2] {
         let kept = I::splat(if self.log2_side < 32 { (1 << self.log2_side) - 1 } else { u32::MAX });
-        let [x, y] = address.pixel.map(|x| x & kept);
+        let [x, y] = address.pixel.each(|x| x & kept);
         let interleaved = |x: I, y: I| spread(x) | spread(y).shl(1);
         let [low, high] = [interleaved(x, y), interleaved(x.shr(16), y.shr(16))];
         let log2 = self.log2_samples;
@@ -173,16 +173,18 @@ fn shifted_right<I: Int>([low, high]: [I; 2], shift: u32) -> [I; 2] {
 /// The lower 16 bits at the even places.
 #[inline(always)]
 fn spread<I: Int>(x: I) -> I {
-    let steps = [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)];
-    let low = x & I::splat(0xffff);
-    steps.into_iter().fold(low, |x, (shift, mask)| (x | x.shl(shift)) & I::splat(mask))
+    let mut spread = x & I::splat(0xffff);
+    for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
+        spread = (spread | spread.shl(shift)) & I::splat(mask);
+    }
+    spread
 }
 
 /// A base-4 digit, given by its two bits, under one of the 24 permutations. Permutations of four
 /// digits are the affine maps of two bits: a·low ⊕ b·high ⊕ c, where a and b differ and are not 0.
 #[inline(always)]
 fn permuted<I: Int>([low, high]: [I; 2], hash: I) -> I {
-    let [zero, one, three] = [0, 1, 3].map(I::splat);
+    let [zero, one, three] = [0, 1, 3].each(I::splat);
     // One of three by 16 bits of the hash.
     let a = hash.shr(16).wrapping_mul(three).shr(16).wrapping_add(one);
     let next = I::select(a.eq(three), one, a.wrapping_add(one));

@@ -6,14 +6,14 @@
 
 use super::disk::turn;
 use super::{invert_uniform_disk_concentric, sample_uniform_disk_concentric};
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{Vec2, Vec3, Vector3, safe_sqrt, spherical_direction};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
 /// A direction of the sphere.
 #[inline(always)]
 pub fn sample_uniform_sphere<R: Real>(u: Vec2<R>) -> Vector3<R> {
-    let [one, two] = [1.0, 2.0].map(R::splat);
+    let [one, two] = [1.0, 2.0].each(R::splat);
     let z = one - two * u.x;
     // 1 − z² without cancellation at the poles.
     spherical_direction(two * safe_sqrt(u.x * (one - u.x)), z, u.y * R::splat(TAU))
@@ -71,7 +71,7 @@ pub fn invert_cosine_hemisphere(w: Vector3) -> Vec2 {
 /// A direction whose angle with +z has at least the cosine `cos_theta_max`.
 #[inline(always)]
 pub fn sample_uniform_cone<R: Real>(u: Vec2<R>, cos_theta_max: R) -> Vector3<R> {
-    let [one, two] = [1.0, 2.0].map(R::splat);
+    let [one, two] = [1.0, 2.0].each(R::splat);
     // 1 − cos θ, which is accurate for narrow cones.
     let lost = u.x * (one - cos_theta_max);
     spherical_direction(safe_sqrt(lost * (two - lost)), one - lost, u.y * R::splat(TAU))

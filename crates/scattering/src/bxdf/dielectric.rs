@@ -19,7 +19,7 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_dielectric, reflect, refract};
-use lanes::{Mask, Real};
+use lanes::{Each, Mask, Real};
 use math::{Vec2, Vec3, Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 
@@ -56,7 +56,7 @@ impl<R: Real> Dielectric<R> {
         let eta = R::select(reflects, R::one(), eta);
         let (wm, valid) = (wi * eta + wo).normalize_masked();
         let wm = Vec3::select(wm.z.lt(R::zero()), -wm, wm);
-        let [o, i] = [wo, wi].map(|w| w.z.ne(R::zero()) & (wm.dot(w) * w.z).ge(R::zero()));
+        let [o, i] = [wo, wi].each(|w| w.z.ne(R::zero()) & (wm.dot(w) * w.z).ge(R::zero()));
         (Facet { wm, reflects, eta }, valid & o & i & !self.is_specular())
     }
 
