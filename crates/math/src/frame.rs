@@ -26,10 +26,9 @@ impl<R: Real> Frame<R> {
     /// to it; [`Frame::from_z`] where `x` is zero or parallel to `z`.
     #[inline(always)]
     pub fn from_z_and_x(z: Vector3<R>, x: Vector3<R>) -> Self {
-        let across = |x: Vector3<R>| x - z * z.dot(x);
-        let (x, valid) = across(x).normalize_masked();
+        let (x, valid) = (x - z * z.dot(x)).normalize_masked();
         // Where x is almost parallel to z, rounding errors along z remain: orthogonalise again.
-        let x = across(x).normalize();
+        let x = (x - z * z.dot(x)).normalize();
         let frame = Self { x, y: z.cross(x), z };
         if valid.all() { frame } else { Self::select(valid, frame, Self::from_z(z)) }
     }

@@ -5,7 +5,7 @@
 //! in constant memory by cycle walking [Kensler 2013]. [`mix_word`] and [`mix_quadruple`] compute
 //! with 32-bit words, in any number of lanes.
 
-use lanes::{Each, Int, Real};
+use lanes::{Int, Real};
 
 /// A bijection of 64-bit words under which each input bit changes about half of the output bits.
 #[inline]
@@ -46,14 +46,24 @@ pub fn mix_word<I: Int>(v: I) -> I {
 /// A bijection of quadruples of words whose images look independent: `pcg4d` of [Jarzynski 2020].
 #[inline(always)]
 pub fn mix_quadruple<I: Int>(words: [I; 4]) -> [I; 4] {
-    let step = |v: I| v.wrapping_mul(I::splat(1_664_525)).wrapping_add(I::splat(1_013_904_223));
-    let stir = |[x, y, z, w]: [I; 4]| {
-        let x = x.wrapping_add(y.wrapping_mul(w));
-        let y = y.wrapping_add(z.wrapping_mul(x));
-        let z = z.wrapping_add(x.wrapping_mul(y));
-        [x, y, z, w.wrapping_add(y.wrapping_mul(z))]
-    };
-    stir(stir(words.each(step)).each(|v| v ^ v.shr(16)))
+    let mut mixed = words;
+    for v in &mut mixed {
+        *v = v.wrapping_mul(I::splat(1_664_525)).wrapping_add(I::splat(1_013_904_223));
+    }
+    mixed = stir(mixed);
+    for v in &mut mixed {
+        *v = *v ^ v.shr(16);
+    }
+    stir(mixed)
+}
+
+/// Adds to each word the product of two others.
+#[inline(always)]
+fn stir<I: Int>([x, y, z, w]: [I; 4]) -> [I; 4] {
+    let x = x.wrapping_add(y.wrapping_mul(w));
+    let y = y.wrapping_add(z.wrapping_mul(x));
+    let z = z.wrapping_add(x.wrapping_mul(y));
+    [x, y, z, w.wrapping_add(y.wrapping_mul(z))]
 }
 
 /// 32 bits as a binary fraction in [0, 1).

@@ -79,15 +79,25 @@ impl Spectrum {
     /// The values at sampled wavelengths.
     #[inline(always)]
     pub fn sample<R: Real>(&self, lambda: &SampledWavelengths<R>) -> SampledSpectrum<R> {
-        let lambda = SampledSpectrum(*lambda.lambda());
+        // A loop instead of a closure: closures of this size would be called, not inlined.
+        macro_rules! each {
+            ($l:ident => $value:expr) => {{
+                let mut values = *lambda.lambda();
+                for value in &mut values {
+                    let $l = *value;
+                    *value = $value;
+                }
+                SampledSpectrum(values)
+            }};
+        }
         match self {
             Self::Constant(value) => SampledSpectrum::splat(R::splat(*value)),
-            Self::PiecewiseLinear(s) => lambda.map(|l| s.at(l)),
-            Self::DenselySampled(s) => lambda.map(|l| s.at(l)),
-            Self::Blackbody(s) => lambda.map(|l| map_lanes(l, |l| s.at(l))),
-            Self::RgbAlbedo(s) => lambda.map(|l| s.at(l)),
-            Self::RgbUnbounded(s) => lambda.map(|l| s.at(l)),
-            Self::RgbIlluminant(s) => lambda.map(|l| s.at(l)),
+            Self::PiecewiseLinear(s) => each!(l => s.at(l)),
+            Self::DenselySampled(s) => each!(l => s.at(l)),
+            Self::Blackbody(s) => each!(l => map_lanes(l, |l| s.at(l))),
+            Self::RgbAlbedo(s) => each!(l => s.at(l)),
+            Self::RgbUnbounded(s) => each!(l => s.at(l)),
+            Self::RgbIlluminant(s) => each!(l => s.at(l)),
         }
     }
 

@@ -103,14 +103,9 @@ impl ZSobol {
     #[inline(always)]
     fn point<I: Int>(&self, address: &Address<I>) -> [I; 2] {
         if 2 * self.log2_side + self.log2_samples > 32 {
-            let code = self.code(address);
-            let above = |shift| shifted_right(code, shift);
-            self.permuted_code(address, above, |[low, high]: [I; 2]| low ^ mix_word(high))
+            self.permuted_code::<I, true>(address)
         } else {
-            let [code, _] = self.code(address);
-            let above = |shift: u32| [if shift < 32 { code.shr(shift) } else { I::splat(0) }; 2];
-            let [low, _] = self.permuted_code(address, above, |[low, _]: [I; 2]| low);
-            [low, I::splat(0)]
+            self.permuted_code::<I, false>(address)
         }
     }
 
@@ -129,44 +124,53 @@ impl ZSobol {
         [low.shl(log2) | index, high.shl(log2) | low.shr(32 - log2)]
     }
 
-    /// Permutes the digits of a code. `above(shift)` is the code without its lowest bits, and
-    /// `word` a hash of it.
+    /// The permuted digits of the code, which has two words if it is `WIDE`.
     #[inline(always)]
-    fn permuted_code<I: Int>(
-        &self,
-        address: &Address<I>,
-        above: impl Fn(u32) -> [I; 2],
-        word: impl Fn([I; 2]) -> I,
-    ) -> [I; 2] {
+    fn permuted_code<I: Int, const WIDE: bool>(&self, address: &Address<I>) -> [I; 2] {
+        let code = self.code(address);
         let key = self.hash(address, 0);
-        let hash = |shift: u32| mix_word(word(above(shift)) ^ key.wrapping_add(I::splat(shift)));
         let one = I::splat(1);
         let (mut low, mut high) = (I::splat(0), I::splat(0));
         let odd = self.log2_samples & 1;
         let digits = self.log2_side.min(32) + self.log2_samples / 2;
         for place in (0..digits).rev() {
             let shift = 2 * place + odd;
-            let [bits, _] = above(shift);
-            high = high.shl(2) | low.shr(30);
-            low = low.shl(2) | permuted([bits & one, bits.shr(1) & one], hash(shift + 2));
+            let [bits, _] = shifted_right::<I, WIDE>(code, shift);
+            let hash = hash_of_digits::<I, WIDE>(code, shift + 2, key);
+            if WIDE {
+                high = high.shl(2) | low.shr(30);
+            }
+            low = low.shl(2) | permuted([bits & one, bits.shr(1) & one], hash);
         }
         if odd == 1 {
-            high = high.shl(1) | low.shr(31);
-            low = low.shl(1) | ((above(0)[0] ^ hash(1)) & one);
+            if WIDE {
+                high = high.shl(1) | low.shr(31);
+            }
+            low = low.shl(1) | ((code[0] ^ hash_of_digits::<I, WIDE>(code, 1, key)) & one);
         }
         [low, high]
     }
 }
 
-/// Two words shifted right together, by less than 64.
+/// A hash of the bits of a code without its lowest.
 #[inline(always)]
-fn shifted_right<I: Int>([low, high]: [I; 2], shift: u32) -> [I; 2] {
+fn hash_of_digits<I: Int, const WIDE: bool>(code: [I; 2], lowest: u32, key: I) -> I {
+    let [low, high] = shifted_right::<I, WIDE>(code, lowest);
+    let word = if WIDE { low ^ mix_word(high) } else { low };
+    mix_word(word ^ key.wrapping_add(I::splat(lowest)))
+}
+
+/// Two words shifted right together; only the low one counts unless they are `WIDE`.
+#[inline(always)]
+fn shifted_right<I: Int, const WIDE: bool>([low, high]: [I; 2], shift: u32) -> [I; 2] {
+    let zero = I::splat(0);
     match shift {
         0 => [low, high],
-        1..32 => [low.shr(shift) | high.shl(32 - shift), high.shr(shift)],
-        32 => [high, I::splat(0)],
-        33..64 => [high.shr(shift - 32), I::splat(0)],
-        _ => [I::splat(0); 2],
+        1..32 if WIDE => [low.shr(shift) | high.shl(32 - shift), high.shr(shift)],
+        1..32 => [low.shr(shift), zero],
+        32 => [high, zero],
+        33..64 => [high.shr(shift - 32), zero],
+        _ => [zero; 2],
     }
 }
 
