@@ -11,8 +11,8 @@
 
 mod bvh;
 mod curve;
+mod patch;
 mod placement;
-mod planar;
 mod shape;
 mod sphere_set;
 mod surface;
@@ -23,7 +23,7 @@ mod world;
 pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use lanes::InstructionSet;
-pub use planar::{Planar, PlanarLanes, PlanarPoints};
+pub use patch::{Patch, PatchLanes, PatchPoints};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
     MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,

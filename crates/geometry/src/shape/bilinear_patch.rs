@@ -11,8 +11,8 @@
 //! sampled by solid angle ([Ureña et al. 2013]) and warped to follow the cosine there.
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::patch::Patch;
 use crate::placement::{ROUNDING, rounded};
-use crate::planar::Planar;
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{
     Bounds3, DVec3, DirectionCone, Normal3, Point3, Point3Error, Ray, Transform, Vec2, Vec3, face_forward,
@@ -34,6 +34,8 @@ pub struct BilinearPatch {
     /// The error of a point computed from (u, v) before it is rounded to floats.
     error: DVec3,
     is_rectangle: bool,
+    /// Whether it has a normal at every corner, in floats.
+    is_regular: bool,
     flat: Option<Flat>,
     image: Option<Arc<PiecewiseConstant2d>>,
 }
@@ -95,6 +97,7 @@ impl BilinearPatch {
             flips: reverse_orientation != render_from_object.swaps_handedness(),
             error: DVec3::splat(p.iter().map(|p| p.abs().as_dvec3()).sum::<DVec3>().max_element() * ROUNDING),
             is_rectangle: is_rectangle(&p),
+            is_regular: is_regular(&p),
             flat: Flat::new(&p),
             image: None,
         }
@@ -185,13 +188,21 @@ impl BilinearPatch {
         surface
     }
 
-    /// As a flat primitive, if it is a parallelogram without normals and texture coordinates.
+    /// As plain data; `None` with normals or texture coordinates, or where it has no area.
     #[inline]
-    pub(crate) fn planar(&self) -> Option<Planar> {
-        let (Some(flat), None, None) = (&self.flat, &self.uv, &self.n) else { return None };
-        let sides = [flat.right.as_vec3().into(), flat.up.as_vec3().into()];
-        let (corner, dpdu) = (self.p[0], sides[0]);
-        Some(Planar { corner, sides, normals: None, dpdu, flips: self.flips })
+    pub(crate) fn patch(&self) -> Option<Patch> {
+        let [p00, p10, p01, p11] = self.p;
+        let sides = [p10 - p00, p01 - p00];
+        let twist = p11 - p10 - sides[1];
+        let is_plain = self.n.is_none() && self.uv.is_none();
+        (is_plain && self.is_regular).then_some(Patch {
+            corner: p00,
+            sides,
+            twist,
+            normals: None,
+            dpdu: sides[0],
+            flips: self.flips,
+        })
     }
 
     pub(super) fn area(&self) -> f32 {
@@ -330,6 +341,11 @@ impl BilinearPatch {
         let p = self.p.map(|p| p.as_dvec3());
         d_du(&p, uv).cross(d_dv(&p, uv))
     }
+}
+
+fn is_regular(p: &[Point3; 4]) -> bool {
+    let sides = [[0, 1, 2], [1, 0, 3], [2, 0, 3], [3, 1, 2]].map(|[c, a, b]| [p[a] - p[c], p[b] - p[c]]);
+    sides.iter().all(|[a, b]| a.cross(*b).length_squared() > f32::MIN_POSITIVE)
 }
 
 fn at(c: &[DVec3; 4], uv: Vec2) -> DVec3 {

@@ -5,8 +5,8 @@
 //! angle is too small or too near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::patch::{Patch, tangent};
 use crate::placement::{ROUNDING, rounded};
-use crate::planar::{Planar, tangent};
 use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
 use crate::watertight::Sheared;
 use math::{
@@ -75,16 +75,17 @@ impl Triangle {
         surface
     }
 
-    /// As a flat primitive; `None` with shading tangents, or without area.
+    /// As plain data; `None` with shading tangents, or without area.
     #[inline]
-    pub(crate) fn planar(&self) -> Option<Planar> {
+    pub(crate) fn patch(&self) -> Option<Patch> {
         let sides = self.sides(&self.p);
         let n = sides[0].cross(sides[1]);
         if self.s.is_some() || n.length_squared() < f32::MIN_POSITIVE {
             return None;
         }
         let dpdu = tangent(sides, &self.uv, n);
-        Some(Planar { corner: self.p[0], sides, normals: self.n, dpdu, flips: self.flips })
+        let twist = Vec3::ZERO;
+        Some(Patch { corner: self.p[0], sides, twist, normals: self.n, dpdu, flips: self.flips })
     }
 
     pub(super) fn area(&self) -> f32 {

@@ -23,7 +23,7 @@ mod triangle_block;
 mod triangle_numbering;
 mod triangles;
 
-use crate::planar::Planar;
+use crate::patch::Patch;
 use crate::shape::{Shape, ShapeHit};
 use crate::surface::SurfacePoint;
 use group::Group;
@@ -119,17 +119,17 @@ impl World {
         self.surface_within(hit.instance.ids(), ray, hit)
     }
 
-    /// The flat primitive of a hit: a triangle, or a parallelogram without texture coordinates, of
+    /// The primitive of a hit as plain data: a triangle, or a bilinear patch without attributes, of
     /// the top group.
     #[inline]
-    pub fn planar(&self, hit: &Hit) -> Option<Planar> {
+    pub fn patch(&self, hit: &Hit) -> Option<Patch> {
         if !hit.instance.is_top() {
             return None;
         }
         match self.geometry(hit.geometry) {
-            Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).planar(),
+            Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).patch(),
             Geometry::Shapes(shapes) => match &shapes[hit.primitive as usize] {
-                Shape::BilinearPatch(patch) => patch.planar(),
+                Shape::BilinearPatch(patch) => patch.patch(),
                 _ => None,
             },
             _ => None,

@@ -112,9 +112,16 @@ impl PixelSamples<'_> {
     ) -> PixelSample {
         sampler.start_pixel_sample(pixel, self.index, 0);
         let wavelength = sampler.get_1d();
-        let place = self.filter.sample(sampler.get_pixel_2d());
+        let place = sampler.get_pixel_2d();
         let (time, lens) = (sampler.get_1d(), sampler.get_2d());
         let shutter = shutter.copied().unwrap_or_else(|| ShutterSample::new(self.view, wavelength, time));
+        self.sample(&shutter, pixel, place, lens)
+    }
+
+    /// The sample of a pixel at the point `place` of the filter, in [0, 1)², and `lens` of the
+    /// lens.
+    pub fn sample(&self, shutter: &ShutterSample, pixel: [i32; 2], place: Vec2, lens: Vec2) -> PixelSample {
+        let place = self.filter.sample(place);
         let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
         let (film, lens, filter_weight) = if self.view.options.disable_pixel_jitter {
             (center, Vec2::splat(0.5), 1.0)

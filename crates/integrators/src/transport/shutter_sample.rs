@@ -1,5 +1,6 @@
 //! Wavelengths and time of a sample.
 
+use lanes::Real;
 use sampling::hash;
 use scene::View;
 use spectrum::SampledWavelengths;
@@ -16,9 +17,15 @@ pub(crate) struct ShutterSample {
 impl ShutterSample {
     /// From two sample values in [0, 1), unless the view's options fix them.
     pub fn new(view: &View, wavelength: f32, shutter: f32) -> Self {
-        let wavelength = if view.options.disable_wavelength_jitter { 0.5 } else { wavelength };
         let u = if view.options.disable_pixel_jitter { 0.5 } else { shutter };
-        Self { lambda: SampledWavelengths::sample_visible(wavelength), u }
+        Self { lambda: Self::wavelengths(view, wavelength), u }
+    }
+
+    /// The wavelengths from a sample value in [0, 1), unless the view's options fix them.
+    #[inline(always)]
+    pub fn wavelengths<R: Real>(view: &View, u: R) -> SampledWavelengths<R> {
+        let u = if view.options.disable_wavelength_jitter { R::splat(0.5) } else { u };
+        SampledWavelengths::sample_visible(u)
     }
 
     /// The sample that all paths of a pass share. Over the passes both are stratified by an

@@ -67,6 +67,11 @@ impl<const C: usize> Columns<C> {
         self.0.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
     }
 
+    /// Removes all rows.
+    pub fn clear(&mut self) {
+        self.0.iter_mut().for_each(Vec::clear);
+    }
+
     /// Rows in lanes.
     #[inline(always)]
     pub fn get<R: Real>(&self, rows: Rows<R>) -> [R; C] {

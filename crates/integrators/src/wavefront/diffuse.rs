@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_1_PI;
 
-use geometry::{Hit, PlanarLanes};
+use geometry::{Hit, PatchLanes};
 use lanes::{Kernel, Mask, Real};
 use math::{Frame, Point3Error, Ray, Vec2, Vec3, offset_ray_origin};
 use sampling::sampler::Address;
@@ -45,12 +45,12 @@ impl ShadeDiffuse<'_, '_> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, turns: &[u32], queue: &[u32]) {
         let rows = Rows::<R>::first(queue);
-        let mut planar = PlanarLanes::new();
+        let mut patches = PatchLanes::new();
         let mut left_out = 0;
         for (lane, (&turn, &row)) in turns.iter().zip(queue).enumerate() {
             let hit = self.hits[turn as usize].as_ref().expect("invariant: paths without hit have ended");
-            match self.pixels.scene.world().planar(hit) {
-                Some(primitive) => planar.set(lane, &primitive, hit.uv),
+            match self.pixels.scene.world().patch(hit) {
+                Some(primitive) => patches.set(lane, &primitive, hit.uv),
                 None => {
                     left_out |= 1 << lane;
                     self.queues.scalar.push((row, turn));
@@ -58,7 +58,7 @@ impl ShadeDiffuse<'_, '_> {
             }
         }
         let paths = &mut *self.paths;
-        let surface = planar.points::<R>();
+        let surface = patches.points::<R>();
         let direction = paths.direction.vector(rows);
         let wo = -direction.normalize();
         let time = R::gather(&paths.time, rows.indices);

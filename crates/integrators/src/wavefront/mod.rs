@@ -15,6 +15,7 @@
 //!
 //! Estimates and random numbers are those of [`Path`](crate::Path), whichever paths share a batch.
 
+mod begin;
 mod columns;
 mod diffuse;
 mod lights;
@@ -98,20 +99,21 @@ impl Integrator for Wavefront {
         let tiles = film.tiles_mut()?;
         let batches = BATCHES_PER_THREAD * rayon::current_num_threads();
         let batch_tiles = tiles.len().div_ceil(batches).clamp(1, BATCH_TILES);
-        let batch = |tiles: Vec<FilmTile>| {
-            let mut stages = Stages::new(Pass {
-                settings: &self.settings,
-                direct: &self.direct,
-                materials: &self.materials,
-                pixels: &pixels,
-                control,
-                instruction_set: self.instruction_set,
-            });
-            let done = stages.run(tiles);
-            control.count(&stages.stats);
-            done.map(|()| stages.stats)
+        let pass = Pass {
+            settings: &self.settings,
+            direct: &self.direct,
+            materials: &self.materials,
+            pixels: &pixels,
+            control,
+            instruction_set: self.instruction_set,
         };
-        let batches = tiles.into_par_iter().chunks(batch_tiles).map(batch);
+        let batch = |stages: &mut Stages, tiles: Vec<FilmTile>| {
+            let done = stages.run(tiles);
+            let stats = std::mem::take(&mut stages.stats);
+            control.count(&stats);
+            done.map(|()| stats)
+        };
+        let batches = tiles.into_par_iter().chunks(batch_tiles).map_init(|| Stages::new(pass), batch);
         Ok(batches.try_reduce(RayStats::default, |mut sum, stats| {
             sum += stats;
             Ok(sum)

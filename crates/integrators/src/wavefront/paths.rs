@@ -51,6 +51,20 @@ impl Paths {
         self.tile.len()
     }
 
+    /// Removes all paths.
+    pub fn clear(&mut self) {
+        let [x, y] = &mut self.pixel;
+        [&mut self.tile, x, y, &mut self.dimension, &mut self.depth].into_iter().for_each(Vec::clear);
+        [&mut self.time, &mut self.eta_scale, &mut self.pdf].into_iter().for_each(Vec::clear);
+        [&mut self.origin, &mut self.direction].into_iter().for_each(Columns::clear);
+        [&mut self.beta, &mut self.l].into_iter().for_each(Columns::clear);
+        self.vertex.iter_mut().for_each(Columns::clear);
+        self.weights.clear();
+        self.wavelengths.clear();
+        self.differentials.clear();
+        self.rough_before.clear();
+    }
+
     /// Appends a path that starts with a sample of a pixel.
     pub fn push(&mut self, tile: u32, sample: &PixelSample, dimension: u32, with_differentials: bool) {
         self.tile.push(tile);

@@ -11,6 +11,7 @@ use scene::Interfaces;
 use scene::material::MaterialId;
 use spectrum::SampledSpectrum;
 
+use super::begin::Begin;
 use super::diffuse::ShadeDiffuse;
 use super::materials::{LaneMaterial, LaneMaterials};
 use super::paths::Paths;
@@ -35,6 +36,7 @@ pub(super) struct Pass<'a> {
 pub(super) struct Stages<'a> {
     pass: Pass<'a>,
     sampler: Sampler,
+    positions: Vec<[i32; 2]>,
     paths: Paths,
     queues: Queues,
     /// The paths under way.
@@ -55,6 +57,7 @@ impl<'a> Stages<'a> {
         Self {
             pass,
             sampler: pass.pixels.sampler.clone(),
+            positions: Vec::new(),
             paths: Paths::default(),
             queues: Queues::default(),
             active: Vec::new(),
@@ -83,19 +86,21 @@ impl<'a> Stages<'a> {
 
     /// Starts a path for each pixel.
     fn begin(&mut self, tiles: &[FilmTile]) {
-        let PixelSamples { scene, view, .. } = *self.pass.pixels;
-        let with_differentials = scene.needs_footprints(view);
+        self.paths.clear();
+        self.active.clear();
+        let Pass { pixels, instruction_set, .. } = self.pass;
         for (tile, bounds) in tiles.iter().map(FilmTile::bounds).enumerate() {
-            for y in bounds.min[1]..bounds.max[1] {
-                for x in bounds.min[0]..bounds.max[0] {
-                    let sample = self.pass.pixels.begin(None, [x, y], &mut self.sampler);
-                    if sample.camera_ray.is_some() {
-                        self.active.push(self.paths.len() as u32);
-                    }
-                    let dimension = self.sampler.dimension();
-                    self.paths.push(tile as u32, &sample, dimension, with_differentials);
-                }
-            }
+            self.positions.clear();
+            let rows = bounds.min[1]..bounds.max[1];
+            self.positions.extend(rows.flat_map(|y| (bounds.min[0]..bounds.max[0]).map(move |x| [x, y])));
+            instruction_set.dispatch(Begin {
+                pixels,
+                tile: tile as u32,
+                positions: &self.positions,
+                paths: &mut self.paths,
+                active: &mut self.active,
+                with_differentials: pixels.scene.needs_footprints(pixels.view),
+            });
         }
     }
 

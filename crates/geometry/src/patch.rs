@@ -1,27 +1,29 @@
-//! Flat primitives as plain data, from which lanes compute surface points.
+//! Triangles and bilinear patches as plain data, from which lanes compute surface points.
 
 use crate::surface::any_tangents;
 use lanes::{MAX_LANES, Real};
 use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, face_forward, gamma};
 
-/// A flat primitive, p(a, b) = corner + a·sides[0] + b·sides[1].
+/// A triangle or a bilinear patch, p(a, b) = corner + a·sides[0] + b·sides[1] + a·b·twist.
 #[derive(Clone, Copy, Debug)]
-pub struct Planar {
+pub struct Patch {
     /// p(0, 0).
     pub corner: Point3,
     /// To p(1, 0) and to p(0, 1).
     pub sides: [Vector3; 2],
+    /// Zero where the primitive is a triangle or a parallelogram.
+    pub twist: Vector3,
     /// Shading normals at p(0, 0), p(1, 0) and p(0, 1).
     pub normals: Option<[Normal3; 3]>,
-    /// ∂p/∂u.
+    /// ∂p/∂u at p(0, 0).
     pub dpdu: Vector3,
     /// Whether the outside is not on the side of sides[0] × sides[1].
     pub flips: bool,
 }
 
-/// Points of flat primitives, one for each lane.
+/// Points of primitives, one for each lane.
 #[derive(Clone, Copy, Debug)]
-pub struct PlanarPoints<R: Real> {
+pub struct PatchPoints<R: Real> {
     /// Position, with a bound of its error.
     pub p: Point3Error<R>,
     /// Unit geometric normal, on the side of the shading normal.
@@ -32,15 +34,15 @@ pub struct PlanarPoints<R: Real> {
     pub dpdu: Vector3<R>,
 }
 
-/// Flat primitives, one for each lane, with the parameters of the hits.
+/// Primitives, one for each lane, with the parameters of the hits.
 #[derive(Clone, Debug)]
-pub struct PlanarLanes {
+pub struct PatchLanes {
     values: [[f32; MAX_LANES]; Self::COLUMNS],
 }
 
-impl PlanarLanes {
-    /// Corner, sides, normals, ∂p/∂u, parameters, and the signs of the normals.
-    const COLUMNS: usize = 3 + 6 + 9 + 3 + 2 + 1;
+impl PatchLanes {
+    /// Corner, sides, normals, ∂p/∂u, twist, parameters, and the signs of the normals.
+    const COLUMNS: usize = 3 + 6 + 9 + 3 + 3 + 2 + 1;
 
     /// No primitives.
     #[inline(always)]
@@ -50,35 +52,43 @@ impl PlanarLanes {
 
     /// Sets a lane.
     #[inline]
-    pub fn set(&mut self, lane: usize, planar: &Planar, uv: Vec2) {
-        let normals = planar.normals.unwrap_or([Vec3::ZERO; 3]);
-        let vectors = [&[planar.corner], &planar.sides[..], &normals[..], &[planar.dpdu]].concat();
-        let numbers = [uv.x, uv.y, if planar.flips { -1.0 } else { 1.0 }];
-        let values = vectors.iter().flat_map(|v| v.to_array()).chain(numbers);
-        self.values.iter_mut().zip(values).for_each(|(column, value)| column[lane] = value);
+    pub fn set(&mut self, lane: usize, patch: &Patch, uv: Vec2) {
+        let normals = patch.normals.unwrap_or([Vec3::ZERO; 3]);
+        let Patch { corner, sides, dpdu, twist, .. } = *patch;
+        let vectors = [corner, sides[0], sides[1], normals[0], normals[1], normals[2], dpdu, twist];
+        for (i, v) in vectors.into_iter().enumerate() {
+            for (axis, value) in v.to_array().into_iter().enumerate() {
+                self.values[3 * i + axis][lane] = value;
+            }
+        }
+        let sign = if patch.flips { -1.0 } else { 1.0 };
+        for (i, value) in [uv.x, uv.y, sign].into_iter().enumerate() {
+            self.values[3 * vectors.len() + i][lane] = value;
+        }
     }
 
     /// The points of the hits.
     #[inline(always)]
-    pub fn points<R: Real>(&self) -> PlanarPoints<R> {
+    pub fn points<R: Real>(&self) -> PatchPoints<R> {
         let number = |column: usize| R::load(&self.values[column]);
         let vector = |column: usize| Vec3::new(number(column), number(column + 1), number(column + 2));
         let (corner, sides) = (vector(0), [vector(3), vector(6)]);
         let normals = [vector(9), vector(12), vector(15)];
-        let (dpdu, [a, b], sign) = (vector(18), [number(21), number(22)], number(23));
-        let [along, across] = [sides[0] * a, sides[1] * b];
-        let error = (corner.abs() + along.abs() + across.abs()) * R::splat(gamma(4));
-        let p = Point3Error::new(corner + along + across, error);
-        let cross = sides[0].cross(sides[1]);
+        let (dpdu, twist) = (vector(18), vector(21));
+        let (a, b, sign) = (number(24), number(25), number(26));
+        let [along, across, twisted] = [sides[0] * a, sides[1] * b, twist * (a * b)];
+        let size = corner.abs() + along.abs() + across.abs() + twisted.abs();
+        let p = Point3Error::new(corner + along + across + twisted, size * R::splat(gamma(5)));
+        let cross = (sides[0] + twist * b).cross(sides[1] + twist * a);
         let n = cross.normalize() * sign;
         let mixed = normals[0] * (R::one() - a - b) + normals[1] * a + normals[2] * b;
         let (ns, is_smooth) = mixed.normalize_masked();
         let ns = Vec3::select(is_smooth, ns, n);
-        PlanarPoints { p, n: face_forward(n, ns), ns, dpdu }
+        PatchPoints { p, n: face_forward(n, ns), ns, dpdu: dpdu + twist * b }
     }
 }
 
-impl Default for PlanarLanes {
+impl Default for PatchLanes {
     fn default() -> Self {
         Self::new()
     }
