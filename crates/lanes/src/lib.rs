@@ -26,6 +26,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod baseline;
+mod function;
 mod instruction_set;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -39,6 +40,9 @@ mod single;
 mod sse2;
 
 pub use baseline::{first_equal, prefetch};
+pub use function::{
+    acos, asin, atan, atan2, cbrt, cos, exp, exp_m1, hypot, ln, ln_1p, pow, powi, sin, sin_cos,
+};
 pub use instruction_set::InstructionSet;
 pub use real::{Int, MAX_LANES, Mask, Real};
 pub use scalar::F32x1;

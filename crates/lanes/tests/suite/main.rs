@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code)]
 
+mod functions;
 mod numbers;
 mod reals;
 mod slices;
