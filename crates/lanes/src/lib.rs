@@ -38,6 +38,7 @@ mod simd;
 mod single;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+mod wide;
 
 pub use baseline::{first_equal, prefetch};
 pub use function::{
@@ -47,3 +48,4 @@ pub use instruction_set::InstructionSet;
 pub use real::{Int, MAX_LANES, Mask, Real};
 pub use scalar::F32x1;
 pub use simd::{Kernel, Simd, Task, Vector};
+pub use wide::Wide;

@@ -4,13 +4,13 @@ use super::{polynomial, round};
 use crate::{Int, MAX_LANES, Mask, Real};
 use std::f32::consts::FRAC_2_PI;
 
-/// sin x, of radians, with an error below 1.5 ulp. Angles from 800 on take longer.
+/// sin x, of radians, with an error below 1.6 ulp. Angles from 800 on take longer.
 #[inline(always)]
 pub fn sin<R: Real>(x: R) -> R {
     sin_cos(x).0
 }
 
-/// cos x, of radians, with an error below 1.5 ulp. Angles from 800 on take longer.
+/// cos x, of radians, with an error below 1.6 ulp. Angles from 800 on take longer.
 #[inline(always)]
 pub fn cos<R: Real>(x: R) -> R {
     sin_cos(x).1

@@ -7,3 +7,4 @@ mod numbers;
 mod reals;
 mod slices;
 mod vectors;
+mod wide;
