@@ -15,6 +15,8 @@ pub struct Patch {
     pub twist: Vector3,
     /// Shading normals at p(0, 0), p(1, 0) and p(0, 1).
     pub normals: Option<[Normal3; 3]>,
+    /// Texture coordinates at p(0, 0), p(1, 0) and p(0, 1).
+    pub uv: [Vec2; 3],
     /// ∂p/∂u at p(0, 0).
     pub dpdu: Vector3,
     /// Whether the outside is not on the side of sides[0] × sides[1].
@@ -30,7 +32,9 @@ pub struct PatchPoints<R: Real> {
     pub n: Normal3<R>,
     /// Unit shading normal.
     pub ns: Normal3<R>,
-    /// ∂p/∂u of the shading geometry.
+    /// Texture coordinates.
+    pub uv: Vec2<R>,
+    /// ∂p/∂u.
     pub dpdu: Vector3<R>,
 }
 
@@ -41,8 +45,9 @@ pub struct PatchLanes {
 }
 
 impl PatchLanes {
-    /// Corner, sides, normals, ∂p/∂u, twist, parameters, and the signs of the normals.
-    const COLUMNS: usize = 3 + 6 + 9 + 3 + 3 + 2 + 1;
+    /// Corner, sides, normals, ∂p/∂u, twist, parameters, the signs of the normals, texture
+    /// coordinates.
+    const COLUMNS: usize = 3 + 6 + 9 + 3 + 3 + 2 + 1 + 6;
 
     /// No primitives.
     #[inline(always)]
@@ -62,7 +67,9 @@ impl PatchLanes {
             }
         }
         let sign = if patch.flips { -1.0 } else { 1.0 };
-        for (i, value) in [uv.x, uv.y, sign].into_iter().enumerate() {
+        let [st0, st1, st2] = patch.uv;
+        let numbers = [uv.x, uv.y, sign, st0.x, st0.y, st1.x, st1.y, st2.x, st2.y];
+        for (i, value) in numbers.into_iter().enumerate() {
             self.values[3 * vectors.len() + i][lane] = value;
         }
     }
@@ -81,10 +88,13 @@ impl PatchLanes {
         let p = Point3Error::new(corner + along + across + twisted, size * R::splat(gamma(5)));
         let cross = (sides[0] + twist * b).cross(sides[1] + twist * a);
         let n = cross.normalize() * sign;
-        let mixed = normals[0] * (R::one() - a - b) + normals[1] * a + normals[2] * b;
+        let c = R::one() - a - b;
+        let texture = |first: usize| number(first) * c + number(first + 2) * a + number(first + 4) * b;
+        let uv = Vec2::new(texture(27), texture(28));
+        let mixed = normals[0] * c + normals[1] * a + normals[2] * b;
         let (ns, is_smooth) = mixed.normalize_masked();
         let ns = Vec3::select(is_smooth, ns, n);
-        PatchPoints { p, n: face_forward(n, ns), ns, dpdu: dpdu + twist * b }
+        PatchPoints { p, n: face_forward(n, ns), ns, uv, dpdu: dpdu + twist * b }
     }
 }
 

@@ -143,6 +143,12 @@ pub trait Real:
         values
     }
 
+    /// The number of a lane.
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f32 {
+        self.to_array()[lane]
+    }
+
     /// Zero in all lanes.
     #[inline(always)]
     fn zero() -> Self {
@@ -226,6 +232,9 @@ pub trait Int:
 
     /// The product modulo 2³².
     fn wrapping_mul(self, b: Self) -> Self;
+
+    /// The low and the high halves of the products of 64 bits.
+    fn mul_wide(self, b: Self) -> (Self, Self);
 
     /// Shifted left by `bits` < 32.
     fn shl(self, bits: u32) -> Self;

@@ -24,6 +24,11 @@ impl Real for f32 {
     }
 
     #[inline(always)]
+    fn lane(self, _: usize) -> f32 {
+        self
+    }
+
+    #[inline(always)]
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
     }
@@ -126,6 +131,12 @@ impl Int for u32 {
     #[inline(always)]
     fn wrapping_mul(self, b: Self) -> Self {
         u32::wrapping_mul(self, b)
+    }
+
+    #[inline(always)]
+    fn mul_wide(self, b: Self) -> (Self, Self) {
+        let product = u64::from(self) * u64::from(b);
+        (product as u32, (product >> 32) as u32)
     }
 
     #[inline(always)]

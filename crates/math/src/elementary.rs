@@ -1,5 +1,4 @@
-//! Elementary functions of each lane, by those of the standard library, so that their bits do not
-//! depend on the number of lanes.
+//! Functions of each lane by one for a single float.
 
 use lanes::Real;
 
@@ -8,22 +7,4 @@ use lanes::Real;
 pub fn map_lanes<R: Real>(x: R, f: impl Fn(f32) -> f32) -> R {
     let lanes = x.to_array();
     R::from_fn(|lane| f(lanes[lane]))
-}
-
-/// Sine and cosine of an angle in radians.
-#[inline(always)]
-pub fn sin_cos<R: Real>(x: R) -> (R, R) {
-    (map_lanes(x, f32::sin), map_lanes(x, f32::cos))
-}
-
-/// eˣ.
-#[inline(always)]
-pub fn exp<R: Real>(x: R) -> R {
-    map_lanes(x, f32::exp)
-}
-
-/// The natural logarithm.
-#[inline(always)]
-pub fn ln<R: Real>(x: R) -> R {
-    map_lanes(x, f32::ln)
 }

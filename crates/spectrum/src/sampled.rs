@@ -285,6 +285,12 @@ impl<R: Real> SampledWavelengths<R> {
         Self { lambda, pdf }
     }
 
+    /// The wavelengths of a lane.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> SampledWavelengths {
+        SampledWavelengths::new(self.lambda.each(|v| v.lane(lane)), self.pdf.each(|v| v.lane(lane)))
+    }
+
     /// Wavelengths sampled uniformly over the range, from `u` in [0, 1).
     #[inline(always)]
     pub fn sample_uniform(u: R) -> Self {

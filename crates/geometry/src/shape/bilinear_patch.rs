@@ -200,6 +200,7 @@ impl BilinearPatch {
             sides,
             twist,
             normals: None,
+            uv: [Vec2::ZERO, Vec2::X, Vec2::Y],
             dpdu: sides[0],
             flips: self.flips,
         })

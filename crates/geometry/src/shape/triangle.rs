@@ -85,7 +85,7 @@ impl Triangle {
         }
         let dpdu = tangent(sides, &self.uv, n);
         let twist = Vec3::ZERO;
-        Some(Patch { corner: self.p[0], sides, twist, normals: self.n, dpdu, flips: self.flips })
+        Some(Patch { corner: self.p[0], sides, twist, normals: self.n, uv: self.uv, dpdu, flips: self.flips })
     }
 
     pub(super) fn area(&self) -> f32 {

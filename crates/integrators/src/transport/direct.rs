@@ -8,6 +8,7 @@
 //! (`allow_incomplete`): their density is then zero there.
 
 use description::LightSamplerDesc;
+use lanes::Real;
 use math::{Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
 use sampling::Sampler;
 use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
@@ -218,8 +219,9 @@ pub(crate) fn on_its_side(context: LightSampleContext, wo: Vector3, flags: BxdfF
 
 /// The power heuristic for a sample of density `p` that another technique finds with density
 /// `other`.
-fn power_heuristic(p: f32, other: f32) -> f32 {
+#[inline(always)]
+pub(crate) fn power_heuristic<R: Real>(p: R, other: R) -> R {
     // Computed from the ratio, because squares of large densities overflow.
     let ratio = other / p;
-    if p == 0.0 { 0.0 } else { 1.0 / (1.0 + ratio * ratio) }
+    R::select(p.eq(R::zero()), R::zero(), R::one() / (R::one() + ratio * ratio))
 }

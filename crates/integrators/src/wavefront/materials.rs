@@ -1,57 +1,37 @@
 //! The materials that are shaded in lanes.
 
-use scene::material::{Material, MaterialId};
-use scene::texture::Code;
+use scene::material::{Material, MaterialEntry, MaterialId};
 use scene::{Scene, View};
 
-/// A material in the form that lanes need.
-#[derive(Clone, Debug)]
-pub(super) enum LaneMaterial {
-    /// Lambertian reflection with the same albedo everywhere.
-    Diffuse {
-        /// The albedo, in the table of spectra.
-        reflectance: u32,
-    },
-}
-
-/// The materials of a scene that are shaded in lanes; the others are shaded path by path.
+/// Which materials of a scene are shaded in lanes; the others are shaded path by path.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LaneMaterials(Vec<Option<LaneMaterial>>);
+pub(super) struct LaneMaterials(Vec<bool>);
 
 impl LaneMaterials {
+    /// Those of a view. Lanes have no footprints of pixels: where textures are filtered, only
+    /// diffuse surfaces of one colour need none.
     pub fn new(scene: &Scene, view: &View) -> Self {
-        if view.options.force_diffuse {
-            return Self::default();
-        }
-        let constant = |texture: scene::texture::SpectrumTextureId| {
-            let textures = scene.textures();
-            let program = textures.programs()[texture.0 as usize];
-            let operations = &textures.operations()[program.first as usize..][..program.length as usize];
-            match operations {
-                [only] => match only.code {
-                    Code::Spectrum(index) => Some(index),
-                    _ => None,
-                },
-                _ => None,
-            }
+        let (with_footprints, textures) = (scene.needs_footprints(view), scene.textures());
+        let is_in_lanes = |entry: &MaterialEntry| {
+            let is_plain = entry.normal_map.is_none() && !view.options.force_diffuse;
+            is_plain
+                && match &entry.material {
+                    Material::Diffuse(diffuse) => {
+                        !with_footprints || textures.constant_spectrum(diffuse.reflectance).is_some()
+                    }
+                    Material::DiffuseTransmission(_)
+                    | Material::Conductor(_)
+                    | Material::Dielectric(_)
+                    | Material::ThinDielectric(_) => !with_footprints,
+                    Material::Mix(_) | Material::Interface => false,
+                }
         };
-        let material = |entry: &scene::material::MaterialEntry| match &entry.material {
-            Material::Diffuse(diffuse) if entry.normal_map.is_none() => {
-                constant(diffuse.reflectance).map(|reflectance| LaneMaterial::Diffuse { reflectance })
-            }
-            _ => None,
-        };
-        Self(scene.materials().iter().map(material).collect())
+        Self(scene.materials().iter().map(is_in_lanes).collect())
     }
 
     /// Whether a material is shaded in lanes.
     #[inline]
-    pub fn is_in_lanes(&self, id: MaterialId) -> bool {
-        self.get(id).is_some()
-    }
-
-    /// A material in the form that lanes need.
-    pub fn get(&self, id: MaterialId) -> Option<&LaneMaterial> {
-        self.0.get(id.0 as usize)?.as_ref()
+    pub fn contains(&self, id: MaterialId) -> bool {
+        self.0[id.0 as usize]
     }
 }

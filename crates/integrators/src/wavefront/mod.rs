@@ -17,11 +17,11 @@
 
 mod begin;
 mod columns;
-mod diffuse;
 mod lights;
 mod materials;
 mod paths;
 mod queues;
+mod shade;
 mod stages;
 
 use description::PathDesc;

@@ -8,14 +8,14 @@ use math::Ray;
 use sampling::Sampler;
 use scattering::{Bsdf, each_bxdf};
 use scene::Interfaces;
-use scene::material::MaterialId;
+use scene::material::{Material, MaterialId, MaterialModel};
 use spectrum::SampledSpectrum;
 
 use super::begin::Begin;
-use super::diffuse::ShadeDiffuse;
-use super::materials::{LaneMaterial, LaneMaterials};
+use super::materials::LaneMaterials;
 use super::paths::Paths;
 use super::queues::{Queues, ShadowRay};
+use super::shade::Shade;
 use crate::transport::direct::{Connection, DirectLighting, light_context};
 use crate::transport::path_state::Scattered;
 use crate::transport::pixel_samples::{PixelSample, PixelSamples};
@@ -121,7 +121,7 @@ impl<'a> Stages<'a> {
             let entry = hit.as_ref().map(|hit| &scene.geometries()[hit.geometry.0 as usize]);
             match entry {
                 Some(entry)
-                    if self.pass.materials.is_in_lanes(entry.material)
+                    if self.pass.materials.contains(entry.material)
                         && entry.first_light.is_none()
                         && self.paths.depth[row as usize] < self.pass.settings.max_depth =>
                 {
@@ -153,20 +153,28 @@ impl<'a> Stages<'a> {
         self.rows.clear();
         self.turns.extend(group.iter().map(|&(_, turn, _)| turn));
         self.rows.extend(group.iter().map(|&(_, _, row)| row));
-        let Pass { direct, pixels, materials, instruction_set, .. } = self.pass;
-        match materials.get(material) {
-            Some(LaneMaterial::Diffuse { reflectance }) => instruction_set.dispatch(ShadeDiffuse {
-                pixels,
-                direct,
-                reflectance: &pixels.scene.textures().spectra()[*reflectance as usize],
-                hits: &self.hits,
-                turns: &self.turns,
-                rows: &self.rows,
-                paths: &mut self.paths,
-                queues: &mut self.queues,
-            }),
-            None => {}
+        match &self.pass.pixels.scene.materials()[material.0 as usize].material {
+            Material::Diffuse(material) => self.dispatch(material),
+            Material::DiffuseTransmission(material) => self.dispatch(material),
+            Material::Conductor(material) => self.dispatch(material),
+            Material::Dielectric(material) => self.dispatch(material),
+            Material::ThinDielectric(material) => self.dispatch(material),
+            Material::Mix(_) | Material::Interface => {
+                unreachable!("invariant: mixes and interfaces are not shaded in lanes")
+            }
         }
+    }
+
+    fn dispatch<M: MaterialModel>(&mut self, material: &'a M) {
+        self.pass.instruction_set.dispatch(Shade {
+            pass: self.pass,
+            material,
+            hits: &self.hits,
+            turns: &self.turns,
+            rows: &self.rows,
+            paths: &mut self.paths,
+            queues: &mut self.queues,
+        });
     }
 
     /// Shades one path.

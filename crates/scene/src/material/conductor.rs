@@ -4,8 +4,9 @@
 //! reflectance r at normal incidence, which is taken as η = 1, k = 2·√r/√(1 − r). Roughness,
 //! default 0.
 
-use super::Roughness;
+use super::{MaterialModel, Roughness};
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
+use lanes::Real;
 use scattering::Conductor;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -32,22 +33,26 @@ pub enum ConductorIndex {
     Reflectance(SpectrumTextureId),
 }
 
-impl ConductorMaterial {
-    #[inline]
-    pub(super) fn bxdf(
+impl MaterialModel for ConductorMaterial {
+    type Bxdf<R: Real> = Conductor<R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(
         &self,
         textures: &Textures,
-        context: &TextureContext,
-        lambda: &SampledWavelengths,
-    ) -> Conductor {
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> Conductor<R> {
         let (eta, k) = match self.index {
             ConductorIndex::Complex { eta, k } => {
                 (textures.spectrum(eta, context, lambda), textures.spectrum(k, context, lambda))
             }
             ConductorIndex::Reflectance(reflectance) => {
                 // Just below 1, where k would be infinite.
-                let r = textures.spectrum(reflectance, context, lambda).clamp(0.0, 0.9999);
-                (SampledSpectrum::ONE, r.map(|r| 2.0 * r.sqrt() / (1.0 - r).sqrt()))
+                let r = textures.spectrum(reflectance, context, lambda);
+                let r = r.clamp(R::zero(), R::splat(0.9999));
+                let k = r.map(|r| R::splat(2.0) * r.sqrt() / (R::one() - r).sqrt());
+                (SampledSpectrum::splat(R::one()), k)
             }
         };
         Conductor { distribution: self.roughness.distribution(textures, context), eta, k }

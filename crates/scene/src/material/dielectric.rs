@@ -3,8 +3,9 @@
 //! Parameters: index of refraction over wavelength, default 1.5; roughness, default 0. An index
 //! that varies with wavelength disperses: the path continues with one wavelength only.
 
-use super::{Roughness, dispersed_index};
+use super::{MaterialModel, Roughness, dispersed_index};
 use crate::texture::{TextureContext, Textures};
+use lanes::Real;
 use scattering::Dielectric;
 use spectrum::{SampledWavelengths, Spectrum};
 
@@ -17,14 +18,16 @@ pub struct DielectricMaterial {
     pub roughness: Roughness,
 }
 
-impl DielectricMaterial {
-    #[inline]
-    pub(super) fn bxdf(
+impl MaterialModel for DielectricMaterial {
+    type Bxdf<R: Real> = Dielectric<R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(
         &self,
         textures: &Textures,
-        context: &TextureContext,
-        lambda: &mut SampledWavelengths,
-    ) -> Dielectric {
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> Dielectric<R> {
         let eta = dispersed_index(&self.eta, lambda);
         Dielectric { eta, distribution: self.roughness.distribution(textures, context) }
     }

@@ -2,7 +2,9 @@
 //!
 //! Parameter: reflectance ρ in [0, 1], default 0.5.
 
+use super::MaterialModel;
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
+use lanes::Real;
 use scattering::Diffuse;
 use spectrum::SampledWavelengths;
 
@@ -13,14 +15,17 @@ pub struct DiffuseMaterial {
     pub reflectance: SpectrumTextureId,
 }
 
-impl DiffuseMaterial {
-    #[inline]
-    pub(super) fn bxdf(
+impl MaterialModel for DiffuseMaterial {
+    type Bxdf<R: Real> = Diffuse<R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(
         &self,
         textures: &Textures,
-        context: &TextureContext,
-        lambda: &SampledWavelengths,
-    ) -> Diffuse {
-        Diffuse { reflectance: textures.spectrum(self.reflectance, context, lambda).clamp(0.0, 1.0) }
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> Diffuse<R> {
+        let reflectance = textures.spectrum(self.reflectance, context, lambda);
+        Diffuse { reflectance: reflectance.clamp(R::zero(), R::one()) }
     }
 }

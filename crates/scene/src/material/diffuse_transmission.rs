@@ -3,7 +3,9 @@
 //! Parameters: reflectance and transmittance in [0, 1], default 0.25 each; a scale on both, default
 //! 1.
 
+use super::MaterialModel;
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
+use lanes::{Each, Real};
 use scattering::DiffuseTransmission;
 use spectrum::SampledWavelengths;
 
@@ -18,15 +20,20 @@ pub struct DiffuseTransmissionMaterial {
     pub scale: f32,
 }
 
-impl DiffuseTransmissionMaterial {
-    #[inline]
-    pub(super) fn bxdf(
+impl MaterialModel for DiffuseTransmissionMaterial {
+    type Bxdf<R: Real> = DiffuseTransmission<R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(
         &self,
         textures: &Textures,
-        context: &TextureContext,
-        lambda: &SampledWavelengths,
-    ) -> DiffuseTransmission {
-        let share = |texture| (textures.spectrum(texture, context, lambda) * self.scale).clamp(0.0, 1.0);
-        DiffuseTransmission { reflectance: share(self.reflectance), transmittance: share(self.transmittance) }
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> DiffuseTransmission<R> {
+        let [reflectance, transmittance] = [self.reflectance, self.transmittance].each(|texture| {
+            let share = textures.spectrum(texture, context, lambda) * R::splat(self.scale);
+            share.clamp(R::zero(), R::one())
+        });
+        DiffuseTransmission { reflectance, transmittance }
     }
 }

@@ -25,8 +25,24 @@ pub use thin_dielectric::ThinDielectricMaterial;
 
 use crate::interaction::SurfaceInteraction;
 use crate::texture::{TextureContext, Textures};
-use scattering::Bxdf;
+use lanes::Real;
+use scattering::{Bxdf, Scatter};
 use spectrum::{SampledWavelengths, Spectrum};
+
+/// The interface of a kind of material.
+pub trait MaterialModel {
+    /// Its BxDF.
+    type Bxdf<R: Real>: Scatter<R>;
+
+    /// The BxDF at a point, for each lane. Dispersive materials terminate the secondary
+    /// wavelengths.
+    fn bxdf<R: Real>(
+        &self,
+        textures: &Textures,
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> Self::Bxdf<R>;
+}
 
 /// One material.
 #[derive(Clone, Debug)]
@@ -62,7 +78,7 @@ impl Material {
             Self::DiffuseTransmission(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Conductor(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Dielectric(m) => Some(m.bxdf(textures, context, lambda).into()),
-            Self::ThinDielectric(m) => Some(m.bxdf(lambda).into()),
+            Self::ThinDielectric(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Mix(_) | Self::Interface => None,
         }
     }
@@ -108,11 +124,12 @@ fn chosen<'a>(
 
 /// An index of refraction at the first wavelength. Where it varies, the secondary wavelengths are
 /// terminated, as they would refract in other directions.
-fn dispersed_index(eta: &Spectrum, lambda: &mut SampledWavelengths) -> f32 {
+#[inline(always)]
+fn dispersed_index<R: Real>(eta: &Spectrum, lambda: &mut SampledWavelengths<R>) -> R {
     let index = eta.at(lambda.lambda()[0]);
     if !matches!(eta, Spectrum::Constant(_)) {
         lambda.terminate_secondary();
     }
     // A spectrum is zero outside of its table, where the index is unknown.
-    if index == 0.0 { 1.0 } else { index }
+    R::select(index.eq(R::zero()), R::one(), index)
 }

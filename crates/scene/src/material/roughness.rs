@@ -1,6 +1,7 @@
 //! Roughness of a microfacet surface: two textures and the meaning of their values.
 
 use crate::texture::{FloatTextureId, TextureContext, Textures};
+use lanes::Real;
 use scattering::TrowbridgeReitz;
 
 /// Roughness of a surface along its two tangents.
@@ -15,13 +16,19 @@ pub struct Roughness {
 }
 
 impl Roughness {
-    #[inline]
-    pub(super) fn distribution(&self, textures: &Textures, context: &TextureContext) -> TrowbridgeReitz {
-        let alpha = |texture| {
-            let roughness = textures.float(texture, context);
-            if self.remap { TrowbridgeReitz::roughness_to_alpha(roughness) } else { roughness }
-        };
-        let u = alpha(self.u);
-        TrowbridgeReitz::new(u, if self.v == self.u { u } else { alpha(self.v) })
+    #[inline(always)]
+    pub(super) fn distribution<R: Real>(
+        &self,
+        textures: &Textures,
+        context: &TextureContext<R>,
+    ) -> TrowbridgeReitz<R> {
+        let u = self.alpha(self.u, textures, context);
+        TrowbridgeReitz::new(u, if self.v == self.u { u } else { self.alpha(self.v, textures, context) })
+    }
+
+    #[inline(always)]
+    fn alpha<R: Real>(&self, id: FloatTextureId, textures: &Textures, context: &TextureContext<R>) -> R {
+        let roughness = textures.float(id, context);
+        if self.remap { TrowbridgeReitz::roughness_to_alpha(roughness) } else { roughness }
     }
 }

@@ -2,7 +2,9 @@
 //!
 //! Parameter: index of refraction over wavelength, default 1.5.
 
-use super::dispersed_index;
+use super::{MaterialModel, dispersed_index};
+use crate::texture::{TextureContext, Textures};
+use lanes::Real;
 use scattering::ThinDielectric;
 use spectrum::{SampledWavelengths, Spectrum};
 
@@ -13,9 +15,16 @@ pub struct ThinDielectricMaterial {
     pub eta: Spectrum,
 }
 
-impl ThinDielectricMaterial {
-    #[inline]
-    pub(super) fn bxdf(&self, lambda: &mut SampledWavelengths) -> ThinDielectric {
+impl MaterialModel for ThinDielectricMaterial {
+    type Bxdf<R: Real> = ThinDielectric<R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(
+        &self,
+        _textures: &Textures,
+        _context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> ThinDielectric<R> {
         ThinDielectric { eta: dispersed_index(&self.eta, lambda) }
     }
 }

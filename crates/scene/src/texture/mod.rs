@@ -33,6 +33,7 @@ mod spectrum_type;
 #[cfg(test)]
 mod tests;
 
+use lanes::Real;
 use math::{Normal3, Point2, Point3, Vector3};
 
 pub use compile::TextureCompiler;
@@ -50,27 +51,46 @@ pub struct FloatTextureId(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpectrumTextureId(pub u32);
 
-/// A point of a surface, and the footprint of a pixel there.
+/// A point of a surface, and the footprint of a pixel there, for each lane.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TextureContext {
+pub struct TextureContext<R = f32> {
     /// The point, in render space.
-    pub p: Point3,
+    pub p: Point3<R>,
     /// Derivative of the point by film x.
-    pub dpdx: Vector3,
+    pub dpdx: Vector3<R>,
     /// Derivative of the point by film y.
-    pub dpdy: Vector3,
+    pub dpdy: Vector3<R>,
     /// The surface normal, in render space.
-    pub n: Normal3,
+    pub n: Normal3<R>,
     /// The surface parameters (u, v).
-    pub uv: Point2,
+    pub uv: Point2<R>,
     /// ∂u/∂x.
-    pub dudx: f32,
+    pub dudx: R,
     /// ∂u/∂y.
-    pub dudy: f32,
+    pub dudy: R,
     /// ∂v/∂x.
-    pub dvdx: f32,
+    pub dvdx: R,
     /// ∂v/∂y.
-    pub dvdy: f32,
+    pub dvdy: R,
     /// Index of the mesh face, for textures that are stored by face.
     pub face_index: u32,
+}
+
+impl<R: Real> TextureContext<R> {
+    /// The context of a lane.
+    #[inline(always)]
+    pub(crate) fn lane(&self, lane: usize) -> TextureContext {
+        TextureContext {
+            p: self.p.map(|x| x.lane(lane)),
+            dpdx: self.dpdx.map(|x| x.lane(lane)),
+            dpdy: self.dpdy.map(|x| x.lane(lane)),
+            n: self.n.map(|x| x.lane(lane)),
+            uv: self.uv.map(|x| x.lane(lane)),
+            dudx: self.dudx.lane(lane),
+            dudy: self.dudy.lane(lane),
+            dvdx: self.dvdx.lane(lane),
+            dvdy: self.dvdy.lane(lane),
+            face_index: self.face_index,
+        }
+    }
 }

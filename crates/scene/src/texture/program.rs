@@ -14,7 +14,8 @@ use super::{
     bilerp, checkerboard,
 };
 use image::Pyramid;
-use spectrum::{SampledSpectrum, SampledWavelengths, Spectrum};
+use lanes::{Each, MAX_LANES, Real};
+use spectrum::{N, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::ops::{Add, Mul};
 use std::sync::Arc;
 
@@ -150,6 +151,7 @@ impl Textures {
     }
 
     /// The value of a texture that is the same everywhere.
+    #[inline]
     pub fn constant(&self, id: FloatTextureId) -> Option<f32> {
         match self.program(id.0) {
             [Operation { code: Code::Number(value), .. }] => Some(*value),
@@ -158,22 +160,55 @@ impl Textures {
     }
 
     /// The number at a point.
-    pub fn float(&self, id: FloatTextureId, ctx: &TextureContext) -> f32 {
+    #[inline(always)]
+    pub fn float<R: Real>(&self, id: FloatTextureId, ctx: &TextureContext<R>) -> R {
+        match self.constant(id) {
+            Some(value) => R::splat(value),
+            None => R::from_fn(|lane| self.varying_float(id, &ctx.lane(lane))),
+        }
+    }
+
+    /// The spectrum at a point.
+    #[inline(always)]
+    pub fn spectrum<R: Real>(
+        &self,
+        id: SpectrumTextureId,
+        ctx: &TextureContext<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> SampledSpectrum<R> {
+        if let Some(constant) = self.constant_spectrum(id) {
+            return constant.sample(lambda);
+        }
+        let mut values = [[0.0; MAX_LANES]; N];
+        for lane in 0..R::LANES {
+            let spectrum = self.varying_spectrum(id, &ctx.lane(lane), &lambda.lane(lane));
+            for (values, value) in values.iter_mut().zip(spectrum.0) {
+                values[lane] = value;
+            }
+        }
+        SampledSpectrum(values.each(|values| R::load(&values)))
+    }
+
+    /// The spectrum of a texture that is the same everywhere.
+    #[inline]
+    pub fn constant_spectrum(&self, id: SpectrumTextureId) -> Option<&Spectrum> {
+        match self.program(id.0) {
+            [Operation { code: Code::Spectrum(index), .. }] => Some(&self.spectra[*index as usize]),
+            _ => None,
+        }
+    }
+
+    fn varying_float(&self, id: FloatTextureId, ctx: &TextureContext) -> f32 {
         // A program of numbers has no operations on spectra.
         self.evaluate(id.0, ctx, |value| value, |value| value, |_| 0.0)
     }
 
-    /// The spectrum at a point.
-    pub fn spectrum(
+    fn varying_spectrum(
         &self,
         id: SpectrumTextureId,
         ctx: &TextureContext,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        // The common case: a constant.
-        if let [Operation { code: Code::Spectrum(index), .. }] = self.program(id.0) {
-            return self.spectra[*index as usize].sample(lambda);
-        }
         let spectral = |code| match code {
             Code::Spectrum(index) => self.spectra[index as usize].sample(lambda),
             Code::SpectrumImage(index) => {

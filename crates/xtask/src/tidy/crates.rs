@@ -16,7 +16,7 @@ const EDGES: [(&str, &[&str]); 17] = [
     ("scattering", &["lanes", "math", "spectrum", "sampling"]),
     ("description", &["math", "spectrum", "image"]),
     ("import", &["math", "spectrum", "image", "description"]),
-    ("scene", &["math", "spectrum", "sampling", "image", "geometry", "scattering", "description"]),
+    ("scene", &["lanes", "math", "spectrum", "sampling", "image", "geometry", "scattering", "description"]),
     ("film", &["math", "spectrum", "sampling", "image", "description"]),
     (
         "integrators",

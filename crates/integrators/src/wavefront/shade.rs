@@ -1,0 +1,258 @@
+//! Shading in lanes: next-event estimation, a sample of the BSDF and Russian roulette.
+
+use geometry::{Hit, PatchLanes, PatchPoints};
+use lanes::{Int, Kernel, Mask, Real};
+use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
+use sampling::sampler::Address;
+use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
+use scene::material::MaterialModel;
+use scene::texture::TextureContext;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::columns::Rows;
+use super::lights::{self, Contexts, LightLanes};
+use super::paths::Paths;
+use super::queues::{Queues, Shadow};
+use super::stages::Pass;
+use crate::transport::direct::power_heuristic;
+
+/// Shades hits of one material.
+pub(super) struct Shade<'a, 'b, M> {
+    pub pass: Pass<'a>,
+    pub material: &'a M,
+    pub hits: &'b [Option<Hit>],
+    /// Indices of hits, and their paths.
+    pub turns: &'b [u32],
+    pub rows: &'b [u32],
+    pub paths: &'b mut Paths,
+    pub queues: &'b mut Queues,
+}
+
+impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(mut self) {
+        for (turns, rows) in self.turns.chunks(R::LANES).zip(self.rows.chunks(R::LANES)) {
+            self.shade::<R>(turns, rows);
+        }
+    }
+}
+
+/// The vertices of the paths in the lanes.
+struct Vertices<R: Real> {
+    rows: Rows<R>,
+    /// The lanes that have a vertex.
+    active: R::Mask,
+    surface: PatchPoints<R>,
+    wo: Vector3<R>,
+    time: R,
+    lambda: SampledWavelengths<R>,
+    /// Path throughput before the vertex.
+    beta: SampledSpectrum<R>,
+    address: Address<R::Int>,
+}
+
+impl<M: MaterialModel> Shade<'_, '_, M> {
+    #[inline(always)]
+    fn shade<R: Real>(&mut self, turns: &[u32], queue: &[u32]) {
+        let mut vertices = self.vertices::<R>(turns, queue);
+        let PatchPoints { p, n, ns, uv, dpdu } = vertices.surface;
+        let none = Vec3::splat(R::zero());
+        let zero = R::zero();
+        let context = TextureContext {
+            p: p.p,
+            n,
+            uv,
+            dpdx: none,
+            dpdy: none,
+            dudx: zero,
+            dudy: zero,
+            dvdx: zero,
+            dvdy: zero,
+            face_index: 0,
+        };
+        let before = vertices.lambda;
+        let textures = self.pass.pixels.scene.textures();
+        let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
+        self.keep_wavelengths(&vertices, &before);
+        let mut bsdf = Bsdf::new(ns, dpdu, bxdf);
+        if self.pass.settings.regularize {
+            let rough: u32 = queue.iter().enumerate().map(|(lane, &row)| self.rough(row) << lane).sum();
+            bsdf.regularize(R::Mask::from_bits(rough));
+        }
+        let flags = bsdf.flags();
+        let contexts = contexts(&vertices, flags);
+        self.connect(&mut vertices, &bsdf, &contexts, flags.is_non_specular());
+        self.scatter(&mut vertices, &bsdf, &contexts);
+    }
+
+    fn rough(&self, row: u32) -> u32 {
+        self.paths.rough_before[row as usize].into()
+    }
+
+    #[inline(always)]
+    fn vertices<R: Real>(&mut self, turns: &[u32], queue: &[u32]) -> Vertices<R> {
+        let rows = Rows::<R>::first(queue);
+        let mut patches = PatchLanes::new();
+        let mut left_out = 0;
+        for (lane, (&turn, &row)) in turns.iter().zip(queue).enumerate() {
+            let hit = self.hits[turn as usize].as_ref().expect("invariant: paths without hit have ended");
+            match self.pass.pixels.scene.world().patch(hit) {
+                Some(patch) => patches.set(lane, &patch, hit.uv),
+                None => {
+                    left_out |= 1 << lane;
+                    self.queues.scalar.push((row, turn));
+                }
+            }
+        }
+        let paths = &*self.paths;
+        let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
+        let [x, y] = &paths.pixel;
+        Vertices {
+            rows,
+            active: rows.active & !R::Mask::from_bits(left_out),
+            surface: patches.points::<R>(),
+            wo: -paths.direction.vector(rows).normalize(),
+            time: R::gather(&paths.time, rows.indices),
+            lambda: SampledWavelengths::new([a, b, c, d], pdf),
+            beta: paths.beta.spectrum(rows),
+            address: Address {
+                pixel: [R::Int::gather(x, rows.indices), R::Int::gather(y, rows.indices)],
+                index: self.pass.pixels.index,
+                dimension: R::Int::gather(&paths.dimension, rows.indices),
+            },
+        }
+    }
+
+    /// Stores wavelengths whose densities the material has changed.
+    #[inline(always)]
+    fn keep_wavelengths<R: Real>(&mut self, vertices: &Vertices<R>, before: &SampledWavelengths<R>) {
+        let changed = vertices.lambda.pdf()[0].ne(before.pdf()[0]) & vertices.active;
+        if changed.any() {
+            vertices.rows.each_of(changed, |lane, row| {
+                self.paths.set_lambda(row, &vertices.lambda.lane(lane));
+            });
+        }
+    }
+
+    /// Next-event estimation of the lanes that are not specular.
+    #[inline(always)]
+    fn connect<R: Real, B: Scatter<R>>(
+        &mut self,
+        vertices: &mut Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &Contexts<R>,
+        is_non_specular: R::Mask,
+    ) {
+        let samples = vertices.active & is_non_specular;
+        if !samples.any() {
+            return;
+        }
+        let mut address = vertices.address;
+        let (u, u_light) = (self.draw_1d::<R>(&mut address), self.draw_2d::<R>(&mut address));
+        vertices.address.dimension =
+            R::Int::select(is_non_specular, address.dimension, vertices.address.dimension);
+        let source = (self.pass.pixels.scene, self.pass.direct);
+        let light = lights::sample(source, contexts, u, u_light, &vertices.lambda, samples);
+        let LightLanes { valid, l, wi, pdf, .. } = light;
+        let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
+        let f = bsdf.f(wo, wi, TransportMode::Radiance);
+        let scattered = f * l * wi.dot(ns).abs();
+        let p_b = bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
+        let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
+        let l = vertices.beta * (scattered * (weight / pdf));
+        let lit = valid & !scattered.is_black();
+        let target = Ray::between(p, n, light.p, light.n, time);
+        let away = offset_ray_origin(p, n, wi);
+        let o = Vec3::select(light.is_distant, away, target.o);
+        let d = Vec3::select(light.is_distant, wi, target.d);
+        let t_max = R::select(light.is_distant, R::splat(f32::INFINITY), R::splat(Ray::SHADOW_END));
+        let shadow = Shadow { l, ray: Ray::new(o, d, time), t_max };
+        self.queues.push_shadows(vertices.rows, lit, light.passes, &shadow);
+    }
+
+    /// Continues the paths along a direction of the BSDF, unless Russian roulette ends them.
+    #[inline(always)]
+    fn scatter<R: Real, B: Scatter<R>>(
+        &mut self,
+        vertices: &mut Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &Contexts<R>,
+    ) {
+        let (uc, u) = (self.draw_1d::<R>(&mut vertices.address), self.draw_2d::<R>(&mut vertices.address));
+        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
+        let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
+        let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
+        let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
+        let eta_scale = R::gather(&self.paths.eta_scale, rows.indices);
+        let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
+        let valid = valid & vertices.active;
+
+        // The first scattering event is never the last by roulette.
+        let is_first = R::Int::gather(&self.paths.depth, rows.indices).eq(R::Int::splat(0));
+        let probability = (beta * eta_scale).max_component();
+        let plays = !is_first & probability.lt(R::one()) & valid;
+        let draws = plays & probability.gt(R::zero());
+        let mut survives = valid & !plays;
+        if draws.any() {
+            let u = self.pass.pixels.sampler.at_1d::<R>(&vertices.address);
+            survives = survives | (draws & u.lt(probability));
+        }
+        let beta = SampledSpectrum::select(plays, beta / probability, beta);
+
+        let paths = &mut *self.paths;
+        paths.beta.set(rows, survives, beta.0);
+        paths.origin.set(rows, survives, offset_ray_origin(p, n, wi).to_array());
+        paths.direction.set(rows, survives, wi.to_array());
+        let vectors = [contexts.p.p, contexts.p.error, contexts.n, contexts.ns];
+        for (columns, v) in paths.vertex.iter_mut().zip(vectors) {
+            columns.set(rows, survives, v.to_array());
+        }
+        let is_specular = flags.is_specular();
+        let pdf = R::select(is_specular, R::zero(), pdf).to_array();
+        let (eta_scale, dimension) = (eta_scale.to_array(), vertices.address.dimension.to_array());
+        let (is_specular, draws) = (is_specular.bits(), draws.bits());
+        rows.each_of(survives, |lane, row| {
+            paths.pdf[row] = pdf[lane];
+            paths.eta_scale[row] = eta_scale[lane];
+            paths.depth[row] += 1;
+            paths.rough_before[row] |= is_specular >> lane & 1 == 0;
+            paths.dimension[row] = dimension[lane] + (draws >> lane & 1);
+            if let Some(kept) = paths.differentials.get_mut(row) {
+                *kept = None;
+            }
+            self.queues.next.push(row as u32);
+        });
+    }
+
+    #[inline(always)]
+    fn draw_1d<R: Real>(&self, address: &mut Address<R::Int>) -> R {
+        let u = self.pass.pixels.sampler.at_1d(address);
+        address.skip(1);
+        u
+    }
+
+    #[inline(always)]
+    fn draw_2d<R: Real>(&self, address: &mut Address<R::Int>) -> Vec2<R> {
+        let [x, y] = self.pass.pixels.sampler.at_2d(address);
+        address.skip(2);
+        Vec2::new(x, y)
+    }
+}
+
+/// The contexts of light sampling: as in `transport/direct.rs`, a point that scatters to one side
+/// only is offset to the side of `wo`.
+#[inline(always)]
+fn contexts<R: Real>(vertices: &Vertices<R>, flags: BxdfFlags<R>) -> Contexts<R> {
+    let PatchPoints { p, n, ns, .. } = vertices.surface;
+    let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
+    let one_sided = reflects ^ transmits;
+    let side: Normal3<R> = Vec3::select(reflects, vertices.wo, -vertices.wo);
+    let moved = Point3Error::exact(offset_ray_origin(p, n, side));
+    let p = Point3Error::new(
+        Vec3::select(one_sided, moved.p, p.p),
+        Vec3::select(one_sided, moved.error, p.error),
+    );
+    Contexts { p, n, ns, time: vertices.time }
+}
