@@ -74,23 +74,35 @@ impl PatchLanes {
         }
     }
 
+    #[inline(always)]
+    fn number<R: Real>(&self, column: usize) -> R {
+        R::load(&self.values[column])
+    }
+
+    #[inline(always)]
+    fn pair<R: Real>(&self, first: usize) -> Vec2<R> {
+        Vec2::new(self.number(first), self.number(first + 1))
+    }
+
+    #[inline(always)]
+    fn vector<R: Real>(&self, first: usize) -> Vector3<R> {
+        Vec3::new(self.number(first), self.number(first + 1), self.number(first + 2))
+    }
+
     /// The points of the hits.
     #[inline(always)]
     pub fn points<R: Real>(&self) -> PatchPoints<R> {
-        let number = |column: usize| R::load(&self.values[column]);
-        let vector = |column: usize| Vec3::new(number(column), number(column + 1), number(column + 2));
-        let (corner, sides) = (vector(0), [vector(3), vector(6)]);
-        let normals = [vector(9), vector(12), vector(15)];
-        let (dpdu, twist) = (vector(18), vector(21));
-        let (a, b, sign) = (number(24), number(25), number(26));
+        let (corner, sides) = (self.vector::<R>(0), [self.vector::<R>(3), self.vector::<R>(6)]);
+        let normals = [self.vector::<R>(9), self.vector::<R>(12), self.vector::<R>(15)];
+        let (dpdu, twist) = (self.vector::<R>(18), self.vector::<R>(21));
+        let (a, b, sign) = (self.number::<R>(24), self.number::<R>(25), self.number::<R>(26));
         let [along, across, twisted] = [sides[0] * a, sides[1] * b, twist * (a * b)];
         let size = corner.abs() + along.abs() + across.abs() + twisted.abs();
         let p = Point3Error::new(corner + along + across + twisted, size * R::splat(gamma(5)));
         let cross = (sides[0] + twist * b).cross(sides[1] + twist * a);
         let n = cross.normalize() * sign;
         let c = R::one() - a - b;
-        let texture = |first: usize| number(first) * c + number(first + 2) * a + number(first + 4) * b;
-        let uv = Vec2::new(texture(27), texture(28));
+        let uv = self.pair(27) * c + self.pair(29) * a + self.pair(31) * b;
         let mixed = normals[0] * c + normals[1] * a + normals[2] * b;
         let (ns, is_smooth) = mixed.normalize_masked();
         let ns = Vec3::select(is_smooth, ns, n);

@@ -20,7 +20,7 @@
 
 use lanes::{Each, Real};
 use math::{Normal3, Vector3, safe_sqrt, sqr};
-use spectrum::SampledSpectrum;
+use spectrum::{N, SampledSpectrum};
 
 /// The mirror image of `wo` about `n`; both point away from the surface.
 #[inline(always)]
@@ -91,7 +91,11 @@ pub fn fr_conductor<R: Real>(
     eta: SampledSpectrum<R>,
     k: SampledSpectrum<R>,
 ) -> SampledSpectrum<R> {
-    eta.zip(k, |eta, k| fr_complex(cos_theta_i, eta, k))
+    let mut reflected = eta;
+    for i in 0..N {
+        reflected[i] = fr_complex(cos_theta_i, eta[i], k[i]);
+    }
+    reflected
 }
 
 #[cfg(test)]

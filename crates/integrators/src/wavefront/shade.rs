@@ -15,6 +15,7 @@ use super::paths::Paths;
 use super::queues::{Queues, Shadow};
 use super::stages::Pass;
 use crate::transport::direct::power_heuristic;
+use crate::transport::roulette::CERTAIN;
 
 /// Shades hits of one material.
 pub(super) struct Shade<'a, 'b, M> {
@@ -192,7 +193,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         // The first scattering event is never the last by roulette.
         let is_first = R::Int::gather(&self.paths.depth, rows.indices).eq(R::Int::splat(0));
         let probability = (beta * eta_scale).max_component();
-        let plays = !is_first & probability.lt(R::one()) & valid;
+        let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
         let draws = plays & probability.gt(R::zero());
         let mut survives = valid & !plays;
         if draws.any() {

@@ -56,8 +56,8 @@ impl<R: Real> Dielectric<R> {
         let eta = R::select(reflects, R::one(), eta);
         let (wm, valid) = (wi * eta + wo).normalize_masked();
         let wm = Vec3::select(wm.z.lt(R::zero()), -wm, wm);
-        let [o, i] = [wo, wi].each(|w| w.z.ne(R::zero()) & (wm.dot(w) * w.z).ge(R::zero()));
-        (Facet { wm, reflects, eta }, valid & o & i & !self.is_specular())
+        let valid = valid & faces(wm, wo) & faces(wm, wi) & !self.is_specular();
+        (Facet { wm, reflects, eta }, valid)
     }
 
     /// The value at `facet`, which reflects the share `fresnel`.
@@ -217,3 +217,9 @@ impl<R: Real> Scatter<R> for Dielectric<R> {
         self.distribution.regularize(mask);
     }
 }
+/// Whether `w` lies on the same side of a microfacet as of the surface.
+#[inline(always)]
+fn faces<R: Real>(wm: Vector3<R>, w: Vector3<R>) -> R::Mask {
+    w.z.ne(R::zero()) & (wm.dot(w) * w.z).ge(R::zero())
+}
+
