@@ -87,13 +87,15 @@ impl<R: Real> SampledSpectrum<R> {
     /// Applies `f` to each value.
     #[inline(always)]
     pub fn map(self, mut f: impl FnMut(R) -> R) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i])))
+        let [a, b, c, d] = self.0;
+        Self([f(a), f(b), f(c), f(d)])
     }
 
     /// Applies `f` to each pair of values.
     #[inline(always)]
     pub fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+        let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
+        Self([f(a, p), f(b, q), f(c, r), f(d, s)])
     }
 
     /// The largest value.
