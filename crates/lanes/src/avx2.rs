@@ -93,6 +93,7 @@ int! {
     load(from) = _mm256_loadu_si256(from.cast());
     store(to, a) = _mm256_storeu_si256(to.cast(), a);
     select(mask, a, b) = _mm256_blendv_epi8(b, a, mask);
+    mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = _mm256_sll_epi32(a, _mm_cvtsi32_si128(bits));
     shr(a, bits) = _mm256_srl_epi32(a, _mm_cvtsi32_si128(bits));
     to_real(a) = _mm256_cvtepi32_ps(a);
@@ -135,6 +136,17 @@ unsafe fn lane_bits() -> __m256i {
 #[inline(always)]
 unsafe fn flip_sign(a: __m256i) -> __m256i {
     unsafe { _mm256_xor_si256(a, _mm256_set1_epi32(i32::MIN)) }
+}
+
+/// The halves of the products, of which an instruction makes every second.
+#[inline(always)]
+unsafe fn mul_wide(a: __m256i, b: __m256i) -> (__m256i, __m256i) {
+    unsafe {
+        let even = _mm256_mul_epu32(a, b);
+        let odd = _mm256_mul_epu32(_mm256_srli_epi64::<32>(a), _mm256_srli_epi64::<32>(b));
+        let low = _mm256_blend_epi32::<0xaa>(even, _mm256_slli_epi64::<32>(odd));
+        (low, _mm256_blend_epi32::<0xaa>(_mm256_srli_epi64::<32>(even), odd))
+    }
 }
 
 /// The indices of the lanes that are true.

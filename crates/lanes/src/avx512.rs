@@ -62,6 +62,7 @@ int! {
     load(from) = _mm512_loadu_si512(from.cast());
     store(to, a) = _mm512_storeu_si512(to.cast(), a);
     select(mask, a, b) = _mm512_mask_blend_epi32(mask, b, a);
+    mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = _mm512_sll_epi32(a, _mm_cvtsi32_si128(bits));
     shr(a, bits) = _mm512_srl_epi32(a, _mm_cvtsi32_si128(bits));
     to_real(a) = _mm512_cvtepi32_ps(a);
@@ -90,4 +91,16 @@ mask! {
     BitAnd::bitand(a, b) = a & b;
     BitOr::bitor(a, b) = a | b;
     BitXor::bitxor(a, b) = a ^ b;
+}
+
+/// The halves of the products, of which an instruction makes every second.
+#[inline(always)]
+unsafe fn mul_wide(a: __m512i, b: __m512i) -> (__m512i, __m512i) {
+    // SAFETY: only an operation of the vectors above calls it.
+    unsafe {
+        let even = _mm512_mul_epu32(a, b);
+        let odd = _mm512_mul_epu32(_mm512_srli_epi64::<32>(a), _mm512_srli_epi64::<32>(b));
+        let low = _mm512_mask_blend_epi32(0xaaaa, even, _mm512_slli_epi64::<32>(odd));
+        (low, _mm512_mask_blend_epi32(0xaaaa, _mm512_srli_epi64::<32>(even), odd))
+    }
 }

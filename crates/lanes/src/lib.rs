@@ -26,6 +26,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod baseline;
+mod function;
 mod instruction_set;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -37,9 +38,14 @@ mod simd;
 mod single;
 #[cfg(target_arch = "x86_64")]
 mod sse2;
+mod wide;
 
 pub use baseline::{first_equal, prefetch};
+pub use function::{
+    acos, asin, atan, atan2, cbrt, cos, exp, exp_m1, hypot, ln, ln_1p, pow, powi, sin, sin_cos,
+};
 pub use instruction_set::InstructionSet;
 pub use real::{Int, MAX_LANES, Mask, Real};
 pub use scalar::F32x1;
 pub use simd::{Kernel, Simd, Task, Vector};
+pub use wide::Wide;

@@ -63,6 +63,7 @@ int! {
     load(from) = vld1q_u32(from);
     store(to, a) = vst1q_u32(to, a);
     select(mask, a, b) = vbslq_u32(mask, a, b);
+    mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = vshlq_u32(a, vdupq_n_s32(bits));
     shr(a, bits) = vshlq_u32(a, vdupq_n_s32(-bits));
     to_real(a) = vcvtq_f32_s32(vreinterpretq_s32_u32(a));
@@ -88,4 +89,15 @@ mask! {
     BitAnd::bitand(a, b) = vandq_u32(a, b);
     BitOr::bitor(a, b) = vorrq_u32(a, b);
     BitXor::bitxor(a, b) = veorq_u32(a, b);
+}
+
+/// The halves of the products.
+#[inline(always)]
+unsafe fn mul_wide(a: uint32x4_t, b: uint32x4_t) -> (uint32x4_t, uint32x4_t) {
+    // SAFETY: only an operation of the vectors above calls it.
+    unsafe {
+        let first = vreinterpretq_u32_u64(vmull_u32(vget_low_u32(a), vget_low_u32(b)));
+        let second = vreinterpretq_u32_u64(vmull_high_u32(a, b));
+        (vuzp1q_u32(first, second), vuzp2q_u32(first, second))
+    }
 }

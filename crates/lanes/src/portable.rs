@@ -54,6 +54,7 @@ int! {
     load(from) = from.cast::<[u32; 8]>().read();
     store(to, a) = to.cast::<[u32; 8]>().write(a);
     select(mask, a, b) = each(|i| if mask[i] { a[i] } else { b[i] });
+    mul_wide(a, b) = (each(|i| a[i].mul_wide(b[i]).0), each(|i| a[i].mul_wide(b[i]).1));
     shl(a, bits) = each(|i| a[i] << bits);
     shr(a, bits) = each(|i| a[i] >> bits);
     to_real(a) = each(|i| a[i] as i32 as f32);

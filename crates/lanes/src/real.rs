@@ -225,6 +225,9 @@ pub trait Int:
     /// The product modulo 2³².
     fn wrapping_mul(self, b: Self) -> Self;
 
+    /// The low and the high halves of the products of 64 bits.
+    fn mul_wide(self, b: Self) -> (Self, Self);
+
     /// Shifted left by `bits` < 32.
     fn shl(self, bits: u32) -> Self;
 

@@ -129,6 +129,12 @@ impl Int for u32 {
     }
 
     #[inline(always)]
+    fn mul_wide(self, b: Self) -> (Self, Self) {
+        let product = u64::from(self) * u64::from(b);
+        (product as u32, (product >> 32) as u32)
+    }
+
+    #[inline(always)]
     fn shl(self, bits: u32) -> Self {
         self << bits
     }

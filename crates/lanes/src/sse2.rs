@@ -54,12 +54,13 @@ int! {
     load(from) = _mm_loadu_si128(from.cast());
     store(to, a) = _mm_storeu_si128(to.cast(), a);
     select(mask, a, b) = _mm_or_si128(_mm_and_si128(mask, a), _mm_andnot_si128(mask, b));
+    mul_wide(a, b) = mul_wide(a, b);
     shl(a, bits) = _mm_sll_epi32(a, _mm_cvtsi32_si128(bits));
     shr(a, bits) = _mm_srl_epi32(a, _mm_cvtsi32_si128(bits));
     to_real(a) = _mm_cvtepi32_ps(a);
     wrapping_add(a, b) = _mm_add_epi32(a, b);
     wrapping_sub(a, b) = _mm_sub_epi32(a, b);
-    wrapping_mul(a, b) = multiply(a, b);
+    wrapping_mul(a, b) = mul_wide(a, b).0;
     -> Mask:
     eq(a, b) = _mm_cmpeq_epi32(a, b);
     lt(a, b) = _mm_cmplt_epi32(flip_sign(a), flip_sign(b));
@@ -104,14 +105,15 @@ unsafe fn blend(mask: __m128i, a: __m128, b: __m128) -> __m128 {
     }
 }
 
-/// The low halves of the products, of which an instruction makes every second.
+/// The halves of the products, of which an instruction makes every second.
 #[inline(always)]
-unsafe fn multiply(a: __m128i, b: __m128i) -> __m128i {
+unsafe fn mul_wide(a: __m128i, b: __m128i) -> (__m128i, __m128i) {
     unsafe {
         let even = _mm_mul_epu32(a, b);
         let odd = _mm_mul_epu32(_mm_srli_epi64::<32>(a), _mm_srli_epi64::<32>(b));
-        let [even, odd] = [even, odd].map(|products| _mm_shuffle_epi32::<0b1000>(products));
-        _mm_unpacklo_epi32(even, odd)
+        // Of each the two low halves, then the two high ones.
+        let [even, odd] = [even, odd].map(|products| _mm_shuffle_epi32::<0b11_01_10_00>(products));
+        (_mm_unpacklo_epi32(even, odd), _mm_unpackhi_epi32(even, odd))
     }
 }
 

@@ -265,6 +265,7 @@ macro_rules! int {
         load($from:ident) = $load:expr;
         store($to:ident, $value:ident) = $store:expr;
         select($which:ident, $sx:ident, $sy:ident) = $select:expr;
+        mul_wide($wx:ident, $wy:ident) = $mul_wide:expr;
         shl($left:ident, $shl_bits:ident) = $shl:expr;
         shr($right:ident, $shr_bits:ident) = $shr:expr;
         to_real($signed:ident) = $to_real:expr;
@@ -329,6 +330,13 @@ macro_rules! int {
                     $crate::Mask::bits(mask).count_ones() as usize
                 }
             )?
+
+            #[inline(always)]
+            fn mul_wide(self, b: Self) -> (Self, Self) {
+                let ($wx, $wy) = (self.0, b.0);
+                let (low, high) = unsafe { $mul_wide };
+                (Self(low), Self(high))
+            }
 
             #[inline(always)]
             fn shl(self, bits: u32) -> Self {

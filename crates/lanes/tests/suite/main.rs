@@ -2,7 +2,9 @@
 
 #![allow(unsafe_code)]
 
+mod functions;
 mod numbers;
 mod reals;
 mod slices;
 mod vectors;
+mod wide;

@@ -93,8 +93,10 @@ fn exact<R: Real>(a: R, b: R, c: R) -> [(&'static str, R::Int); 12] {
 }
 
 #[inline(always)]
-fn integers<R: Real>(i: R::Int, j: R::Int, k: R::Int, bits: u32) -> [(&'static str, R::Int); 16] {
+fn integers<R: Real>(i: R::Int, j: R::Int, k: R::Int, bits: u32) -> [(&'static str, R::Int); 18] {
     [
+        ("i·j, low half", i.mul_wide(j).0),
+        ("i·j, high half", i.mul_wide(j).1),
         ("i + j", i.wrapping_add(j)),
         ("i − j", i.wrapping_sub(j)),
         ("i·j", i.wrapping_mul(j)),
