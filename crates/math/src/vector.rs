@@ -503,3 +503,63 @@ impl Vec3 {
         if self.z > self[second] { 2 } else { second }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::*;
+    use testkit::{LaneFunction, lanes_agree};
+
+    struct Vectors;
+
+    impl LaneFunction for Vectors {
+        #[inline(always)]
+        fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+            let vector = |i: usize| Vec3::new(u[i], u[i + 1], u[i + 2]) - R::splat(0.5);
+            let (a, b) = (vector(0), vector(3));
+            let frame = Frame::from_z_and_x(a.normalize(), b);
+            let p = Point3Error::new(a, b.abs() * R::splat(1e-5));
+            let ray = Ray::between(p, b, Point3Error::exact(b), a, u[0]);
+            let mut results: Vec<R> = [
+                a + b,
+                a / b,
+                a.cross(b),
+                cross(a, b),
+                a.normalize_masked().0,
+                a.lerp(b, u[0]).max(a).clamp(-a, b.abs()),
+                frame.x,
+                frame.y,
+                frame.from_local(frame.to_local(b)),
+                face_forward(a, b),
+                ray.o,
+                ray.d,
+                ray.at(u[1]),
+                spherical_direction(u[0], u[1], u[2]),
+            ]
+            .into_iter()
+            .flat_map(Vec3::to_array)
+            .collect();
+            results.extend([a.dot(b), a.distance(b), a.max_element(), a.truncate().perp_dot(b.truncate())]);
+            results.extend([sin_theta(a), tan2_theta(a), cos_phi(a), sin_phi(a), exp(u[0]), ln(u[1])]);
+            results
+        }
+    }
+
+    #[test]
+    fn vectors_do_not_depend_on_the_number_of_lanes() {
+        lanes_agree(&Vectors, 6, 500);
+    }
+
+    #[test]
+    fn formulas_are_those_of_matrices() {
+        let (a, b) = (Vec3::new(0.3, -2.0, 5.5), Vec3::new(1.5, 0.1, -0.7));
+        let (ga, gb) = (glam::Vec3::from(a), glam::Vec3::from(b));
+        assert_eq!(a.cross(b), ga.cross(gb).into());
+        assert_eq!(a.normalize(), ga.normalize().into());
+        assert_eq!(a.lerp(b, 0.3), ga.lerp(gb, 0.3).into());
+        assert_eq!((a.dot(b), a.distance(b)), (ga.dot(gb), ga.distance(gb)));
+        assert_eq!([a, b, -a].map(Vec3::max_position), [ga, gb, -ga].map(glam::Vec3::max_position));
+        assert_eq!((format!("{a}"), format!("{a:?}")), (format!("{ga}"), format!("{ga:?}")));
+        assert!(Vec3::ZERO.try_normalize().is_none() && Vec3::INFINITY.try_normalize().is_none());
+    }
+}

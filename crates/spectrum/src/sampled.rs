@@ -93,8 +93,8 @@ impl<R: Real> SampledSpectrum<R> {
     /// Applies `f` to each pair of values.
     #[inline(always)]
     pub fn zip(self, other: Self, mut f: impl FnMut(R, R) -> R) -> Self {
-        let ([a, b, c, d], [e, g, h, i]) = (self.0, other.0);
-        Self([f(a, e), f(b, g), f(c, h), f(d, i)])
+        let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
+        Self([f(a, p), f(b, q), f(c, r), f(d, s)])
     }
 
     /// The largest value.

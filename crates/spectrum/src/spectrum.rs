@@ -177,6 +177,7 @@ pub fn named(name: &str) -> Option<Spectrum> {
 mod tests {
     use super::*;
     use crate::cie::CIE_Y_INTEGRAL;
+    use testkit::{LaneFunction, lanes_agree};
 
     #[test]
     fn equal_energy_has_luminance_one() {
@@ -202,5 +203,43 @@ mod tests {
         }
         let lambda = SampledWavelengths::sample_uniform(0.3);
         assert_eq!(spectrum.sample(&lambda)[2], spectrum.at(lambda[2]));
+    }
+
+    struct Spectra(Vec<Spectrum>);
+
+    impl LaneFunction for Spectra {
+        #[inline(always)]
+        fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+            let visible = SampledWavelengths::sample_visible(u[0]);
+            // Beyond the range of wavelengths at both ends.
+            let uniform = SampledWavelengths::sample_uniform_in(u[0], 300.0, 900.0);
+            let mut terminated = visible;
+            terminated.terminate_secondary();
+            let lambda = SampledWavelengths::select(u[1].lt(u[0]), visible, uniform);
+            let mut results: Vec<R> = terminated.pdf().0.to_vec();
+            results.extend([*visible.lambda(), visible.pdf().0, uniform.pdf().0].concat());
+            results.extend(self.0.iter().flat_map(|s| s.sample(&lambda).0));
+            results
+        }
+    }
+
+    #[test]
+    fn spectra_do_not_depend_on_the_number_of_lanes() {
+        let (space, rgb) = (RgbColorSpace::srgb(), Rgb::new(0.2, 0.9, 0.4));
+        let steps = [(400.0, 1.0), (480.0, 0.2), (500.0, 3.0), (520.0, 0.0), (700.0, 2.0)];
+        lanes_agree(
+            &Spectra(vec![
+                Spectrum::Constant(0.3),
+                Spectrum::from_pairs(&steps).unwrap(),
+                Spectrum::from_pairs(&steps[..1]).unwrap(),
+                Spectrum::from_pairs(&steps).unwrap().to_dense(),
+                Spectrum::blackbody(4000.0),
+                Spectrum::rgb_albedo(space, rgb),
+                Spectrum::rgb_unbounded(space, rgb),
+                Spectrum::rgb_illuminant(space, rgb),
+            ]),
+            2,
+            300,
+        );
     }
 }

@@ -2,3 +2,4 @@
 
 mod all_samplers;
 mod all_warps;
+mod lanes;

@@ -8,7 +8,7 @@ use super::tree::Tree;
 const EDGES: [(&str, &[&str]); 17] = [
     ("lanes", &[]),
     ("math", &["lanes"]),
-    ("testkit", &[]),
+    ("testkit", &["lanes"]),
     ("spectrum", &["lanes", "math"]),
     ("sampling", &["lanes", "math"]),
     ("image", &["math", "spectrum"]),
