@@ -307,8 +307,13 @@ impl<R: Real> SampledWavelengths<R> {
     /// Wavelengths sampled about in proportion to the eye's response, from `u` in [0, 1).
     #[inline(always)]
     pub fn sample_visible(u: R) -> Self {
-        let lambda = rotations(u).each(sample_visible_wavelength);
-        Self { lambda, pdf: lambda.each(visible_wavelength_pdf) }
+        // A loop, because functions of this size that are passed to others may not be inlined.
+        let (mut lambda, mut pdf) = (rotations(u), [R::zero(); N]);
+        for i in 0..N {
+            lambda[i] = sample_visible_wavelength(lambda[i]);
+            pdf[i] = visible_wavelength_pdf(lambda[i]);
+        }
+        Self { lambda, pdf }
     }
 
     /// `a` where the mask is true, else `b`.

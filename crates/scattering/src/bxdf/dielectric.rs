@@ -19,7 +19,7 @@
 
 use super::{BsdfSample, Scatter};
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz, fr_dielectric, reflect, refract};
-use lanes::{Each, Mask, Real};
+use lanes::{Mask, Real};
 use math::{Vec2, Vec3, Vector3, same_hemisphere, sqr};
 use spectrum::SampledSpectrum;
 

@@ -5,7 +5,7 @@
 
 use super::MaterialModel;
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
-use lanes::{Each, Real};
+use lanes::Real;
 use scattering::DiffuseTransmission;
 use spectrum::SampledWavelengths;
 
@@ -30,10 +30,12 @@ impl MaterialModel for DiffuseTransmissionMaterial {
         context: &TextureContext<R>,
         lambda: &mut SampledWavelengths<R>,
     ) -> DiffuseTransmission<R> {
-        let [reflectance, transmittance] = [self.reflectance, self.transmittance].each(|texture| {
-            let share = textures.spectrum(texture, context, lambda) * R::splat(self.scale);
-            share.clamp(R::zero(), R::one())
-        });
-        DiffuseTransmission { reflectance, transmittance }
+        let reflectance = textures.spectrum(self.reflectance, context, lambda) * R::splat(self.scale);
+        let transmittance = textures.spectrum(self.transmittance, context, lambda) * R::splat(self.scale);
+        let (zero, one) = (R::zero(), R::one());
+        DiffuseTransmission {
+            reflectance: reflectance.clamp(zero, one),
+            transmittance: transmittance.clamp(zero, one),
+        }
     }
 }
