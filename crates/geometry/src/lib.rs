@@ -23,7 +23,7 @@ mod world;
 pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use lanes::InstructionSet;
-pub use patch::{Patch, PatchLanes, PatchPoints};
+pub use patch::{Patch, PatchLanes, PatchPoints, Rectangles};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
     MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,

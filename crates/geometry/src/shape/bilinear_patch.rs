@@ -11,7 +11,7 @@
 //! sampled by solid angle ([Ureña et al. 2013]) and warped to follow the cosine there.
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
-use crate::patch::Patch;
+use crate::patch::{Patch, SMALLEST_SPHERICAL};
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{
@@ -20,9 +20,6 @@ use math::{
 use sampling::PiecewiseConstant2d;
 use sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
 use std::sync::Arc;
-
-/// Below this solid angle, in steradians, a rectangle is sampled by area.
-const SMALLEST_SPHERICAL: f32 = 1e-4;
 
 /// A patch between four corners, ordered p₀₀, p₁₀, p₀₁, p₁₁.
 #[derive(Clone, Debug)]
@@ -206,6 +203,11 @@ impl BilinearPatch {
         })
     }
 
+    /// As plain data, if it is a rectangle that is sampled by solid angle.
+    pub(crate) fn rectangle(&self) -> Option<Patch> {
+        self.patch().filter(|_| self.is_rectangle && self.image.is_none())
+    }
+
     pub(super) fn area(&self) -> f32 {
         const STEPS: usize = 16;
         let place = |i: usize| (i as f32 + 0.5) / STEPS as f32;
@@ -259,9 +261,9 @@ impl BilinearPatch {
             }
             None => (u, 1.0),
         };
-        let p = seen.sample(u) - self.p[0];
-        let along = |side: Vec3| (p.dot(side) / side.length_squared()).clamp(0.0, 1.0);
-        let uv = Vec2::new(along(self.p[1] - self.p[0]), along(self.p[2] - self.p[0]));
+        let along = seen.sample(u);
+        let lengths = Vec2::new((self.p[1] - self.p[0]).length(), (self.p[2] - self.p[0]).length());
+        let uv = (along / lengths).clamp(Vec2::ZERO, Vec2::ONE);
         Some(self.sample_at(uv, pdf * seen.pdf()))
     }
 
@@ -286,8 +288,8 @@ impl BilinearPatch {
             return None;
         }
         let [corner, right, up, _] = self.p;
-        SphericalRectangle::new(reference.p.p, corner, right - corner, up - corner)
-            .filter(|seen| seen.solid_angle() > SMALLEST_SPHERICAL)
+        let seen = SphericalRectangle::new(reference.p.p, corner, right - corner, up - corner);
+        (seen.is_valid() && seen.solid_angle() > SMALLEST_SPHERICAL).then_some(seen)
     }
 
     fn weights(&self, reference: &ShapeSampleContext) -> Option<[f32; 4]> {

@@ -1,6 +1,6 @@
 //! Hits and samples of shapes.
 
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vector3};
 
 /// Where a ray meets a shape.
@@ -58,8 +58,8 @@ impl<R: Real> ShapeSampleContext<R> {
     /// Weights of the corners of the unit square for bilinear sampling by the cosine at this point,
     /// given directions to the corners; at least 0.01.
     #[inline(always)]
-    pub(super) fn cosine_weights(&self, corners: [Vector3<R>; 4]) -> [R; 4] {
-        corners.map(|w| (w.dot(self.ns) / w.length()).abs().max(R::splat(0.01)))
+    pub(crate) fn cosine_weights(&self, corners: [Vector3<R>; 4]) -> [R; 4] {
+        corners.each(|w| (w.dot(self.ns) / w.length()).abs().max(R::splat(0.01)))
     }
 }
 

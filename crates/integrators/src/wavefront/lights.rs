@@ -1,12 +1,13 @@
 //! Samples of lights, one for each lane.
 
-use lanes::{Each, MAX_LANES, Mask, Real};
+use lanes::{Each, Int, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Vec2, Vec3, Vector3};
-use scene::light::{LightLiSample, LightSampleContext};
-use scene::{Interfaces, Scene};
+use scene::Interfaces;
+use scene::light::{LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
-use crate::transport::direct::DirectLighting;
+use super::rectangles::RectangleLights;
+use super::stages::Pass;
 
 /// Light samples, before their visibility is tested.
 pub(super) struct LightLanes<R: Real> {
@@ -30,18 +31,6 @@ pub(super) struct LightLanes<R: Real> {
     pub passes: R::Mask,
 }
 
-/// The points that light is sampled for.
-pub(super) struct Contexts<R: Real> {
-    /// Position, with a bound of its error.
-    pub p: Point3Error<R>,
-    /// Geometric normal.
-    pub n: Normal3<R>,
-    /// Shading normal.
-    pub ns: Normal3<R>,
-    /// Shutter time.
-    pub time: R,
-}
-
 /// Values of lanes while they are set one by one.
 struct Columns<const C: usize>([[f32; MAX_LANES]; C]);
 
@@ -54,8 +43,8 @@ impl<const C: usize> Columns<C> {
 /// One sample of one light for each lane of `active`, chosen by `u` and `u_light`.
 #[inline(always)]
 pub(super) fn sample<R: Real>(
-    (scene, direct): (&Scene, &DirectLighting),
-    context: &Contexts<R>,
+    pass: &Pass,
+    context: &LightSampleContext<R>,
     u: R,
     u_light: Vec2<R>,
     lambda: &SampledWavelengths<R>,
@@ -70,21 +59,64 @@ pub(super) fn sample<R: Real>(
     };
     let mut values = Columns([[0.0; MAX_LANES]; 17]);
     let mut masks = [0; 4];
-    each(active.bits(), |lane| inputs.sample(scene, direct, lane, &mut values, &mut masks));
+    let chosen = inputs.choose(pass, active.bits());
+    let pmf = R::load(&chosen.pmf);
+    let rows = R::Int::load(&chosen.row);
+    let mut in_lanes = R::Mask::from_bits(chosen.in_lanes);
+    let mut sampled = None;
+    if in_lanes.any() {
+        match pass.rectangles.emission::<R>(pass.pixels.scene, rows, in_lanes) {
+            Some(emission) => {
+                let (rectangles, scale) = pass.rectangles.get::<R>(rows);
+                let (sample, valid) = rectangles.sample_from(context, u_light);
+                in_lanes = in_lanes & valid;
+                sampled = Some((sample, emission, scale));
+            }
+            None => in_lanes = R::Mask::splat(false),
+        }
+    }
+    let others = chosen.valid & !in_lanes.bits();
+    each(others, |lane| inputs.sample(pass, LightId(chosen.id[lane]), lane, &mut values, &mut masks));
     let number = |column: usize| R::load(&values.0[column]);
     let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
     let [valid, is_delta, is_distant, passes] = masks.each(R::Mask::from_bits);
+    let l = SampledSpectrum([0, 1, 2, 3].each(number));
+    let (wi, pdf, n) = (vector(N), number(N + 3) * pmf, vector(N + 10));
+    let p = Point3Error::new(vector(N + 4), vector(N + 7));
+    let Some((sample, emission, scale)) = sampled else {
+        return LightLanes { valid, l, wi, pdf, p, n, is_delta, is_distant, passes };
+    };
+    let (toward, is_apart) = (sample.p.p - context.p.p).normalize_masked();
+    let emits = if emission.two_sided { in_lanes } else { in_lanes & sample.n.dot(toward).le(R::zero()) };
+    let radiance = emission.radiance.spectrum.sample(lambda) * scale;
+    let is_lit = emits & is_apart & !radiance.is_black();
     LightLanes {
-        valid,
-        l: SampledSpectrum([0, 1, 2, 3].each(number)),
-        wi: vector(N),
-        pdf: number(N + 3),
-        p: Point3Error::new(vector(N + 4), vector(N + 7)),
-        n: vector(N + 10),
+        valid: valid | is_lit,
+        l: SampledSpectrum::select(in_lanes, radiance, l),
+        wi: Vec3::select(in_lanes, toward, wi),
+        pdf: R::select(in_lanes, sample.pdf * pmf, pdf),
+        p: Point3Error::new(
+            Vec3::select(in_lanes, sample.p.p, p.p),
+            Vec3::select(in_lanes, sample.p.error, p.error),
+        ),
+        n: Vec3::select(in_lanes, sample.n, n),
         is_delta,
         is_distant,
-        passes,
+        // Interfaces occlude none of the lights that have a surface.
+        passes: passes | is_lit,
     }
+}
+
+/// The lights chosen for the lanes.
+struct Chosen {
+    /// The lanes that have a light.
+    valid: u32,
+    /// Those whose light is in the table of rectangles.
+    in_lanes: u32,
+    id: [u32; MAX_LANES],
+    /// Its row in that table; 0 for others.
+    row: [u32; MAX_LANES],
+    pmf: [f32; MAX_LANES],
 }
 
 /// What samples depend on, in arrays.
@@ -97,30 +129,53 @@ struct Inputs {
 }
 
 impl Inputs {
+    fn context(&self, lane: usize) -> LightSampleContext {
+        let [p, error, n, ns] = self.context.each_ref().map(|v| Vec3::from_array(v.map(|c| c[lane])));
+        LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
+    }
+
+    /// Chooses a light for each of the lanes.
+    fn choose(&self, pass: &Pass, lanes: u32) -> Chosen {
+        let [id, row] = [[0; MAX_LANES]; 2];
+        let mut chosen = Chosen { valid: 0, in_lanes: 0, id, row, pmf: [0.0; MAX_LANES] };
+        each(lanes, |lane| {
+            let light = pass.direct.lights().sample(&self.context(lane), self.u[0][lane]);
+            if let Some((id, pmf)) = light {
+                chosen.valid |= 1 << lane;
+                (chosen.id[lane], chosen.pmf[lane]) = (id.0, pmf);
+                let row = pass.rectangles.row(id);
+                if row != RectangleLights::NONE {
+                    chosen.in_lanes |= 1 << lane;
+                    chosen.row[lane] = row;
+                }
+            }
+        });
+        chosen
+    }
+
+    /// Samples the light of one lane.
     fn sample(
         &self,
-        scene: &Scene,
-        direct: &DirectLighting,
+        pass: &Pass,
+        id: LightId,
         lane: usize,
         values: &mut Columns<17>,
         [valid, is_delta, is_distant, passes]: &mut [u32; 4],
     ) {
-        let [p, error, n, ns] = self.context.map(|v| Vec3::from_array(v.map(|c| c[lane])));
-        let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] };
-        let [u, x, y] = self.u.map(|u| u[lane]);
-        let [lambda, pdf] = [self.lambda, self.lambda_pdf].map(|values| values.map(|v| v[lane]));
-        let lambda = SampledWavelengths::new(lambda, pdf);
-        let Some((id, pmf)) = direct.lights().sample(&context, u) else { return };
-        let sample = scene.sample_light(id, &context, Vec2::new(x, y), &lambda, true);
+        let (scene, bit) = (pass.pixels.scene, 1 << lane);
+        let [_, x, y] = self.u.each_ref().map(|u| u[lane]);
+        let lambda = self.lambda.each_ref().map(|v| v[lane]);
+        let lambda = SampledWavelengths::new(lambda, self.lambda_pdf.each_ref().map(|v| v[lane]));
+        let sample = scene.sample_light(id, &self.context(lane), Vec2::new(x, y), &lambda, true);
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };
-        let (light, bit) = (scene.light(id), 1 << lane);
+        let light = scene.light(id);
         *valid |= bit;
         *is_delta |= if light.is_delta() { bit } else { 0 };
         *is_distant |= if p.is_none() { bit } else { 0 };
-        *passes |= if direct.interfaces(light) == Interfaces::Pass { bit } else { 0 };
+        *passes |= if pass.direct.interfaces(light) == Interfaces::Pass { bit } else { 0 };
         values.set(lane, 0, &l.0);
         values.set(lane, N, &wi.to_array());
-        values.set(lane, N + 3, &[pmf * pdf]);
+        values.set(lane, N + 3, &[pdf]);
         if let Some(p) = p {
             values.set(lane, N + 4, &p.p.to_array());
             values.set(lane, N + 7, &p.error.to_array());

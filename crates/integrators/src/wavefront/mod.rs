@@ -21,6 +21,7 @@ mod lights;
 mod materials;
 mod paths;
 mod queues;
+mod rectangles;
 mod shade;
 mod stages;
 
@@ -33,6 +34,7 @@ use sampling::Sampler;
 use scene::{Interfaces, Scene, View};
 
 use self::materials::LaneMaterials;
+use self::rectangles::RectangleLights;
 use self::stages::{Pass, Stages};
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
@@ -52,6 +54,7 @@ pub struct Wavefront {
     sampler: Sampler,
     direct: DirectLighting,
     materials: LaneMaterials,
+    rectangles: RectangleLights,
     instruction_set: InstructionSet,
 }
 
@@ -65,6 +68,7 @@ impl Wavefront {
             sampler,
             direct: DirectLighting::none(),
             materials: LaneMaterials::default(),
+            rectangles: RectangleLights::default(),
             instruction_set: InstructionSet::detect(),
         }
     }
@@ -83,6 +87,7 @@ impl Integrator for Wavefront {
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
         self.materials = LaneMaterials::new(scene, view);
+        self.rectangles = RectangleLights::new(scene);
         Ok(())
     }
 
@@ -103,6 +108,7 @@ impl Integrator for Wavefront {
             settings: &self.settings,
             direct: &self.direct,
             materials: &self.materials,
+            rectangles: &self.rectangles,
             pixels: &pixels,
             control,
             instruction_set: self.instruction_set,

@@ -5,12 +5,13 @@ use lanes::{Int, Kernel, Mask, Real};
 use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
+use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
 use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
-use super::lights::{self, Contexts, LightLanes};
+use super::lights::{self, LightLanes};
 use super::paths::Paths;
 use super::queues::{Queues, Shadow};
 use super::stages::Pass;
@@ -143,7 +144,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         &mut self,
         vertices: &mut Vertices<R>,
         bsdf: &Bsdf<B, R>,
-        contexts: &Contexts<R>,
+        contexts: &LightSampleContext<R>,
         is_non_specular: R::Mask,
     ) {
         let samples = vertices.active & is_non_specular;
@@ -154,8 +155,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let (u, u_light) = (self.draw_1d::<R>(&mut address), self.draw_2d::<R>(&mut address));
         vertices.address.dimension =
             R::Int::select(is_non_specular, address.dimension, vertices.address.dimension);
-        let source = (self.pass.pixels.scene, self.pass.direct);
-        let light = lights::sample(source, contexts, u, u_light, &vertices.lambda, samples);
+        let light = lights::sample(&self.pass, contexts, u, u_light, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let f = bsdf.f(wo, wi, TransportMode::Radiance);
@@ -179,7 +179,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         &mut self,
         vertices: &mut Vertices<R>,
         bsdf: &Bsdf<B, R>,
-        contexts: &Contexts<R>,
+        contexts: &LightSampleContext<R>,
     ) {
         let (uc, u) = (self.draw_1d::<R>(&mut vertices.address), self.draw_2d::<R>(&mut vertices.address));
         let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
@@ -245,7 +245,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
 /// The contexts of light sampling: as in `transport/direct.rs`, a point that scatters to one side
 /// only is offset to the side of `wo`.
 #[inline(always)]
-fn contexts<R: Real>(vertices: &Vertices<R>, flags: BxdfFlags<R>) -> Contexts<R> {
+fn contexts<R: Real>(vertices: &Vertices<R>, flags: BxdfFlags<R>) -> LightSampleContext<R> {
     let PatchPoints { p, n, ns, .. } = vertices.surface;
     let (reflects, transmits) = (flags.is_reflective(), flags.is_transmissive());
     let one_sided = reflects ^ transmits;
@@ -255,5 +255,5 @@ fn contexts<R: Real>(vertices: &Vertices<R>, flags: BxdfFlags<R>) -> Contexts<R>
         Vec3::select(one_sided, moved.p, p.p),
         Vec3::select(one_sided, moved.error, p.error),
     );
-    Contexts { p, n, ns, time: vertices.time }
+    LightSampleContext { p, n, ns, time: vertices.time }
 }

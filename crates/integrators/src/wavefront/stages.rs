@@ -15,6 +15,7 @@ use super::begin::Begin;
 use super::materials::LaneMaterials;
 use super::paths::Paths;
 use super::queues::{Queues, ShadowRay};
+use super::rectangles::RectangleLights;
 use super::shade::Shade;
 use crate::transport::direct::{Connection, DirectLighting, light_context};
 use crate::transport::path_state::Scattered;
@@ -27,6 +28,7 @@ pub(super) struct Pass<'a> {
     pub settings: &'a PathDesc,
     pub direct: &'a DirectLighting,
     pub materials: &'a LaneMaterials,
+    pub rectangles: &'a RectangleLights,
     pub pixels: &'a PixelSamples<'a>,
     pub control: &'a Control,
     pub instruction_set: InstructionSet,

@@ -222,4 +222,3 @@ impl<R: Real> Scatter<R> for Dielectric<R> {
 fn faces<R: Real>(wm: Vector3<R>, w: Vector3<R>) -> R::Mask {
     w.z.ne(R::zero()) & (wm.dot(w) * w.z).ge(R::zero())
 }
-

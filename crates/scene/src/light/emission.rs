@@ -1,6 +1,7 @@
 //! Emission of lights: a spectrum and its scale; on surfaces, also an image.
 
 use image::Image;
+use lanes::Real;
 use math::{Normal3, Vector3};
 use sampling::warp;
 use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
@@ -18,9 +19,9 @@ pub struct Emission {
 
 impl Emission {
     /// Values at the wavelengths.
-    #[inline]
-    pub fn sample(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.spectrum.sample(lambda) * self.scale
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, lambda: &SampledWavelengths<R>) -> SampledSpectrum<R> {
+        self.spectrum.sample(lambda) * R::splat(self.scale)
     }
 
     /// The largest value over all wavelengths.

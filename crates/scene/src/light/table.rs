@@ -133,6 +133,11 @@ impl<'a> LightRef<'a> {
         self.id
     }
 
+    /// The primitive of the geometry that emits; 0 for other lights.
+    pub fn primitive(&self) -> u32 {
+        self.part.primitive
+    }
+
     /// The row of the table that it belongs to.
     pub fn row(&self) -> &'a Light {
         self.light

@@ -1,0 +1,93 @@
+//! The lights that are sampled in lanes: rectangles of one colour.
+
+use geometry::Rectangles;
+use lanes::{Int, Mask, Real};
+use math::Vec3;
+use scene::Scene;
+use scene::light::{AreaEmission, EmissionId, Light, LightId};
+
+/// Scenes with more lights sample all of them one by one, so that the table stays small.
+const MAX_LIGHTS: usize = 1 << 16;
+
+/// Numbers of a row: corner, sides, normal, scale of the emission.
+const NUMBERS: usize = 13;
+
+/// The rectangles among the lights of a scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RectangleLights {
+    /// The row of each light; [`NONE`](Self::NONE) for lights that are not in the table.
+    row: Vec<u32>,
+    numbers: Vec<f32>,
+    /// The emission of each row.
+    emission: Vec<u32>,
+}
+
+impl RectangleLights {
+    /// The row of lights that are not in the table.
+    pub const NONE: u32 = u32::MAX;
+
+    /// Those of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut table = Self::default();
+        if scene.lights().len() > MAX_LIGHTS {
+            return table;
+        }
+        for light in scene.lights().iter() {
+            let row = table.emission.len() as u32;
+            let added = table.add(scene, light.id(), light.row());
+            table.row.push(if added.is_some() { row } else { Self::NONE });
+        }
+        table
+    }
+
+    fn add(&mut self, scene: &Scene, id: LightId, light: &Light) -> Option<()> {
+        let Light::Area(area) = light else { return None };
+        let emission = &scene.emissions()[area.emission.0 as usize];
+        let is_plain = emission.image.is_none() && !area.invisible && area.alpha.is_none();
+        if !is_plain || !area.instance.is_top() {
+            return None;
+        }
+        let primitive = scene.light(id).primitive();
+        let patch = scene.world().rectangle(area.geometry, primitive)?;
+        let n = patch.sides[0].cross(patch.sides[1]).normalize() * if patch.flips { -1.0 } else { 1.0 };
+        let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
+        for v in [patch.corner, patch.sides[0], patch.sides[1], n] {
+            self.numbers.extend(v.to_array());
+        }
+        self.numbers.push(scale);
+        self.emission.push(area.emission.0);
+        Some(())
+    }
+
+    /// The row of a light.
+    #[inline]
+    pub fn row(&self, id: LightId) -> u32 {
+        self.row.get(id.0 as usize).copied().unwrap_or(Self::NONE)
+    }
+
+    /// The rectangles of these rows, and the scales of their emission.
+    #[inline(always)]
+    pub fn get<R: Real>(&self, rows: R::Int) -> (Rectangles<R>, R) {
+        let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
+        let vector = |at: u32| {
+            let number = |i: u32| R::gather(&self.numbers, first.wrapping_add(R::Int::splat(at + i)));
+            Vec3::new(number(0), number(1), number(2))
+        };
+        let rectangles = Rectangles { corner: vector(0), sides: [vector(3), vector(6)], n: vector(9) };
+        (rectangles, R::gather(&self.numbers, first.wrapping_add(R::Int::splat(NUMBERS as u32 - 1))))
+    }
+
+    /// The emission of each of these rows where all lanes of a mask have the same.
+    #[inline(always)]
+    pub fn emission<'a, R: Real>(
+        &self,
+        scene: &'a Scene,
+        rows: R::Int,
+        mask: R::Mask,
+    ) -> Option<&'a AreaEmission> {
+        let ids = R::Int::gather(&self.emission, rows);
+        let first = ids.to_array()[mask.bits().trailing_zeros() as usize % R::LANES];
+        let same = !ids.eq(R::Int::splat(first)) & mask;
+        (!same.any()).then(|| &scene.emissions()[EmissionId(first).0 as usize])
+    }
+}
