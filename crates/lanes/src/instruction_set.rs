@@ -60,10 +60,16 @@ impl InstructionSet {
     pub fn dispatch<K: Kernel>(self, kernel: K) -> K::Output {
         assert!(self.is_available(), "{self:?} on a processor without it");
         // SAFETY: as just checked.
-        unsafe { self.run(Widest(kernel)) }
+        unsafe {
+            match self {
+                Self::Portable => portable::run(Widest(kernel)),
+                _ => self.run(Widest(kernel)),
+            }
+        }
     }
 
-    /// Runs a task with it.
+    /// Runs a task with it; with `Scalar` instead of `Portable`, because the vectors that tasks
+    /// name are arrays in both, and each set is one more copy of the ray engine.
     ///
     /// # Safety
     /// The processor must have it.
@@ -80,7 +86,6 @@ impl InstructionSet {
                 Self::Sse2 => sse2::run(task),
                 #[cfg(target_arch = "aarch64")]
                 Self::Neon => neon::run(task),
-                Self::Portable => portable::run(task),
                 _ => scalar::run(task),
             }
         }

