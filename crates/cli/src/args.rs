@@ -161,6 +161,10 @@ pub struct Changes {
     /// picture is the same. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub accelerator: Option<String>,
+    /// How paths from the camera are traced: wavefront, many at once, or scalar, one after another.
+    /// The picture is the same but for rounding. [default: wavefront]
+    #[arg(long, value_name = "NAME", value_parser = ["wavefront", "scalar"])]
+    pub engine: Option<String>,
     /// Change a setting; see the list below. Can be given several times.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_value)]
     pub set: Vec<(String, String)>,
@@ -193,9 +197,10 @@ pub struct Changes {
 impl Changes {
     /// The changes to the scene by these options.
     pub fn overrides(&self) -> Overrides {
+        let engine = self.engine.iter().map(|name| ("engine".to_owned(), name.clone()));
         Overrides {
             accelerator: self.accelerator.clone(),
-            settings: self.set.clone(),
+            settings: self.set.iter().cloned().chain(engine).collect(),
             resolution: self.resolution,
             crop: self.crop,
             pixel: self.pixel,
@@ -472,6 +477,8 @@ mod tests {
             "filter=box",
             "--accelerator",
             "none",
+            "--engine",
+            "scalar",
             "--spp",
             "4",
             "--resolution",
@@ -489,7 +496,11 @@ mod tests {
         let expected = Overrides {
             integrator: Some("path".into()),
             accelerator: Some("none".into()),
-            settings: vec![("maxdepth".into(), "3".into()), ("filter".into(), "box".into())],
+            settings: vec![
+                ("maxdepth".into(), "3".into()),
+                ("filter".into(), "box".into()),
+                ("engine".into(), "scalar".into()),
+            ],
             samples_per_pixel: Some(4),
             resolution: Some([64, 32]),
             crop: Some([0.0, 0.5, 0.25, 1.0]),

@@ -6,6 +6,7 @@ mod agreement;
 mod common;
 mod compare;
 mod documents;
+mod engines;
 mod furnaces;
 mod malformed;
 mod minray;

@@ -12,7 +12,7 @@ fn folder() -> PathBuf {
 }
 
 /// The scenes' files and names; the parts that they share are in a folder of their own.
-fn scenes() -> Vec<(PathBuf, String)> {
+pub fn scenes() -> Vec<(PathBuf, String)> {
     let entries = std::fs::read_dir(folder()).expect("the folder of scenes");
     let paths = entries.map(|entry| entry.expect("an entry of the folder").path());
     let mut scenes: Vec<_> = paths

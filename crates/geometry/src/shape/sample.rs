@@ -1,6 +1,6 @@
 //! Hits and samples of shapes.
 
-use lanes::{Each, Real};
+use lanes::Real;
 use math::{Normal3, Point3, Point3Error, Ray, Vec2, Vector3};
 
 /// Where a ray meets a shape.
@@ -59,7 +59,12 @@ impl<R: Real> ShapeSampleContext<R> {
     /// given directions to the corners; at least 0.01.
     #[inline(always)]
     pub(crate) fn cosine_weights(&self, corners: [Vector3<R>; 4]) -> [R; 4] {
-        corners.each(|w| (w.dot(self.ns) / w.length()).abs().max(R::splat(0.01)))
+        let mut weights = [R::zero(); 4];
+        for i in 0..4 {
+            let w = corners[i];
+            weights[i] = (w.dot(self.ns) / w.length()).abs().max(R::splat(0.01));
+        }
+        weights
     }
 }
 

@@ -2,7 +2,7 @@
 
 use geometry::Rectangles;
 use lanes::{Int, Mask, Real};
-use math::Vec3;
+use math::{Vec3, Vector3};
 use scene::Scene;
 use scene::light::{AreaEmission, EmissionId, Light, LightId};
 
@@ -68,13 +68,25 @@ impl RectangleLights {
     /// The rectangles of these rows, and the scales of their emission.
     #[inline(always)]
     pub fn get<R: Real>(&self, rows: R::Int) -> (Rectangles<R>, R) {
+        let corner = self.vector::<R>(rows, 0);
+        let sides = [self.vector::<R>(rows, 3), self.vector::<R>(rows, 6)];
+        let rectangles = Rectangles { corner, sides, n: self.vector::<R>(rows, 9) };
+        (rectangles, self.number::<R>(rows, NUMBERS as u32 - 1))
+    }
+
+    #[inline(always)]
+    fn number<R: Real>(&self, rows: R::Int, column: u32) -> R {
         let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
-        let vector = |at: u32| {
-            let number = |i: u32| R::gather(&self.numbers, first.wrapping_add(R::Int::splat(at + i)));
-            Vec3::new(number(0), number(1), number(2))
-        };
-        let rectangles = Rectangles { corner: vector(0), sides: [vector(3), vector(6)], n: vector(9) };
-        (rectangles, R::gather(&self.numbers, first.wrapping_add(R::Int::splat(NUMBERS as u32 - 1))))
+        R::gather(&self.numbers, first.wrapping_add(R::Int::splat(column)))
+    }
+
+    #[inline(always)]
+    fn vector<R: Real>(&self, rows: R::Int, column: u32) -> Vector3<R> {
+        Vec3::new(
+            self.number::<R>(rows, column),
+            self.number::<R>(rows, column + 1),
+            self.number::<R>(rows, column + 2),
+        )
     }
 
     /// The emission of each of these rows where all lanes of a mask have the same.

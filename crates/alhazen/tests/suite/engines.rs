@@ -1,0 +1,108 @@
+//! The engines of path tracing: the wavefront gives the same bits on every instruction set and
+//! with every number of threads, and the estimates of the scalar engine.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use alhazen::description::{IntegratorDesc, PathDesc, SceneDesc};
+use alhazen::geometry::InstructionSet;
+use alhazen::import::{Files, import};
+use alhazen::integrators::{self, Control, Integrator, Limits, PixelLoop, Session, SessionState, Wavefront};
+use alhazen::sampling::Randomize;
+use alhazen::sampling::sampler::{Independent, Sampler, ZSobol};
+use alhazen::scene::{Interfaces, Scene, View};
+use alhazen::{Overrides, film, scene};
+
+use crate::scenes::scenes;
+
+const SPP: u32 = 2;
+const RESOLUTION: [i32; 2] = [40, 30];
+
+/// A scene of the folder, made small.
+fn small(path: &Path) -> SceneDesc {
+    let mut desc = import(path, &Files).desc;
+    let overrides =
+        Overrides { resolution: Some(RESOLUTION), samples_per_pixel: Some(SPP), ..Overrides::default() };
+    overrides.apply(&mut desc).expect("changes that every scene can take");
+    desc.film.save_fp16 = false;
+    desc
+}
+
+/// A compiled scene, from which every engine starts.
+struct Compiled {
+    desc: SceneDesc,
+    scene: Arc<Scene>,
+    view: View,
+}
+
+impl Compiled {
+    fn new(desc: SceneDesc) -> Self {
+        let scene = scene::compile(desc.clone()).expect("a scene").scene;
+        let view = View::compile(&desc, scene.world_from_render()).expect("a view").view;
+        Self { desc, scene: Arc::new(scene), view }
+    }
+
+    /// The values of the picture of an integrator.
+    fn picture(&self, integrator: Box<dyn Integrator>, threads: usize) -> Vec<f32> {
+        let film = film::compile(&self.desc).expect("a film").film;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let (scene, view) = (self.scene.clone(), self.view.clone());
+        let mut session = Session::new(scene, view, integrator, SessionState::new(film));
+        let limits = Limits::default();
+        pool.install(|| session.run(0..SPP, &limits, &Control::default(), &mut |_| ())).unwrap();
+        session.state().film.develop().unwrap().values().collect()
+    }
+
+    fn settings(&self) -> PathDesc {
+        match self.desc.integrator.value {
+            IntegratorDesc::Path(settings) => settings,
+            _ => PathDesc::default(),
+        }
+    }
+
+    fn wavefront(&self, sampler: &Sampler) -> Wavefront {
+        Wavefront::new(self.settings(), Interfaces::Stop, sampler.clone())
+    }
+
+    fn scalar(&self, sampler: &Sampler) -> Box<dyn Integrator> {
+        let path = integrators::Path::new(self.settings(), Interfaces::Stop);
+        Box::new(PixelLoop::new(path, sampler.clone()))
+    }
+}
+
+fn samplers() -> [Sampler; 2] {
+    [
+        Sampler::ZSobol(ZSobol::new(SPP, RESOLUTION, Randomize::FastOwen, 0)),
+        Sampler::Independent(Independent::new(SPP, 0)),
+    ]
+}
+
+#[test]
+fn instruction_sets_and_threads_never_change_a_bit() {
+    for (path, name) in scenes() {
+        let compiled = Compiled::new(small(&path));
+        let [sampler, _] = samplers();
+        let expected = compiled.picture(Box::new(compiled.wavefront(&sampler)), 1);
+        for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
+            let integrator = compiled.wavefront(&sampler).with_instruction_set(set);
+            let found = compiled.picture(Box::new(integrator), 2);
+            assert!(found == expected, "{name} with {set:?}");
+        }
+    }
+}
+
+/// Paths are the same but for rounding. It decides where a hash of a position does (alpha, mixes).
+#[test]
+fn the_wavefront_agrees_with_the_scalar_engine() {
+    for (path, name) in scenes() {
+        let compiled = Compiled::new(small(&path));
+        for sampler in samplers() {
+            let wavefront = compiled.picture(Box::new(compiled.wavefront(&sampler)), 2);
+            let scalar = compiled.picture(compiled.scalar(&sampler), 2);
+            let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-3 * (a.abs() + b.abs()).max(1e-2);
+            let different = wavefront.iter().zip(&scalar).filter(|&pair| differs(pair)).count();
+            let allowed = if name == "textures" { wavefront.len() / 20 } else { wavefront.len() / 500 };
+            assert!(different <= allowed, "{name}: {different} of {} values differ", wavefront.len());
+        }
+    }
+}
