@@ -136,8 +136,8 @@ impl World {
         }
     }
 
-    /// A primitive of the top group as plain data, if it is a rectangle without attributes, which is
-    /// sampled by solid angle.
+    /// A primitive of the top group as plain data, if it is a rectangle without attributes, which
+    /// is sampled by solid angle.
     pub fn rectangle(&self, geometry: GeometryId, primitive: u32) -> Option<Patch> {
         match self.geometry(geometry) {
             Geometry::Shapes(shapes) => match &shapes[primitive as usize] {

@@ -6,8 +6,8 @@ use scene::Interfaces;
 use scene::light::{LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
+use super::pass::Pass;
 use super::rectangles::RectangleLights;
-use super::stages::Pass;
 
 /// Light samples, before their visibility is tested.
 pub(super) struct LightLanes<R: Real> {

@@ -2,7 +2,7 @@
 
 use geometry::{Hit, PatchLanes, PatchPoints};
 use lanes::{Int, Kernel, Mask, Real};
-use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
+use math::{Normal3, Point3Error, Ray, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
 use scene::light::LightSampleContext;
@@ -12,9 +12,10 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
 use super::lights::{self, LightLanes};
+use super::numbers::{draw_1d, draw_2d};
+use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, Shadow};
-use super::stages::Pass;
 use crate::transport::direct::power_heuristic;
 use crate::transport::roulette::CERTAIN;
 
@@ -152,7 +153,8 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
             return;
         }
         let mut address = vertices.address;
-        let (u, u_light) = (self.draw_1d::<R>(&mut address), self.draw_2d::<R>(&mut address));
+        let u = draw_1d::<R>(&self.pass, &mut address);
+        let u_light = draw_2d::<R>(&self.pass, &mut address);
         vertices.address.dimension =
             R::Int::select(is_non_specular, address.dimension, vertices.address.dimension);
         let light = lights::sample(&self.pass, contexts, u, u_light, &vertices.lambda, samples);
@@ -181,7 +183,8 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
     ) {
-        let (uc, u) = (self.draw_1d::<R>(&mut vertices.address), self.draw_2d::<R>(&mut vertices.address));
+        let uc = draw_1d::<R>(&self.pass, &mut vertices.address);
+        let u = draw_2d::<R>(&self.pass, &mut vertices.address);
         let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
         let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
@@ -197,7 +200,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let draws = plays & probability.gt(R::zero());
         let mut survives = valid & !plays;
         if draws.any() {
-            let u = self.pass.pixels.sampler.at_1d::<R>(&vertices.address);
+            let u = draw_1d::<R>(&self.pass, &mut { vertices.address });
             survives = survives | (draws & u.lt(probability));
         }
         let beta = SampledSpectrum::select(plays, beta / probability, beta);
@@ -225,20 +228,6 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
             }
             self.queues.next.push(row as u32);
         });
-    }
-
-    #[inline(always)]
-    fn draw_1d<R: Real>(&self, address: &mut Address<R::Int>) -> R {
-        let u = self.pass.pixels.sampler.at_1d(address);
-        address.skip(1);
-        u
-    }
-
-    #[inline(always)]
-    fn draw_2d<R: Real>(&self, address: &mut Address<R::Int>) -> Vec2<R> {
-        let [x, y] = self.pass.pixels.sampler.at_2d(address);
-        address.skip(2);
-        Vec2::new(x, y)
     }
 }
 

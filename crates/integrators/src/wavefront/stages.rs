@@ -1,9 +1,7 @@
 //! The stages of a batch.
 
-use description::PathDesc;
 use film::FilmTile;
 use geometry::{Hit, RayStats};
-use lanes::InstructionSet;
 use math::Ray;
 use sampling::Sampler;
 use scattering::{Bsdf, each_bxdf};
@@ -12,27 +10,14 @@ use scene::material::{Material, MaterialId, MaterialModel};
 use spectrum::SampledSpectrum;
 
 use super::begin::Begin;
-use super::materials::LaneMaterials;
+use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, ShadowRay};
-use super::rectangles::RectangleLights;
 use super::shade::Shade;
-use crate::transport::direct::{Connection, DirectLighting, light_context};
+use crate::transport::direct::{Connection, light_context};
 use crate::transport::path_state::Scattered;
 use crate::transport::pixel_samples::{PixelSample, PixelSamples};
-use crate::{Cancelled, Control, Tracer};
-
-/// What all batches of a pass share.
-#[derive(Clone, Copy)]
-pub(super) struct Pass<'a> {
-    pub settings: &'a PathDesc,
-    pub direct: &'a DirectLighting,
-    pub materials: &'a LaneMaterials,
-    pub rectangles: &'a RectangleLights,
-    pub pixels: &'a PixelSamples<'a>,
-    pub control: &'a Control,
-    pub instruction_set: InstructionSet,
-}
+use crate::{Cancelled, Tracer};
 
 /// The stages of one batch.
 pub(super) struct Stages<'a> {

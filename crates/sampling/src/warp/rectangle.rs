@@ -9,8 +9,8 @@
 //! ```
 //!
 //! so that φ is uniform in u₀ between φ(x₀) and φ(x₁); given x, the height on the sphere is uniform
-//! in u₁. In floats the solid angle is off by a few 10⁻⁷ steradians, so that rectangles of less than
-//! about 10⁻² are better sampled by area.
+//! in u₁. In floats the solid angle is off by a few 10⁻⁷ steradians, so that rectangles of less
+//! than about 10⁻² are better sampled by area.
 
 use lanes::{Real, atan2, sin_cos};
 use math::{Point3, Vec2, Vector3};

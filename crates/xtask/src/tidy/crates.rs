@@ -20,7 +20,18 @@ const EDGES: [(&str, &[&str]); 17] = [
     ("film", &["math", "spectrum", "sampling", "image", "description"]),
     (
         "integrators",
-        &["math", "spectrum", "sampling", "image", "geometry", "scattering", "description", "scene", "film"],
+        &[
+            "lanes",
+            "math",
+            "spectrum",
+            "sampling",
+            "image",
+            "geometry",
+            "scattering",
+            "description",
+            "scene",
+            "film",
+        ],
     ),
     (
         "alhazen",

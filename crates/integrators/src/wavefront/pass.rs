@@ -1,0 +1,22 @@
+//! What all batches of a pass share.
+
+use description::PathDesc;
+use lanes::InstructionSet;
+
+use super::materials::LaneMaterials;
+use super::rectangles::RectangleLights;
+use crate::Control;
+use crate::transport::direct::DirectLighting;
+use crate::transport::pixel_samples::PixelSamples;
+
+/// What all batches of a pass share.
+#[derive(Clone, Copy)]
+pub(super) struct Pass<'a> {
+    pub settings: &'a PathDesc,
+    pub direct: &'a DirectLighting,
+    pub materials: &'a LaneMaterials,
+    pub rectangles: &'a RectangleLights,
+    pub pixels: &'a PixelSamples<'a>,
+    pub control: &'a Control,
+    pub instruction_set: InstructionSet,
+}
