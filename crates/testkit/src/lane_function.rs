@@ -11,8 +11,8 @@ pub trait LaneFunction {
 }
 
 /// Asserts that each lane of every instruction set that this processor has gives the bits of single
-/// floats, for `rounds` times `count` numbers per lane. A quarter of the numbers are multiples of ¼,
-/// so that special cases occur. All NaNs count as the same.
+/// floats, for `rounds` times `count` numbers per lane. A quarter of them are multiples of ¼, so
+/// that special cases occur. All NaNs count as the same.
 ///
 /// # Panics
 /// If any bit differs.
