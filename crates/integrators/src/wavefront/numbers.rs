@@ -13,7 +13,7 @@ use super::pass::Pass;
 /// The next coordinate of each lane.
 #[inline(always)]
 pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R {
-    let [u, _] = pass.instruction_set.dispatch(Draw::new(&pass.pixels.sampler, 1, address));
+    let [u, _] = pass.instruction_set.dispatch(Draw::new(pass.pixels.sampler, 1, address));
     address.skip(1);
     R::load(&u)
 }
@@ -21,7 +21,7 @@ pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R 
 /// The next two coordinates of each lane.
 #[inline(always)]
 pub(super) fn draw_2d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> Vec2<R> {
-    let [x, y] = pass.instruction_set.dispatch(Draw::new(&pass.pixels.sampler, 2, address));
+    let [x, y] = pass.instruction_set.dispatch(Draw::new(pass.pixels.sampler, 2, address));
     address.skip(2);
     Vec2::new(R::load(&x), R::load(&y))
 }

@@ -7,8 +7,8 @@ use super::tree::Tree;
 /// ones. Tests may use any crate of an earlier line.
 const EDGES: [(&str, &[&str]); 17] = [
     ("lanes", &[]),
-    ("math", &["lanes"]),
     ("testkit", &["lanes"]),
+    ("math", &["lanes"]),
     ("spectrum", &["lanes", "math"]),
     ("sampling", &["lanes", "math"]),
     ("image", &["math", "spectrum"]),
