@@ -1,5 +1,4 @@
 //! The contracts of BxDFs and microfacet distributions.
 
 mod all_bxdfs;
-mod lanes;
 mod microfacets;
