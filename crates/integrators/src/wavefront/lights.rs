@@ -53,16 +53,14 @@ pub(super) fn sample<R: Real>(
     let inputs = Inputs {
         context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
         time: context.time.to_array(),
-        u: [u, u_light.x, u_light.y].each(R::to_array),
+        u: [u_light.x, u_light.y].each(R::to_array),
         lambda: lambda.lambda().each(R::to_array),
         lambda_pdf: lambda.pdf().0.each(R::to_array),
     };
     let mut values = Columns([[0.0; MAX_LANES]; 17]);
     let mut masks = [0; 4];
-    let chosen = inputs.choose(pass, active.bits());
-    let pmf = R::load(&chosen.pmf);
-    let rows = R::Int::load(&chosen.row);
-    let mut in_lanes = R::Mask::from_bits(chosen.in_lanes);
+    let (lights, pmf, chosen) = pass.direct.lights().sample_lanes(context, u, active);
+    let (rows, mut in_lanes) = pass.rectangles.rows::<R>(lights, chosen);
     let mut sampled = None;
     if in_lanes.any() {
         match pass.rectangles.emission::<R>(pass.pixels.scene, rows, in_lanes) {
@@ -75,8 +73,8 @@ pub(super) fn sample<R: Real>(
             None => in_lanes = R::Mask::splat(false),
         }
     }
-    let others = chosen.valid & !in_lanes.bits();
-    each(others, |lane| inputs.sample(pass, LightId(chosen.id[lane]), lane, &mut values, &mut masks));
+    let (others, lights) = (chosen & !in_lanes, lights.to_array());
+    each(others.bits(), |lane| inputs.sample(pass, LightId(lights[lane]), lane, &mut values, &mut masks));
     let number = |column: usize| R::load(&values.0[column]);
     let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
     let [valid, is_delta, is_distant, passes] = masks.each(R::Mask::from_bits);
@@ -107,23 +105,11 @@ pub(super) fn sample<R: Real>(
     }
 }
 
-/// The lights chosen for the lanes.
-struct Chosen {
-    /// The lanes that have a light.
-    valid: u32,
-    /// Those whose light is in the table of rectangles.
-    in_lanes: u32,
-    id: [u32; MAX_LANES],
-    /// Its row in that table; 0 for others.
-    row: [u32; MAX_LANES],
-    pmf: [f32; MAX_LANES],
-}
-
 /// What samples depend on, in arrays.
 struct Inputs {
     context: [[[f32; MAX_LANES]; 3]; 4],
     time: [f32; MAX_LANES],
-    u: [[f32; MAX_LANES]; 3],
+    u: [[f32; MAX_LANES]; 2],
     lambda: [[f32; MAX_LANES]; N],
     lambda_pdf: [[f32; MAX_LANES]; N],
 }
@@ -132,25 +118,6 @@ impl Inputs {
     fn context(&self, lane: usize) -> LightSampleContext {
         let [p, error, n, ns] = self.context.each_ref().map(|v| Vec3::from_array(v.map(|c| c[lane])));
         LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
-    }
-
-    /// Chooses a light for each of the lanes.
-    fn choose(&self, pass: &Pass, lanes: u32) -> Chosen {
-        let [id, row] = [[0; MAX_LANES]; 2];
-        let mut chosen = Chosen { valid: 0, in_lanes: 0, id, row, pmf: [0.0; MAX_LANES] };
-        each(lanes, |lane| {
-            let light = pass.direct.lights().sample(&self.context(lane), self.u[0][lane]);
-            if let Some((id, pmf)) = light {
-                chosen.valid |= 1 << lane;
-                (chosen.id[lane], chosen.pmf[lane]) = (id.0, pmf);
-                let row = pass.rectangles.row(id);
-                if row != RectangleLights::NONE {
-                    chosen.in_lanes |= 1 << lane;
-                    chosen.row[lane] = row;
-                }
-            }
-        });
-        chosen
     }
 
     /// Samples the light of one lane.
@@ -163,7 +130,7 @@ impl Inputs {
         [valid, is_delta, is_distant, passes]: &mut [u32; 4],
     ) {
         let (scene, bit) = (pass.pixels.scene, 1 << lane);
-        let [_, x, y] = self.u.each_ref().map(|u| u[lane]);
+        let [x, y] = self.u.each_ref().map(|u| u[lane]);
         let lambda = self.lambda.each_ref().map(|v| v[lane]);
         let lambda = SampledWavelengths::new(lambda, self.lambda_pdf.each_ref().map(|v| v[lane]));
         let sample = scene.sample_light(id, &self.context(lane), Vec2::new(x, y), &lambda, true);

@@ -15,7 +15,7 @@ const NUMBERS: usize = 13;
 /// The rectangles among the lights of a scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RectangleLights {
-    /// The row of each light; [`NONE`](Self::NONE) for lights that are not in the table.
+    /// The row of each light; [`NONE`](Self::NONE) for those not in the table.
     row: Vec<u32>,
     numbers: Vec<f32>,
     /// The emission of each row.
@@ -24,7 +24,7 @@ pub(super) struct RectangleLights {
 
 impl RectangleLights {
     /// The row of lights that are not in the table.
-    pub const NONE: u32 = u32::MAX;
+    const NONE: u32 = u32::MAX;
 
     /// Those of a scene.
     pub fn new(scene: &Scene) -> Self {
@@ -59,10 +59,15 @@ impl RectangleLights {
         Some(())
     }
 
-    /// The row of a light.
-    #[inline]
-    pub fn row(&self, id: LightId) -> u32 {
-        self.row.get(id.0 as usize).copied().unwrap_or(Self::NONE)
+    /// The rows of these lights, and the lanes of `mask` whose lights are in the table; 0 in others.
+    #[inline(always)]
+    pub fn rows<R: Real>(&self, lights: R::Int, mask: R::Mask) -> (R::Int, R::Mask) {
+        if self.emission.is_empty() {
+            return (R::Int::splat(0), R::Mask::splat(false));
+        }
+        let rows = R::Int::gather(&self.row, R::Int::select(mask, lights, R::Int::splat(0)));
+        let is_row = mask & !rows.eq(R::Int::splat(Self::NONE));
+        (R::Int::select(is_row, rows, R::Int::splat(0)), is_row)
     }
 
     /// The rectangles of these rows, and the scales of their emission.

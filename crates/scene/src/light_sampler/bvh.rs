@@ -11,8 +11,9 @@
 //! are built on several threads; the tree does not depend on their number. Sources: [Conty Estevez
 //! & Kulla 2018]; [Pharr 2023 §12.6.3].
 
-use super::cluster::Cluster;
+use super::cluster::{Cluster, NUMBERS};
 use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
+use lanes::{Int, Mask, Real};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
 use std::f32::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,8 +21,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Lights by importance.
 #[derive(Clone, Debug)]
 pub struct BvhLightSampler {
-    nodes: Vec<Node>,
-    infinite: Vec<LightId>,
+    /// By node; the left child of a node follows it.
+    clusters: Vec<[f32; NUMBERS]>,
+    /// By node: [`LEAF`] and the id of its light, or the right child of an interior node.
+    kinds: Vec<u32>,
+    /// The ids of the lights infinitely far away.
+    infinite: Vec<u32>,
     /// By light.
     trails: Vec<Trail>,
 }
@@ -38,20 +43,8 @@ impl Trail {
     const INFINITE: Self = Self(u64::MAX - 1);
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    cluster: Cluster,
-    kind: NodeKind,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum NodeKind {
-    Leaf(LightId),
-    /// The left child follows its parent.
-    Interior {
-        right: u32,
-    },
-}
+/// The bit of a leaf's kind; no node has an index as large.
+const LEAF: u32 = 1 << 31;
 
 const BUCKETS: usize = 12;
 /// Below this depth splits are at the median, so that every trail fits into its bits.
@@ -60,8 +53,15 @@ const MAX_COST_SPLIT_DEPTH: u32 = 32;
 const PARALLEL_LIGHTS: usize = 4096;
 
 impl BvhLightSampler {
+    /// The most lights: the numbers of their tree are counted in 32 bits.
+    pub const MAX_LIGHTS: usize = 1 << 27;
+
     /// Builds the tree; `None` if `cancel` is set meanwhile.
+    ///
+    /// # Panics
+    /// If there are more than [`MAX_LIGHTS`](Self::MAX_LIGHTS).
     pub fn new(lights: Lights, cancel: &AtomicBool) -> Option<Self> {
+        assert!(lights.len() <= Self::MAX_LIGHTS, "too many lights for a tree");
         let mut infinite = Vec::new();
         let mut bounded = Vec::new();
         let mut trails = vec![Trail::NOWHERE; lights.len()];
@@ -72,30 +72,29 @@ impl BvhLightSampler {
             let id = light.id();
             match light.bounds() {
                 None => {
-                    infinite.push(id);
+                    infinite.push(id.0);
                     trails[id.0 as usize] = Trail::INFINITE;
                 }
                 Some(bounds) if bounds.phi > 0.0 => bounded.push((id, bounds)),
                 Some(_) => {}
             }
         }
-        let empty =
-            Node { cluster: Cluster::new(&LightBounds::EMPTY), kind: NodeKind::Interior { right: 0 } };
-        let mut nodes = vec![empty; (2 * bounded.len()).saturating_sub(1)];
-        if !nodes.is_empty() {
-            build(&mut bounded, &mut nodes, [0, 0], cancel)?;
+        let count = (2 * bounded.len()).saturating_sub(1);
+        let (mut clusters, mut kinds) = (vec![[0.0; NUMBERS]; count], vec![0; count]);
+        if count > 0 {
+            build(&mut bounded, (&mut clusters, &mut kinds), [0, 0], cancel)?;
         }
-        let mut sampler = Self { nodes, infinite, trails };
+        let mut sampler = Self { clusters, kinds, infinite, trails };
         sampler.store_trails(0, 0, 0);
         Some(sampler)
     }
 
     /// Stores the trails of all lights below a node, whose own is `trail`.
     fn store_trails(&mut self, node: usize, trail: u64, depth: u32) {
-        match self.nodes.get(node).map(|node| node.kind) {
+        match self.kinds.get(node) {
             None => (),
-            Some(NodeKind::Leaf(id)) => self.trails[id.0 as usize] = Trail(trail),
-            Some(NodeKind::Interior { right }) => {
+            Some(&kind) if kind >= LEAF => self.trails[(kind & !LEAF) as usize] = Trail(trail),
+            Some(&right) => {
                 self.store_trails(node + 1, trail, depth + 1);
                 self.store_trails(right as usize, trail | (1 << depth), depth + 1);
             }
@@ -103,51 +102,97 @@ impl BvhLightSampler {
     }
 
     /// Probability of choosing among the infinite lights.
+    #[inline(always)]
     fn infinite_probability(&self) -> f32 {
         let infinite = self.infinite.len() as f32;
-        let tree = if self.nodes.is_empty() { 0.0 } else { 1.0 };
+        let tree = if self.kinds.is_empty() { 0.0 } else { 1.0 };
         if infinite == 0.0 { 0.0 } else { infinite / (infinite + tree) }
     }
 
-    fn importance(&self, node: usize, context: &LightSampleContext) -> f32 {
-        self.nodes[node].cluster.importance(context.p.p, context.ns)
+    #[inline(always)]
+    fn importance<R: Real>(&self, nodes: R::Int, context: &LightSampleContext<R>) -> R {
+        Cluster::<R>::gather(self.clusters.as_flattened(), nodes).importance(context.p.p, context.ns)
     }
 
     /// Probability of choosing the tree: zero if its root is a leaf of importance zero.
-    fn tree_probability(&self, context: &LightSampleContext) -> f32 {
+    #[inline(always)]
+    fn tree_probability<R: Real>(&self, context: &LightSampleContext<R>) -> R {
+        let probability = R::splat(1.0 - self.infinite_probability());
         // Below an interior root the descent finds importances of zero.
-        match self.nodes.first() {
-            Some(Node { kind: NodeKind::Leaf(_), .. }) if self.importance(0, context) == 0.0 => 0.0,
-            _ => 1.0 - self.infinite_probability(),
+        match self.kinds.first() {
+            Some(&kind) if kind >= LEAF => {
+                let is_zero = self.importance(R::Int::splat(0), context).eq(R::zero());
+                R::select(is_zero, R::zero(), probability)
+            }
+            _ => probability,
+        }
+    }
+
+    /// See [`LightSampler::sample_lanes`](super::LightSampler::sample_lanes).
+    #[inline(always)]
+    pub(super) fn sample_lanes<R: Real>(
+        &self,
+        context: &LightSampleContext<R>,
+        u: R,
+        active: R::Mask,
+    ) -> (R::Int, R, R::Mask) {
+        let share = self.infinite_probability();
+        let is_infinite = u.lt(R::splat(share)) & active;
+        let (mut lights, mut pmf, mut valid) = (R::Int::splat(0), R::zero(), is_infinite);
+        if is_infinite.any() {
+            let count = self.infinite.len();
+            let place = (u / R::splat(share) * R::splat(count as f32)).to_int();
+            let last = R::Int::splat(count as u32 - 1);
+            lights = R::Int::gather(&self.infinite, R::Int::select(place.lt(last), place, last));
+            pmf = R::splat(share / count as f32);
+        }
+        let in_tree = active & !is_infinite;
+        if in_tree.any() && !self.kinds.is_empty() {
+            let u = (u - R::splat(share)) / R::splat(1.0 - share);
+            let chosen = self.descend(context, u.min(R::splat(ONE_MINUS_EPSILON)), in_tree);
+            lights = R::Int::select(in_tree, chosen.0, lights);
+            pmf = R::select(in_tree, chosen.1, pmf);
+            valid = valid | chosen.2;
+        }
+        (lights, pmf, valid)
+    }
+
+    /// Chooses a light of the tree, which has a node, for each lane of `active`.
+    #[inline(always)]
+    fn descend<R: Real>(
+        &self,
+        context: &LightSampleContext<R>,
+        mut u: R,
+        active: R::Mask,
+    ) -> (R::Int, R, R::Mask) {
+        let zero = R::zero();
+        let mut pmf = self.tree_probability(context);
+        let mut valid = active & pmf.gt(zero);
+        let mut node = R::Int::splat(0);
+        loop {
+            let kind = R::Int::gather(&self.kinds, node);
+            let descends = valid & kind.lt(R::Int::splat(LEAF));
+            if !descends.any() {
+                return (kind & R::Int::splat(!LEAF), pmf, valid & pmf.gt(zero));
+            }
+            // Lanes that have arrived read the first node, and keep their own.
+            let left = R::Int::select(descends, node.wrapping_add(R::Int::splat(1)), R::Int::splat(0));
+            let right = R::Int::select(descends, kind, R::Int::splat(0));
+            let (a, b) = (self.importance(left, context), self.importance(right, context));
+            valid = valid & !(descends & a.eq(zero) & b.eq(zero));
+            let (p, q) = (a / (a + b), b / (a + b));
+            let goes_left = u.lt(p);
+            let chosen = R::select(goes_left, p, q);
+            let rest = R::select(goes_left, u, u - p) / chosen;
+            u = R::select(descends, rest.clamp(zero, R::splat(ONE_MINUS_EPSILON)), u);
+            pmf = R::select(descends, pmf * chosen, pmf);
+            node = R::Int::select(descends, R::Int::select(goes_left, left, right), node);
         }
     }
 
     pub(super) fn sample(&self, context: &LightSampleContext, u: f32) -> Option<(LightId, f32)> {
-        let share = self.infinite_probability();
-        if u < share {
-            let count = self.infinite.len();
-            let i = ((u / share * count as f32) as usize).min(count - 1);
-            return Some((self.infinite[i], share / count as f32));
-        }
-        let mut u = ((u - share) / (1.0 - share)).min(ONE_MINUS_EPSILON);
-        let mut pmf = self.tree_probability(context);
-        let mut index = 0;
-        loop {
-            match self.nodes.get(index)?.kind {
-                NodeKind::Interior { right } => {
-                    let (left, right) = (index + 1, right as usize);
-                    let [a, b] = [left, right].map(|child| self.importance(child, context));
-                    if a == 0.0 && b == 0.0 {
-                        return None;
-                    }
-                    let [p, q] = [a / (a + b), b / (a + b)];
-                    (index, u, pmf) =
-                        if u < p { (left, u / p, pmf * p) } else { (right, (u - p) / q, pmf * q) };
-                    u = u.clamp(0.0, ONE_MINUS_EPSILON);
-                }
-                NodeKind::Leaf(id) => return (pmf > 0.0).then_some((id, pmf)),
-            }
-        }
+        let (light, pmf, valid) = self.sample_lanes::<f32>(context, u, true);
+        valid.then_some((LightId(light), pmf))
     }
 
     pub(super) fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
@@ -156,32 +201,33 @@ impl BvhLightSampler {
             Trail::INFINITE => return self.infinite_probability() / self.infinite.len() as f32,
             Trail(trail) => trail,
         };
-        let (mut pmf, mut index) = (self.tree_probability(context), 0);
-        while let NodeKind::Interior { right } = self.nodes[index].kind {
-            let children = [index + 1, right as usize];
-            let importances = children.map(|child| self.importance(child, context));
+        let (mut pmf, mut node) = (self.tree_probability::<f32>(context), 0);
+        while self.kinds[node as usize] < LEAF {
+            let children = [node + 1, self.kinds[node as usize]];
+            let importances = children.map(|child| self.importance::<f32>(child, context));
             let way = (trail & 1) as usize;
             if importances[way] == 0.0 {
                 return 0.0;
             }
             pmf *= importances[way] / (importances[0] + importances[1]);
-            index = children[way];
+            node = children[way];
             trail >>= 1;
         }
         pmf
     }
 }
 
-/// Builds the tree of n ≥ 1 lights in 2n − 1 nodes. The first node has the given index and depth in
+/// Builds the tree of n ≥ 1 lights in 2n − 1 nodes, given by their clusters
+/// and kinds. The first node has the given index and depth in
 /// the whole tree. `None` if `cancel` is set meanwhile.
 fn build(
     lights: &mut [(LightId, LightBounds)],
-    nodes: &mut [Node],
+    (clusters, kinds): (&mut [[f32; NUMBERS]], &mut [u32]),
     [index, depth]: [u32; 2],
     cancel: &AtomicBool,
 ) -> Option<LightBounds> {
     if let [(id, bounds)] = lights {
-        nodes[0] = Node { cluster: Cluster::new(bounds), kind: NodeKind::Leaf(*id) };
+        (clusters[0], kinds[0]) = (Cluster::row(bounds), LEAF | id.0);
         return Some(*bounds);
     }
     if cancel.load(Ordering::Relaxed) {
@@ -190,14 +236,16 @@ fn build(
     let is_large = lights.len() > PARALLEL_LIGHTS;
     let middle = split(lights, depth);
     let (left, right) = lights.split_at_mut(middle);
-    let (node, below) = nodes.split_first_mut()?;
-    let (left_nodes, right_nodes) = below.split_at_mut(2 * middle - 1);
+    let (cluster, below) = clusters.split_first_mut()?;
+    let (left_clusters, right_clusters) = below.split_at_mut(2 * middle - 1);
+    let (kind, below) = kinds.split_first_mut()?;
+    let (left_kinds, right_kinds) = below.split_at_mut(2 * middle - 1);
     let right_index = index + 2 * middle as u32;
-    let mut left = || build(left, left_nodes, [index + 1, depth + 1], cancel);
-    let mut right = || build(right, right_nodes, [right_index, depth + 1], cancel);
+    let mut left = || build(left, (left_clusters, left_kinds), [index + 1, depth + 1], cancel);
+    let mut right = || build(right, (right_clusters, right_kinds), [right_index, depth + 1], cancel);
     let (left, right) = if is_large { rayon::join(left, right) } else { (left(), right()) };
     let bounds = left?.union(right?);
-    *node = Node { cluster: Cluster::new(&bounds), kind: NodeKind::Interior { right: right_index } };
+    (*cluster, *kind) = (Cluster::row(&bounds), right_index);
     Some(bounds)
 }
 

@@ -6,78 +6,100 @@
 //! ([Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3]).
 
 use crate::light::LightBounds;
+use lanes::{Int, Real};
 use math::{Normal3, Point3, Vec3, Vector3, safe_sqrt};
 
 /// [`LightBounds`] with what does not depend on the point computed once.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cluster {
-    centroid: Point3,
+pub(super) struct Cluster<R: Real = f32> {
+    centroid: Point3<R>,
     /// Square of the radius of the box's bounding sphere.
-    radius2: f32,
-    w: Vector3,
-    phi: f32,
-    cos_theta_o: f32,
-    sin_theta_o: f32,
-    cos_theta_e: f32,
-    two_sided: bool,
+    radius2: R,
+    w: Vector3<R>,
+    phi: R,
+    cos_theta_o: R,
+    sin_theta_o: R,
+    cos_theta_e: R,
+    two_sided: R::Mask,
 }
 
+/// Numbers of a cluster in a table: centroid, radius², w, Φ, cos θ_o, sin θ_o, cos θ_e, and whether
+/// it is two-sided.
+pub(super) const NUMBERS: usize = 12;
+
 /// cos(max(0, a − b)) of angles in [0, π] given by their sines and cosines.
-fn cos_sub_clamped(sin_a: f32, cos_a: f32, sin_b: f32, cos_b: f32) -> f32 {
-    if cos_a > cos_b { 1.0 } else { cos_a * cos_b + sin_a * sin_b }
+#[inline(always)]
+fn cos_sub_clamped<R: Real>(sin_a: R, cos_a: R, sin_b: R, cos_b: R) -> R {
+    R::select(cos_a.gt(cos_b), R::one(), cos_a * cos_b + sin_a * sin_b)
 }
 
 /// sin(max(0, a − b)).
-fn sin_sub_clamped(sin_a: f32, cos_a: f32, sin_b: f32, cos_b: f32) -> f32 {
-    if cos_a > cos_b { 0.0 } else { sin_a * cos_b - cos_a * sin_b }
+#[inline(always)]
+fn sin_sub_clamped<R: Real>(sin_a: R, cos_a: R, sin_b: R, cos_b: R) -> R {
+    R::select(cos_a.gt(cos_b), R::zero(), sin_a * cos_b - cos_a * sin_b)
 }
 
 impl Cluster {
-    /// The cluster with these bounds.
-    pub fn new(lights: &LightBounds) -> Self {
+    /// The row of the table for lights with these bounds.
+    pub fn row(lights: &LightBounds) -> [f32; NUMBERS] {
         let &LightBounds { bounds, w, phi, cos_theta_o, cos_theta_e, two_sided } = lights;
+        let c = bounds.centroid();
+        let radius2 = bounds.diagonal().length_squared() / 4.0;
+        let sin_theta_o = safe_sqrt(1.0 - cos_theta_o * cos_theta_o);
+        let two_sided = if two_sided { 1.0 } else { 0.0 };
+        [c.x, c.y, c.z, radius2, w.x, w.y, w.z, phi, cos_theta_o, sin_theta_o, cos_theta_e, two_sided]
+    }
+}
+
+impl<R: Real> Cluster<R> {
+    /// The clusters of these rows of a table.
+    #[inline(always)]
+    pub fn gather(table: &[f32], rows: R::Int) -> Self {
+        let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
+        let number = |i: u32| R::gather(table, first.wrapping_add(R::Int::splat(i)));
         Self {
-            centroid: bounds.centroid(),
-            radius2: bounds.diagonal().length_squared() / 4.0,
-            w,
-            phi,
-            cos_theta_o,
-            sin_theta_o: safe_sqrt(1.0 - cos_theta_o * cos_theta_o),
-            cos_theta_e,
-            two_sided,
+            centroid: Vec3::new(number(0), number(1), number(2)),
+            radius2: number(3),
+            w: Vec3::new(number(4), number(5), number(6)),
+            phi: number(7),
+            cos_theta_o: number(8),
+            sin_theta_o: number(9),
+            cos_theta_e: number(10),
+            two_sided: number(11).gt(R::zero()),
         }
     }
 
     /// An estimate ≥ 0 of the unoccluded contribution to `p`. A nonzero `n` is the surface normal
     /// there, and includes the cosine of incidence.
-    pub fn importance(&self, p: Point3, n: Normal3) -> f32 {
+    #[inline(always)]
+    pub fn importance(&self, p: Point3<R>, n: Normal3<R>) -> R {
+        let [zero, one] = [R::zero(), R::one()];
         let to = p - self.centroid;
         let distance2 = to.length_squared();
-        let wi = to.try_normalize().unwrap_or(Vec3::Z);
-        let mut cos_w = self.w.dot(wi);
-        if self.two_sided {
-            cos_w = cos_w.abs();
-        }
-        let sin_w = safe_sqrt(1.0 - cos_w * cos_w);
+        let (wi, is_apart) = to.normalize_masked();
+        let wi = Vec3::select(is_apart, wi, Vec3::new(zero, zero, one));
+        let cos_w = self.w.dot(wi);
+        let cos_w = R::select(self.two_sided, cos_w.abs(), cos_w);
+        let sin_w = safe_sqrt(one - cos_w * cos_w);
         // The cone around the box is the whole sphere of directions for points in the box's
         // bounding sphere.
         let sin2_b = self.radius2 / distance2;
-        let (sin_b, cos_b) = if sin2_b < 1.0 { (sin2_b.sqrt(), (1.0 - sin2_b).sqrt()) } else { (0.0, -1.0) };
+        let is_outside = sin2_b.lt(one);
+        let sin_b = R::select(is_outside, sin2_b.sqrt(), zero);
+        let cos_b = R::select(is_outside, (one - sin2_b).sqrt(), -one);
         let cos_x = cos_sub_clamped(sin_w, cos_w, self.sin_theta_o, self.cos_theta_o);
         let sin_x = sin_sub_clamped(sin_w, cos_w, self.sin_theta_o, self.cos_theta_o);
         let cos_p = cos_sub_clamped(sin_x, cos_x, sin_b, cos_b);
-        if cos_p <= self.cos_theta_e {
-            return 0.0;
-        }
         // The distance is clamped to half of the box's diagonal, as 1/d² diverges near a cluster.
-        let mut importance = self.phi * cos_p / distance2.max(self.radius2);
-        if n != Vec3::ZERO {
-            let cos_i = wi.dot(n).abs();
-            let sin_i = safe_sqrt(1.0 - cos_i * cos_i);
-            importance *= cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
-        }
+        let everywhere = self.phi * cos_p / distance2.max(self.radius2);
+        let cos_i = wi.dot(n).abs();
+        let sin_i = safe_sqrt(one - cos_i * cos_i);
+        let on_surface = everywhere * cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
+        let has_normal = n.x.ne(zero) | n.y.ne(zero) | n.z.ne(zero);
+        let importance = R::select(has_normal, on_surface, everywhere);
         // Finite even at the position of a point light, so that importances can be compared.
-        importance.clamp(0.0, f32::MAX / 4.0)
+        let importance = importance.clamp(zero, R::splat(f32::MAX / 4.0));
+        R::select(cos_p.le(self.cos_theta_e), zero, importance)
     }
 }
 
@@ -87,7 +109,7 @@ mod tests {
     use math::Bounds3;
 
     fn importance(lights: LightBounds, p: Point3, n: Normal3) -> f32 {
-        Cluster::new(&lights).importance(p, n)
+        Cluster::<f32>::gather(&Cluster::row(&lights), 0).importance(p, n)
     }
 
     fn lamp() -> LightBounds {

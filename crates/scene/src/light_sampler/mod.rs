@@ -15,6 +15,7 @@ pub use uniform::UniformLightSampler;
 
 use crate::light::{LightId, LightSampleContext, Lights};
 use description::LightSamplerDesc;
+use lanes::Real;
 use std::sync::atomic::AtomicBool;
 
 /// A light sampler.
@@ -37,13 +38,18 @@ impl Default for LightSampler {
 
 impl LightSampler {
     /// A sampler of these lights, as described; `None` if `cancel` is set while a tree is built.
-    /// The description's sampling of every light is not supported; the tree replaces it.
+    /// The description's sampling of every light is not supported; the tree replaces it. More
+    /// lights than a tree can hold are chosen by their power.
     pub fn new(desc: LightSamplerDesc, lights: Lights, cancel: &AtomicBool) -> Option<Self> {
         Some(match desc {
             LightSamplerDesc::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
-            LightSamplerDesc::Power => Self::Power(PowerLightSampler::new(lights)),
-            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => {
+            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive
+                if lights.len() <= BvhLightSampler::MAX_LIGHTS =>
+            {
                 Self::Bvh(BvhLightSampler::new(lights, cancel)?)
+            }
+            LightSamplerDesc::Power | LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => {
+                Self::Power(PowerLightSampler::new(lights))
             }
         })
     }
@@ -55,6 +61,22 @@ impl LightSampler {
             Self::Uniform(s) => s.sample(u),
             Self::Power(s) => s.sample(u),
             Self::Bvh(s) => s.sample(context, u),
+        }
+    }
+
+    /// [`sample`](Self::sample) for each lane of `active`: the ids of the lights, the probabilities
+    /// of their choice, and the lanes that have a light. All lanes have the same as alone.
+    #[inline(always)]
+    pub fn sample_lanes<R: Real>(
+        &self,
+        context: &LightSampleContext<R>,
+        u: R,
+        active: R::Mask,
+    ) -> (R::Int, R, R::Mask) {
+        match self {
+            Self::Uniform(s) => s.sample_lanes(u, active),
+            Self::Power(s) => s.sample_lanes(u, active),
+            Self::Bvh(s) => s.sample_lanes(context, u, active),
         }
     }
 

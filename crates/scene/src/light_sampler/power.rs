@@ -2,6 +2,7 @@
 //! also chooses the lights at which light paths start.
 
 use crate::light::{LightId, Lights};
+use lanes::{Int, MAX_LANES, Mask, Real};
 use sampling::AliasTable;
 use spectrum::SampledWavelengths;
 
@@ -34,5 +35,22 @@ impl PowerLightSampler {
     #[inline]
     pub fn pmf(&self, light: LightId) -> f32 {
         self.table.as_ref().map_or(0.0, |table| table.pmf(light.0 as usize))
+    }
+
+    /// See [`LightSampler::sample_lanes`](super::LightSampler::sample_lanes). The lanes go one by
+    /// one, as the table is sampled in double precision.
+    #[inline(always)]
+    pub(super) fn sample_lanes<R: Real>(&self, u: R, active: R::Mask) -> (R::Int, R, R::Mask) {
+        let (u, active) = (u.to_array(), active.bits());
+        let (mut lights, mut pmf, mut valid) = ([0; MAX_LANES], [0.0; MAX_LANES], 0);
+        for lane in 0..R::LANES {
+            if active >> lane & 1 == 1
+                && let Some((light, p)) = self.sample(u[lane])
+            {
+                (lights[lane], pmf[lane]) = (light.0, p);
+                valid |= 1 << lane;
+            }
+        }
+        (R::Int::load(&lights), R::load(&pmf), R::Mask::from_bits(valid))
     }
 }

@@ -1,6 +1,7 @@
 //! All lights with equal probability.
 
 use crate::light::{LightId, Lights};
+use lanes::{Int, Mask, Real};
 
 /// Every light with the same probability.
 #[derive(Clone, Debug, Default)]
@@ -24,5 +25,16 @@ impl UniformLightSampler {
     #[inline]
     pub fn pmf(&self) -> f32 {
         if self.count == 0 { 0.0 } else { 1.0 / self.count as f32 }
+    }
+
+    /// See [`LightSampler::sample_lanes`](super::LightSampler::sample_lanes).
+    #[inline(always)]
+    pub(super) fn sample_lanes<R: Real>(&self, u: R, active: R::Mask) -> (R::Int, R, R::Mask) {
+        if self.count == 0 {
+            return (R::Int::splat(0), R::zero(), R::Mask::splat(false));
+        }
+        let light = (u * R::splat(self.count as f32)).to_int();
+        let last = R::Int::splat(self.count - 1);
+        (R::Int::select(light.lt(last), light, last), R::splat(self.pmf()), active)
     }
 }

@@ -5,6 +5,7 @@ mod common;
 mod compile;
 mod emission;
 mod instances;
+mod light_choice_lanes;
 mod light_samplers;
 mod light_table;
 mod light_totals;
