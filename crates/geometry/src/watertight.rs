@@ -14,7 +14,7 @@
 #![allow(unsafe_code)]
 
 use lanes::{F32x1, Vector};
-use math::{Ray, Vec2, Vec3, difference_of_products, gamma};
+use math::{Ray, Vec2, Vec3, Vec4, difference_of_products, gamma};
 
 /// The sign of an edge function below this may be due to underflow.
 const VANISHING: f32 = 1e-30;
@@ -23,13 +23,12 @@ const TINY: f32 = 1e-20;
 
 /// A ray prepared for triangle tests.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sheared {
+pub(crate) struct Sheared<'a> {
+    ray: &'a Ray,
     /// A permutation of the axes with the main axis of the ray last.
     axes: [usize; 3],
     /// −d_x/d_z, −d_y/d_z and 1/d_z in permuted axes.
     shear: [f32; 3],
-    o: Vec3,
-    d: Vec3,
 }
 
 /// A ray in every lane, with permuted axes.
@@ -42,29 +41,30 @@ pub(crate) struct ShearedLanes<V> {
 
 /// The result of each lane: a bit for each hit, and one where it is uncertain, to be resolved by
 /// [`Sheared::resolve`]. Distances and barycentric coordinates are valid for certain hits.
-pub(crate) struct LaneHits<const N: usize> {
+pub(crate) struct LaneHits<V> {
     pub hits: u32,
     pub uncertain: u32,
-    pub t: [f32; N],
-    pub b1: [f32; N],
-    pub b2: [f32; N],
+    pub t: V,
+    pub b1: V,
+    pub b2: V,
 }
 
-impl Sheared {
+impl<'a> Sheared<'a> {
     #[inline(always)]
-    pub fn new(ray: &Ray) -> Self {
+    pub fn new(ray: &'a Ray) -> Self {
         const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
         let axes = AXES[main_axis(ray.d)];
         let d = ray.d.to_array();
-        let d = axes.map(|a| d[a]);
-        Self { axes, shear: [-d[0] / d[2], -d[1] / d[2], 1.0 / d[2]], o: ray.o, d: ray.d }
+        let [x, y, z] = axes.map(|a| d[a]);
+        let [sx, sy, sz, _] = (Vec4::new(-x, -y, 1.0, 1.0) / Vec4::splat(z)).to_array();
+        Self { ray, axes, shear: [sx, sy, sz] }
     }
 
     /// # Safety
     /// The processor must have the instruction set of `V`.
     #[inline(always)]
     pub unsafe fn lanes<const N: usize, V: Vector<N>>(&self) -> ShearedLanes<V> {
-        let o = self.o.to_array();
+        let o = self.ray.o.to_array();
         // SAFETY: as the caller promises.
         unsafe {
             ShearedLanes {
@@ -86,7 +86,7 @@ impl Sheared {
         for (lane, ray) in rays.iter().enumerate() {
             for i in 0..3 {
                 shear[i][lane] = ray.shear[i];
-                o[i][lane] = ray.o[axes[i]];
+                o[i][lane] = ray.ray.o[axes[i]];
             }
         }
         // SAFETY: as the caller promises.
@@ -105,7 +105,8 @@ impl Sheared {
         if found.uncertain != 0 {
             return self.resolve(corners).filter(|hit| hit.0 < t_max);
         }
-        (found.t[0] < t_max).then(|| (found.t[0], Vec2::new(found.b1[0], found.b2[0])))
+        let (t, uv) = found.at(0);
+        (t < t_max).then_some((t, uv))
     }
 
     /// Resolves an uncertain hit in doubles.
@@ -115,7 +116,7 @@ impl Sheared {
         let [ax, ay, az] = self.axes;
         let [sx, sy, sz] = self.shear;
         let sheared = |p: Vec3| {
-            let v = p - self.o;
+            let v = p - self.ray.o;
             [sx.mul_add(v[az], v[ax]), sy.mul_add(v[az], v[ay]), v[az] * sz]
         };
         let [a, b, c] = corners.map(sheared);
@@ -145,7 +146,7 @@ impl Sheared {
     fn exact_distance(&self, corners: &[Vec3; 3]) -> Option<f32> {
         let [a, b, c] = corners.map(|p| p.as_dvec3());
         let n = (b - a).cross(c - a);
-        let t = n.dot(a - self.o.as_dvec3()) / n.dot(self.d.as_dvec3());
+        let t = n.dot(a - self.ray.o.as_dvec3()) / n.dot(self.ray.d.as_dvec3());
         (t > 0.0 && t.is_finite()).then_some(t as f32)
     }
 }
@@ -165,10 +166,22 @@ impl<V> ShearedLanes<V> {
     }
 }
 
-impl<const N: usize> LaneHits<N> {
+impl<V> LaneHits<V> {
+    /// The distance and barycentric coordinates of a lane.
+    #[inline(always)]
+    pub fn at<const N: usize>(&self, lane: usize) -> (f32, Vec2)
+    where
+        V: Vector<N>,
+    {
+        (self.t.lane(lane), Vec2::new(self.b1.lane(lane), self.b2.lane(lane)))
+    }
+
     /// Tests for hits at 0 < t ≤ `t_max` in each lane, given the sheared corners.
     #[inline(always)]
-    pub fn of<V: Vector<N>>([a, b, c]: [[V; 3]; 3], t_max: V) -> Option<Self> {
+    pub fn of<const N: usize>([a, b, c]: [[V; 3]; 3], t_max: V) -> Option<Self>
+    where
+        V: Vector<N>,
+    {
         let edge = |p: [V; 3], q: [V; 3]| {
             let yx = p[1].mul(q[0]);
             let difference = p[0].mul_sub(q[1], yx);
@@ -177,9 +190,11 @@ impl<const N: usize> LaneHits<N> {
         let e = [edge(b, c), edge(c, a), edge(a, b)];
         // SAFETY: vectors are the proof of the instruction set.
         let (zero, vanishing) = unsafe { (V::splat(0.0), V::splat(VANISHING)) };
-        let lowest = e[0].min(e[1]).min(e[2]);
-        let highest = e[0].max(e[1]).max(e[2]);
-        let inside = zero.sub(vanishing).le(lowest) | highest.le(vanishing);
+        // Compared as integers, which takes less time: the most negative number is the greatest
+        // unsigned integer, and the greatest positive number is the greatest signed one.
+        let most_negative = e[0].max_uint(e[1]).max_uint(e[2]);
+        let most_positive = e[0].max_int(e[1]).max_int(e[2]);
+        let inside = zero.sub(vanishing).le(most_negative) | most_positive.le(vanishing);
         if inside == 0 {
             return None;
         }
@@ -194,7 +209,9 @@ impl<const N: usize> LaneHits<N> {
         if candidates == 0 {
             return None;
         }
-        let clear = vanishing.le(lowest) | highest.le(zero.sub(vanishing));
+        let least_positive = e[0].min_int(e[1]).min_int(e[2]);
+        let least_negative = e[0].min_uint(e[1]).min_uint(e[2]);
+        let clear = vanishing.le(least_positive) | least_negative.le(zero.sub(vanishing));
         let unsure = !clear | is_tiny;
         // A bound of the error of the sum, at least that of `distance_error`: one magnitude for x
         // and y, and the sum of the edge functions instead of the largest.
@@ -208,13 +225,7 @@ impl<const N: usize> LaneHits<N> {
         let certain = error.lt(sum.abs());
         let hits = candidates & (unsure | !(certain & t.lt(zero)));
         let uncertain = hits & (unsure | !certain);
-        (hits != 0).then(|| Self {
-            hits,
-            uncertain,
-            t: t.store(),
-            b1: e[1].mul(inverse).store(),
-            b2: e[2].mul(inverse).store(),
-        })
+        (hits != 0).then(|| Self { hits, uncertain, t, b1: e[1].mul(inverse), b2: e[2].mul(inverse) })
     }
 }
 
@@ -281,7 +292,8 @@ mod tests {
 
     #[test]
     fn degenerate_triangles_are_never_met() {
-        let s = Sheared::new(&Ray::new(Vec3::new(0.0, 0.0, 1.0), -Vec3::Z, 0.0));
+        let ray = Ray::new(Vec3::new(0.0, 0.0, 1.0), -Vec3::Z, 0.0);
+        let s = Sheared::new(&ray);
         assert!(s.triangle(&[Vec3::ZERO; 3], 9.0).is_none());
         assert!(s.triangle(&[-Vec3::X, Vec3::ZERO, Vec3::X], 9.0).is_none());
         assert!(s.triangle(&[Vec3::NAN, Vec3::ZERO, Vec3::X], 9.0).is_none());

@@ -33,6 +33,7 @@ vector! {
     splat(x) = _mm_set1_ps(x);
     load(from) = _mm_loadu_ps(from);
     store(to, a) = _mm_storeu_ps(to, a);
+    lane(a, lane) = _mm_cvtss_f32(_mm_permutevar_ps(a, _mm_cvtsi32_si128(lane as i32)));
     add(a, b) = _mm_add_ps(a, b);
     sub(a, b) = _mm_sub_ps(a, b);
     mul(a, b) = _mm_mul_ps(a, b);
@@ -40,6 +41,10 @@ vector! {
     abs(a) = _mm_andnot_ps(_mm_set1_ps(-0.0), a);
     min(a, b) = _mm_min_ps(a, b);
     max(a, b) = _mm_max_ps(a, b);
+    min_int(a, b) = _mm_castsi128_ps(_mm_min_epi32(_mm_castps_si128(a), _mm_castps_si128(b)));
+    min_uint(a, b) = _mm_castsi128_ps(_mm_min_epu32(_mm_castps_si128(a), _mm_castps_si128(b)));
+    max_int(a, b) = _mm_castsi128_ps(_mm_max_epi32(_mm_castps_si128(a), _mm_castps_si128(b)));
+    max_uint(a, b) = _mm_castsi128_ps(_mm_max_epu32(_mm_castps_si128(a), _mm_castps_si128(b)));
     mul_add(a, b, c) = _mm_fmadd_ps(a, b, c);
     neg_mul_add(a, b, c) = _mm_fnmadd_ps(a, b, c);
     mul_sub(a, b, c) = _mm_fmsub_ps(a, b, c);
@@ -54,6 +59,7 @@ vector! {
     splat(x) = _mm256_set1_ps(x);
     load(from) = _mm256_loadu_ps(from);
     store(to, a) = _mm256_storeu_ps(to, a);
+    lane(a, lane) = _mm256_cvtss_f32(_mm256_permutevar8x32_ps(a, _mm256_set1_epi32(lane as i32)));
     add(a, b) = _mm256_add_ps(a, b);
     sub(a, b) = _mm256_sub_ps(a, b);
     mul(a, b) = _mm256_mul_ps(a, b);
@@ -61,6 +67,10 @@ vector! {
     abs(a) = _mm256_andnot_ps(_mm256_set1_ps(-0.0), a);
     min(a, b) = _mm256_min_ps(a, b);
     max(a, b) = _mm256_max_ps(a, b);
+    min_int(a, b) = _mm256_castsi256_ps(_mm256_min_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
+    min_uint(a, b) = _mm256_castsi256_ps(_mm256_min_epu32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
+    max_int(a, b) = _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
+    max_uint(a, b) = _mm256_castsi256_ps(_mm256_max_epu32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
     mul_add(a, b, c) = _mm256_fmadd_ps(a, b, c);
     neg_mul_add(a, b, c) = _mm256_fnmadd_ps(a, b, c);
     mul_sub(a, b, c) = _mm256_fmsub_ps(a, b, c);

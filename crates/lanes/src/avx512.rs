@@ -23,6 +23,7 @@ vector! {
     splat(x) = _mm512_set1_ps(x);
     load(from) = _mm512_loadu_ps(from);
     store(to, a) = _mm512_storeu_ps(to, a);
+    lane(a, lane) = _mm512_cvtss_f32(_mm512_permutexvar_ps(_mm512_set1_epi32(lane as i32), a));
     add(a, b) = _mm512_add_ps(a, b);
     sub(a, b) = _mm512_sub_ps(a, b);
     mul(a, b) = _mm512_mul_ps(a, b);
@@ -30,6 +31,10 @@ vector! {
     abs(a) = _mm512_abs_ps(a);
     min(a, b) = _mm512_min_ps(a, b);
     max(a, b) = _mm512_max_ps(a, b);
+    min_int(a, b) = _mm512_castsi512_ps(_mm512_min_epi32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
+    min_uint(a, b) = _mm512_castsi512_ps(_mm512_min_epu32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
+    max_int(a, b) = _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
+    max_uint(a, b) = _mm512_castsi512_ps(_mm512_max_epu32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
     mul_add(a, b, c) = _mm512_fmadd_ps(a, b, c);
     neg_mul_add(a, b, c) = _mm512_fnmadd_ps(a, b, c);
     mul_sub(a, b, c) = _mm512_fmsub_ps(a, b, c);

@@ -26,6 +26,7 @@ vector! {
     splat(x) = vdupq_n_f32(x);
     load(from) = vld1q_f32(from);
     store(to, a) = vst1q_f32(to, a);
+    lane(a, lane) = std::mem::transmute::<float32x4_t, [f32; 4]>(a)[lane];
     add(a, b) = vaddq_f32(a, b);
     sub(a, b) = vsubq_f32(a, b);
     mul(a, b) = vmulq_f32(a, b);
@@ -33,6 +34,10 @@ vector! {
     abs(a) = vabsq_f32(a);
     min(a, b) = vbslq_f32(vcltq_f32(a, b), a, b);
     max(a, b) = vbslq_f32(vcgtq_f32(a, b), a, b);
+    min_int(a, b) = vreinterpretq_f32_s32(vminq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+    min_uint(a, b) = vreinterpretq_f32_u32(vminq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
+    max_int(a, b) = vreinterpretq_f32_s32(vmaxq_s32(vreinterpretq_s32_f32(a), vreinterpretq_s32_f32(b)));
+    max_uint(a, b) = vreinterpretq_f32_u32(vmaxq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
     mul_add(a, b, c) = vfmaq_f32(c, a, b);
     neg_mul_add(a, b, c) = vfmsq_f32(c, a, b);
     mul_sub(a, b, c) = vfmaq_f32(vnegq_f32(c), a, b);

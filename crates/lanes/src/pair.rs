@@ -11,7 +11,7 @@ macro_rules! pair {
     ($half:literal, $n:literal) => {
         pair! {
             $half, $n;
-            add(b) sub(b) mul(b) div(b) abs() min(b) max(b)
+            add(b) sub(b) mul(b) div(b) abs() min(b) max(b) min_int(b) max_int(b) min_uint(b) max_uint(b)
             mul_add(b, c) neg_mul_add(b, c) mul_sub(b, c) relaxed_mul_sub(b, c);
             le lt
         }
@@ -36,6 +36,11 @@ macro_rules! pair {
             fn store(self) -> [f32; $n] {
                 let (low, high) = (self.0.store(), self.1.store());
                 std::array::from_fn(|i| if i < $half { low[i] } else { high[i - $half] })
+            }
+
+            #[inline(always)]
+            fn lane(self, lane: usize) -> f32 {
+                self.store()[lane]
             }
 
             $(

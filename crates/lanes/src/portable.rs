@@ -16,6 +16,7 @@ vector! {
     splat(x) = [x; 8];
     load(from) = from.cast::<[f32; 8]>().read();
     store(to, a) = to.cast::<[f32; 8]>().write(a);
+    lane(a, lane) = a[lane];
     add(a, b) = each(|i| a[i] + b[i]);
     sub(a, b) = each(|i| a[i] - b[i]);
     mul(a, b) = each(|i| a[i] * b[i]);
@@ -23,6 +24,10 @@ vector! {
     abs(a) = each(|i| a[i].abs());
     min(a, b) = each(|i| if a[i] < b[i] { a[i] } else { b[i] });
     max(a, b) = each(|i| if a[i] > b[i] { a[i] } else { b[i] });
+    min_int(a, b) = each(|i| f32::from_bits((a[i].to_bits() as i32).min(b[i].to_bits() as i32) as u32));
+    max_int(a, b) = each(|i| f32::from_bits((a[i].to_bits() as i32).max(b[i].to_bits() as i32) as u32));
+    min_uint(a, b) = each(|i| f32::from_bits(a[i].to_bits().min(b[i].to_bits())));
+    max_uint(a, b) = each(|i| f32::from_bits(a[i].to_bits().max(b[i].to_bits())));
     mul_add(a, b, c) = each(|i| a[i].mul_add(b[i], c[i]));
     neg_mul_add(a, b, c) = each(|i| (-a[i]).mul_add(b[i], c[i]));
     mul_sub(a, b, c) = each(|i| a[i].mul_add(b[i], -c[i]));

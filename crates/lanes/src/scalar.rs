@@ -18,6 +18,7 @@ vector! {
     splat(x) = x;
     load(from) = from.read();
     store(to, a) = to.write(a);
+    lane(a, lane) = [a][lane];
     add(a, b) = a + b;
     sub(a, b) = a - b;
     mul(a, b) = a * b;
@@ -25,6 +26,10 @@ vector! {
     abs(a) = a.abs();
     min(a, b) = if a < b { a } else { b };
     max(a, b) = if a > b { a } else { b };
+    min_int(a, b) = if (a.to_bits() as i32) < b.to_bits() as i32 { a } else { b };
+    min_uint(a, b) = if a.to_bits() < b.to_bits() { a } else { b };
+    max_int(a, b) = if a.to_bits() as i32 > b.to_bits() as i32 { a } else { b };
+    max_uint(a, b) = if a.to_bits() > b.to_bits() { a } else { b };
     mul_add(a, b, c) = a.mul_add(b, c);
     neg_mul_add(a, b, c) = (-a).mul_add(b, c);
     mul_sub(a, b, c) = a.mul_add(b, -c);

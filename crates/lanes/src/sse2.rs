@@ -16,6 +16,7 @@ vector! {
     splat(x) = _mm_set1_ps(x);
     load(from) = _mm_loadu_ps(from);
     store(to, a) = _mm_storeu_ps(to, a);
+    lane(a, lane) = std::mem::transmute::<__m128, [f32; 4]>(a)[lane];
     add(a, b) = _mm_add_ps(a, b);
     sub(a, b) = _mm_sub_ps(a, b);
     mul(a, b) = _mm_mul_ps(a, b);
@@ -23,6 +24,10 @@ vector! {
     abs(a) = _mm_andnot_ps(_mm_set1_ps(-0.0), a);
     min(a, b) = _mm_min_ps(a, b);
     max(a, b) = _mm_max_ps(a, b);
+    min_int(a, b) = blend(_mm_cmplt_epi32(_mm_castps_si128(a), _mm_castps_si128(b)), a, b);
+    min_uint(a, b) = blend(_mm_cmplt_epi32(flipped(a), flipped(b)), a, b);
+    max_int(a, b) = blend(_mm_cmpgt_epi32(_mm_castps_si128(a), _mm_castps_si128(b)), a, b);
+    max_uint(a, b) = blend(_mm_cmpgt_epi32(flipped(a), flipped(b)), a, b);
     mul_add(a, b, c) = fused(a, b, c);
     neg_mul_add(a, b, c) = fused(_mm_xor_ps(a, _mm_set1_ps(-0.0)), b, c);
     mul_sub(a, b, c) = fused(a, b, _mm_xor_ps(c, _mm_set1_ps(-0.0)));
@@ -94,6 +99,12 @@ unsafe fn lane_bits() -> __m128i {
 #[inline(always)]
 unsafe fn flip_sign(a: __m128i) -> __m128i {
     unsafe { _mm_xor_si128(a, _mm_set1_epi32(i32::MIN)) }
+}
+
+/// The bits of floats, ordered as signed integers like the unsigned ones they are.
+#[inline(always)]
+unsafe fn flipped(a: __m128) -> __m128i {
+    unsafe { flip_sign(_mm_castps_si128(a)) }
 }
 
 /// `a` where the mask is true, else `b`.

@@ -11,6 +11,7 @@ macro_rules! vector {
         splat($x:ident) = $splat:expr;
         load($from:ident) = $load:expr;
         store($to:ident, $value:ident) = $store:expr;
+        lane($of:ident, $index:ident) = $lane:expr;
         $($operation:ident($a:ident $(, $b:ident)*) = $result:expr;)*
         -> u32:
         $($comparison:ident($left:ident, $right:ident) = $bits:expr;)*
@@ -40,6 +41,12 @@ macro_rules! vector {
                 let ($to, $value) = (to.as_mut_ptr(), self.0);
                 unsafe { $store };
                 to
+            }
+
+            #[inline(always)]
+            fn lane(self, $index: usize) -> f32 {
+                let $of = self.0;
+                unsafe { $lane }
             }
 
             $(

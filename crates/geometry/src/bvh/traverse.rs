@@ -125,7 +125,7 @@ impl Bvh {
             loop {
                 while !next.is_leaf() {
                     let node = &*nodes.add(next.index());
-                    extents += node.len() as u64;
+                    extents += WIDTH as u64;
                     let prefetch_child = |child| self.prefetch(leaves.blocks(), child);
                     next = descend::<S, ANY>(node, &slabs, *t_max, &mut top, prefetch_child);
                 }
@@ -181,7 +181,7 @@ impl Bvh {
                     let ends = S::F32x16::load(t_max);
                     let (near, mut entered) =
                         node.intersect_packet(&packet, S::F32x16::splat(furthest), zero);
-                    extents += node.len() as u64;
+                    extents += WIDTH as u64;
                     let near = near.store();
                     let floor = top;
                     while entered != 0 {
@@ -303,6 +303,11 @@ unsafe fn choose_any(
     }
 }
 
+/// The distances of all children in one cache line, so that reading one need not wait until all
+/// are written.
+#[repr(C, align(64))]
+struct CacheLine([f32; WIDTH]);
+
 /// Takes the nearest child that is hit, and pushes the others in order.
 #[inline(always)]
 unsafe fn choose_nearest<S: Simd>(
@@ -319,9 +324,9 @@ unsafe fn choose_nearest<S: Simd>(
     if hits == 0 {
         return child(lane);
     }
-    let near = near.store();
+    let near = CacheLine(near.store());
     // SAFETY: bits of `hits` are lanes.
-    let entry = |lane: usize| unsafe { StackEntry::new(*near.get_unchecked(lane), child(lane)) };
+    let entry = |lane: usize| unsafe { StackEntry::new(*near.0.get_unchecked(lane), child(lane)) };
     let a = entry(lane);
     let lane = hits.trailing_zeros() as usize;
     hits &= hits - 1;

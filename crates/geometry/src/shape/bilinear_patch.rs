@@ -16,6 +16,7 @@ use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{
     Bounds3, DVec3, DirectionCone, Normal3, Point3, Point3Error, Ray, Transform, Vec2, Vec3, face_forward,
+    gamma,
 };
 use sampling::PiecewiseConstant2d;
 use sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
@@ -37,7 +38,8 @@ pub struct BilinearPatch {
     image: Option<Arc<PiecewiseConstant2d>>,
 }
 
-/// A patch that is a parallelogram exactly: p(u, v) = p₀₀ + u·right + v·up.
+/// A patch that is a parallelogram, p(u, v) = corner + u·right + v·up, up to the rounding of its
+/// corners: after a rotation, the corners of few rectangles are those of a parallelogram exactly.
 #[derive(Clone, Copy, Debug)]
 struct Flat {
     corner: DVec3,
@@ -47,16 +49,38 @@ struct Flat {
     cross: DVec3,
     /// Its direction.
     n: Normal3,
+    /// How far u and v may be outside of [0, 1], so that patches overlap that had an edge in common
+    /// before each was replaced by a parallelogram. Zero for an exact one.
+    beyond: [f64; 2],
+    /// How far the patch is from the parallelogram.
+    error: DVec3,
 }
 
 impl Flat {
     fn new(p: &[Point3; 4]) -> Option<Self> {
         let [p00, p10, p01, p11] = p.map(|p| p.as_dvec3());
-        let (right, up) = (p10 - p00, p01 - p00);
+        // The parallelogram with the same centre whose sides are the means of opposite sides; each
+        // of its corners is a quarter of p₀₀ − p₁₀ − p₀₁ + p₁₁ away from the patch's.
+        let error = (p00 - p10 - p01 + p11) / 4.0;
+        let (mut corner, mut right, mut up) = (p00, p10 - p00, p01 - p00);
+        if error != DVec3::ZERO {
+            (corner, right, up) = (corner - error, right + 2.0 * error, up + 2.0 * error);
+        }
         let cross = right.cross(up);
         let n = cross.try_normalize()?.as_vec3().into();
-        (p11 - p01 == right && p11 - p10 == up).then_some(Self { corner: p00, right, up, cross, n })
+        let far = p.iter().fold(Vec3::ZERO, |far, p| far.max(p.abs())).max_element();
+        let sides = [right.length(), up.length()];
+        let most = (Self::ROUNDING * f64::from(far)).min(Self::CURVED * sides[0].min(sides[1]));
+        let beyond = sides.map(|side| 2.0 * error.length() / side);
+        let flat = Self { corner, right, up, cross, n, beyond, error: error.abs() };
+        (error.length() <= most).then_some(flat)
     }
+
+    /// A quarter of the sum of rounding errors of four transformed points, relative to the largest
+    /// coordinate.
+    const ROUNDING: f64 = gamma(8) as f64;
+    /// A patch that deviates by more than this part of its sides is curved, however small it is.
+    const CURVED: f64 = 1e-4;
 
     /// Cramer's rule for o + t·d = p(u, v) [Möller 1997].
     #[inline]
@@ -69,8 +93,11 @@ impl Flat {
         let u = self.up.dot(moment) * inverse;
         let v = -self.right.dot(moment) * inverse;
         // NaN, where the ray runs along the plane, fails.
-        let is_met = t > 0.0 && (t as f32) < t_max && (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
-        is_met.then(|| ShapeHit { t: t as f32, uv: Vec2::new(u as f32, v as f32) })
+        let is_inside = |x: f64, beyond: f64| (-beyond..=1.0 + beyond).contains(&x);
+        let is_met =
+            t > 0.0 && (t as f32) < t_max && is_inside(u, self.beyond[0]) && is_inside(v, self.beyond[1]);
+        let within = |x: f64| x.clamp(0.0, 1.0) as f32;
+        is_met.then(|| ShapeHit { t: t as f32, uv: Vec2::new(within(u), within(v)) })
     }
 }
 
@@ -87,15 +114,17 @@ impl BilinearPatch {
     ) -> Self {
         let p = p.map(|p| render_from_object.point(p));
         let turn = if reverse_orientation { -1.0 } else { 1.0 };
+        let flat = Flat::new(&p);
+        let size = p.iter().map(|p| p.abs().as_dvec3()).sum::<DVec3>().max_element();
         Self {
             p,
             n: n.map(|n| n.map(|n| turn * render_from_object.normal(n))),
             uv,
             flips: reverse_orientation != render_from_object.swaps_handedness(),
-            error: DVec3::splat(p.iter().map(|p| p.abs().as_dvec3()).sum::<DVec3>().max_element() * ROUNDING),
+            error: flat.map_or(DVec3::ZERO, |flat| flat.error) + DVec3::splat(size * ROUNDING),
             is_rectangle: is_rectangle(&p),
             is_regular: is_regular(&p),
-            flat: Flat::new(&p),
+            flat,
             image: None,
         }
     }
@@ -413,4 +442,49 @@ fn is_rectangle(p: &[Point3; 4]) -> bool {
         && right.dot(up).abs() <= 1e-6 * right.length() * up.length()
         && right != DVec3::ZERO
         && up != DVec3::ZERO
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sampling::Rng;
+
+    /// Rays from the middle to points on the edges, where two sides were replaced by parallelograms
+    /// that may not quite meet.
+    #[test]
+    fn rotated_boxes_are_flat_and_closed() {
+        const SIDES: [[usize; 4]; 6] =
+            [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 3, 6, 7], [0, 2, 4, 6], [1, 3, 5, 7]];
+        let rng = &mut Rng::new(1, 0);
+        let mut inexact = 0;
+        for _ in 0..50 {
+            let mut random = || Vec3::from_array([0; 3].map(|_| 2.0 * rng.uniform_f32() - 1.0));
+            let turned = Transform::rotate(random().x * 3.0, random().normalize());
+            let m = Transform::translate(random() * 3.0).after(&turned);
+            let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
+            let sides = SIDES.map(|side| BilinearPatch::new(side.map(corner), None, None, &m, false));
+            let flats = sides.iter().map(|side| side.flat.expect("a rectangle"));
+            inexact += flats.filter(|flat| flat.error != DVec3::ZERO).count();
+            let o = m.point(Vec3::splat(0.5));
+            for [a, b, ..] in SIDES {
+                for _ in 0..200 {
+                    let target = m.point(corner(a).lerp(corner(b), rng.uniform_f32()));
+                    let ray = Ray::new(o, target - o, 0.0);
+                    let hit = sides.iter().find_map(|side| side.intersect(&ray, f32::INFINITY));
+                    assert!(hit.is_some_and(|hit| (hit.t - 1.0).abs() < 1e-5), "{ray:?} {hit:?}");
+                }
+            }
+        }
+        assert!(inexact > 100, "{inexact} of 300 sides");
+    }
+
+    #[test]
+    fn curved_patches_stay_curved() {
+        for (size, moved) in [(1.0, 1e-5), (1.0, 0.1), (1e-3, 1e-6)] {
+            let p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::ONE - Vec3::Z];
+            let mut p = p.map(|p| p * size);
+            p[3].z += moved;
+            assert!(BilinearPatch::new(p, None, None, &Transform::IDENTITY, false).flat.is_none());
+        }
+    }
 }

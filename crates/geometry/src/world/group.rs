@@ -109,6 +109,12 @@ impl Group {
         !self.unbounded.is_empty()
     }
 
+    /// Whether nothing else can be hit in it.
+    #[inline(always)]
+    pub fn has_only_triangles(&self) -> bool {
+        self.unbounded.is_empty() & self.spheres.blocks.is_empty() & self.items.is_empty()
+    }
+
     /// Whether other groups are placed in it.
     pub fn has_instances(&self) -> bool {
         self.items.iter().any(|item| matches!(item, Item::Instance(_)))

@@ -68,16 +68,22 @@ impl<F: Fn(&Hit, &Ray) -> bool> Query for Nearest<'_, F> {
 
     #[inline(always)]
     fn offer(&mut self, hit: Hit) -> bool {
-        let precedes = |other: &Hit| {
-            (hit.instance, hit.geometry, hit.primitive) < (other.instance, other.geometry, other.primitive)
-        };
-        let is_nearer = hit.t < self.t_max || hit.t == self.t_max && self.hit.as_ref().is_some_and(precedes);
+        let is_nearer = hit.t < self.t_max
+            || hit.t == self.t_max && self.hit.as_ref().is_some_and(|other| precedes(hit, other));
         if is_nearer && (self.filter)(&hit, self.ray) {
             self.t_max = hit.t;
             self.hit = Some(hit);
         }
         false
     }
+}
+
+/// Whether a hit comes before another one at the same distance. A call with a copy, so that the
+/// hit itself stays in registers.
+#[cold]
+#[inline(never)]
+fn precedes(hit: Hit, other: &Hit) -> bool {
+    (hit.instance, hit.geometry, hit.primitive) < (other.instance, other.geometry, other.primitive)
 }
 
 /// Whether there is a hit that the filter accepts.

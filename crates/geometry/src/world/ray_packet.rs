@@ -41,7 +41,7 @@ pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH]) -> bool {
 /// Coherent rays.
 pub(super) struct RayPacket<'a> {
     rays: &'a [(Ray, f32); WIDTH],
-    sheared: [Sheared; WIDTH],
+    sheared: [Sheared<'a>; WIDTH],
 }
 
 impl<'a> RayPacket<'a> {
@@ -111,12 +111,12 @@ impl<'a> RayPacket<'a> {
     }
 
     #[inline(always)]
-    fn offer<Q: Query>(
+    fn offer<V: Vector<WIDTH>, Q: Query>(
         &self,
         group: &Group,
         block: &TriangleBlock,
         lane: usize,
-        found: &LaneHits<WIDTH>,
+        found: &LaneHits<V>,
         queries: &mut [Q; WIDTH],
         t_max: &mut [f32; WIDTH],
     ) {

@@ -7,7 +7,8 @@ use std::ops::AddAssign;
 pub struct RayStats {
     /// Rays traced.
     pub rays: u64,
-    /// Tests of a ray, or of a ray packet, against a bounding volume.
+    /// Tests of a ray, or of a ray packet, against a bounding volume. Boxes are tested in nodes of
+    /// sixteen, which count as sixteen however many children they have.
     pub extents: u64,
     /// Tests of a ray against a primitive. Triangles are tested in blocks of four, which count as
     /// four however many lanes are in use.

@@ -31,6 +31,7 @@ pub(super) struct Trace<'a> {
 
 impl Trace<'_> {
     /// Offers all hits in a group to the query; returns whether it is finished.
+    #[inline]
     pub fn group<Q: Query>(&mut self, group: &Group, query: &mut Q) -> bool {
         if !is_valid(self.ray) {
             return false;
@@ -46,7 +47,7 @@ impl Trace<'_> {
                 return true;
             }
         }
-        self.all_but_triangles(group, query)
+        !group.has_only_triangles() && self.all_but_triangles(group, query)
     }
 
     /// The same for everything but triangles.
@@ -114,6 +115,7 @@ impl Trace<'_> {
 
 /// Whether a ray can hit anything: not where it has numbers that are not finite, or a direction too
 /// short to have an inverse.
+#[inline(always)]
 pub(super) fn is_valid(ray: &Ray) -> bool {
     ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
 }
@@ -185,7 +187,7 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
 pub(super) struct TriangleLeaves<'a, S: Simd, Q> {
     pub group: &'a Group,
     pub instance: InstancePath,
-    pub sheared: &'a Sheared,
+    pub sheared: &'a Sheared<'a>,
     pub lanes: &'a ShearedLanes<S::F32x8>,
     pub query: &'a mut Q,
     /// How many were tested.

@@ -11,7 +11,7 @@ use super::triangle_numbering::TriangleNumbering;
 use crate::bvh::Extent;
 use crate::watertight::{LaneHits, Sheared, ShearedLanes};
 use lanes::{Simd, Vector, first_equal};
-use math::{Bounds3, Vec2, Vec3};
+use math::{Bounds3, Vec3};
 
 /// Four triangles of any geometries, in two cache lines.
 #[derive(Clone, Copy, Debug)]
@@ -131,11 +131,7 @@ impl TriangleBlock {
 
     /// Tests the ray against all triangles up to `t_max`.
     #[inline(always)]
-    pub fn intersect<S: Simd>(
-        &self,
-        ray: &ShearedLanes<S::F32x8>,
-        t_max: f32,
-    ) -> Option<LaneHits<{ Self::WIDTH }>> {
+    pub fn intersect<S: Simd>(&self, ray: &ShearedLanes<S::F32x8>, t_max: f32) -> Option<LaneHits<S::F32x4>> {
         // SAFETY: axes are below 3; `ray` is the proof of the instruction set.
         let (vertices, t_max) = unsafe {
             let coordinate = |axis: usize| S::F32x8::load(self.vertices.get_unchecked(axis));
@@ -156,7 +152,7 @@ impl TriangleBlock {
         lane: usize,
         rays: &ShearedLanes<V>,
         t_max: V,
-    ) -> Option<LaneHits<N>> {
+    ) -> Option<LaneHits<V>> {
         let corner = |corner: usize| {
             let vertex = self.vertex(lane, corner);
             // SAFETY: `rays` is the proof of the instruction set.
@@ -168,10 +164,10 @@ impl TriangleBlock {
     /// The hit in lane `of` of `found` on the triangle in `lane`; `None` where that lane is unused,
     /// or where the hit was uncertain and turns out to be a miss.
     #[inline(always)]
-    pub fn hit<const N: usize>(
+    pub fn hit<const N: usize, V: Vector<N>>(
         &self,
         lane: usize,
-        found: &LaneHits<N>,
+        found: &LaneHits<V>,
         of: usize,
         ray: &Sheared,
         numbering: &TriangleNumbering,
@@ -180,7 +176,7 @@ impl TriangleBlock {
         if self.numbers[lane] == Self::UNUSED {
             return None;
         }
-        let (mut t, mut uv) = (found.t[of], Vec2::new(found.b1[of], found.b2[of]));
+        let (mut t, mut uv) = found.at(of);
         if found.uncertain >> of & 1 != 0 {
             (t, uv) = ray.resolve(&self.triangle(lane))?;
         }

@@ -14,6 +14,10 @@ fn results<const N: usize, V: Vector<N>>(a: V, b: V, c: V) -> (Vec<[f32; N]>, [u
         a.abs(),
         a.min(b),
         a.max(b),
+        a.min_int(b),
+        a.max_int(b),
+        a.min_uint(b),
+        a.max_uint(b),
         a.mul_add(b, c),
         a.neg_mul_add(b, c),
         a.mul_sub(b, c),
@@ -32,6 +36,10 @@ fn expected<const N: usize>([a, b, c]: [[f32; N]; 3]) -> (Vec<[f32; N]>, [u32; 2
         each(|a, _, _| a.abs()),
         each(|a, b, _| if a < b { a } else { b }),
         each(|a, b, _| if a > b { a } else { b }),
+        each(|a, b, _| f32::from_bits((a.to_bits() as i32).min(b.to_bits() as i32) as u32)),
+        each(|a, b, _| f32::from_bits((a.to_bits() as i32).max(b.to_bits() as i32) as u32)),
+        each(|a, b, _| f32::from_bits(a.to_bits().min(b.to_bits()))),
+        each(|a, b, _| f32::from_bits(a.to_bits().max(b.to_bits()))),
         each(|a, b, c| a.mul_add(b, c)),
         each(|a, b, c| (-a).mul_add(b, c)),
         each(|a, b, c| a.mul_add(b, -c)),
@@ -60,6 +68,8 @@ unsafe fn check<const N: usize, V: Vector<N>>(numbers: &[f32; 48], set: &str) {
         let either = [a.mul_add(b, -c), a * b - c];
         assert!(x.is_nan() || either.contains(&x), "{set}: {a}·{b} − {c} is not {x}");
     }
+    let each_lane: [f32; N] = std::array::from_fn(|lane| a.lane(lane));
+    assert_eq!(each_lane.map(f32::to_bits), arrays[0].map(f32::to_bits), "{set}");
     // SAFETY: the caller promises the instruction set.
     assert_eq!(unsafe { V::splat(numbers[0]) }.store().map(f32::to_bits), [numbers[0].to_bits(); N]);
 }
