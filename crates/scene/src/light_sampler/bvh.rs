@@ -203,14 +203,17 @@ impl BvhLightSampler {
         };
         let (mut pmf, mut node) = (self.tree_probability::<f32>(context), 0);
         while self.kinds[node as usize] < LEAF {
-            let children = [node + 1, self.kinds[node as usize]];
-            let importances = children.map(|child| self.importance::<f32>(child, context));
-            let way = (trail & 1) as usize;
-            if importances[way] == 0.0 {
+            let mut children = [node + 1, self.kinds[node as usize]];
+            if trail & 1 == 1 {
+                children.swap(0, 1);
+            }
+            let [way, other] = children;
+            let importance = self.importance::<f32>(way, context);
+            if importance == 0.0 {
                 return 0.0;
             }
-            pmf *= importances[way] / (importances[0] + importances[1]);
-            node = children[way];
+            pmf *= importance / (importance + self.importance::<f32>(other, context));
+            node = way;
             trail >>= 1;
         }
         pmf

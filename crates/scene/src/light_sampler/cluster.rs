@@ -90,16 +90,22 @@ impl<R: Real> Cluster<R> {
         let cos_x = cos_sub_clamped(sin_w, cos_w, self.sin_theta_o, self.cos_theta_o);
         let sin_x = sin_sub_clamped(sin_w, cos_w, self.sin_theta_o, self.cos_theta_o);
         let cos_p = cos_sub_clamped(sin_x, cos_x, sin_b, cos_b);
+        let is_dark = cos_p.le(self.cos_theta_e);
+        if is_dark.all() {
+            return zero;
+        }
         // The distance is clamped to half of the box's diagonal, as 1/d² diverges near a cluster.
-        let everywhere = self.phi * cos_p / distance2.max(self.radius2);
-        let cos_i = wi.dot(n).abs();
-        let sin_i = safe_sqrt(one - cos_i * cos_i);
-        let on_surface = everywhere * cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
+        let mut importance = self.phi * cos_p / distance2.max(self.radius2);
         let has_normal = n.x.ne(zero) | n.y.ne(zero) | n.z.ne(zero);
-        let importance = R::select(has_normal, on_surface, everywhere);
+        if has_normal.any() {
+            let cos_i = wi.dot(n).abs();
+            let sin_i = safe_sqrt(one - cos_i * cos_i);
+            let cosine = cos_sub_clamped(sin_i, cos_i, sin_b, cos_b);
+            importance = R::select(has_normal, importance * cosine, importance);
+        }
         // Finite even at the position of a point light, so that importances can be compared.
         let importance = importance.clamp(zero, R::splat(f32::MAX / 4.0));
-        R::select(cos_p.le(self.cos_theta_e), zero, importance)
+        R::select(is_dark, zero, importance)
     }
 }
 
