@@ -7,7 +7,6 @@ use scene::light::{LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 use super::pass::Pass;
-use super::rectangles::RectangleLights;
 
 /// Light samples, before their visibility is tested.
 pub(super) struct LightLanes<R: Real> {

@@ -59,7 +59,8 @@ impl RectangleLights {
         Some(())
     }
 
-    /// The rows of these lights, and the lanes of `mask` whose lights are in the table; 0 in others.
+    /// The rows of these lights, and the lanes of `mask` whose lights are in the table; the rows
+    /// of others are 0.
     #[inline(always)]
     pub fn rows<R: Real>(&self, lights: R::Int, mask: R::Mask) -> (R::Int, R::Mask) {
         if self.emission.is_empty() {

@@ -205,7 +205,7 @@ mod tests {
     fn codes_interleave() {
         let sampler = ZSobol::new(8, [1 << 20, 1], Randomize::FastOwen, 0);
         let at = |x, y, index| sampler.code(&Address::new([x, y], index, 0));
-        assert_eq!(at(0b101, 0b011, 6), [0b01_10_11_110, 0]);
+        assert_eq!(at(0b101, 0b011, 6), [0b1101_1110, 0]);
         assert_eq!(at(1 << 19, 0, 0), [0, 1 << (38 + 3 - 32)]);
         assert_eq!(at(0, 1 << 15, 9), [1, 1 << (31 + 3 - 32)]);
     }

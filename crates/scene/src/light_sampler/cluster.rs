@@ -6,7 +6,7 @@
 //! ([Conty Estevez & Kulla 2018]; [Pharr 2023 §12.6.3]).
 
 use crate::light::LightBounds;
-use lanes::{Int, Real};
+use lanes::{Int, Mask, Real};
 use math::{Normal3, Point3, Vec3, Vector3, safe_sqrt};
 
 /// [`LightBounds`] with what does not depend on the point computed once.
