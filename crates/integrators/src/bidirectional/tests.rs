@@ -193,7 +193,7 @@ fn weights_equal_the_balance_heuristic_with_merging() {
 }
 
 #[test]
-#[should_panic(expected = "Connect")]
+#[should_panic(expected = " of ")]
 fn weights_for_another_radius_differ() {
     let of = |radius| Balance::merging(LIGHT_PATHS, LIGHT_PATHS, radius);
     assert_weights(of(0.2), of(0.201));
