@@ -220,9 +220,8 @@ impl BvhLightSampler {
     }
 }
 
-/// Builds the tree of n ≥ 1 lights in 2n − 1 nodes, given by their clusters
-/// and kinds. The first node has the given index and depth in
-/// the whole tree. `None` if `cancel` is set meanwhile.
+/// Builds the tree of n ≥ 1 lights in 2n − 1 nodes, given by their clusters and kinds. The first
+/// node has the given index and depth in the whole tree. `None` if `cancel` is set meanwhile.
 fn build(
     lights: &mut [(LightId, LightBounds)],
     (clusters, kinds): (&mut [[f32; NUMBERS]], &mut [u32]),

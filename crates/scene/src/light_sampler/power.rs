@@ -43,9 +43,9 @@ impl PowerLightSampler {
     pub(super) fn sample_lanes<R: Real>(&self, u: R, active: R::Mask) -> (R::Int, R, R::Mask) {
         let (u, active) = (u.to_array(), active.bits());
         let (mut lights, mut pmf, mut valid) = ([0; MAX_LANES], [0.0; MAX_LANES], 0);
-        for lane in 0..R::LANES {
+        for (lane, &u) in u[..R::LANES].iter().enumerate() {
             if active >> lane & 1 == 1
-                && let Some((light, p)) = self.sample(u[lane])
+                && let Some((light, p)) = self.sample(u)
             {
                 (lights[lane], pmf[lane]) = (light.0, p);
                 valid |= 1 << lane;

@@ -82,9 +82,9 @@ impl Kernel for Choose<'_> {
             let active = R::Mask::from_bits(self.active >> (first % 16) & ((1 << R::LANES) - 1));
             let (lights, pmf, valid) = self.sampler.sample_lanes(&context, R::load(&self.u[first..]), active);
             let (lights, pmf) = (lanes::Int::to_array(lights), pmf.to_array());
-            for lane in 0..R::LANES {
+            for (lane, choice) in choices[first..first + R::LANES].iter_mut().enumerate() {
                 if valid.bits() >> lane & 1 == 1 {
-                    choices[first + lane] = Some((LightId(lights[lane]), pmf[lane].to_bits()));
+                    *choice = Some((LightId(lights[lane]), pmf[lane].to_bits()));
                 }
             }
         }
