@@ -61,6 +61,58 @@ impl ColorEncoding {
     }
 }
 
+/// [`ColorEncoding::quantize`] for many values: codes are found in a table instead of computed by a
+/// power for each value.
+pub(crate) struct Quantizer {
+    /// The smallest value of each code, and beyond the last code infinity. Codes do not decrease
+    /// with the value.
+    least: [f32; 257],
+    /// For values in [0, 1) by the leading bits of their representation: the code of the smallest
+    /// value with these bits.
+    first: Vec<u8>,
+}
+
+impl Quantizer {
+    /// Bits of a value that are not looked up: 128 entries for each power of two.
+    const SHIFT: u32 = f32::MANTISSA_DIGITS - 1 - 7;
+
+    pub fn new(encoding: ColorEncoding) -> Self {
+        let one = 1.0_f32.to_bits();
+        let mut least = [f32::INFINITY; 257];
+        for (code, least) in (0..=255).zip(&mut least) {
+            // Floats that are not negative are in the order of their bits.
+            let (mut low, mut high) = (0, one);
+            while low < high {
+                let middle = low + (high - low) / 2;
+                if encoding.quantize(f32::from_bits(middle)) >= code {
+                    high = middle
+                } else {
+                    low = middle + 1
+                }
+            }
+            *least = f32::from_bits(low);
+        }
+        let entries = (0..one >> Self::SHIFT).map(|entry| f32::from_bits(entry << Self::SHIFT));
+        // The least value of code 0 is 0, so that every value has a code.
+        let first = entries.map(|value| (least.partition_point(|least| *least <= value) - 1) as u8);
+        Self { first: first.collect(), least }
+    }
+
+    /// The nearest code of a linear value.
+    #[inline]
+    pub fn code(&self, linear: f32) -> u8 {
+        let value = at_most(linear, 1.0);
+        let Some(&first) = self.first.get((value.to_bits() >> Self::SHIFT) as usize) else { return u8::MAX };
+        let mut code = usize::from(first);
+        // The codes of an entry are rarely more than two: one addition instead of a branch.
+        code += usize::from(value >= self.least[code + 1]);
+        while value >= self.least[code + 1] {
+            code += 1;
+        }
+        code as u8
+    }
+}
+
 impl fmt::Display for ColorEncoding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -95,6 +147,28 @@ mod tests {
         for encoding in [ColorEncoding::Linear, ColorEncoding::Srgb, ColorEncoding::Gamma(2.2)] {
             for (code, linear) in encoding.table().into_iter().enumerate() {
                 assert_eq!(encoding.quantize(linear) as usize, code, "{encoding}");
+            }
+        }
+    }
+
+    #[test]
+    fn codes_in_the_table_are_those_of_the_formula() {
+        for encoding in [
+            ColorEncoding::Linear,
+            ColorEncoding::Srgb,
+            ColorEncoding::Gamma(2.2),
+            ColorEncoding::Gamma(0.1),
+            ColorEncoding::Gamma(20.0),
+        ] {
+            let quantizer = Quantizer::new(encoding);
+            let near = |value: f32| {
+                let bits = value.to_bits();
+                (bits.saturating_sub(9)..bits + 9).map(f32::from_bits)
+            };
+            let special = [-1.0, 1.5, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+            let spread = (0..20_000).map(|i| i as f32 / 19_999.0);
+            for value in quantizer.least[..256].iter().flat_map(|v| near(*v)).chain(special).chain(spread) {
+                assert_eq!(quantizer.code(value), encoding.quantize(value), "{encoding} {value}");
             }
         }
     }

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use half::f16;
 use math::Point2;
+use rayon::prelude::*;
 
 use crate::{
     depth::SampleDepth,
-    encoding::ColorEncoding,
+    encoding::{ColorEncoding, Quantizer},
     error::ImageError,
-    memory::{collected, reserved},
+    memory::{collected, filled, reserved},
     metadata::{ImageMetadata, Window},
     source::{Channel, PixelSource, alpha_channel, color_channels},
     wrap::WrapMode,
@@ -182,6 +183,15 @@ impl Image {
         }
     }
 
+    /// Writes the linear values of all channels of pixel (x, y), which is in the image.
+    #[inline]
+    pub(crate) fn pixel(&self, x: u32, y: u32, values: &mut [f32]) {
+        let offset = self.offset(x, y);
+        for (c, value) in values.iter_mut().enumerate() {
+            *value = self.value(offset + c, c);
+        }
+    }
+
     /// The linear value of channel `c` at pixel (x, y).
     ///
     /// # Panics
@@ -312,26 +322,50 @@ impl Image {
     }
 
     /// The same image stored as 8-bit codes; values are clamped to [0, 1].
+    ///
+    /// # Panics
+    /// If there is no memory for it.
     pub fn to_u8(&self, encoding: ColorEncoding) -> Self {
-        self.with_pixels(Pixels::U8(self.codes(encoding).collect(), encoding))
+        let codes = self.codes(encoding).expect("there is memory for a quarter of what there is already");
+        self.with_pixels(Pixels::U8(codes, encoding))
     }
 
     /// The same image stored as `other` is; refused where there is no memory for it.
     pub(crate) fn stored_as(&self, other: &Pixels) -> Result<Self, ImageError> {
         let count = self.pixels.len();
         Ok(self.with_pixels(match other {
-            Pixels::U8(_, encoding) => Pixels::U8(collected(count, self.codes(*encoding))?, *encoding),
+            Pixels::U8(_, encoding) => Pixels::U8(self.codes(*encoding)?, *encoding),
             Pixels::F16(_) => Pixels::F16(collected(count, self.values().map(f16::from_f32))?),
             Pixels::F32(_) => Pixels::F32(collected(count, self.values())?),
         }))
     }
 
-    /// All values as 8-bit codes.
-    fn codes(&self, encoding: ColorEncoding) -> impl Iterator<Item = u8> + '_ {
+    /// All values as 8-bit codes; refused where there is no memory for them.
+    fn codes(&self, encoding: ColorEncoding) -> Result<Vec<u8>, ImageError> {
+        /// Fewer values than this take less time than the table.
+        const FEW: usize = 1 << 13;
+        let row_length = self.channels.len() * self.width as usize;
+        let mut codes = filled(self.pixels.len(), 0)?;
+        let quantizer = (codes.len() > FEW).then(|| Quantizer::new(encoding));
+        let row_of_codes = |values: &mut Vec<f32>, (row, y): (&mut [u8], u32)| {
+            self.row(y, values);
+            for (code, &value) in row.iter_mut().zip(&*values) {
+                *code =
+                    quantizer.as_ref().map_or_else(|| encoding.quantize(value), |table| table.code(value));
+            }
+            for index in self.opacities(row.len()) {
+                row[index] = ColorEncoding::Linear.quantize(values[index]);
+            }
+        };
+        let rows = codes.par_chunks_mut(row_length).zip(0..self.height);
+        rows.for_each_init(|| vec![0.0; row_length], row_of_codes);
+        Ok(codes)
+    }
+
+    /// Which values of a row of `length` values are opacities.
+    fn opacities(&self, length: usize) -> impl Iterator<Item = usize> + use<> {
         let count = self.channels.len();
-        let encoding_of =
-            move |index| if self.alpha == Some(index % count) { ColorEncoding::Linear } else { encoding };
-        self.values().enumerate().map(move |(index, value)| encoding_of(index).quantize(value))
+        self.alpha.into_iter().flat_map(move |first| (first..length).step_by(count))
     }
 
     /// All linear values, as stored: row by row, pixel by pixel, channel by channel.
@@ -400,8 +434,20 @@ impl PixelSource for Image {
 
     fn row(&self, y: u32, values: &mut [f32]) {
         let (start, count) = (self.offset(0, y), self.channels.len());
-        for (index, value) in values.iter_mut().enumerate() {
-            *value = self.value(start + index, index % count);
+        let range = start..start + self.width as usize * count;
+        match &self.pixels {
+            Pixels::F32(pixels) => values.copy_from_slice(&pixels[range]),
+            Pixels::F16(pixels) => {
+                values.iter_mut().zip(&pixels[range]).for_each(|(value, pixel)| *value = pixel.to_f32());
+            }
+            Pixels::U8(pixels, _) => {
+                for (value, code) in values.iter_mut().zip(&pixels[range]) {
+                    *value = self.decoded[usize::from(*code)];
+                }
+                for index in self.opacities(values.len()) {
+                    values[index] = self.value(start + index, index % count);
+                }
+            }
         }
     }
 }

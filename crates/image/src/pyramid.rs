@@ -23,6 +23,7 @@ use crate::{
     error::ImageError,
     image::{Image, Pixels},
     memory::filled,
+    source::PixelSource,
     wrap::WrapMode,
 };
 
@@ -72,13 +73,13 @@ impl Pyramid {
         let (first, mut exact) = if (width, height) == (image.width(), image.height()) {
             (image.clone(), image.clone())
         } else {
-            let resized = image.resize(width, height, wrap)?;
-            (Arc::new(resized.stored_as(image.pixels())?), Arc::new(resized))
+            let resized = Arc::new(image.resize(width, height, wrap)?);
+            (stored_as(&image, &resized)?, resized)
         };
         let mut levels = vec![first];
         while exact.width() > 1 || exact.height() > 1 {
             exact = Arc::new(halved(&exact)?);
-            levels.push(Arc::new(exact.stored_as(image.pixels())?));
+            levels.push(stored_as(&image, &exact)?);
         }
         Ok(Self { levels, wrap })
     }
@@ -199,21 +200,33 @@ fn size(image: &Image) -> Vec2 {
     Vec2::new(image.width() as f32, image.height() as f32)
 }
 
+/// A level, stored as `image` is.
+fn stored_as(image: &Image, exact: &Arc<Image>) -> Result<Arc<Image>, ImageError> {
+    match (image.pixels(), exact.pixels()) {
+        (Pixels::F32(_), Pixels::F32(_)) => Ok(exact.clone()),
+        (pixels, _) => exact.stored_as(pixels).map(Arc::new),
+    }
+}
+
 /// The next level: averages of 2 × 2 texels, or of two where one side is a single texel already.
 fn halved(image: &Image) -> Result<Image, ImageError> {
     let (width, height) = ((image.width() / 2).max(1), (image.height() / 2).max(1));
     let count = image.channel_count();
     let mut values = filled(width as usize * height as usize * count, 0.0)?;
-    values.par_chunks_mut(width as usize * count).zip(0..height).for_each(|(row, y)| {
-        let (y0, y1) = (2 * y, (2 * y + 1).min(image.height() - 1));
-        for (texel, x) in row.chunks_exact_mut(count).zip(0..width) {
-            let (x0, x1) = (2 * x, (2 * x + 1).min(image.width() - 1));
+    let old_row = image.width() as usize * count;
+    let average = |[upper, lower]: &mut [Vec<f32>; 2], (row, y): (&mut [f32], u32)| {
+        image.row(2 * y, upper);
+        image.row((2 * y + 1).min(image.height() - 1), lower);
+        for (x, texel) in row.chunks_exact_mut(count).enumerate() {
+            let left = 2 * x * count;
+            let right = (left + count).min(old_row - count);
             for (c, value) in texel.iter_mut().enumerate() {
-                let at = |x, y| image.channel(x, y, c);
-                *value = 0.25 * (at(x0, y0) + at(x1, y0) + at(x0, y1) + at(x1, y1));
+                *value = 0.25 * (upper[left + c] + upper[right + c] + lower[left + c] + lower[right + c]);
             }
         }
-    });
+    };
+    let rows = values.par_chunks_mut(width as usize * count).zip(0..height);
+    rows.for_each_init(|| [vec![0.0; old_row], vec![0.0; old_row]], average);
     Image::new(width, height, image.channels(), Pixels::F32(values))
 }
 

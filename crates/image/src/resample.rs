@@ -42,11 +42,23 @@ impl Image {
 
         let mut narrow = filled((y1 - y0) as usize * new_row, 0.0)?;
         narrow.par_chunks_mut(new_row).zip(y0..y1).for_each(|(target, y)| {
-            let source: Vec<f32> =
-                (x0..x1).flat_map(|x| (0..count).map(move |c| self.channel_wrapped(x, y, c, wrap))).collect();
-            for (texel, taps) in target.chunks_exact_mut(count).zip(&columns) {
-                let near = source[(taps.first - x0) as usize * count..].chunks_exact(count);
-                accumulate(texel, near.zip(&taps.weights));
+            let mut source = vec![0.0; (x1 - x0) as usize * count];
+            for (texel, x) in source.chunks_exact_mut(count).zip(x0..x1) {
+                if let Some((x, y)) = wrap.apply(x, y, self.width(), self.height()) {
+                    self.pixel(x, y, texel);
+                }
+            }
+            match count {
+                1 => weigh::<1>(target, &source, &columns, x0),
+                2 => weigh::<2>(target, &source, &columns, x0),
+                3 => weigh::<3>(target, &source, &columns, x0),
+                4 => weigh::<4>(target, &source, &columns, x0),
+                _ => {
+                    for (texel, taps) in target.chunks_exact_mut(count).zip(&columns) {
+                        let near = source[(taps.first - x0) as usize * count..].chunks_exact(count);
+                        accumulate(texel, near.zip(&taps.weights));
+                    }
+                }
             }
         });
 
@@ -59,6 +71,18 @@ impl Image {
         image.metadata = self.metadata.clone();
         (image.metadata.data_window, image.metadata.display_window) = (None, None);
         Ok(image)
+    }
+}
+
+/// New texels of `N` channels from a row of old ones, of which `x0` is the first.
+fn weigh<const N: usize>(target: &mut [f32], source: &[f32], columns: &[Taps], x0: i32) {
+    let source = source.as_chunks::<N>().0;
+    for (texel, taps) in target.as_chunks_mut::<N>().0.iter_mut().zip(columns) {
+        for (near, weight) in source[(taps.first - x0) as usize..].iter().zip(&taps.weights) {
+            for (sum, value) in texel.iter_mut().zip(near) {
+                *sum += weight * value;
+            }
+        }
     }
 }
 

@@ -1,20 +1,23 @@
-//! `cargo xtask bench rays`: finds or fetches Embree's library, then builds and runs the program
-//! that measures.
-//!
-//! The library is the file that the variable `EMBREE_LIB` names; or the one in the Python
-//! environment `$PEERS_DIR/venv`; or the one that PyPI's package `embreex` brings, which is then
-//! installed into an environment of its own under `target/`.
+//! `cargo xtask bench`: installs the programs that alhazen is compared with from PyPI, each into a
+//! Python environment of its own under `target/`, and runs the measurement.
 
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::command::{cargo, succeed};
+use super::command::{cargo, succeed, target};
 
-/// The package of PyPI that carries the library.
-const PACKAGE: &str = "embreex==4.4.*";
+/// The package of PyPI that carries Embree's library.
+const EMBREE: &str = "embreex==4.4.*";
+/// The packages that the comparison with Mitsuba needs.
+const MITSUBA: [&str; 2] = ["mitsuba==3.9.*", "numpy"];
+/// What names an LLVM library for Mitsuba.
+const LLVM_VARIABLE: &str = "DRJIT_LIBLLVM_PATH";
 
 /// Measures rays in the workspace at `root`; `arguments` go to the program.
+///
+/// Embree's library is the file that the variable `EMBREE_LIB` names; or the one in the Python
+/// environment `$PEERS_DIR/venv`; or the one of PyPI's package.
 pub fn rays(root: &Path, arguments: &[&str]) -> Result<(), String> {
     let library = embree(root);
     if let Err(error) = &library {
@@ -28,36 +31,70 @@ pub fn rays(root: &Path, arguments: &[&str]) -> Result<(), String> {
     succeed(command.args(arguments))
 }
 
+/// Renders scenes with alhazen and Mitsuba in turn; `arguments` go to `mitsuba/render.py`.
+///
+/// Mitsuba compiles its kernels with the LLVM library that `DRJIT_LIBLLVM_PATH` names, or else that
+/// of the Rust compiler.
+pub fn render(root: &Path, arguments: &[&str]) -> Result<(), String> {
+    succeed(cargo(root).args(["build", "--release", "--quiet", "--package", "alhazen-cli"]))?;
+    let folder = target(root).join("mitsuba");
+    let python = python_environment(&folder, &MITSUBA)?;
+    let mut command = Command::new(python);
+    command.arg(root.join("crates/xtask/mitsuba/render.py"));
+    command.arg("--root").arg(root).arg("--alhazen").arg(target(root).join("release/alhazen"));
+    if env::var_os(LLVM_VARIABLE).is_none()
+        && let Some(library) = compilers_llvm(root)
+    {
+        command.env(LLVM_VARIABLE, library);
+    }
+    succeed(command.args(arguments).env("PYTHONDONTWRITEBYTECODE", "1"))
+}
+
 fn embree(root: &Path) -> Result<PathBuf, String> {
     if let Some(library) = env::var_os("EMBREE_LIB") {
         return Ok(library.into());
     }
     if let Some(peers) = env::var_os("PEERS_DIR") {
         let folder = Path::new(&peers).join("venv");
-        return find(&folder).ok_or(format!("there is none under {}", folder.display()));
+        return find(&folder, "embree4").ok_or(format!("there is none under {}", folder.display()));
     }
-    let target = env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), PathBuf::from);
-    let folder = target.join("embree");
-    if let Some(library) = find(&folder) {
-        return Ok(library);
-    }
-    eprintln!("installing {PACKAGE} into {}", folder.display());
-    let (python, programs) = if cfg!(windows) { ("python", "Scripts") } else { ("python3", "bin") };
-    succeed(Command::new(python).args(["-m", "venv"]).arg(&folder))?;
-    let python = folder.join(programs).join(python);
-    succeed(Command::new(python).args(["-m", "pip", "install", "--quiet", PACKAGE]))?;
-    find(&folder).ok_or(format!("{PACKAGE} has no library"))
+    let folder = target(root).join("embree");
+    python_environment(&folder, &[EMBREE])?;
+    find(&folder, "embree4").ok_or(format!("{EMBREE} has no library"))
 }
 
-/// The library somewhere under a folder.
-fn find(folder: &Path) -> Option<PathBuf> {
+/// The LLVM library of the Rust compiler, where it is one of its own.
+fn compilers_llvm(root: &Path) -> Option<PathBuf> {
+    let output = Command::new("rustc").args(["--print", "sysroot"]).current_dir(root).output().ok()?;
+    let folder = Path::new(String::from_utf8(output.stdout).ok()?.trim()).join("lib");
+    find(&folder, "LLVM")
+}
+
+/// The interpreter of a Python environment with these packages, which is made if it is missing.
+fn python_environment(folder: &Path, packages: &[&str]) -> Result<PathBuf, String> {
+    let (python, programs) = if cfg!(windows) { ("python", "Scripts") } else { ("python3", "bin") };
+    let own = folder.join(programs).join(python);
+    let complete = folder.join("complete");
+    if !complete.exists() {
+        eprintln!("installing {} into {}", packages.join(", "), folder.display());
+        succeed(Command::new(python).args(["-m", "venv"]).arg(folder))?;
+        succeed(Command::new(&own).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
+        std::fs::write(&complete, packages.join("\n")).map_err(|error| error.to_string())?;
+    }
+    Ok(own)
+}
+
+/// The shared library somewhere under a folder whose name starts with `name`, but for `lib`.
+fn find(folder: &Path, name: &str) -> Option<PathBuf> {
     let entries = folder.read_dir().ok()?.flatten();
     entries.map(|entry| entry.path()).find_map(|path| {
         if path.is_dir() && !path.is_symlink() {
-            return find(&path);
+            return find(&path, name);
         }
-        let name = path.file_name()?.to_str()?;
-        let library = [".so", ".dylib", ".dll"].iter().any(|end| name.contains(end));
-        (library && name.trim_start_matches("lib").starts_with("embree4")).then_some(path)
+        let file = path.file_name()?.to_str()?;
+        // A linker script may have the name of a library.
+        let binary = path.metadata().is_ok_and(|file| file.len() > 4096);
+        let library = binary && [".so", ".dylib", ".dll"].iter().any(|end| file.contains(end));
+        (library && file.trim_start_matches("lib").starts_with(name)).then_some(path)
     })
 }

@@ -16,6 +16,8 @@ usage: cargo xtask TASK
   tidy       the source rules alone, in a second
   bench rays [--help | OPTIONS]
              the ray engine beside Embree, on a million triangles
+  bench render [--help | OPTIONS]
+             whole renders beside Mitsuba 3: CPU time and error
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -25,6 +27,7 @@ fn main() -> ExitCode {
         ["test"] => test::run(workspace()),
         ["tidy"] => tidy::run(workspace()),
         ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
+        ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

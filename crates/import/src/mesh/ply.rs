@@ -141,6 +141,9 @@ fn header(bytes: &[u8]) -> Result<(Header, &[u8]), MeshError> {
 
 /// The values after the header.
 trait Body: Copy {
+    /// Whether binary numbers begin with their highest byte.
+    const BIG: bool;
+
     /// The minimal number of bytes of a value of a type.
     fn least_size(scalar: Scalar) -> usize;
 
@@ -149,6 +152,13 @@ trait Body: Copy {
 
     /// The next value.
     fn read(&mut self, scalar: Scalar) -> Result<f64, MeshError>;
+
+    /// The next `size` bytes; `None` where values are text, or there are not as many.
+    fn take(&mut self, size: usize) -> Option<&[u8]>;
+
+    /// Reads at most `most` faces, while they are triangles of vertices below `vertices`: a count
+    /// of one byte and three indices of four. None where values are text.
+    fn take_triangles(&mut self, most: usize, vertices: usize, triangles: &mut Vec<[u32; 3]>);
 }
 
 #[derive(Clone, Copy)]
@@ -157,6 +167,8 @@ struct Binary<'a, const BIG: bool> {
 }
 
 impl<const BIG: bool> Body for Binary<'_, BIG> {
+    const BIG: bool = BIG;
+
     fn least_size(scalar: Scalar) -> usize {
         scalar.size()
     }
@@ -185,6 +197,26 @@ impl<const BIG: bool> Body for Binary<'_, BIG> {
             Scalar::F64 => number!(f64),
         })
     }
+
+    fn take(&mut self, size: usize) -> Option<&[u8]> {
+        let (taken, rest) = self.bytes.split_at_checked(size)?;
+        self.bytes = rest;
+        Some(taken)
+    }
+
+    fn take_triangles(&mut self, most: usize, vertices: usize, triangles: &mut Vec<[u32; 3]>) {
+        for _ in 0..most {
+            let Some((&[3, ref corners @ ..], rest)) = self.bytes.split_first_chunk::<13>() else { return };
+            let corners: [[u8; 4]; 3] = std::array::from_fn(|c| std::array::from_fn(|i| corners[4 * c + i]));
+            let triangle =
+                corners.map(|bytes| if BIG { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) });
+            if triangle.iter().any(|&corner| corner as usize >= vertices) {
+                return;
+            }
+            triangles.push(triangle);
+            self.bytes = rest;
+        }
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -193,6 +225,8 @@ struct Ascii<'a> {
 }
 
 impl Body for Ascii<'_> {
+    const BIG: bool = false;
+
     fn least_size(_: Scalar) -> usize {
         1
     }
@@ -214,6 +248,12 @@ impl Body for Ascii<'_> {
             None => invalid(format!("`{:.40}` is not a number", String::from_utf8_lossy(&text[..end]))),
         }
     }
+
+    fn take(&mut self, _: usize) -> Option<&[u8]> {
+        None
+    }
+
+    fn take_triangles(&mut self, _: usize, _: usize, _: &mut Vec<[u32; 3]>) {}
 }
 
 fn too_short<T>() -> Result<T, MeshError> {
@@ -329,6 +369,11 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
     mesh.positions.reserve_exact(element.count);
     mesh.normals.reserve_exact(if has_normals { element.count } else { 0 });
     mesh.uvs.reserve_exact(if has_uvs { element.count } else { 0 });
+    if let Some(layout) = FloatLayout::new(element, &slots, has_normals, has_uvs)
+        && let Some(bytes) = element.count.checked_mul(layout.size).and_then(|size| body.take(size))
+    {
+        return layout.read::<B>(bytes, mesh);
+    }
     for _ in 0..element.count {
         let mut values = [0.0_f32; 8];
         for (property, slot) in element.properties.iter().zip(&slots) {
@@ -340,7 +385,7 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
         let [x, y, z, nx, ny, nz, u, v] = values;
         let position = Vec3::new(x, y, z);
         if !position.is_finite() {
-            return invalid("a vertex position is not finite");
+            return not_finite();
         }
         mesh.positions.push(position);
         if has_normals {
@@ -351,6 +396,64 @@ fn read_vertices<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
         }
     }
     Ok(())
+}
+
+fn not_finite<T>() -> Result<T, MeshError> {
+    invalid("a vertex position is not finite")
+}
+
+/// Vertices as nearly all binary files have them: rows of one size, in which the coordinates of a
+/// position, a normal and texture coordinates are single floats side by side.
+struct FloatLayout {
+    /// Bytes of a row.
+    size: usize,
+    /// Where in a row each begins.
+    position: usize,
+    normal: Option<usize>,
+    uv: Option<usize>,
+}
+
+impl FloatLayout {
+    /// The layout of the vertices' properties, of which `slots` tells what they are.
+    fn new(element: &Element, slots: &[Option<usize>], has_normals: bool, has_uvs: bool) -> Option<Self> {
+        let (mut size, mut offsets) = (0, [None; 8]);
+        for (property, slot) in element.properties.iter().zip(slots) {
+            let PropertyKind::Scalar(scalar) = property.kind else { return None };
+            if let Some(slot) = slot {
+                offsets[*slot] = Some(size).filter(|_| scalar == Scalar::F32);
+            }
+            size += scalar.size();
+        }
+        let run = |slots: &[Option<usize>]| {
+            let first = slots[0]?;
+            slots.iter().enumerate().all(|(i, at)| *at == Some(first + 4 * i)).then_some(first)
+        };
+        let position = run(&offsets[..3])?;
+        let normal = if has_normals { Some(run(&offsets[3..6])?) } else { None };
+        let uv = if has_uvs { Some(run(&offsets[6..])?) } else { None };
+        Some(Self { size, position, normal, uv })
+    }
+
+    fn read<B: Body>(&self, bytes: &[u8], mesh: &mut Mesh) -> Result<(), MeshError> {
+        mesh.positions.extend(self.floats::<B, 3>(bytes, self.position).map(Vec3::from));
+        if let Some(offset) = self.normal {
+            mesh.normals.extend(self.floats::<B, 3>(bytes, offset).map(Vec3::from));
+        }
+        if let Some(offset) = self.uv {
+            mesh.uvs.extend(self.floats::<B, 2>(bytes, offset).map(Vec2::from));
+        }
+        if mesh.positions.iter().all(|position| position.is_finite()) { Ok(()) } else { not_finite() }
+    }
+
+    /// The `N` floats at an offset of each row.
+    fn floats<B: Body, const N: usize>(&self, bytes: &[u8], offset: usize) -> impl Iterator<Item = [f32; N]> {
+        bytes.chunks_exact(self.size).map(move |row| {
+            let values = row[offset..offset + 4 * N].as_chunks().0;
+            std::array::from_fn(|i| {
+                if B::BIG { f32::from_be_bytes(values[i]) } else { f32::from_le_bytes(values[i]) }
+            })
+        })
+    }
 }
 
 fn read_faces<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Result<(), MeshError> {
@@ -378,8 +481,28 @@ fn read_polygons<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
     // Nearly all meshes are of triangles: their memory is reserved at once, as growing would copy
     // it.
     mesh.triangles.reserve_exact(element.count);
-    let mut corners = Vec::new();
-    for _ in 0..element.count {
+    let all_plain = match &element.properties[..] {
+        [
+            Property {
+                kind: PropertyKind::List { count: Scalar::U8, item: Scalar::I32 | Scalar::U32 }, ..
+            },
+        ] => {
+            // Negative indices are above all others as they are read.
+            mesh.positions.len() <= i32::MAX as usize
+        }
+        _ => false,
+    };
+    let (mut corners, mut left) = (Vec::new(), element.count);
+    loop {
+        if all_plain {
+            let before = mesh.triangles.len();
+            body.take_triangles(left, mesh.positions.len(), &mut mesh.triangles);
+            left -= mesh.triangles.len() - before;
+        }
+        if left == 0 {
+            return Ok(());
+        }
+        left -= 1;
         corners.clear();
         let mut number = None;
         for property in &element.properties {
@@ -404,7 +527,6 @@ fn read_polygons<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> R
         }
         mesh.push_face(&corners, number);
     }
-    Ok(())
 }
 
 fn read_strips<B: Body>(element: &Element, body: &mut B, mesh: &mut Mesh) -> Result<(), MeshError> {

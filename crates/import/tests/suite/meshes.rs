@@ -81,9 +81,54 @@ fn all_encodings_of_ply_give_the_same_mesh() {
     }
 }
 
+/// A file as most programs write it: floats side by side and no face numbers, which are read in
+/// bulk.
+fn plain(big: bool, faces: &[&[i32]], x: f32) -> Vec<u8> {
+    let order = if big { "big" } else { "little" };
+    let names = ["x", "y", "z", "nx", "ny", "nz", "s", "t"].map(|name| format!("property float {name}\n"));
+    let mut bytes = format!(
+        "ply\nformat binary_{order}_endian 1.0\nelement vertex 4\nproperty uchar red\n{}element face {}\n\
+         property list uchar int vertex_indices\nend_header\n",
+        names.concat(),
+        faces.len()
+    )
+    .into_bytes();
+    let put = |bytes: &mut Vec<u8>, value: u32| {
+        bytes.extend(if big { value.to_be_bytes() } else { value.to_le_bytes() });
+    };
+    for [u, v] in [[0.0_f32, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
+        bytes.push(9);
+        [x + u, v, 2.0, 0.25, -0.5, 1.0, u, v].iter().for_each(|value| put(&mut bytes, value.to_bits()));
+    }
+    for face in faces {
+        bytes.push(face.len() as u8);
+        face.iter().for_each(|corner| put(&mut bytes, *corner as u32));
+    }
+    bytes
+}
+
+#[test]
+fn plain_binary_files_are_read_and_checked() {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from_array);
+    for big in [false, true] {
+        let mesh = read_ply(&plain(big, &[&[0, 1, 2], &[0, 1, 2, 3], &[1], &[3, 2, 1]], 0.0)).unwrap();
+        assert_eq!(mesh.positions, corners.map(|c| c.extend(2.0)));
+        assert_eq!(mesh.normals, [Vec3::new(0.25, -0.5, 1.0); 4]);
+        assert_eq!(mesh.uvs, corners);
+        assert_eq!((mesh.triangles, mesh.quads), (vec![[0, 1, 2], [3, 2, 1]], vec![[0, 1, 2, 3]]));
+        for corner in [-1, 4] {
+            let message = format!("a face has vertex index {corner}, but there are 4 vertices");
+            let mesh = read_ply(&plain(big, &[&[0, 1, 2], &[0, corner, 2]], 0.0));
+            assert_eq!(mesh, Err(MeshError::Invalid(message)));
+        }
+        let message = "a vertex position is not finite".to_owned();
+        assert_eq!(read_ply(&plain(big, &[&[0, 1, 2]], f32::NAN)), Err(MeshError::Invalid(message)));
+    }
+}
+
 #[test]
 fn every_shortened_ply_is_refused() {
-    for bytes in [binary(false), binary(true)] {
+    for bytes in [binary(false), binary(true), plain(false, &[&[0, 1, 2], &[0, 2, 3]], 0.0)] {
         for length in 0..bytes.len() {
             assert!(read_ply(&bytes[..length]).is_err(), "{length} of {} bytes", bytes.len());
         }
