@@ -26,8 +26,11 @@ pub(crate) fn collected<T>(count: usize, values: impl Iterator<Item = T>) -> Res
 /// Refused where `bytes` bytes cannot be allocated now. To be checked before allocations whose
 /// failure would abort the program.
 pub fn require_memory(bytes: usize) -> Result<(), ImageError> {
-    let refused = |_| ImageError::Limits(format!("no memory for {bytes} bytes"));
-    Vec::<u8>::new().try_reserve_exact(bytes).map_err(refused)
+    let mut memory = Vec::<u8>::new();
+    let reserved = memory.try_reserve_exact(bytes);
+    // The optimiser removes allocations that nothing uses, with their failure.
+    std::hint::black_box(&memory);
+    reserved.map_err(|_| ImageError::Limits(format!("no memory for {bytes} bytes")))
 }
 
 fn no_memory(bytes: usize) -> ImageError {
