@@ -6,7 +6,7 @@ use lanes::{MAX_LANES, Real};
 use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, face_forward, gamma};
 use sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
 
-/// A triangle or a bilinear patch, p(a, b) = corner + a·sides[0] + b·sides[1] + a·b·twist.
+/// A triangle or a bilinear patch, `p(a, b) = corner + a·sides[0] + b·sides[1] + a·b·twist`.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
     /// p(0, 0).
@@ -21,7 +21,7 @@ pub struct Patch {
     pub uv: [Vec2; 3],
     /// ∂p/∂u at p(0, 0).
     pub dpdu: Vector3,
-    /// Whether the outside is not on the side of sides[0] × sides[1].
+    /// Whether the outside is not on the side of `sides[0] × sides[1]`.
     pub flips: bool,
 }
 

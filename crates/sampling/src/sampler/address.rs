@@ -1,6 +1,6 @@
 //! Coordinates by their address: computed from pixel, sample and dimension alone.
 
-use lanes::Int;
+use lanes::{Each, Int, MAX_LANES};
 
 /// Which coordinate of which sample, in each lane.
 #[derive(Clone, Copy, Debug)]
@@ -34,10 +34,17 @@ impl<I: Int> Address<I> {
         self.dimension = self.dimension.wrapping_add(I::splat(dimensions));
     }
 
-    /// The address in one lane.
-    #[inline]
-    pub(super) fn lane(&self, lane: usize) -> Address {
-        let [x, y] = self.pixel.map(|x| x.to_array()[lane]);
-        Address { pixel: [x, y], index: self.index, dimension: self.dimension.to_array()[lane] }
+    /// The addresses of all lanes, in memory.
+    #[inline(always)]
+    pub(super) fn to_arrays(self) -> AddressArrays {
+        let Self { pixel, index, dimension } = self;
+        AddressArrays { pixel: pixel.each(I::to_array), index, dimension: dimension.to_array() }
     }
+}
+
+/// Addresses, lane by lane.
+pub(super) struct AddressArrays {
+    pub pixel: [[u32; MAX_LANES]; 2],
+    pub index: u32,
+    pub dimension: [u32; MAX_LANES],
 }

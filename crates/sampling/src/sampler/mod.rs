@@ -30,7 +30,8 @@ pub use sobol::Sobol;
 pub use stratified::Stratified;
 pub use zsobol::ZSobol;
 
-use lanes::{MAX_LANES, Real};
+use address::AddressArrays;
+use lanes::{Each, MAX_LANES, Real};
 use math::Vec2;
 
 /// The source of a pixel sample's coordinates.
@@ -104,7 +105,10 @@ impl Sampler {
         match self {
             Self::Independent(sampler) => sampler.at_1d(address),
             Self::ZSobol(sampler) => sampler.at_1d(address),
-            _ => R::from_fn(|lane| self.started(&address.lane(lane)).get_1d()),
+            _ => {
+                let one = |sampler: &mut Self| Vec2::new(sampler.get_1d(), 0.0);
+                R::load(&self.each_lane(&address.to_arrays(), R::LANES, one)[0])
+            }
         }
     }
 
@@ -114,7 +118,7 @@ impl Sampler {
         match self {
             Self::Independent(sampler) => sampler.at_2d(address),
             Self::ZSobol(sampler) => sampler.at_2d(address),
-            _ => self.each_lane(|lane| self.started(&address.lane(lane)).get_2d()),
+            _ => self.each_lane(&address.to_arrays(), R::LANES, Self::get_2d).each(|u| R::load(&u)),
         }
     }
 
@@ -124,23 +128,29 @@ impl Sampler {
     pub fn at_pixel_2d<R: Real>(&self, address: &Address<R::Int>) -> [R; 2] {
         match self {
             Self::Halton(_) | Self::Sobol(_) => {
-                self.each_lane(|lane| self.started(&address.lane(lane)).get_pixel_2d())
+                self.each_lane(&address.to_arrays(), R::LANES, Self::get_pixel_2d).each(|u| R::load(&u))
             }
             _ => self.at_2d(address),
         }
     }
 
-    /// A clone at an address.
-    fn started(&self, address: &Address) -> Self {
+    /// The coordinates at the addresses of the lanes, one after another.
+    #[inline(never)]
+    fn each_lane(
+        &self,
+        addresses: &AddressArrays,
+        lanes: usize,
+        draw: fn(&mut Self) -> Vec2,
+    ) -> [[f32; MAX_LANES]; 2] {
         let mut sampler = self.clone();
-        sampler.start_pixel_sample(address.pixel.map(|x| x as i32), address.index, address.dimension);
-        sampler
-    }
-
-    fn each_lane<R: Real>(&self, pair: impl Fn(usize) -> Vec2) -> [R; 2] {
-        let mut pairs = [Vec2::ZERO; MAX_LANES];
-        pairs[..R::LANES].iter_mut().enumerate().for_each(|(lane, to)| *to = pair(lane));
-        [R::from_fn(|lane| pairs[lane].x), R::from_fn(|lane| pairs[lane].y)]
+        let mut values = [[0.0; MAX_LANES]; 2];
+        let AddressArrays { pixel: [x, y], index, dimension } = addresses;
+        for lane in 0..lanes {
+            sampler.start_pixel_sample([x[lane] as i32, y[lane] as i32], *index, dimension[lane]);
+            let u = draw(&mut sampler);
+            (values[0][lane], values[1][lane]) = (u.x, u.y);
+        }
+        values
     }
 
     /// The coordinates of the sample within its pixel.
