@@ -13,6 +13,7 @@
 //! | [`RandomWalk`] | paths in uniform directions, without next-event estimation |
 //! | [`SimplePath`] | paths by light sampling and BSDF sampling, each optional |
 //! | [`Path`] | paths by both with multiple importance sampling, and Russian roulette |
+//! | [`Wavefront`] | the paths of [`Path`], many at once in the lanes of vectors |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected at all pairs of vertices |
 //! | [`Mlt`] | Markov chains of paths, distributed in proportion to their contribution |

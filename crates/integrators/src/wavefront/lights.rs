@@ -31,9 +31,9 @@ pub(super) struct LightLanes<R: Real> {
 }
 
 /// Values of lanes while they are set one by one.
-struct Columns<const C: usize>([[f32; MAX_LANES]; C]);
+struct LaneValues<const C: usize>([[f32; MAX_LANES]; C]);
 
-impl<const C: usize> Columns<C> {
+impl<const C: usize> LaneValues<C> {
     fn set(&mut self, lane: usize, first: usize, values: &[f32]) {
         values.iter().enumerate().for_each(|(i, &value)| self.0[first + i][lane] = value);
     }
@@ -56,7 +56,7 @@ pub(super) fn sample<R: Real>(
         lambda: lambda.lambda().each(R::to_array),
         lambda_pdf: lambda.pdf().0.each(R::to_array),
     };
-    let mut values = Columns([[0.0; MAX_LANES]; 17]);
+    let mut values = LaneValues([[0.0; MAX_LANES]; 17]);
     let mut masks = [0; 4];
     let (lights, pmf, chosen) = pass.direct.lights().sample_lanes(context, u, active);
     let (rows, mut in_lanes) = pass.rectangles.rows::<R>(lights, chosen);
@@ -125,7 +125,7 @@ impl Inputs {
         pass: &Pass,
         id: LightId,
         lane: usize,
-        values: &mut Columns<17>,
+        values: &mut LaneValues<17>,
         [valid, is_delta, is_distant, passes]: &mut [u32; 4],
     ) {
         let (scene, bit) = (pass.pixels.scene, 1 << lane);

@@ -1,6 +1,6 @@
 //! What stages hand to each other.
 
-use lanes::{Each, Real};
+use lanes::{Each, MAX_LANES, Mask, Real};
 use math::{Ray, Vec3};
 use spectrum::SampledSpectrum;
 
@@ -42,13 +42,12 @@ impl Queues {
         passes: R::Mask,
         shadow: &Shadow<R>,
     ) {
-        use lanes::Mask;
         let Shadow { l, ray, t_max } = shadow;
         let l = l.0.each(R::to_array);
         let [o, d] = [ray.o, ray.d].each(|v| v.to_array().each(R::to_array));
         let (time, t_max, passes) = (ray.time.to_array(), t_max.to_array(), passes.bits());
         rows.each_of(mask, |lane, row| {
-            let vector = |v: &[[f32; lanes::MAX_LANES]; 3]| Vec3::from_array(v.each(|c| c[lane]));
+            let vector = |v: &[[f32; MAX_LANES]; 3]| Vec3::from_array(v.each(|c| c[lane]));
             self.shadows[(passes >> lane & 1) as usize].push(ShadowRay {
                 path: row as u32,
                 l: SampledSpectrum(l.each(|l| l[lane])),
