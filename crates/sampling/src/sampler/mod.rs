@@ -104,6 +104,7 @@ impl Sampler {
     pub fn at_1d<R: Real>(&self, address: &Address<R::Int>) -> R {
         match self {
             Self::Independent(sampler) => sampler.at_1d(address),
+            Self::Sobol(sampler) => sampler.at_1d(address),
             Self::ZSobol(sampler) => sampler.at_1d(address),
             _ => {
                 let one = |sampler: &mut Self| Vec2::new(sampler.get_1d(), 0.0);
@@ -117,6 +118,7 @@ impl Sampler {
     pub fn at_2d<R: Real>(&self, address: &Address<R::Int>) -> [R; 2] {
         match self {
             Self::Independent(sampler) => sampler.at_2d(address),
+            Self::Sobol(sampler) => sampler.at_2d(address),
             Self::ZSobol(sampler) => sampler.at_2d(address),
             _ => self.each_lane(&address.to_arrays(), R::LANES, Self::get_2d).each(|u| R::load(&u)),
         }
@@ -127,7 +129,8 @@ impl Sampler {
     #[inline(always)]
     pub fn at_pixel_2d<R: Real>(&self, address: &Address<R::Int>) -> [R; 2] {
         match self {
-            Self::Halton(_) | Self::Sobol(_) => {
+            Self::Sobol(sampler) => sampler.at_pixel_2d(address),
+            Self::Halton(_) => {
                 self.each_lane(&address.to_arrays(), R::LANES, Self::get_pixel_2d).each(|u| R::load(&u))
             }
             _ => self.at_2d(address),

@@ -3,14 +3,20 @@
 //!
 //! On a square with side 2^m, every 2^(2m) successive points have one in each pixel. Which index
 //! that is follows from the first 2m rows of the two matrices: a linear system over the binary
-//! field, inverted here once. The number of samples is rounded up to a power of two; beyond it the
-//! sequence continues.
+//! field, inverted here once. The digits of a coordinate thus are linear in the bits of pixel and
+//! sample, and have a table of their own: a matrix of these bits for each dimension. The number of
+//! samples is rounded up to a power of two; beyond it the sequence continues.
 
+use super::address::Address;
 use super::randomize::{Randomize, wrapped};
 use crate::hash::hash;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_digits};
+use lanes::{Each, Int, Mask};
 use math::Vec2;
 use std::sync::Arc;
+
+/// Columns of a matrix: up to 30 for the bits of a pixel, then 32 for those of a sample's index.
+const COLUMNS: usize = 62;
 
 /// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded
 /// up to a power of two; beyond it the sequence continues.
@@ -22,10 +28,9 @@ pub struct Sobol {
     seeds: Arc<[u32]>,
     /// The side of the square of pixels is 2^log2_side.
     log2_side: u32,
-    /// For each bit of the pixel (y's below x's), the low bits of the index that make it.
-    index_from_pixel: Arc<[u64]>,
-    index: u64,
-    dimension: usize,
+    /// For each dimension, the digits that each bit of pixel (y's below x's) and index adds.
+    matrices: Arc<[[u32; COLUMNS]]>,
+    address: Address,
 }
 
 impl Sobol {
@@ -34,14 +39,15 @@ impl Sobol {
     pub fn new(samples_per_pixel: u32, resolution: [i32; 2], randomize: Randomize, seed: u32) -> Sobol {
         let side = resolution[0].max(resolution[1]).clamp(1, 1 << 15) as u32;
         let log2_side = side.next_power_of_two().ilog2();
+        let points = points_of_bits(log2_side);
+        let matrix = |dimension| points.map(|point| sobol_digits(point, dimension));
         Sobol {
             samples_per_pixel: samples_per_pixel.clamp(1, 1 << 31).next_power_of_two(),
             randomize,
             seeds: (0..SOBOL_DIMENSIONS as u32).map(|dimension| hash(&[dimension, seed]) as u32).collect(),
             log2_side,
-            index_from_pixel: index_from_pixel(log2_side),
-            index: 0,
-            dimension: 2,
+            matrices: (0..SOBOL_DIMENSIONS).map(matrix).collect(),
+            address: Address::new([0; 2], 0, 2),
         }
     }
 
@@ -50,53 +56,128 @@ impl Sobol {
     }
 
     pub(super) fn start_pixel_sample(&mut self, pixel: [i32; 2], index: u32, dimension: u32) {
-        let m = self.log2_side;
-        let [x, y] = pixel.map(|p| p as u64 & ((1 << m) - 1));
-        let high = (index as u64) << (2 * m);
-        let mut wanted = (x << m | y) ^ pixel_of(high, m);
-        self.index = high;
-        while wanted != 0 {
-            self.index ^= self.index_from_pixel[wanted.trailing_zeros() as usize];
-            wanted &= wanted - 1;
-        }
-        self.dimension = (dimension as usize).max(2);
+        self.address = Address::new(pixel, index, dimension.max(2));
     }
 
     #[inline]
     pub(super) fn dimension(&self) -> u32 {
-        self.dimension as u32
+        self.address.dimension
     }
 
     pub(super) fn get_1d(&mut self) -> f32 {
-        let dimension = self.next_dimension(1);
-        self.coordinate(dimension)
+        let address = self.address.advance(1);
+        self.at_1d(&address)
     }
 
     pub(super) fn get_2d(&mut self) -> Vec2 {
-        let dimension = self.next_dimension(2);
-        Vec2::new(self.coordinate(dimension), self.coordinate(dimension + 1))
+        let address = self.address.advance(2);
+        let [x, y] = self.at_2d(&address);
+        Vec2::new(x, y)
     }
 
     pub(super) fn get_pixel_2d(&mut self) -> Vec2 {
+        let [x, y] = self.at_pixel_2d(&self.address);
+        Vec2::new(x, y)
+    }
+
+    /// The coordinate at an address.
+    #[inline(always)]
+    pub(super) fn at_1d<I: Int>(&self, address: &Address<I>) -> I::Real {
+        let ([digits], [seed]) = self.digits(address);
+        self.randomize.digits(digits, seed)
+    }
+
+    /// The two coordinates at an address.
+    #[inline(always)]
+    pub(super) fn at_2d<I: Int>(&self, address: &Address<I>) -> [I::Real; 2] {
+        let ([a, b], [seed, other]) = self.digits(address);
+        [self.randomize.digits(a, seed), self.randomize.digits(b, other)]
+    }
+
+    /// The position in the pixel of the sample at an address.
+    #[inline(always)]
+    pub(super) fn at_pixel_2d<I: Int>(&self, address: &Address<I>) -> [I::Real; 2] {
         // The first digits are the pixel; the rest, which is the position in it, is randomised like
         // any dimension, or pictures of different seeds would have samples in common.
-        let position = |dimension| {
-            let digits = sobol_digits(self.index, dimension) >> self.log2_side;
-            self.randomize.digits(digits, self.seeds[dimension])
-        };
-        Vec2::new(position(0), position(1))
+        let [x, y] = self.products(self.pixel_bits(address), address.index, 0);
+        let [seed, other] = [0, 1].each(|dimension: usize| I::splat(self.seeds[dimension]));
+        [
+            self.randomize.digits(x.shr(self.log2_side), seed),
+            self.randomize.digits(y.shr(self.log2_side), other),
+        ]
     }
 
-    /// Allocates dimensions, starting again from the third when all are used.
-    fn next_dimension(&mut self, count: usize) -> usize {
-        let dimension = wrapped(self.dimension, count, SOBOL_DIMENSIONS);
-        self.dimension += count;
-        dimension
+    /// The digits of `C` coordinates at an address, and the hashes of their dimensions. Dimensions
+    /// beyond the last start again from the third. Lanes of the same dimension, which usually are
+    /// all, are computed together.
+    #[inline(always)]
+    fn digits<I: Int, const C: usize>(&self, address: &Address<I>) -> ([I; C], [I; C]) {
+        let bits = self.pixel_bits(address);
+        let dimensions = address.dimension.to_array();
+        let (mut digits, mut seeds) = ([I::splat(0); C], [I::splat(0); C]);
+        let mut rest = I::Mask::splat(true);
+        while rest.any() {
+            let dimension = dimensions[rest.bits().trailing_zeros() as usize];
+            let lanes = address.dimension.eq(I::splat(dimension));
+            rest = rest & !lanes;
+            let first = wrapped(dimension.max(2) as usize, C, SOBOL_DIMENSIONS);
+            let products = self.products::<I, C>(bits, address.index, first);
+            for c in 0..C {
+                digits[c] = I::select(lanes, products[c], digits[c]);
+                seeds[c] = I::select(lanes, I::splat(self.seeds[first + c]), seeds[c]);
+            }
+        }
+        (digits, seeds)
     }
 
-    fn coordinate(&self, dimension: usize) -> f32 {
-        self.randomize.sobol(self.index, dimension, self.seeds[dimension])
+    /// The bits of a pixel: x's above y's.
+    #[inline(always)]
+    fn pixel_bits<I: Int>(&self, address: &Address<I>) -> I {
+        let kept = I::splat((1 << self.log2_side) - 1);
+        let [x, y] = address.pixel;
+        (x & kept).shl(self.log2_side) | (y & kept)
     }
+
+    /// The digits in `C` dimensions from `first` on, which are the same for all lanes.
+    #[inline(always)]
+    fn products<I: Int, const C: usize>(&self, pixel_bits: I, index: u32, first: usize) -> [I; C] {
+        let matrices = &self.matrices[first..first + C];
+        let pixel_columns = 2 * self.log2_side as usize;
+        let mut digits = [I::splat(0); C];
+        for c in 0..C {
+            let (mut shared, mut rest) = (0, index);
+            while rest != 0 {
+                shared ^= matrices[c][pixel_columns + rest.trailing_zeros() as usize];
+                rest &= rest - 1;
+            }
+            digits[c] = I::splat(shared);
+        }
+        for column in 0..pixel_columns {
+            let unset = (pixel_bits & I::splat(1 << column)).eq(I::splat(0));
+            for c in 0..C {
+                digits[c] = I::select(unset, digits[c], digits[c] ^ I::splat(matrices[c][column]));
+            }
+        }
+        digits
+    }
+}
+
+/// For each bit of pixel and index, the index in the sequence of the point that has this bit alone;
+/// the point of other bits is the exclusive or of theirs. The last bits may be unused.
+fn points_of_bits(m: u32) -> [u64; COLUMNS] {
+    let index_from_pixel = index_from_pixel(m);
+    let mut points = [0; COLUMNS];
+    points[..index_from_pixel.len()].copy_from_slice(&index_from_pixel);
+    for (bit, point) in points[index_from_pixel.len()..].iter_mut().take(32).enumerate() {
+        // Among the points of this sample, the one in the first pixel.
+        *point = 1 << (2 * m as usize + bit);
+        let mut pixel = pixel_of(*point, m);
+        while pixel != 0 {
+            *point ^= index_from_pixel[pixel.trailing_zeros() as usize];
+            pixel &= pixel - 1;
+        }
+    }
+    points
 }
 
 /// The pixel of point `index` on a square of side 2^m: m bits of x above m bits of y.
@@ -107,7 +188,7 @@ fn pixel_of(index: u64, m: u32) -> u64 {
 
 /// Inverts [`pixel_of`] on the indices below 2^(2m): its matrix is brought to the identity by
 /// operations on columns, which bring the identity to the inverse.
-fn index_from_pixel(m: u32) -> Arc<[u64]> {
+fn index_from_pixel(m: u32) -> Vec<u64> {
     let size = 2 * m as usize;
     let mut columns: Vec<(u64, u64)> = (0..size).map(|bit| (pixel_of(1 << bit, m), 1 << bit)).collect();
     for bit in 0..size {
@@ -131,16 +212,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_sample_lies_in_its_pixel() {
-        for side in [1, 2, 5, 64, 1920] {
-            let mut sampler = Sobol::new(4, [side, 1], Randomize::None, 0);
+    fn samples_are_points_of_the_sequence_in_their_pixel() {
+        for side in [1, 2, 5, 64, 1920, 1 << 15] {
+            let sampler = Sobol::new(4, [side, 1], Randomize::None, 0);
             let m = sampler.log2_side;
+            let points = points_of_bits(m);
             for i in 0..50 {
                 let pixel = [(i * 37) % side, (i * 101 + 3) % side];
-                for index in [0, 1, 7, 1000] {
-                    sampler.start_pixel_sample(pixel, index, 0);
-                    assert_eq!(pixel_of(sampler.index, m), (pixel[0] as u64) << m | pixel[1] as u64);
-                    assert_eq!(sampler.index >> (2 * m), index as u64);
+                for index in [0, 1, 7, 1000, u32::MAX] {
+                    let address = Address::new(pixel, index, 700);
+                    let bits = u64::from(sampler.pixel_bits(&address)) | u64::from(index) << (2 * m);
+                    let set = (0..COLUMNS).filter(|bit| bits >> bit & 1 == 1);
+                    let point = set.fold(0, |point, bit| point ^ points[bit]);
+                    assert_eq!(pixel_of(point, m), (pixel[0] as u64) << m | pixel[1] as u64);
+                    assert_eq!(point >> (2 * m), u64::from(index));
+                    assert_eq!(sampler.digits(&address).0, [700, 701].map(|d| sobol_digits(point, d)));
                 }
             }
         }

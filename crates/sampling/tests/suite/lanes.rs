@@ -1,7 +1,9 @@
-//! Warps in lanes give the bits of single numbers.
+//! Warps and samplers in lanes give the bits of single numbers.
 
+use alhazen_sampling::Sampler;
+use alhazen_sampling::sampler::*;
 use alhazen_sampling::warp::*;
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{Vec2, Vec3};
 use testkit::{LaneFunction, lanes_agree};
 
@@ -39,4 +41,35 @@ impl LaneFunction for Warps {
 #[test]
 fn warps_do_not_depend_on_the_number_of_lanes() {
     lanes_agree(&Warps, 6, 500);
+}
+
+/// A sample of a sampler: pixel and dimension by the lane's numbers.
+struct Draws(Sampler, u32);
+
+impl LaneFunction for Draws {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let pixel = [u[0], u[1]].each(|u| (u * R::splat(300.0)).to_int());
+        let near = Address { pixel, index: self.1, dimension: (u[2] * R::splat(5.0)).to_int() };
+        let far = Address { dimension: (u[2] * R::splat(3000.0)).to_int(), ..near };
+        let mut results = Vec::new();
+        for address in [near, far] {
+            results.push(self.0.at_1d(&address));
+            results.extend(self.0.at_2d::<R>(&address));
+            results.extend(self.0.at_pixel_2d::<R>(&address));
+        }
+        results
+    }
+}
+
+#[test]
+fn samplers_do_not_depend_on_the_number_of_lanes() {
+    for index in [0, 13, 70_000] {
+        let resolution = [300, 200];
+        lanes_agree(&Draws(Sampler::Independent(Independent::new(16, 5)), index), 3, 50);
+        for r in [Randomize::None, Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen] {
+            lanes_agree(&Draws(Sampler::Sobol(Sobol::new(16, resolution, r, 5)), index), 3, 50);
+            lanes_agree(&Draws(Sampler::ZSobol(ZSobol::new(32, resolution, r, 5)), index), 3, 50);
+        }
+    }
 }
