@@ -11,12 +11,12 @@ use super::address::Address;
 use super::randomize::{Randomize, wrapped};
 use crate::hash::hash;
 use crate::low_discrepancy::{SOBOL_DIMENSIONS, sobol_digits};
-use lanes::{Each, Int, Mask};
+use lanes::{Each, Int, Mask, Real};
 use math::Vec2;
 use std::sync::Arc;
 
-/// Columns of a matrix: up to 30 for the bits of a pixel, then 32 for those of a sample's index.
-const COLUMNS: usize = 62;
+/// For each bit of a word, the digits that it adds.
+type Matrix = [u32; 32];
 
 /// Sobol' points of all dimensions, one sequence over the picture. The number of samples is rounded
 /// up to a power of two; beyond it the sequence continues.
@@ -28,8 +28,8 @@ pub struct Sobol {
     seeds: Arc<[u32]>,
     /// The side of the square of pixels is 2^log2_side.
     log2_side: u32,
-    /// For each dimension, the digits that each bit of pixel (y's below x's) and index adds.
-    matrices: Arc<[[u32; COLUMNS]]>,
+    /// For each dimension, the matrices of the bits of the pixel (y's below x's) and of the index.
+    matrices: Arc<[[Matrix; 2]]>,
     address: Address,
 }
 
@@ -40,13 +40,13 @@ impl Sobol {
         let side = resolution[0].max(resolution[1]).clamp(1, 1 << 15) as u32;
         let log2_side = side.next_power_of_two().ilog2();
         let points = points_of_bits(log2_side);
-        let matrix = |dimension| points.map(|point| sobol_digits(point, dimension));
+        let matrices = |dimension| points.map(|points| points.map(|point| sobol_digits(point, dimension)));
         Sobol {
             samples_per_pixel: samples_per_pixel.clamp(1, 1 << 31).next_power_of_two(),
             randomize,
             seeds: (0..SOBOL_DIMENSIONS as u32).map(|dimension| hash(&[dimension, seed]) as u32).collect(),
             log2_side,
-            matrices: (0..SOBOL_DIMENSIONS).map(matrix).collect(),
+            matrices: (0..SOBOL_DIMENSIONS).map(matrices).collect(),
             address: Address::new([0; 2], 0, 2),
         }
     }
@@ -142,34 +142,45 @@ impl Sobol {
     #[inline(always)]
     fn products<I: Int, const C: usize>(&self, pixel_bits: I, index: u32, first: usize) -> [I; C] {
         let matrices = &self.matrices[first..first + C];
-        let pixel_columns = 2 * self.log2_side as usize;
+        let is_single = I::Real::LANES == 1;
         let mut digits = [I::splat(0); C];
         for c in 0..C {
-            let (mut shared, mut rest) = (0, index);
-            while rest != 0 {
-                shared ^= matrices[c][pixel_columns + rest.trailing_zeros() as usize];
-                rest &= rest - 1;
-            }
-            digits[c] = I::splat(shared);
+            let shared = if is_single { pixel_bits.to_array()[0] } else { 0 };
+            digits[c] = I::splat(product(&matrices[c], [shared, index]));
         }
-        for column in 0..pixel_columns {
-            let unset = (pixel_bits & I::splat(1 << column)).eq(I::splat(0));
-            for c in 0..C {
-                digits[c] = I::select(unset, digits[c], digits[c] ^ I::splat(matrices[c][column]));
+        if !is_single {
+            for bit in 0..2 * self.log2_side {
+                let is_unset = (pixel_bits & I::splat(1 << bit)).eq(I::splat(0));
+                for c in 0..C {
+                    let added = digits[c] ^ I::splat(matrices[c][0][bit as usize]);
+                    digits[c] = I::select(is_unset, digits[c], added);
+                }
             }
         }
         digits
     }
 }
 
-/// For each bit of pixel and index, the index in the sequence of the point that has this bit alone;
-/// the point of other bits is the exclusive or of theirs. The last bits may be unused.
-fn points_of_bits(m: u32) -> [u64; COLUMNS] {
+/// The exclusive or of the columns that the bits of two words select.
+#[inline(always)]
+fn product([a, b]: &[Matrix; 2], [x, y]: [u32; 2]) -> u32 {
+    let mut digits = 0;
+    for bit in 0..32 {
+        // Without branches, so that columns are added in lanes.
+        let all_if = |word: u32| 0_u32.wrapping_sub(word >> bit & 1);
+        digits ^= (a[bit] & all_if(x)) ^ (b[bit] & all_if(y));
+    }
+    digits
+}
+
+/// For each bit of a pixel and of an index, the index in the sequence of the point that has this
+/// bit alone; the point of other bits is the exclusive or of theirs.
+fn points_of_bits(m: u32) -> [[u64; 32]; 2] {
     let index_from_pixel = index_from_pixel(m);
-    let mut points = [0; COLUMNS];
-    points[..index_from_pixel.len()].copy_from_slice(&index_from_pixel);
-    for (bit, point) in points[index_from_pixel.len()..].iter_mut().take(32).enumerate() {
-        // Among the points of this sample, the one in the first pixel.
+    let mut points = [[0; 32]; 2];
+    points[0][..index_from_pixel.len()].copy_from_slice(&index_from_pixel);
+    for (bit, point) in points[1].iter_mut().enumerate() {
+        // Of the points of this sample, the one in the first pixel.
         *point = 1 << (2 * m as usize + bit);
         let mut pixel = pixel_of(*point, m);
         while pixel != 0 {
@@ -221,9 +232,9 @@ mod tests {
                 let pixel = [(i * 37) % side, (i * 101 + 3) % side];
                 for index in [0, 1, 7, 1000, u32::MAX] {
                     let address = Address::new(pixel, index, 700);
-                    let bits = u64::from(sampler.pixel_bits(&address)) | u64::from(index) << (2 * m);
-                    let set = (0..COLUMNS).filter(|bit| bits >> bit & 1 == 1);
-                    let point = set.fold(0, |point, bit| point ^ points[bit]);
+                    let words = [sampler.pixel_bits(&address), index];
+                    let set = (0..64).filter(|bit| words[bit / 32] >> (bit % 32) & 1 == 1);
+                    let point = set.fold(0, |point, bit| point ^ points[bit / 32][bit % 32]);
                     assert_eq!(pixel_of(point, m), (pixel[0] as u64) << m | pixel[1] as u64);
                     assert_eq!(point >> (2 * m), u64::from(index));
                     assert_eq!(sampler.digits(&address).0, [700, 701].map(|d| sobol_digits(point, d)));

@@ -11,7 +11,7 @@ use super::address::Address;
 use super::randomize::Randomize;
 use crate::low_discrepancy::pascal_digits;
 use crate::mix_word;
-use lanes::{Each, Int};
+use lanes::{Each, Int, Real};
 use math::Vec2;
 
 /// Separates the hash of scrambles from that of permutations.
@@ -103,9 +103,9 @@ impl ZSobol {
     #[inline(always)]
     fn point<I: Int>(&self, address: &Address<I>) -> [I; 2] {
         if 2 * self.log2_side + self.log2_samples > 32 {
-            self.permuted_code::<I, true>(address)
+            self.wide_point(address)
         } else {
-            self.permuted_code::<I, false>(address)
+            [self.narrow_point(address), I::splat(0)]
         }
     }
 
@@ -124,50 +124,70 @@ impl ZSobol {
         [low.shl(log2) | index, high.shl(log2) | low.shr(32 - log2)]
     }
 
-    /// The permuted digits of the code, which has two words if it is `WIDE`.
+    /// The permuted digits of a code of one word.
     #[inline(always)]
-    fn permuted_code<I: Int, const WIDE: bool>(&self, address: &Address<I>) -> [I; 2] {
-        let code = self.code(address);
+    fn narrow_point<I: Int>(&self, address: &Address<I>) -> I {
+        let [code, _] = self.code(address);
         let key = self.hash(address, 0);
-        let one = I::splat(1);
-        let (mut low, mut high) = (I::splat(0), I::splat(0));
-        let odd = self.log2_samples & 1;
-        let digits = self.log2_side.min(32) + self.log2_samples / 2;
-        for place in (0..digits).rev() {
+        let (digits, odd) = (self.log2_side + self.log2_samples / 2, self.log2_samples & 1);
+        // No digit needs the image of another, so that the compiler makes a vector of those of a
+        // single point, if their number is a constant. The last of them are left out below.
+        let is_single = I::Real::LANES == 1;
+        let mut point = I::splat(0);
+        for place in 0..if is_single { 16 } else { digits } {
             let shift = 2 * place + odd;
-            let [bits, _] = shifted_right::<I, WIDE>(code, shift);
-            let hash = hash_of_digits::<I, WIDE>(code, shift + 2, key);
-            if WIDE {
-                high = high.shl(2) | low.shr(30);
-            }
-            low = low.shl(2) | permuted([bits & one, bits.shr(1) & one], hash);
+            let digit = code.shr(shift);
+            point = point | permuted(digit, hash_above(digit.shr(2), shift + 2, key)).shl(shift);
+        }
+        if is_single {
+            point = point & I::splat(((1_u64 << (2 * digits + odd)) - 1) as u32);
         }
         if odd == 1 {
-            if WIDE {
-                high = high.shl(1) | low.shr(31);
-            }
-            low = low.shl(1) | ((code[0] ^ hash_of_digits::<I, WIDE>(code, 1, key)) & one);
+            point = point | ((code ^ hash_above(code.shr(1), 1, key)) & I::splat(1));
+        }
+        point
+    }
+
+    /// The permuted digits of a code of two words.
+    #[inline(always)]
+    fn wide_point<I: Int>(&self, address: &Address<I>) -> [I; 2] {
+        let code = self.code(address);
+        let key = self.hash(address, 0);
+        let (mut low, mut high) = (I::splat(0), I::splat(0));
+        let (digits, odd) = (self.log2_side.min(32) + self.log2_samples / 2, self.log2_samples & 1);
+        for place in (0..digits).rev() {
+            let shift = 2 * place + odd;
+            high = high.shl(2) | low.shr(30);
+            low = low.shl(2) | permuted(shifted_right(code, shift)[0], hash_above_wide(code, shift + 2, key));
+        }
+        if odd == 1 {
+            high = high.shl(1) | low.shr(31);
+            low = low.shl(1) | ((code[0] ^ hash_above_wide(code, 1, key)) & I::splat(1));
         }
         [low, high]
     }
 }
 
-/// A hash of the bits of a code without its lowest.
+/// A hash of the bits of a code from `lowest` on.
 #[inline(always)]
-fn hash_of_digits<I: Int, const WIDE: bool>(code: [I; 2], lowest: u32, key: I) -> I {
-    let [low, high] = shifted_right::<I, WIDE>(code, lowest);
-    let word = if WIDE { low ^ mix_word(high) } else { low };
-    mix_word(word ^ key.wrapping_add(I::splat(lowest)))
+fn hash_above<I: Int>(bits: I, lowest: u32, key: I) -> I {
+    mix_word(bits ^ key.wrapping_add(I::splat(lowest)))
 }
 
-/// Two words shifted right together; only the low one counts unless they are `WIDE`.
+/// [`hash_above`] of a code of two words.
 #[inline(always)]
-fn shifted_right<I: Int, const WIDE: bool>([low, high]: [I; 2], shift: u32) -> [I; 2] {
+fn hash_above_wide<I: Int>(code: [I; 2], lowest: u32, key: I) -> I {
+    let [low, high] = shifted_right(code, lowest);
+    hash_above(low ^ mix_word(high), lowest, key)
+}
+
+/// Two words shifted right together.
+#[inline(always)]
+fn shifted_right<I: Int>([low, high]: [I; 2], shift: u32) -> [I; 2] {
     let zero = I::splat(0);
     match shift {
         0 => [low, high],
-        1..32 if WIDE => [low.shr(shift) | high.shl(32 - shift), high.shr(shift)],
-        1..32 => [low.shr(shift), zero],
+        1..32 => [low.shr(shift) | high.shl(32 - shift), high.shr(shift)],
         32 => [high, zero],
         33..64 => [high.shr(shift - 32), zero],
         _ => [zero; 2],
@@ -184,16 +204,17 @@ fn spread<I: Int>(x: I) -> I {
     spread
 }
 
-/// A base-4 digit, given by its two bits, under one of the 24 permutations. Permutations of four
+/// The base-4 digit in the low two bits under one of the 24 permutations. Permutations of four
 /// digits are the affine maps of two bits: a·low ⊕ b·high ⊕ c, where a and b differ and are not 0.
 #[inline(always)]
-fn permuted<I: Int>([low, high]: [I; 2], hash: I) -> I {
+fn permuted<I: Int>(digit: I, hash: I) -> I {
     let [zero, one, three] = [0, 1, 3].each(I::splat);
     // One of three by 16 bits of the hash.
     let a = hash.shr(16).wrapping_mul(three).shr(16).wrapping_add(one);
     let next = I::select(a.eq(three), one, a.wrapping_add(one));
     let b = next ^ (a & zero.wrapping_sub(hash.shr(2) & one));
     let c = hash & three;
+    let [low, high] = [digit & one, digit.shr(1) & one];
     (a & zero.wrapping_sub(low)) ^ (b & zero.wrapping_sub(high)) ^ c
 }
 
@@ -235,7 +256,7 @@ mod tests {
         const TRIES: usize = 24 * 4096;
         let mut counts = std::collections::BTreeMap::new();
         for hash in (0..TRIES as u32).map(mix_word) {
-            let image = [0, 1, 2, 3].map(|digit: u32| permuted([digit & 1, digit >> 1], hash));
+            let image = [0, 1, 2, 3].map(|digit: u32| permuted(digit, hash));
             *counts.entry(image).or_insert(0) += 1;
             let mut sorted = image;
             sorted.sort();

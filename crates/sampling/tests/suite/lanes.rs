@@ -66,6 +66,8 @@ impl LaneFunction for Draws {
 fn samplers_do_not_depend_on_the_number_of_lanes() {
     for index in [0, 13, 70_000] {
         let resolution = [300, 200];
+        let large = ZSobol::new(1 << 20, [1 << 14; 2], Randomize::FastOwen, 5);
+        lanes_agree(&Draws(Sampler::ZSobol(large), index), 3, 50);
         lanes_agree(&Draws(Sampler::Independent(Independent::new(16, 5)), index), 3, 50);
         for r in [Randomize::None, Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen] {
             lanes_agree(&Draws(Sampler::Sobol(Sobol::new(16, resolution, r, 5)), index), 3, 50);
