@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use lanes::{Each, Real};
 use spectrum::{CIE_Y_INTEGRAL, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum, xyz_from};
 
 use crate::sum::can_add;
@@ -42,7 +43,22 @@ impl Exposure {
     }
 
     /// The sensor's response to light that counts one in `samples` of a pixel, not beyond what a
-    /// whole sample may have; `None` for light that is not finite, or too large for the sums.
+    /// whole sample may have.
+    #[inline(always)]
+    pub(crate) fn response<R: Real>(
+        &self,
+        l: &SampledSpectrum<R>,
+        lambda: &SampledWavelengths<R>,
+        samples: f32,
+    ) -> [R; 3] {
+        let [r, g, b] = self.sensor.response(l, lambda);
+        let (largest, limit) = (r.max(g).max(b), R::splat(self.max_component_value * samples));
+        let factor = R::select(largest.gt(limit), limit / largest, R::one());
+        [r, g, b].each(|c| c * factor)
+    }
+
+    /// [`response`](Self::response); `None` for light that is not finite, or too large for the
+    /// sums.
     #[inline]
     pub(crate) fn measure(
         &self,
@@ -50,12 +66,7 @@ impl Exposure {
         lambda: &SampledWavelengths,
         samples: f32,
     ) -> Option<[f64; 3]> {
-        let mut rgb = self.sensor.to_sensor_rgb(l, lambda);
-        let (largest, limit) = (rgb.max_component(), self.max_component_value * samples);
-        if largest > limit {
-            rgb *= limit / largest;
-        }
-        let rgb = rgb.to_array().map(f64::from);
+        let rgb = self.response(l, lambda, samples).map(f64::from);
         (l.is_finite() && rgb.into_iter().all(can_add)).then_some(rgb)
     }
 

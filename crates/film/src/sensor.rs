@@ -8,9 +8,10 @@
 //! White balance maps the chromaticity of the illuminant to the white point of the film's colour
 //! space, by a von Kries transform in the Bradford cone space.
 
+use lanes::{Each, Real};
 use spectrum::{
-    CIE_Y_INTEGRAL, Matrix3, Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, daylight,
-    white_balance, xyz_from,
+    CIE_Y_INTEGRAL, Matrix3, RgbColorSpace, SampledSpectrum, SampledWavelengths, daylight, tristimulus,
+    white_balance,
 };
 
 /// A sensor whose sensitivities are the CIE 1931 colour matching functions.
@@ -42,10 +43,10 @@ impl PixelSensor {
     }
 
     /// The three responses to light at `lambda`: an unbiased estimate.
-    #[inline]
-    pub fn to_sensor_rgb(&self, light: &SampledSpectrum, lambda: &SampledWavelengths) -> Rgb {
-        let xyz = xyz_from(light, lambda) * self.scale;
-        Rgb::new(xyz.x, xyz.y, xyz.z)
+    #[inline(always)]
+    pub fn response<R: Real>(&self, light: &SampledSpectrum<R>, lambda: &SampledWavelengths<R>) -> [R; 3] {
+        let scale = R::splat(self.scale);
+        tristimulus(light, lambda).each(|x| x * scale)
     }
 
     /// The matrix from responses to XYZ, white balance included.
@@ -65,7 +66,7 @@ mod tests {
         let mut sum = [0.0_f64; 3];
         for i in 0..STEPS {
             let lambda = SampledWavelengths::sample_visible((i as f32 + 0.5) / STEPS as f32);
-            let rgb = sensor.to_sensor_rgb(&light.sample(&lambda), &lambda).to_array();
+            let rgb = sensor.response(&light.sample(&lambda), &lambda);
             (0..3).for_each(|c| sum[c] += f64::from(rgb[c]) / f64::from(STEPS));
         }
         sum.map(|x| x as f32)

@@ -46,7 +46,12 @@ pub(crate) fn value(units: i128) -> f64 {
 #[inline]
 pub(crate) fn units(term: f64) -> i128 {
     debug_assert!(can_add(term));
-    (term * UNITS_PER_ONE).round_ties_even() as i128
+    // Whole and fraction are exact, and conversions to 64 bits are quick. A term of 1 or more has
+    // no digits below the units.
+    let whole = term.abs().trunc();
+    let fraction = ((term.abs() - whole) * UNITS_PER_ONE).round_ties_even();
+    let units = i128::from(whole as u64) << 64 | i128::from(fraction as u64);
+    if term < 0.0 { -units } else { units }
 }
 
 #[inline]
@@ -159,10 +164,10 @@ impl TileSums<'_> {
     #[inline]
     fn add_low(&mut self, index: usize, units: i128) {
         let sum = extended(self.low[index]) + units;
-        let low = low_bits(sum);
-        self.low[index] = [0, 32, 64].map(|shift| (low >> shift) as u32);
-        if low != sum {
-            self.add_high(index, ((sum - low) >> 96) as i64);
+        self.low[index] = [0, 32, 64].map(|shift| (sum >> shift) as u32);
+        let high = (sum >> 64) as i64;
+        if high != i64::from(high as i32) {
+            self.add_high(index, ((sum - low_bits(sum)) >> 96) as i64);
         }
     }
 

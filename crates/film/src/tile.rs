@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use lanes::{Each, MAX_LANES, Mask, Real};
 use math::Bounds2i;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::exposure::Exposure;
 use crate::grid::index_in;
 use crate::layer::Layout;
-use crate::sum::{TileSums, can_add, units};
+use crate::sum::{MAX_TERM, TileSums, can_add, units};
 use crate::{FirstHit, Layer, Sample};
 
 /// The weights of identifiers in a tile, in units of sums: by pixel and identifier.
@@ -55,6 +56,61 @@ impl FilmTile<'_> {
         }
     }
 
+    /// Adds samples of radiance `l` alone to successive pixels, row by row, from the one with index
+    /// `first` on: those of the first `count` lanes.
+    ///
+    /// # Panics
+    /// If the tile does not have as many pixels.
+    #[inline(always)]
+    pub fn add_lanes<R: Real>(
+        &mut self,
+        first: usize,
+        count: usize,
+        l: &SampledSpectrum<R>,
+        lambda: &SampledWavelengths<R>,
+        weight: R,
+    ) {
+        let rgb = self.exposure.response(l, lambda, 1.0);
+        // Rounding is far below the distance to the limit of the sums.
+        let limit = R::splat(MAX_TERM as f32 / 2.0);
+        let mut is_plain = l.is_finite() & weight.abs().lt(limit);
+        for c in rgb {
+            is_plain = is_plain & c.abs().lt(limit) & (c * weight).abs().lt(limit);
+        }
+        let terms = LaneTerms { rgb: rgb.each(R::to_array), weight: weight.to_array() };
+        let plain = if self.data.is_none() { is_plain.bits() } else { 0 };
+        self.add_plain(first, count, &terms, plain);
+        if (!plain).trailing_zeros() < count as u32 {
+            let l = l.0.each(R::to_array);
+            for lane in (0..count).filter(|lane| plain >> lane & 1 == 0) {
+                let l = SampledSpectrum(l.each(|l| l[lane]));
+                self.add_sample(self.pixel(first + lane), &l, &lambda.lane(lane), terms.weight[lane]);
+            }
+        }
+    }
+
+    /// Adds the terms of those of the first `count` lanes that are set in `lanes`.
+    fn add_plain(&mut self, first: usize, count: usize, terms: &LaneTerms, lanes: u32) {
+        let counts = &mut self.counts[first..first + count];
+        for (lane, samples) in counts.iter_mut().enumerate() {
+            if lanes >> lane & 1 == 0 {
+                continue;
+            }
+            let weight = f64::from(terms.weight[lane]);
+            for (sum, c) in terms.rgb.iter().enumerate() {
+                self.color.add(first + lane, sum, weight * f64::from(c[lane]));
+            }
+            self.color.add(first + lane, 3, weight);
+            *samples = samples.saturating_add(1);
+        }
+    }
+
+    /// The pixel with this index.
+    fn pixel(&self, index: usize) -> [i32; 2] {
+        let width = self.bounds.width() as usize;
+        [self.bounds.min[0] + (index % width) as i32, self.bounds.min[1] + (index / width) as i32]
+    }
+
     /// Adds a sample of radiance `l` alone to a pixel.
     ///
     /// # Panics
@@ -68,6 +124,12 @@ impl FilmTile<'_> {
     ) {
         self.add(pixel, &Sample::new(l, lambda, weight));
     }
+}
+
+/// The responses to samples, and their weights.
+struct LaneTerms {
+    rgb: [[f32; MAX_LANES]; 3],
+    weight: [f32; MAX_LANES],
 }
 
 /// The layers of a tile.

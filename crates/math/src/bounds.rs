@@ -1,6 +1,7 @@
 //! Axis-aligned boxes.
 
 use crate::{Point3, Ray, Vec2, Vec3, Vector3, gamma};
+use lanes::Real;
 
 /// A box in space. The empty box has its minimum above its maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,9 +173,9 @@ impl Bounds2 {
     }
 
     /// The point at the fractions `t` of the sides.
-    #[inline]
-    pub fn lerp(&self, t: Vec2) -> Vec2 {
-        self.min + self.diagonal() * t
+    #[inline(always)]
+    pub fn lerp<R: Real>(&self, t: Vec2<R>) -> Vec2<R> {
+        Vec2::broadcast(self.min) + Vec2::broadcast(self.diagonal()) * t
     }
 
     /// The position of `p` as fractions of the sides.

@@ -32,7 +32,7 @@ pub use octahedral::{equal_area_sphere_to_square, equal_area_square_to_sphere, w
 pub use quadratic::solve_quadratic;
 pub use ray::{Differentials, Ray, RayDifferential};
 pub use spherical::*;
-pub use transform::Transform;
+pub use transform::{Transform, affine_ray};
 pub use vector::{Vec2, Vec3};
 
 /// A point in the plane, or a pair of sample values.

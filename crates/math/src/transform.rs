@@ -4,6 +4,7 @@ use crate::{
     Bounds3, DMat4, Differentials, Mat4, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec3, Vector3,
     gamma,
 };
+use lanes::{Each, Real};
 
 /// A 4 × 4 matrix and its inverse. Names read right to left: `render_from_object`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,10 +119,10 @@ impl Transform {
         )
     }
 
-    /// Maps a ray; t is unchanged.
-    #[inline]
-    pub fn ray(&self, ray: &Ray) -> Ray {
-        Ray::new(self.affine_point(ray.o), self.vector(ray.d), ray.time)
+    /// Maps a ray by an affine map; t is unchanged.
+    #[inline(always)]
+    pub fn ray<R: Real>(&self, ray: &Ray<R>) -> Ray<R> {
+        affine_ray(&columns(&self.m).each(Vec3::broadcast), ray)
     }
 
     /// Maps a ray and its differentials.
@@ -141,6 +142,14 @@ impl Transform {
     pub fn bounds(&self, b: &Bounds3) -> Bounds3 {
         if b.is_empty() { *b } else { Bounds3::around(b.corners().map(|p| self.point(p))) }
     }
+}
+
+/// Maps a ray by the affine map of a matrix with these columns; t is unchanged.
+#[inline(always)]
+pub fn affine_ray<R: Real>([x, y, z, t]: &[Vec3<R>; 4], ray: &Ray<R>) -> Ray<R> {
+    let (o, d) = (ray.o, ray.d);
+    let d = *x * d.x + *y * d.y + *z * d.z;
+    Ray::new(*x * o.x + *y * o.y + *z * o.z + *t, d, ray.time)
 }
 
 /// The columns of a matrix, without their last coordinates.

@@ -5,22 +5,14 @@
 //! density is uniform, so that sampling and density still agree; [`PiecewiseConstant1d::integral`]
 //! then is 0.
 
+use lanes::{Int, Mask, Real};
 use math::{Bounds2, ONE_MINUS_EPSILON, Vec2};
 
 /// A density over an interval.
 #[derive(Clone, Debug)]
 pub struct PiecewiseConstant1d {
-    values: Box<[f32]>,
-    /// The cumulative distribution at the cells' edges, from 0 to 1.
-    cdf: Box<[f32]>,
-    /// The guide table: for each of as many equal parts of [0, 1) as there are cells, the first
-    /// cell to search from.
-    guide: Box<[u32]>,
-    min: f32,
-    max: f32,
+    table: Tables,
     integral: f32,
-    /// Densities per value.
-    scale: f64,
 }
 
 impl PiecewiseConstant1d {
@@ -28,33 +20,16 @@ impl PiecewiseConstant1d {
     ///
     /// # Panics
     /// If there is no value, or `min` is not below `max`.
-    pub fn new(values: &[f32], [min, max]: [f32; 2]) -> PiecewiseConstant1d {
-        assert!(!values.is_empty() && min < max, "a density needs at least one cell, and min < max");
-        let mut values: Box<[f32]> =
-            values.iter().map(|v| if v.is_finite() { v.abs() } else { 0.0 }).collect();
-        let mut sum = 0.0f64;
-        let mut sums = Vec::with_capacity(values.len() + 1);
-        sums.push(0.0);
-        for &value in &values {
-            sum += value as f64;
-            sums.push(sum);
-        }
-        let cell_width = (max as f64 - min as f64) / values.len() as f64;
-        let integral = (sum * cell_width) as f32;
-        if sum == 0.0 {
-            values.fill(1.0);
-            sums = (0..=values.len()).map(|i| i as f64).collect();
-            sum = values.len() as f64;
-        }
-        let cdf: Box<[f32]> = sums.into_iter().map(|s| (s / sum) as f32).collect();
-        let guide = guide(&cdf);
-        PiecewiseConstant1d { values, cdf, guide, min, max, integral, scale: 1.0 / (sum * cell_width) }
+    pub fn new(values: &[f32], range: [f32; 2]) -> PiecewiseConstant1d {
+        let mut table = Tables::new(values.len(), 1, range);
+        let integral = table.push(values);
+        PiecewiseConstant1d { table, integral }
     }
 
     /// The number of cells.
     #[expect(clippy::len_without_is_empty, reason = "a density has at least one cell")]
     pub fn len(&self) -> usize {
-        self.values.len()
+        self.table.cells
     }
 
     /// The integral of the given values over the interval.
@@ -63,41 +38,116 @@ impl PiecewiseConstant1d {
     }
 
     /// A position, its density per length, and its cell.
-    #[inline]
-    pub fn sample(&self, u: f32) -> (f32, f32, usize) {
-        let u = u.clamp(0.0, ONE_MINUS_EPSILON);
-        let start = self.guide[part(u, self.len())] as usize;
-        let last = self.len() - 1;
-        let cell = (start..last).find(|&cell| u < self.cdf[cell + 1]).unwrap_or(last);
-        let width = self.cdf[cell + 1] - self.cdf[cell];
-        let within = if width > 0.0 { (u - self.cdf[cell]) / width } else { 0.5 };
-        let t = (cell as f32 + within) / self.len() as f32;
-        (math::lerp(t, self.min, self.max), self.cell_pdf(cell), cell)
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, u: R) -> (R, R, R::Int) {
+        self.table.sample(R::Int::splat(0), u)
     }
 
     /// The density at `x` per length; 0 outside of the interval.
     #[inline]
     pub fn pdf(&self, x: f32) -> f32 {
-        if x < self.min || x > self.max { 0.0 } else { self.cell_pdf(self.cell(x)) }
+        self.table.pdf(0, x)
     }
 
     /// The `u` that [`sample`](Self::sample) sends to `x`; `None` outside of the interval.
     pub fn invert(&self, x: f32) -> Option<f32> {
+        self.table.invert(0, x)
+    }
+}
+
+/// Densities over the same interval, each with as many cells: the rows of tables.
+#[derive(Clone, Debug)]
+struct Tables {
+    cells: usize,
+    min: f32,
+    max: f32,
+    /// The density of each cell.
+    densities: Vec<f32>,
+    /// The cumulative distribution at the cells' edges, from 0 to 1: one more than cells.
+    cdf: Vec<f32>,
+    /// The guide table: for each of as many equal parts of [0, 1) as there are cells, the first
+    /// cell to search from.
+    guide: Vec<u32>,
+}
+
+impl Tables {
+    /// No rows yet, but memory for `rows`.
+    fn new(cells: usize, rows: usize, [min, max]: [f32; 2]) -> Self {
+        assert!(cells > 0 && min < max, "a density needs at least one cell, and min < max");
+        let [densities, cdf] = [cells, cells + 1].map(|numbers| Vec::with_capacity(numbers * rows));
+        Self { cells, min, max, densities, cdf, guide: Vec::with_capacity(cells * rows) }
+    }
+
+    /// Appends the density proportional to `values`, and gives their integral.
+    fn push(&mut self, values: &[f32]) -> f32 {
+        let magnitude = |v: f32| if v.is_finite() { f64::from(v.abs()) } else { 0.0 };
+        let cell_width = (self.max as f64 - self.min as f64) / self.cells as f64;
+        let mut sum: f64 = values.iter().copied().map(magnitude).sum();
+        let integral = (sum * cell_width) as f32;
+        let is_uniform = sum == 0.0;
+        if is_uniform {
+            sum = self.cells as f64;
+        }
+        let value = |v: f32| if is_uniform { 1.0 } else { magnitude(v) };
+        let scale = 1.0 / (sum * cell_width);
+        self.densities.extend(values.iter().map(|&v| (value(v) * scale) as f32));
+        let first = self.cdf.len();
+        let mut up_to = 0.0;
+        self.cdf.push(0.0);
+        self.cdf.extend(values.iter().map(|&v| {
+            up_to += value(v);
+            (up_to / sum) as f32
+        }));
+        self.guide.extend(guide(&self.cdf[first..]));
+        integral
+    }
+
+    /// A position, its density per length, and its cell in a row.
+    #[inline(always)]
+    fn sample<R: Real>(&self, row: R::Int, u: R) -> (R, R, R::Int) {
+        let u = u.clamp(R::zero(), R::splat(ONE_MINUS_EPSILON));
+        let [cells, last, one] = [self.cells, self.cells - 1, 1].map(|n| R::Int::splat(n as u32));
+        let part = (u * R::splat(self.cells as f32)).to_int();
+        let part = R::Int::select(part.lt(last), part, last);
+        let first = row.wrapping_mul(cells);
+        // A row of the cumulative distribution has one number more.
+        let first_edge = first.wrapping_add(row);
+        let mut cell = R::Int::gather(&self.guide, first.wrapping_add(part));
+        let mut below = R::gather(&self.cdf, first_edge.wrapping_add(cell));
+        let mut above = R::gather(&self.cdf, first_edge.wrapping_add(cell).wrapping_add(one));
+        loop {
+            let goes_on = u.ge(above) & cell.lt(last);
+            if !goes_on.any() {
+                break;
+            }
+            cell = R::Int::select(goes_on, cell.wrapping_add(one), cell);
+            below = R::select(goes_on, above, below);
+            above = R::gather(&self.cdf, first_edge.wrapping_add(cell).wrapping_add(one));
+        }
+        let width = above - below;
+        let within = R::select(width.gt(R::zero()), (u - below) / width, R::splat(0.5));
+        let t = (cell.to_real() + within) / R::splat(self.cells as f32);
+        let density = R::gather(&self.densities, first.wrapping_add(cell));
+        (math::lerp(t, R::splat(self.min), R::splat(self.max)), density, cell)
+    }
+
+    #[inline]
+    fn pdf(&self, row: usize, x: f32) -> f32 {
+        if x < self.min || x > self.max { 0.0 } else { self.densities[row * self.cells + self.cell(x)] }
+    }
+
+    fn invert(&self, row: usize, x: f32) -> Option<f32> {
         if x < self.min || x > self.max {
             return None;
         }
         let cell = self.cell(x);
-        let within = (x - self.min) / (self.max - self.min) * self.len() as f32 - cell as f32;
-        Some(math::lerp(within.clamp(0.0, 1.0), self.cdf[cell], self.cdf[cell + 1]))
-    }
-
-    fn cell_pdf(&self, cell: usize) -> f32 {
-        (self.values[cell] as f64 * self.scale) as f32
+        let within = (x - self.min) / (self.max - self.min) * self.cells as f32 - cell as f32;
+        let edges = &self.cdf[row * (self.cells + 1) + cell..][..2];
+        Some(math::lerp(within.clamp(0.0, 1.0), edges[0], edges[1]))
     }
 
     fn cell(&self, x: f32) -> usize {
-        let t = (x - self.min) / (self.max - self.min);
-        ((t * self.len() as f32) as usize).min(self.len() - 1)
+        part((x - self.min) / (self.max - self.min), self.cells)
     }
 }
 
@@ -109,24 +159,22 @@ fn part(u: f32, parts: usize) -> usize {
 
 /// The guide table of a cumulative distribution: from its entry, a linear search takes two steps on
 /// average, whatever the distribution [Chen 1974].
-fn guide(cdf: &[f32]) -> Box<[u32]> {
+fn guide(cdf: &[f32]) -> impl Iterator<Item = u32> {
     let parts = cdf.len() - 1;
     let mut cell = 0;
-    (0..parts)
-        .map(|i| {
-            while cell + 1 < parts && part(cdf[cell + 1], parts) < i {
-                cell += 1;
-            }
-            cell as u32
-        })
-        .collect()
+    (0..parts).map(move |i| {
+        while cell + 1 < parts && part(cdf[cell + 1], parts) < i {
+            cell += 1;
+        }
+        cell as u32
+    })
 }
 
 /// A density over a rectangle: the marginal of the rows, then a row's conditional density.
 #[derive(Clone, Debug)]
 pub struct PiecewiseConstant2d {
     domain: Bounds2,
-    rows: Box<[PiecewiseConstant1d]>,
+    rows: Tables,
     marginal: PiecewiseConstant1d,
 }
 
@@ -135,13 +183,12 @@ impl PiecewiseConstant2d {
     /// equal cells of `domain`.
     ///
     /// # Panics
-    /// If `values` are not whole rows, or none, or the domain has no area.
+    /// If `values` are not whole rows, or none or 2³¹, or the domain has no area.
     pub fn new(values: &[f32], columns: usize, domain: Bounds2) -> PiecewiseConstant2d {
         assert!(columns > 0 && values.len().is_multiple_of(columns), "values must be whole rows");
-        let x_range = [domain.min.x, domain.max.x];
-        let rows: Box<[_]> =
-            values.chunks_exact(columns).map(|row| PiecewiseConstant1d::new(row, x_range)).collect();
-        let integrals: Vec<f32> = rows.iter().map(PiecewiseConstant1d::integral).collect();
+        assert!(values.len() + values.len() / columns < 1 << 31, "values have indices of 31 bits");
+        let mut rows = Tables::new(columns, values.len() / columns, [domain.min.x, domain.max.x]);
+        let integrals: Vec<f32> = values.chunks_exact(columns).map(|row| rows.push(row)).collect();
         let marginal = PiecewiseConstant1d::new(&integrals, [domain.min.y, domain.max.y]);
         PiecewiseConstant2d { domain, rows, marginal }
     }
@@ -153,7 +200,7 @@ impl PiecewiseConstant2d {
 
     /// Columns and rows.
     pub fn resolution(&self) -> [usize; 2] {
-        [self.rows[0].len(), self.rows.len()]
+        [self.rows.cells, self.marginal.len()]
     }
 
     /// The integral of the given values over the rectangle.
@@ -162,10 +209,10 @@ impl PiecewiseConstant2d {
     }
 
     /// A position, its density per area, and its cell as column and row.
-    #[inline]
-    pub fn sample(&self, u: Vec2) -> (Vec2, f32, [usize; 2]) {
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, u: Vec2<R>) -> (Vec2<R>, R, [R::Int; 2]) {
         let (y, pdf_y, row) = self.marginal.sample(u.y);
-        let (x, pdf_x, column) = self.rows[row].sample(u.x);
+        let (x, pdf_x, column) = self.rows.sample(row, u.x);
         (Vec2::new(x, y), pdf_x * pdf_y, [column, row])
     }
 
@@ -175,14 +222,13 @@ impl PiecewiseConstant2d {
         if !self.domain.contains(p) {
             return 0.0;
         }
-        let row = self.marginal.cell(p.y);
-        self.marginal.cell_pdf(row) * self.rows[row].pdf(p.x)
+        self.marginal.pdf(p.y) * self.rows.pdf(self.marginal.table.cell(p.y), p.x)
     }
 
     /// The `u` that [`sample`](Self::sample) sends to `p`; `None` outside of the rectangle.
     pub fn invert(&self, p: Vec2) -> Option<Vec2> {
         let y = self.marginal.invert(p.y)?;
-        let x = self.rows[self.marginal.cell(p.y)].invert(p.x)?;
+        let x = self.rows.invert(self.marginal.table.cell(p.y), p.x)?;
         Some(Vec2::new(x, y))
     }
 }

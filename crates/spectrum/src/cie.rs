@@ -4,6 +4,7 @@
 //! nanometres from 360 to 830. For light known at sampled wavelengths the same is estimated by 1/N
 //! Σ L(λᵢ) x̄(λᵢ) / p(λᵢ) [Pharr 2023 §4.6.1].
 
+use lanes::Real;
 use std::sync::LazyLock;
 
 use crate::dense::{COUNT, DenselySampled};
@@ -57,19 +58,34 @@ pub(crate) fn integrate_xyz(f: impl Fn(f32) -> f32) -> Xyz {
 
 /// The colour of light sampled at `lambda`: an unbiased estimate.
 pub fn xyz_from(light: &SampledSpectrum, lambda: &SampledWavelengths) -> Xyz {
-    let functions = matching_functions();
+    tristimulus(light, lambda).into()
+}
+
+/// X, Y and Z of light sampled at `lambda`: unbiased estimates.
+#[inline(always)]
+pub fn tristimulus<R: Real>(light: &SampledSpectrum<R>, lambda: &SampledWavelengths<R>) -> [R; 3] {
+    let MatchingFunctions { x, y, z } = matching_functions();
     let weighted = light.safe_div(lambda.pdf());
-    let integral = |f: &DenselySampled| {
-        (SampledSpectrum::new(lambda.lambda().map(|l| f.at(l))) * weighted).average() / CIE_Y_INTEGRAL
-    };
-    Xyz::new(integral(&functions.x), integral(&functions.y), integral(&functions.z))
+    [integral(x, lambda, weighted), integral(y, lambda, weighted), integral(z, lambda, weighted)]
 }
 
 /// The luminance of light sampled at `lambda`: an unbiased estimate.
 pub fn y_from(light: &SampledSpectrum, lambda: &SampledWavelengths) -> f32 {
-    let y_bar = &matching_functions().y;
-    let weighted = light.safe_div(lambda.pdf());
-    (SampledSpectrum::new(lambda.lambda().map(|l| y_bar.at(l))) * weighted).average() / CIE_Y_INTEGRAL
+    integral(&matching_functions().y, lambda, light.safe_div(lambda.pdf()))
+}
+
+/// ∫ L f dλ / ∫ ȳ dλ for a matching function f and light divided by its densities.
+#[inline(always)]
+fn integral<R: Real>(
+    function: &DenselySampled,
+    lambda: &SampledWavelengths<R>,
+    weighted: SampledSpectrum<R>,
+) -> R {
+    let mut values = *lambda.lambda();
+    for value in &mut values {
+        *value = function.at(*value);
+    }
+    (SampledSpectrum(values) * weighted).average() / R::splat(CIE_Y_INTEGRAL)
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub mod spectrum;
 pub mod uplift;
 
 pub use blackbody::{Blackbody, blackbody};
-pub use cie::{CIE_Y_INTEGRAL, xyz_from, y_from};
+pub use cie::{CIE_Y_INTEGRAL, tristimulus, xyz_from, y_from};
 pub use color_space::{RgbColorSpace, white_balance};
 pub use daylight::daylight;
 pub use dense::DenselySampled;

@@ -1,5 +1,6 @@
 //! The box filter: f(p) = 1 within the radius. Its samples are uniform, their weights one.
 
+use lanes::Real;
 use math::{Bounds2, Vec2};
 
 use super::FilterSample;
@@ -16,8 +17,9 @@ impl BoxFilter {
         if p.abs().cmple(self.radius).all() { 1.0 } else { 0.0 }
     }
 
-    pub(super) fn sample(&self, u: Vec2) -> FilterSample {
-        FilterSample { offset: Bounds2::new(-self.radius, self.radius).lerp(u), weight: 1.0 }
+    #[inline(always)]
+    pub(super) fn sample<R: Real>(&self, u: Vec2<R>) -> FilterSample<R> {
+        FilterSample { offset: Bounds2::new(-self.radius, self.radius).lerp(u), weight: R::one() }
     }
 
     pub(super) fn integral(&self) -> f32 {

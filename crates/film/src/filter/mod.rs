@@ -17,6 +17,7 @@ pub mod sinc;
 pub mod triangle;
 
 use description::FilterDesc;
+use lanes::Real;
 use math::Vec2;
 
 use box_filter::BoxFilter;
@@ -32,11 +33,11 @@ pub const MAX_RADIUS: f32 = 64.0;
 
 /// A sample of a filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilterSample {
+pub struct FilterSample<R = f32> {
     /// From the pixel's centre, in pixels.
-    pub offset: Vec2,
+    pub offset: Vec2<R>,
     /// f / pdf; negative where the filter is.
-    pub weight: f32,
+    pub weight: R,
 }
 
 /// A pixel filter.
@@ -151,7 +152,8 @@ impl Filter {
     }
 
     /// An offset chosen about in proportion to |f|, from `u` in [0, 1)².
-    pub fn sample(&self, u: Vec2) -> FilterSample {
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, u: Vec2<R>) -> FilterSample<R> {
         match self {
             Self::Box(filter) => filter.sample(u),
             Self::Triangle(filter) => filter.sample(u),

@@ -3,6 +3,7 @@
 //! drawn in proportion to its magnitude there [Pharr 2023 §8.8]. As the weight divides the same
 //! table by its own density, it is ±∫|f|: samples differ in sign only.
 
+use lanes::{Int, Real};
 use math::{Bounds2, Vec2};
 use sampling::PiecewiseConstant2d;
 
@@ -31,8 +32,10 @@ impl FilterSampler {
     }
 
     /// An offset with the density of the table's magnitude, from `u` in [0, 1)².
-    pub fn sample(&self, u: Vec2) -> FilterSample {
+    #[inline(always)]
+    pub fn sample<R: Real>(&self, u: Vec2<R>) -> FilterSample<R> {
         let (offset, pdf, [x, y]) = self.distribution.sample(u);
-        FilterSample { offset, weight: self.values[y * self.columns + x] / pdf }
+        let cell = y.wrapping_mul(R::Int::splat(self.columns as u32)).wrapping_add(x);
+        FilterSample { offset, weight: R::gather(&self.values, cell) / pdf }
     }
 }

@@ -1,6 +1,7 @@
 //! The triangle filter: f(x) = max(0, r − |x|) along each axis. Its samples follow it, their
 //! weights are one.
 
+use lanes::Real;
 use math::Vec2;
 use sampling::warp::sample_tent;
 
@@ -18,9 +19,11 @@ impl TriangleFilter {
         (self.radius - p.abs()).max(Vec2::ZERO).element_product()
     }
 
-    pub(super) fn sample(&self, u: Vec2) -> FilterSample {
-        let offset = Vec2::new(sample_tent(u.x, self.radius.x), sample_tent(u.y, self.radius.y));
-        FilterSample { offset, weight: 1.0 }
+    #[inline(always)]
+    pub(super) fn sample<R: Real>(&self, u: Vec2<R>) -> FilterSample<R> {
+        let radius = Vec2::<R>::broadcast(self.radius);
+        let offset = Vec2::new(sample_tent(u.x, radius.x), sample_tent(u.y, radius.y));
+        FilterSample { offset, weight: R::one() }
     }
 
     pub(super) fn integral(&self) -> f32 {

@@ -6,6 +6,7 @@
 
 use film::{FilmTile, Filter, FirstHit};
 use geometry::RayStats;
+use lanes::{Each, Int, Real};
 use math::Vec2;
 use rayon::prelude::*;
 use sampling::Sampler;
@@ -121,22 +122,34 @@ impl PixelSamples<'_> {
     /// The sample of a pixel at the point `place` of the filter, in [0, 1)², and `lens` of the
     /// lens.
     pub fn sample(&self, shutter: &ShutterSample, pixel: [i32; 2], place: Vec2, lens: Vec2) -> PixelSample {
-        let place = self.filter.sample(place);
-        let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-        let (film, lens, filter_weight) = if self.view.options.disable_pixel_jitter {
-            (center, Vec2::splat(0.5), 1.0)
-        } else {
-            (center + place.offset, lens, place.weight)
-        };
-        let sample = CameraSample { film, lens, time: shutter.u, filter_weight };
+        let sample = self.camera_sample(pixel.map(|x| x as u32), place, shutter.u, lens);
         let camera_ray = camera_ray(self.scene, self.view, &sample);
         PixelSample {
             pixel,
             lambda: shutter.lambda,
             time: shutter.time(self.view),
             camera_ray,
-            filter_weight,
+            filter_weight: sample.filter_weight,
         }
+    }
+
+    /// The camera sample of a pixel at the point `place` of the filter and `lens` of the lens, in
+    /// [0, 1)², unless the view's options fix them.
+    #[inline(always)]
+    pub fn camera_sample<R: Real>(
+        &self,
+        pixel: [R::Int; 2],
+        place: Vec2<R>,
+        time: R,
+        lens: Vec2<R>,
+    ) -> CameraSample<R> {
+        let half = R::splat(0.5);
+        let center = Vec2::from_array(pixel.each(R::Int::to_real)) + half;
+        if self.view.options.disable_pixel_jitter {
+            return CameraSample { film: center, lens: Vec2::splat(half), time, filter_weight: R::one() };
+        }
+        let place = self.filter.sample(place);
+        CameraSample { film: center + place.offset, lens, time, filter_weight: place.weight }
     }
 }
 

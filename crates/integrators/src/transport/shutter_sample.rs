@@ -17,8 +17,13 @@ pub(crate) struct ShutterSample {
 impl ShutterSample {
     /// From two sample values in [0, 1), unless the view's options fix them.
     pub fn new(view: &View, wavelength: f32, shutter: f32) -> Self {
-        let u = if view.options.disable_pixel_jitter { 0.5 } else { shutter };
-        Self { lambda: Self::wavelengths(view, wavelength), u }
+        Self { lambda: Self::wavelengths(view, wavelength), u: Self::shutter(view, shutter) }
+    }
+
+    /// The sample value of the shutter time, unless the view's options fix it.
+    #[inline(always)]
+    pub fn shutter<R: Real>(view: &View, u: R) -> R {
+        if view.options.disable_pixel_jitter { R::splat(0.5) } else { u }
     }
 
     /// The wavelengths from a sample value in [0, 1), unless the view's options fix them.

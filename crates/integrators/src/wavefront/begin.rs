@@ -1,26 +1,19 @@
 //! The start of paths at the camera.
 
-use lanes::{Each, Int, Kernel, Real};
+use lanes::{Each, Int, Kernel, MAX_LANES, Real};
 use math::Vec2;
 use sampling::sampler::Address;
-use spectrum::SampledWavelengths;
+use scene::camera::{CameraSample, differential_scale};
 
+use super::numbers::CameraNumbers;
+use super::pass::Pass;
 use super::paths::Paths;
-use crate::transport::pixel_samples::PixelSamples;
 use crate::transport::shutter_sample::ShutterSample;
 
-/// The dimensions that camera samples take.
-const DIMENSIONS: u32 = 6;
-
-/// Starts a path for each pixel: its random numbers and wavelengths in lanes, its ray by itself.
+/// Gives the paths, which have pixels, their wavelengths, weights and camera rays.
 pub(super) struct Begin<'a, 'b> {
-    pub pixels: &'a PixelSamples<'a>,
-    /// The index of the tile in the batch, and its pixels.
-    pub tile: u32,
-    pub positions: &'a [[i32; 2]],
+    pub pass: Pass<'a>,
     pub paths: &'b mut Paths,
-    /// Gets the paths that have a ray.
-    pub active: &'b mut Vec<u32>,
     pub with_differentials: bool,
 }
 
@@ -29,38 +22,76 @@ impl Kernel for Begin<'_, '_> {
 
     #[inline(always)]
     fn run<R: Real>(mut self) {
-        for positions in self.positions.chunks(R::LANES) {
-            self.begin::<R>(positions);
+        for first in (0..self.paths.len()).step_by(R::LANES) {
+            self.begin::<R>(first);
         }
     }
 }
 
 impl Begin<'_, '_> {
+    /// Begins with the paths of some successive rows.
     #[inline(always)]
-    fn begin<R: Real>(&mut self, positions: &[[i32; 2]]) {
-        let PixelSamples { index, view, sampler, .. } = *self.pixels;
-        let position = |lane: usize, axis: usize| positions[lane.min(positions.len() - 1)][axis] as u32;
-        let pixel = [R::Int::from_fn(|lane| position(lane, 0)), R::Int::from_fn(|lane| position(lane, 1))];
-        let mut address = Address { pixel, index, dimension: R::Int::splat(0) };
-        let lambda = ShutterSample::wavelengths(view, sampler.at_1d::<R>(&address));
-        address.skip(1);
-        let place = sampler.at_pixel_2d::<R>(&address);
-        address.skip(2);
-        let shutter = sampler.at_1d::<R>(&address);
-        address.skip(1);
-        let lens = sampler.at_2d::<R>(&address);
-        let (place, lens) = (place.each(R::to_array), lens.each(R::to_array));
-        let (values, pdf) = (lambda.lambda().each(R::to_array), lambda.pdf().0.each(R::to_array));
-        let shutter = shutter.to_array();
-        for (lane, &pixel) in positions.iter().enumerate() {
-            let lambda = SampledWavelengths::new(values.each(|v| v[lane]), pdf.each(|p| p[lane]));
-            let u = if view.options.disable_pixel_jitter { 0.5 } else { shutter[lane] };
-            let pair = |[x, y]: &[[f32; lanes::MAX_LANES]; 2]| Vec2::new(x[lane], y[lane]);
-            let sample = self.pixels.sample(&ShutterSample { lambda, u }, pixel, pair(&place), pair(&lens));
-            if sample.camera_ray.is_some() {
-                self.active.push(self.paths.len() as u32);
-            }
-            self.paths.push(self.tile, &sample, DIMENSIONS, self.with_differentials);
+    fn begin<R: Real>(&mut self, first: usize) {
+        let pixels = self.pass.pixels;
+        let [x, y] = &self.paths.pixel;
+        let pixel = [R::Int::load(&x[first..]), R::Int::load(&y[first..])];
+        let mut address = Address { pixel, index: pixels.index, dimension: R::Int::splat(0) };
+        let numbers = CameraNumbers::<R>::draw(&self.pass, &mut address);
+        let lambda = ShutterSample::wavelengths(pixels.view, numbers.wavelength);
+        let time = ShutterSample::shutter(pixels.view, numbers.time);
+        let sample = pixels.camera_sample(pixel, numbers.place, time, numbers.lens);
+        let paths = &mut *self.paths;
+        address.dimension.store(&mut paths.dimension[first..]);
+        sample.filter_weight.store(&mut paths.filter_weight[first..]);
+        let ([a, b, c, d], [p, q, r, s]) = (*lambda.lambda(), lambda.pdf().0);
+        paths.wavelengths.store(first, [a, b, c, d, p, q, r, s]);
+        let ray = pixels.view.camera.ray(&sample);
+        ray.time.store(&mut paths.time[first..]);
+        paths.origin.store(first, ray.o.to_array());
+        paths.direction.store(first, ray.d.to_array());
+        if self.with_differentials {
+            self.add_differentials(first, R::LANES, &Samples::new(&sample));
+        }
+    }
+
+    /// The differentials of rays, one by one.
+    #[inline(never)]
+    fn add_differentials(&mut self, first: usize, lanes: usize, samples: &Samples) {
+        let view = self.pass.pixels.view;
+        for (row, lane) in (first..self.paths.len()).zip(0..lanes) {
+            let mut ray = view.camera.ray_differential(&samples.lane(lane));
+            ray.scale(differential_scale(view.samples_per_pixel));
+            self.paths.differentials[row] = ray.differentials;
+        }
+    }
+}
+
+/// Camera samples in arrays.
+struct Samples {
+    film: [[f32; MAX_LANES]; 2],
+    lens: [[f32; MAX_LANES]; 2],
+    time: [f32; MAX_LANES],
+    filter_weight: [f32; MAX_LANES],
+}
+
+impl Samples {
+    #[inline(always)]
+    fn new<R: Real>(sample: &CameraSample<R>) -> Self {
+        Self {
+            film: sample.film.to_array().each(R::to_array),
+            lens: sample.lens.to_array().each(R::to_array),
+            time: sample.time.to_array(),
+            filter_weight: sample.filter_weight.to_array(),
+        }
+    }
+
+    fn lane(&self, lane: usize) -> CameraSample {
+        let pair = |[x, y]: &[[f32; MAX_LANES]; 2]| Vec2::new(x[lane], y[lane]);
+        CameraSample {
+            film: pair(&self.film),
+            lens: pair(&self.lens),
+            time: self.time[lane],
+            filter_weight: self.filter_weight[lane],
         }
     }
 }

@@ -42,6 +42,19 @@ impl<R: Real> Rows<R> {
 /// A number for each path.
 pub(super) type Column = Vec<f32>;
 
+/// Changes a column to `count` times the same number.
+pub(super) fn fill<T: Clone>(column: &mut Vec<T>, count: usize, value: T) {
+    column.clear();
+    column.resize(count, value);
+}
+
+/// Makes place for `count` numbers, whatever they are.
+pub(super) fn grow(column: &mut Column, count: usize) {
+    if column.len() < count {
+        column.resize(count, 0.0);
+    }
+}
+
 /// Numbers for each path, in several columns.
 pub(super) struct Columns<const C: usize>([Column; C]);
 
@@ -52,9 +65,14 @@ impl<const C: usize> Default for Columns<C> {
 }
 
 impl<const C: usize> Columns<C> {
-    /// Appends a row.
-    pub fn push(&mut self, row: [f32; C]) {
-        self.0.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    /// Changes to `count` rows, all with the same number in all columns.
+    pub fn fill(&mut self, count: usize, value: f32) {
+        self.0.iter_mut().for_each(|column| fill(column, count, value));
+    }
+
+    /// Makes place for `count` rows, of any numbers.
+    pub fn grow(&mut self, count: usize) {
+        self.0.iter_mut().for_each(|column| grow(column, count));
     }
 
     /// A row.
@@ -67,9 +85,22 @@ impl<const C: usize> Columns<C> {
         self.0.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
     }
 
-    /// Removes all rows.
-    pub fn clear(&mut self) {
-        self.0.iter_mut().for_each(Vec::clear);
+    /// Successive rows in lanes.
+    #[inline(always)]
+    pub fn load<R: Real>(&self, first: usize) -> [R; C] {
+        let mut values = [R::zero(); C];
+        for (value, column) in values.iter_mut().zip(&self.0) {
+            *value = R::load(&column[first..]);
+        }
+        values
+    }
+
+    /// Changes successive rows.
+    #[inline(always)]
+    pub fn store<R: Real>(&mut self, first: usize, values: [R; C]) {
+        for (column, value) in self.0.iter_mut().zip(values) {
+            value.store(&mut column[first..]);
+        }
     }
 
     /// Rows in lanes.

@@ -17,6 +17,7 @@
 
 mod begin;
 mod columns;
+mod finish;
 mod lights;
 mod materials;
 mod numbers;

@@ -1,22 +1,21 @@
 //! The paths of a batch, in columns.
 
-use math::{Differentials, Point3Error, Ray, RayDifferential, Vec3};
+use lanes::MAX_LANES;
+use math::{Bounds2i, Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
-use super::columns::{Column, Columns};
+use super::columns::{Column, Columns, fill, grow};
 use crate::transport::path_state::{Origin, PathState};
-use crate::transport::pixel_samples::PixelSample;
 
-/// The paths of a batch; a path is a row.
+/// The paths of a batch; a path is a row. Columns are longer, so that a vector can begin at any row.
 #[derive(Default)]
 pub(super) struct Paths {
-    /// The index of the tile in the batch.
-    pub tile: Vec<u32>,
+    count: usize,
     /// Column and row of the pixel.
     pub pixel: [Vec<u32>; 2],
-    /// Weights of the sample in the pixel and of light on the film.
-    pub weights: Columns<2>,
+    /// Weight of the sample in the pixel.
+    pub filter_weight: Column,
     /// The sampler's next dimension.
     pub dimension: Vec<u32>,
     /// Wavelengths, and their densities.
@@ -48,47 +47,38 @@ pub(super) struct Paths {
 impl Paths {
     /// The number of paths.
     pub fn len(&self) -> usize {
-        self.tile.len()
+        self.count
     }
 
-    /// Removes all paths.
-    pub fn clear(&mut self) {
+    /// Replaces all paths by one for each pixel of the rectangles, row by row, which have no
+    /// wavelengths, weights and rays yet.
+    pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_differentials: bool) {
         let [x, y] = &mut self.pixel;
-        [&mut self.tile, x, y, &mut self.dimension, &mut self.depth].into_iter().for_each(Vec::clear);
-        [&mut self.time, &mut self.eta_scale, &mut self.pdf].into_iter().for_each(Vec::clear);
-        [&mut self.origin, &mut self.direction].into_iter().for_each(Columns::clear);
-        [&mut self.beta, &mut self.l].into_iter().for_each(Columns::clear);
-        self.vertex.iter_mut().for_each(Columns::clear);
-        self.weights.clear();
-        self.wavelengths.clear();
-        self.differentials.clear();
-        self.rough_before.clear();
-    }
-
-    /// Appends a path that starts with a sample of a pixel.
-    pub fn push(&mut self, tile: u32, sample: &PixelSample, dimension: u32, with_differentials: bool) {
-        self.tile.push(tile);
-        self.pixel.iter_mut().zip(sample.pixel).for_each(|(column, x)| column.push(x as u32));
-        let camera_weight = sample.camera_ray.as_ref().map_or(0.0, |camera| camera.weight);
-        self.weights.push([sample.filter_weight, camera_weight]);
-        self.dimension.push(dimension);
-        let (lambda, pdf) = (sample.lambda.lambda(), sample.lambda.pdf());
-        self.wavelengths.push(std::array::from_fn(|i| if i < N { lambda[i] } else { pdf[i - N] }));
-        let nowhere = RayDifferential::from(Ray::new(Vec3::ZERO, Vec3::Z, sample.time));
-        let ray = sample.camera_ray.as_ref().map_or(nowhere, |camera| camera.ray);
-        self.time.push(ray.ray.time);
-        self.origin.push(ray.ray.o.to_array());
-        self.direction.push(ray.ray.d.to_array());
-        if with_differentials {
-            self.differentials.push(ray.differentials);
+        x.clear();
+        y.clear();
+        for Bounds2i { min, max } in pixels {
+            for row in min[1]..max[1] {
+                x.extend((min[0]..max[0]).map(|x| x as u32));
+                y.resize(x.len(), row as u32);
+            }
         }
-        self.beta.push([1.0; N]);
-        self.l.push([0.0; N]);
-        self.eta_scale.push(1.0);
-        self.depth.push(0);
-        self.rough_before.push(false);
-        self.vertex.iter_mut().for_each(|columns| columns.push([0.0; 3]));
-        self.pdf.push(0.0);
+        self.count = x.len();
+        // Lanes load and store whole vectors.
+        let rows = self.count + MAX_LANES;
+        x.resize(rows, 0);
+        y.resize(rows, 0);
+        [&mut self.filter_weight, &mut self.time].into_iter().for_each(|column| grow(column, rows));
+        self.dimension.resize(rows, 0);
+        self.wavelengths.grow(rows);
+        [&mut self.origin, &mut self.direction].into_iter().for_each(|columns| columns.grow(rows));
+        self.vertex.iter_mut().for_each(|columns| columns.grow(rows));
+        fill(&mut self.differentials, if with_differentials { rows } else { 0 }, None);
+        self.beta.fill(rows, 1.0);
+        self.l.fill(rows, 0.0);
+        fill(&mut self.eta_scale, rows, 1.0);
+        fill(&mut self.depth, rows, 0);
+        fill(&mut self.rough_before, rows, false);
+        fill(&mut self.pdf, rows, 0.0);
     }
 
     /// The ray of a path.

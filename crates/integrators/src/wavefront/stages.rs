@@ -7,23 +7,22 @@ use sampling::Sampler;
 use scattering::{Bsdf, each_bxdf};
 use scene::Interfaces;
 use scene::material::{Material, MaterialId, MaterialModel};
-use spectrum::SampledSpectrum;
 
 use super::begin::Begin;
+use super::finish::{Finish, finish_with_first_hits};
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, ShadowRay};
 use super::shade::Shade;
+use crate::Cancelled;
 use crate::transport::direct::{Connection, light_context};
 use crate::transport::path_state::Scattered;
-use crate::transport::pixel_samples::{PixelSample, PixelSamples};
-use crate::{Cancelled, Tracer};
+use crate::transport::pixel_samples::PixelSamples;
 
 /// The stages of one batch.
 pub(super) struct Stages<'a> {
     pass: Pass<'a>,
     sampler: Sampler,
-    positions: Vec<[i32; 2]>,
     paths: Paths,
     queues: Queues,
     /// The paths under way.
@@ -44,7 +43,6 @@ impl<'a> Stages<'a> {
         Self {
             pass,
             sampler: pass.pixels.sampler.clone(),
-            positions: Vec::new(),
             paths: Paths::default(),
             queues: Queues::default(),
             active: Vec::new(),
@@ -73,22 +71,12 @@ impl<'a> Stages<'a> {
 
     /// Starts a path for each pixel.
     fn begin(&mut self, tiles: &[FilmTile]) {
-        self.paths.clear();
-        self.active.clear();
         let Pass { pixels, instruction_set, .. } = self.pass;
-        for (tile, bounds) in tiles.iter().map(FilmTile::bounds).enumerate() {
-            self.positions.clear();
-            let rows = bounds.min[1]..bounds.max[1];
-            self.positions.extend(rows.flat_map(|y| (bounds.min[0]..bounds.max[0]).map(move |x| [x, y])));
-            instruction_set.dispatch(Begin {
-                pixels,
-                tile: tile as u32,
-                positions: &self.positions,
-                paths: &mut self.paths,
-                active: &mut self.active,
-                with_differentials: pixels.scene.needs_footprints(pixels.view),
-            });
-        }
+        let with_differentials = pixels.scene.needs_footprints(pixels.view);
+        self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials);
+        instruction_set.dispatch(Begin { pass: self.pass, paths: &mut self.paths, with_differentials });
+        self.active.clear();
+        self.active.extend(0..self.paths.len() as u32);
     }
 
     /// Finds the nearest hit of each path's ray.
@@ -237,28 +225,16 @@ impl<'a> Stages<'a> {
 
     /// Adds the radiance of all paths to the film.
     fn finish(&mut self, tiles: &mut [FilmTile]) -> Result<(), Cancelled> {
-        let pixels = self.pass.pixels;
-        for row in 0..self.paths.len() {
-            let tile = &mut tiles[self.paths.tile[row] as usize];
-            let pixel = self.paths.pixel.each_ref().map(|column| column[row] as i32);
-            let lambda = self.paths.lambda(row);
-            let first_hit = if tile.wants_first_hit() {
-                let mut sample: PixelSample = pixels.begin(None, pixel, &mut self.sampler);
-                sample.lambda = lambda;
-                self.sampler.start_pixel_sample(pixel, pixels.index, self.paths.dimension[row]);
-                let (control, stats) = (self.pass.control, &mut self.stats);
-                let mut tracer = Tracer::new(pixels.scene, pixels.view, control, &mut self.sampler, stats);
-                let first_hit = pixels.first_hit(tile, &sample, &lambda, &mut tracer);
-                tracer.finish()?;
-                first_hit
+        let mut first = 0;
+        for tile in tiles {
+            let (pixels, with_first_hits) = (tile.bounds().area(), tile.wants_first_hit());
+            let finish = Finish { paths: &self.paths, first, tile };
+            if with_first_hits {
+                finish_with_first_hits(&self.pass, &mut self.sampler, &mut self.stats, finish)?;
             } else {
-                None
-            };
-            let [filter_weight, camera_weight] = self.paths.weights.row(row);
-            let l = SampledSpectrum(self.paths.l.row(row)) * camera_weight;
-            let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
-            let radiance = film::Sample::new(&l, &lambda, filter_weight);
-            tile.add(pixel, &film::Sample { alpha, first_hit, ..radiance });
+                self.pass.instruction_set.dispatch(finish);
+            }
+            first += pixels;
         }
         Ok(())
     }

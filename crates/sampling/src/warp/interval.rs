@@ -3,7 +3,7 @@
 //!
 //! Sources: [Pharr 2023 §2.4, §A.4]; [Box 1958] for the normal pair.
 
-use lanes::Real;
+use lanes::{Each, Real};
 use math::{ONE_MINUS_EPSILON, Vec2, lerp, smooth_step};
 use std::f32::consts::TAU;
 
@@ -32,13 +32,15 @@ pub fn invert_linear(x: f32, a: f32, b: f32) -> f32 {
 }
 
 /// A number in [−r, r] with a density that falls linearly from 0 to both ends.
-#[inline]
-pub fn sample_tent(u: f32, r: f32) -> f32 {
-    if u < 0.5 {
-        r * (sample_linear(2.0 * u, 0.0, 1.0) - 1.0)
-    } else {
-        r * sample_linear(2.0 * u - 1.0, 1.0, 0.0)
-    }
+#[inline(always)]
+pub fn sample_tent<R: Real>(u: R, r: R) -> R {
+    let (zero, one) = (R::zero(), R::one());
+    let rises = u.lt(R::splat(0.5));
+    let doubled = R::splat(2.0) * u;
+    let [v, a, b] =
+        [(doubled, doubled - one), (zero, one), (one, zero)].each(|(x, y)| R::select(rises, x, y));
+    let x = sample_linear(v, a, b);
+    r * R::select(rises, x - one, x)
 }
 
 /// Density of [`sample_tent`].

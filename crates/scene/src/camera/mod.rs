@@ -27,6 +27,7 @@ mod spherical;
 mod tests;
 mod transform;
 
+use lanes::Real;
 use math::{Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vector3, lerp};
 use minimum_differentials::MinimumDifferentials;
 
@@ -43,15 +44,15 @@ pub use transform::{CameraTransform, world_from_render};
 
 /// A sample of film, lens and shutter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraSample {
+pub struct CameraSample<R = f32> {
     /// Position on the film, in pixels.
-    pub film: Point2,
+    pub film: Point2<R>,
     /// Sample value in [0, 1)² for the position on the lens.
-    pub lens: Vec2,
+    pub lens: Vec2<R>,
     /// Sample value in [0, 1) for the shutter time.
-    pub time: f32,
+    pub time: R,
     /// Weight of the sample in its pixel, from the reconstruction filter.
-    pub filter_weight: f32,
+    pub filter_weight: R,
 }
 
 /// A ray from a camera.
@@ -121,24 +122,35 @@ impl Camera {
     }
 
     /// The shutter time of a sample value in [0, 1), in the scene's units.
-    #[inline]
-    pub fn sample_time(&self, u: f32) -> f32 {
-        lerp(u, self.shutter[0], self.shutter[1])
+    #[inline(always)]
+    pub fn sample_time<R: Real>(&self, u: R) -> R {
+        lerp(u, R::splat(self.shutter[0]), R::splat(self.shutter[1]))
+    }
+
+    /// The ray of a sample, all of whose radiance reaches the film.
+    #[inline(always)]
+    pub fn ray<R: Real>(&self, sample: &CameraSample<R>) -> Ray<R> {
+        let (o, d) = self.projection.ray(sample.film, sample.lens);
+        let ray = self.transform.ray(&Ray::new(o, d, self.sample_time(sample.time)));
+        Ray { d: ray.d.normalize(), ..ray }
     }
 
     /// The ray of a sample; `None` where no light reaches that point of the film.
     #[doc(alias = "GenerateRay")]
     pub fn generate_ray(&self, sample: &CameraSample) -> Option<CameraRay> {
-        let time = self.sample_time(sample.time);
-        let (o, d) = self.projection.ray(sample.film, sample.lens);
-        let ray = self.transform.render_from_camera(time).ray(&Ray::new(o, d, time));
-        Some(CameraRay { ray: Ray { d: ray.d.normalize(), ..ray }, weight: 1.0 })
+        Some(CameraRay { ray: self.ray(sample), weight: 1.0 })
     }
 
     /// The ray of a sample with the rays one pixel to the right and one pixel down, through the
     /// same point of the lens at the same time.
     #[doc(alias = "GenerateRayDifferential")]
     pub fn generate_ray_differential(&self, sample: &CameraSample) -> Option<CameraRayDifferential> {
+        Some(CameraRayDifferential { ray: self.ray_differential(sample), weight: 1.0 })
+    }
+
+    /// The ray of a sample with the rays one pixel to the right and one pixel down, all of whose
+    /// radiance reaches the film.
+    pub fn ray_differential(&self, sample: &CameraSample) -> RayDifferential {
         let time = self.sample_time(sample.time);
         let (o, d, differentials) = self.projection.ray_differential(sample.film, sample.lens);
         let ray = RayDifferential { ray: Ray::new(o, d, time), differentials: Some(differentials) };
@@ -151,7 +163,7 @@ impl Camera {
             d.rx_direction *= factor;
             d.ry_direction *= factor;
         }
-        Some(CameraRayDifferential { ray, weight: 1.0 })
+        ray
     }
 
     /// The approximate footprint of a pixel on the tangent plane of a surface at `p` with normal

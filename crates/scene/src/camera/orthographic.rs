@@ -7,6 +7,7 @@
 //! focal plane ([Pharr 2023 §5.2.1, §5.2.3]).
 
 use super::{Screen, ThinLens};
+use lanes::Real;
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
 
 /// Parallel rays.
@@ -28,9 +29,10 @@ impl Orthographic {
     }
 
     /// Origin and unit direction, in camera space.
-    #[inline]
-    pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
-        self.lens.refract(self.screen.at(film).extend(0.0), Vec3::Z, lens)
+    #[inline(always)]
+    pub(super) fn ray<R: Real>(&self, film: Point2<R>, lens: Vec2<R>) -> (Point3<R>, Vector3<R>) {
+        let Vec2 { x, y } = self.screen.at(film);
+        self.lens.refract(Vec3::new(x, y, R::zero()), Vec3::broadcast(Vec3::Z), lens)
     }
 
     /// The same view in pixels `n` times as wide and high.

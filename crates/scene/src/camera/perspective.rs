@@ -30,6 +30,7 @@
 //! screen window.
 
 use super::{Screen, ThinLens};
+use lanes::Real;
 use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
 
 /// The projection through one point.
@@ -50,9 +51,10 @@ impl Perspective {
     }
 
     /// Origin and unit direction, in camera space.
-    #[inline]
-    pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
-        self.lens.refract(Vec3::ZERO, self.screen.at(film).extend(1.0), lens)
+    #[inline(always)]
+    pub(super) fn ray<R: Real>(&self, film: Point2<R>, lens: Vec2<R>) -> (Point3<R>, Vector3<R>) {
+        let Vec2 { x, y } = self.screen.at(film);
+        self.lens.refract(Vec3::splat(R::zero()), Vec3::new(x, y, R::one()), lens)
     }
 
     /// The same view in pixels `n` times as wide and high.

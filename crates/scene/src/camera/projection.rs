@@ -1,5 +1,6 @@
 //! The projections of cameras, between film positions and rays of camera space.
 
+use lanes::Real;
 use math::{Differentials, Point2, Point3, Vec2, Vec3, Vector3};
 
 use super::orthographic::Orthographic;
@@ -19,11 +20,12 @@ pub enum Projection {
 
 impl Projection {
     /// Origin and unit direction, in camera space, of the ray of a film position and a lens sample.
-    pub(super) fn ray(&self, film: Point2, lens: Vec2) -> (Point3, Vector3) {
+    #[inline(always)]
+    pub(super) fn ray<R: Real>(&self, film: Point2<R>, lens: Vec2<R>) -> (Point3<R>, Vector3<R>) {
         match self {
             Self::Perspective(p) => p.ray(film, lens),
             Self::Orthographic(p) => p.ray(film, lens),
-            Self::Spherical(p) => p.ray(film),
+            Self::Spherical(p) => p.ray_lanes(film),
         }
     }
 

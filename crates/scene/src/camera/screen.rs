@@ -7,7 +7,8 @@
 //! on the plane are in focus ([Pharr 2023 §5.2.3]).
 
 use description::{LensDesc, ScreenDesc};
-use math::{Bounds2, Point2, Point3, Vec2, Vector3};
+use lanes::Real;
+use math::{Bounds2, Point2, Point3, Vec2, Vec3, Vector3};
 use sampling::warp::sample_uniform_disk_concentric;
 use std::f32::consts::PI;
 
@@ -44,9 +45,9 @@ impl Screen {
     }
 
     /// The point of the screen at a film position in pixels.
-    #[inline]
-    pub fn at(&self, film: Point2) -> Vec2 {
-        self.top_left + film * self.per_pixel
+    #[inline(always)]
+    pub fn at<R: Real>(&self, film: Point2<R>) -> Vec2<R> {
+        Vec2::broadcast(self.top_left) + film * Vec2::broadcast(self.per_pixel)
     }
 
     /// The film position in pixels of a point of the screen: the inverse of [`Self::at`].
@@ -79,20 +80,21 @@ impl From<LensDesc> for ThinLens {
 
 impl ThinLens {
     /// Refracts the pinhole ray (`o`, `d`) at the point of the lens that `u` in [0, 1)² selects.
-    #[inline]
-    pub fn refract(&self, o: Point3, d: Vector3, u: Vec2) -> (Point3, Vector3) {
+    #[inline(always)]
+    pub fn refract<R: Real>(&self, o: Point3<R>, d: Vector3<R>, u: Vec2<R>) -> (Point3<R>, Vector3<R>) {
         if self.radius <= 0.0 {
             return (o, d.normalize());
         }
-        let focus = o + d * (self.focal_distance / d.z);
+        let focus = o + d * (R::splat(self.focal_distance) / d.z);
         let on_lens = self.at(u);
         (on_lens, (focus - on_lens).normalize())
     }
 
     /// The point of the lens that `u` in [0, 1)² selects.
-    #[inline]
-    pub fn at(&self, u: Vec2) -> Point3 {
-        (sample_uniform_disk_concentric(u) * self.radius.max(0.0)).extend(0.0)
+    #[inline(always)]
+    pub fn at<R: Real>(&self, u: Vec2<R>) -> Point3<R> {
+        let p = sample_uniform_disk_concentric(u) * R::splat(self.radius.max(0.0));
+        Vec3::new(p.x, p.y, R::zero())
     }
 
     /// The area; `None` for a pinhole.

@@ -7,6 +7,7 @@
 //! ([Pharr 2023 §5.3]).
 
 use description::SphericalMapping;
+use lanes::{Each, MAX_LANES, Real};
 use math::{
     Point2, Point3, Vec2, Vec3, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere,
     spherical_direction, spherical_phi, wrap_equal_area_square,
@@ -41,8 +42,7 @@ impl Spherical {
     }
 
     /// Origin and unit direction, in camera space.
-    #[inline]
-    pub(super) fn ray(&self, film: Point2) -> (Point3, Vector3) {
+    fn ray(&self, film: Point2) -> (Point3, Vector3) {
         let st = film / self.resolution;
         let z_up = match self.mapping {
             SphericalMapping::EquiRectangular => {
@@ -52,6 +52,20 @@ impl Spherical {
             SphericalMapping::EqualArea => equal_area_square_to_sphere(wrap_equal_area_square(st)),
         };
         (Vec3::ZERO, Vec3::new(z_up.x, z_up.z, z_up.y))
+    }
+
+    /// [`Self::ray`] in each lane, one after another.
+    #[inline(always)]
+    pub(super) fn ray_lanes<R: Real>(&self, film: Point2<R>) -> (Point3<R>, Vector3<R>) {
+        let [x, y] = film.to_array().each(R::to_array);
+        let mut d = [[0.0; MAX_LANES]; 3];
+        for lane in 0..R::LANES {
+            let (_, direction) = self.ray(Vec2::new(x[lane], y[lane]));
+            for (column, value) in d.iter_mut().zip(direction.to_array()) {
+                column[lane] = value;
+            }
+        }
+        (Vec3::splat(R::zero()), Vec3::from_array(d.each(|column| R::load(&column))))
     }
 
     /// The inverse of [`Self::ray`] on the film itself, and film area per solid angle: dω is

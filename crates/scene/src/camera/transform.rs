@@ -7,7 +7,8 @@
 //! so the choice of space changes a picture by rounding alone.
 
 use description::{RenderSpace, TransformDesc};
-use math::{AnimatedTransform, DMat4, DVec3, Transform};
+use lanes::{Each, MAX_LANES, Real};
+use math::{AnimatedTransform, DMat4, DVec3, Ray, Transform, Vec3, affine_ray};
 
 /// The transforms between camera, render and world space. Only the camera moves relative to render
 /// space.
@@ -32,6 +33,26 @@ impl CameraTransform {
     #[inline]
     pub fn render_from_camera(&self, time: f32) -> Transform {
         self.render_from_camera.at(time)
+    }
+
+    /// A ray of camera space in render space.
+    #[inline(always)]
+    pub(super) fn ray<R: Real>(&self, ray: &Ray<R>) -> Ray<R> {
+        if !self.render_from_camera.is_moving() {
+            return self.render_from_camera.start().ray(ray);
+        }
+        let time = ray.time.to_array();
+        let mut columns = [[[0.0; MAX_LANES]; 3]; 4];
+        for lane in 0..R::LANES {
+            let matrix = self.render_from_camera.at(time[lane]).matrix().to_cols_array_2d();
+            for (column, values) in columns.iter_mut().zip(matrix) {
+                for (numbers, value) in column.iter_mut().zip(values) {
+                    numbers[lane] = value;
+                }
+            }
+        }
+        let columns = columns.each(|column| Vec3::from_array(column.each(|numbers| R::load(&numbers))));
+        affine_ray(&columns, ray)
     }
 
     /// Camera to render space, as a function of time.

@@ -17,7 +17,7 @@ const EDGES: [(&str, &[&str]); 17] = [
     ("description", &["math", "spectrum", "image"]),
     ("import", &["math", "spectrum", "image", "description"]),
     ("scene", &["lanes", "math", "spectrum", "sampling", "image", "geometry", "scattering", "description"]),
-    ("film", &["math", "spectrum", "sampling", "image", "description"]),
+    ("film", &["lanes", "math", "spectrum", "sampling", "image", "description"]),
     (
         "integrators",
         &[

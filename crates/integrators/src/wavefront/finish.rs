@@ -1,0 +1,63 @@
+//! The end of paths on the film.
+
+use film::FilmTile;
+use lanes::{Kernel, Real};
+use sampling::Sampler;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::pass::Pass;
+use super::paths::Paths;
+use crate::transport::pixel_samples::PixelSample;
+use crate::{Cancelled, Tracer};
+use geometry::RayStats;
+
+/// Adds the light of successive paths to the pixels of a tile.
+pub(super) struct Finish<'a, 'film> {
+    pub paths: &'a Paths,
+    /// The row of the path of the tile's first pixel.
+    pub first: usize,
+    pub tile: &'a mut FilmTile<'film>,
+}
+
+impl Kernel for Finish<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let Self { paths, first, tile } = self;
+        let pixels = tile.bounds().area();
+        for pixel in (0..pixels).step_by(R::LANES) {
+            let row = first + pixel;
+            let l = SampledSpectrum(paths.l.load::<R>(row));
+            let [a, b, c, d, pdf @ ..] = paths.wavelengths.load::<R>(row);
+            let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+            let weight = R::load(&paths.filter_weight[row..]);
+            tile.add_lanes(pixel, R::LANES.min(pixels - pixel), &l, &lambda, weight);
+        }
+    }
+}
+
+/// The same, one by one, for a film with layers of first hits, which are traced.
+pub(super) fn finish_with_first_hits(
+    pass: &Pass,
+    sampler: &mut Sampler,
+    stats: &mut RayStats,
+    Finish { paths, first, tile }: Finish,
+) -> Result<(), Cancelled> {
+    let pixels = pass.pixels;
+    for row in first..first + tile.bounds().area() {
+        let pixel = paths.pixel.each_ref().map(|column| column[row] as i32);
+        let lambda = paths.lambda(row);
+        let mut sample: PixelSample = pixels.begin(None, pixel, sampler);
+        sample.lambda = lambda;
+        sampler.start_pixel_sample(pixel, pixels.index, paths.dimension[row]);
+        let mut tracer = Tracer::new(pixels.scene, pixels.view, pass.control, sampler, stats);
+        let first_hit = pixels.first_hit(tile, &sample, &lambda, &mut tracer);
+        tracer.finish()?;
+        let l = SampledSpectrum(paths.l.row(row));
+        let alpha = if first_hit.is_some() { 1.0 } else { 0.0 };
+        let radiance = film::Sample::new(&l, &lambda, paths.filter_weight[row]);
+        tile.add(pixel, &film::Sample { alpha, first_hit, ..radiance });
+    }
+    Ok(())
+}
