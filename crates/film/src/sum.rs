@@ -46,6 +46,9 @@ pub(crate) fn value(units: i128) -> f64 {
 #[inline]
 pub(crate) fn units(term: f64) -> i128 {
     debug_assert!(can_add(term));
+    if term.abs() < 0.5 {
+        return i128::from((term * UNITS_PER_ONE).round_ties_even() as i64);
+    }
     // Whole and fraction are exact, and conversions to 64 bits are quick. A term of 1 or more has
     // no digits below the units.
     let whole = term.abs().trunc();

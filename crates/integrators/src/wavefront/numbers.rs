@@ -4,7 +4,7 @@
 //! much code, which each of these kernels would have again for every instruction set. A call of it
 //! computes all numbers that are known to be needed.
 
-use lanes::{Each, Int, Kernel, MAX_LANES, Real};
+use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::Vec2;
 use sampling::Sampler;
 use sampling::sampler::Address;
@@ -24,36 +24,50 @@ impl<R: Real> CameraNumbers<R> {
     /// The next coordinates of each lane, which are the first of a sample.
     #[inline(always)]
     pub fn draw(pass: &Pass, address: &mut Address<R::Int>) -> Self {
-        use Coordinates::{One, Two, TwoOfPixel};
-        let u = pass.draw(&[One, TwoOfPixel, One, Two], address);
-        Self { wavelength: u.one(0), place: u.two(1), time: u.one(3), lens: u.two(4) }
+        let mut draw = Draw::new(pass, address);
+        draw.push(Coordinates::One, address);
+        draw.push(Coordinates::TwoOfPixel, address);
+        draw.push(Coordinates::One, address);
+        draw.push(Coordinates::Two, address);
+        let u = draw.numbers(pass);
+        Self { wavelength: u.one(0), place: u.two(1), time: u.one(2), lens: u.two(3) }
+    }
+}
+
+/// The numbers of a vertex, one for each lane.
+pub(super) struct VertexNumbers<R> {
+    /// Of a sample of a light; any numbers where there is none.
+    pub light: (R, Vec2<R>),
+    /// Of a sample of the BSDF.
+    pub bsdf: (R, Vec2<R>),
+}
+
+impl<R: Real> VertexNumbers<R> {
+    /// The next coordinates of each lane; only some lanes sample a light.
+    #[inline(always)]
+    pub fn draw(pass: &Pass, address: &mut Address<R::Int>, samples_light: R::Mask) -> Self {
+        let mut draw = Draw::new(pass, address);
+        let mut before = *address;
+        if samples_light.any() {
+            draw.push(Coordinates::One, address);
+            draw.push(Coordinates::Two, address);
+            before.dimension = R::Int::select(samples_light, address.dimension, before.dimension);
+            *address = before;
+        }
+        let first = draw.count;
+        draw.push(Coordinates::One, address);
+        draw.push(Coordinates::Two, address);
+        let u = draw.numbers(pass);
+        Self { light: (u.one(0), u.two(1)), bsdf: (u.one(first), u.two(first + 1)) }
     }
 }
 
 /// The next coordinate of each lane.
 #[inline(always)]
 pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R {
-    pass.draw(&[Coordinates::One], address).one(0)
-}
-
-/// The next two coordinates of each lane.
-#[inline(always)]
-pub(super) fn draw_2d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> Vec2<R> {
-    pass.draw(&[Coordinates::Two], address).two(0)
-}
-
-impl Pass<'_> {
-    /// The next coordinates of each lane.
-    #[inline(always)]
-    fn draw<I: Int>(&self, coordinates: &[Coordinates], address: &mut Address<I>) -> Numbers {
-        let Address { pixel, index, dimension } = *address;
-        let (pixel, dimension) = (pixel.each(I::to_array), dimension.to_array());
-        let sampler = self.pixels.sampler;
-        for kind in coordinates {
-            address.skip(kind.count() as u32);
-        }
-        self.instruction_set.dispatch(Draw { sampler, coordinates, pixel, index, dimension })
-    }
+    let mut draw = Draw::new(pass, address);
+    draw.push(Coordinates::One, address);
+    draw.numbers(pass).one(0)
 }
 
 /// Coordinates that a sampler gives at once.
@@ -64,38 +78,46 @@ enum Coordinates {
     TwoOfPixel,
 }
 
-impl Coordinates {
-    #[inline(always)]
-    fn count(self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Two | Self::TwoOfPixel => 2,
-        }
-    }
-}
+/// The most coordinates, singly or by two, that are drawn at once.
+const MAX_DRAWS: usize = 4;
 
-/// Up to six coordinates for each lane.
-struct Numbers([[f32; MAX_LANES]; 6]);
-
-impl Numbers {
-    #[inline(always)]
-    fn one<R: Real>(&self, first: usize) -> R {
-        R::load(&self.0[first])
-    }
-
-    #[inline(always)]
-    fn two<R: Real>(&self, first: usize) -> Vec2<R> {
-        Vec2::new(self.one(first), self.one(first + 1))
-    }
-}
-
-/// Computes successive coordinates from addresses on.
+/// Computes coordinates.
 struct Draw<'a> {
     sampler: &'a Sampler,
-    coordinates: &'a [Coordinates],
     pixel: [[u32; MAX_LANES]; 2],
     index: u32,
-    dimension: [u32; MAX_LANES],
+    count: usize,
+    coordinates: [Coordinates; MAX_DRAWS],
+    /// The dimensions of each.
+    dimension: [[u32; MAX_LANES]; MAX_DRAWS],
+}
+
+impl<'a> Draw<'a> {
+    #[inline(always)]
+    fn new<I: Int>(pass: &Pass<'a>, address: &Address<I>) -> Self {
+        Self {
+            sampler: pass.pixels.sampler,
+            pixel: address.pixel.each(I::to_array),
+            index: address.index,
+            count: 0,
+            coordinates: [Coordinates::One; MAX_DRAWS],
+            dimension: [[0; MAX_LANES]; MAX_DRAWS],
+        }
+    }
+
+    /// Adds the coordinates at an address, which continues after them.
+    #[inline(always)]
+    fn push<I: Int>(&mut self, coordinates: Coordinates, address: &mut Address<I>) {
+        self.coordinates[self.count] = coordinates;
+        address.dimension.store(&mut self.dimension[self.count]);
+        self.count += 1;
+        address.skip(if let Coordinates::One = coordinates { 1 } else { 2 });
+    }
+
+    #[inline(always)]
+    fn numbers(self, pass: &Pass) -> Numbers {
+        pass.instruction_set.dispatch(self)
+    }
 }
 
 impl Kernel for Draw<'_> {
@@ -103,25 +125,34 @@ impl Kernel for Draw<'_> {
 
     #[inline(always)]
     fn run<R: Real>(self) -> Numbers {
-        let Self { sampler, coordinates, pixel: [x, y], index, dimension } = self;
+        let Self { sampler, pixel: [x, y], index, .. } = self;
         let pixel = [R::Int::load(&x), R::Int::load(&y)];
-        let mut address = Address { pixel, index, dimension: R::Int::load(&dimension) };
-        let mut numbers = Numbers([[0.0; MAX_LANES]; 6]);
-        let mut rest = &mut numbers.0[..];
-        for kind in coordinates {
-            let [u, v] = match kind {
+        let mut numbers = Numbers([[[0.0; MAX_LANES]; 2]; MAX_DRAWS]);
+        for draw in 0..self.count {
+            let address = Address { pixel, index, dimension: R::Int::load(&self.dimension[draw]) };
+            let [u, v] = match self.coordinates[draw] {
                 Coordinates::One => [sampler.at_1d::<R>(&address), R::zero()],
                 Coordinates::Two => sampler.at_2d::<R>(&address),
                 Coordinates::TwoOfPixel => sampler.at_pixel_2d::<R>(&address),
             };
-            let (these, others) = rest.split_at_mut(kind.count());
-            u.store(&mut these[0]);
-            if let [_, second] = these {
-                v.store(second);
-            }
-            rest = others;
-            address.skip(kind.count() as u32);
+            u.store(&mut numbers.0[draw][0]);
+            v.store(&mut numbers.0[draw][1]);
         }
         numbers
+    }
+}
+
+/// Coordinates in the order in which they were added.
+struct Numbers([[[f32; MAX_LANES]; 2]; MAX_DRAWS]);
+
+impl Numbers {
+    #[inline(always)]
+    fn one<R: Real>(&self, draw: usize) -> R {
+        R::load(&self.0[draw][0])
+    }
+
+    #[inline(always)]
+    fn two<R: Real>(&self, draw: usize) -> Vec2<R> {
+        Vec2::new(R::load(&self.0[draw][0]), R::load(&self.0[draw][1]))
     }
 }

@@ -2,7 +2,7 @@
 
 use geometry::{Hit, PatchLanes, PatchPoints};
 use lanes::{Int, Kernel, Mask, Real};
-use math::{Normal3, Point3Error, Ray, Vec3, Vector3, offset_ray_origin};
+use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
 use scene::light::LightSampleContext;
@@ -12,7 +12,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
 use super::lights::{self, LightLanes};
-use super::numbers::{draw_1d, draw_2d};
+use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, Shadow};
@@ -86,8 +86,10 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         }
         let flags = bsdf.flags();
         let contexts = contexts(&vertices, flags);
-        self.connect(&mut vertices, &bsdf, &contexts, flags.is_non_specular());
-        self.scatter(&mut vertices, &bsdf, &contexts);
+        let samples_light = flags.is_non_specular();
+        let numbers = VertexNumbers::draw(&self.pass, &mut vertices.address, samples_light);
+        self.connect(&vertices, &bsdf, &contexts, numbers.light, samples_light);
+        self.scatter(&vertices, &bsdf, &contexts, numbers.bsdf);
     }
 
     fn rough(&self, row: u32) -> u32 {
@@ -143,20 +145,16 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
     fn connect<R: Real, B: Scatter<R>>(
         &mut self,
-        vertices: &mut Vertices<R>,
+        vertices: &Vertices<R>,
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
+        (u, u_light): (R, Vec2<R>),
         is_non_specular: R::Mask,
     ) {
         let samples = vertices.active & is_non_specular;
         if !samples.any() {
             return;
         }
-        let mut address = vertices.address;
-        let u = draw_1d::<R>(&self.pass, &mut address);
-        let u_light = draw_2d::<R>(&self.pass, &mut address);
-        vertices.address.dimension =
-            R::Int::select(is_non_specular, address.dimension, vertices.address.dimension);
         let light = lights::sample(&self.pass, contexts, u, u_light, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
@@ -179,12 +177,11 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
     fn scatter<R: Real, B: Scatter<R>>(
         &mut self,
-        vertices: &mut Vertices<R>,
+        vertices: &Vertices<R>,
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
+        (uc, u): (R, Vec2<R>),
     ) {
-        let uc = draw_1d::<R>(&self.pass, &mut vertices.address);
-        let u = draw_2d::<R>(&self.pass, &mut vertices.address);
         let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
         let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
