@@ -11,6 +11,7 @@
 
 mod bvh;
 mod curve;
+mod flat_shape;
 mod patch;
 mod placement;
 mod shape;
@@ -22,8 +23,9 @@ mod world;
 
 pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
+pub use flat_shape::FlatShape;
 pub use lanes::InstructionSet;
-pub use patch::{Patch, PatchLanes, PatchPoints, Rectangles};
+pub use patch::{Patch, PatchLanes, PatchPoints};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
     MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,

@@ -1,10 +1,8 @@
 //! Triangles and bilinear patches as plain data, from which lanes compute surface points.
 
-use crate::shape::{ShapeSample, ShapeSampleContext};
 use crate::surface::any_tangents;
 use lanes::{MAX_LANES, Real};
 use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, face_forward, gamma};
-use sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
 
 /// A triangle or a bilinear patch, `p(a, b) = corner + a·sides[0] + b·sides[1] + a·b·twist`.
 #[derive(Clone, Copy, Debug)]
@@ -124,41 +122,4 @@ pub(crate) fn tangent(sides: [Vector3; 2], uv: &[Vec2; 3], n: Normal3) -> Vector
     let determinant = du.x * dv.y - dv.x * du.y;
     let dpdu = (sides[0] * dv.y - sides[1] * du.y) / determinant;
     if dpdu.is_finite() && dpdu.length_squared() > 0.0 { dpdu } else { any_tangents(n)[0] }
-}
-
-/// Below this solid angle, in steradians, a rectangle is sampled by area.
-pub(crate) const SMALLEST_SPHERICAL: f32 = 1e-2;
-
-/// A rectangle, for each lane.
-#[derive(Clone, Copy, Debug)]
-pub struct Rectangles<R: Real> {
-    /// A corner.
-    pub corner: Point3<R>,
-    /// The sides that leave it, at right angles.
-    pub sides: [Vector3<R>; 2],
-    /// Unit normal towards the outside.
-    pub n: Normal3<R>,
-}
-
-impl<R: Real> Rectangles<R> {
-    /// Points by solid angle and by the cosine at a reference point, with their densities per solid
-    /// angle. Lanes that see too small a solid angle are not valid.
-    #[inline(always)]
-    pub fn sample_from(&self, reference: &ShapeSampleContext<R>, u: Vec2<R>) -> (ShapeSample<R>, R::Mask) {
-        let [right, up] = self.sides;
-        let seen = SphericalRectangle::new(reference.p.p, self.corner, right, up);
-        let valid = seen.is_valid() & seen.solid_angle().gt(R::splat(SMALLEST_SPHERICAL));
-        let w = self.corner - reference.p.p;
-        let weights = reference.cosine_weights([w, w + right, w + up, w + right + up]);
-        let u = sample_bilinear(u, weights);
-        let pdf = bilinear_pdf(u, weights) * seen.pdf();
-        let along = seen.sample(u);
-        let (zero, one) = (R::zero(), R::one());
-        let a = (along.x / right.length()).clamp(zero, one);
-        let b = (along.y / up.length()).clamp(zero, one);
-        let [x, y] = [right * a, up * b];
-        let error = (self.corner.abs() + x.abs() + y.abs()) * R::splat(gamma(4));
-        let p = Point3Error::new(self.corner + x + y, error);
-        (ShapeSample { p, n: self.n, uv: Vec2::new(a, b), pdf }, valid)
-    }
 }

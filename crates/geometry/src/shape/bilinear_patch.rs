@@ -8,10 +8,11 @@
 //!
 //! Sampling by area follows the area element |∂p/∂u × ∂p/∂v|, bilinear between its values at the
 //! corners, or an image given by [`BilinearPatch::with_image`]. A rectangle seen from a point is
-//! sampled by solid angle ([Ureña et al. 2013]) and warped to follow the cosine there.
+//! sampled by solid angle and cosine there (`flat_shape.rs`).
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
-use crate::patch::{Patch, SMALLEST_SPHERICAL};
+use crate::flat_shape::{FlatShape, SeenRectangle};
+use crate::patch::Patch;
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, by_texture};
 use math::{
@@ -19,7 +20,7 @@ use math::{
     gamma,
 };
 use sampling::PiecewiseConstant2d;
-use sampling::warp::{SphericalRectangle, bilinear_pdf, sample_bilinear};
+use sampling::warp::{bilinear_pdf, sample_bilinear};
 use std::sync::Arc;
 
 /// A patch between four corners, ordered p₀₀, p₁₀, p₀₁, p₁₁.
@@ -232,9 +233,12 @@ impl BilinearPatch {
         })
     }
 
-    /// As plain data, if it is a rectangle that is sampled by solid angle.
-    pub(crate) fn rectangle(&self) -> Option<Patch> {
-        self.patch().filter(|_| self.is_rectangle && self.image.is_none())
+    /// As plain data for sampling, if it is a rectangle without attributes.
+    pub(crate) fn flat_shape(&self) -> Option<FlatShape> {
+        let Patch { corner, sides, .. } = self.patch()?;
+        let n = self.outside(Vec2::ZERO);
+        let is_flat = self.is_rectangle && self.image.is_none();
+        is_flat.then_some(FlatShape { corner, sides, n, is_triangle: false })
     }
 
     pub(super) fn area(&self) -> f32 {
@@ -282,25 +286,13 @@ impl BilinearPatch {
 
     /// By solid angle, for a rectangle that is not too small.
     pub(super) fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
-        let seen = self.seen_from(reference)?;
-        let (u, pdf) = match self.weights(reference) {
-            Some(w) => {
-                let warped = sample_bilinear(u, w);
-                (warped, bilinear_pdf(warped, w))
-            }
-            None => (u, 1.0),
-        };
-        let along = seen.sample(u);
-        let lengths = Vec2::new((self.p[1] - self.p[0]).length(), (self.p[2] - self.p[0]).length());
-        let uv = (along / lengths).clamp(Vec2::ZERO, Vec2::ONE);
-        Some(self.sample_at(uv, pdf * seen.pdf()))
+        let (uv, pdf) = self.seen_from(reference)?.sample(u);
+        Some(self.sample_at(uv, pdf))
     }
 
     /// The density by solid angle towards the point at `uv`.
     pub(super) fn pdf_from(&self, reference: &ShapeSampleContext, uv: Vec2) -> Option<f32> {
-        let seen = self.seen_from(reference)?;
-        let warp = self.weights(reference).map_or(1.0, |w| bilinear_pdf(seen.invert(self.point(uv).p), w));
-        Some(seen.pdf() * warp)
+        self.seen_from(reference).map(|seen| seen.pdf(self.point(uv).p))
     }
 
     /// A cone of all normals on the outside: ∂p/∂u × ∂p/∂v is linear in u and v, so that all lie
@@ -312,17 +304,13 @@ impl BilinearPatch {
         if cos > 0.0 { DirectionCone::new(w, cos) } else { DirectionCone::ENTIRE_SPHERE }
     }
 
-    fn seen_from(&self, reference: &ShapeSampleContext) -> Option<SphericalRectangle> {
+    fn seen_from(&self, reference: &ShapeSampleContext) -> Option<SeenRectangle> {
         if !self.is_rectangle || self.image.is_some() {
             return None;
         }
         let [corner, right, up, _] = self.p;
-        let seen = SphericalRectangle::new(reference.p.p, corner, right - corner, up - corner);
-        (seen.is_valid() && seen.solid_angle() > SMALLEST_SPHERICAL).then_some(seen)
-    }
-
-    fn weights(&self, reference: &ShapeSampleContext) -> Option<[f32; 4]> {
-        (reference.ns != Vec3::ZERO).then(|| reference.cosine_weights(self.p.map(|p| p - reference.p.p)))
+        let seen = SeenRectangle::new(corner, [right - corner, up - corner], reference);
+        Some(seen).filter(SeenRectangle::is_valid)
     }
 
     /// The area element at the corners.

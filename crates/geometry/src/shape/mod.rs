@@ -45,6 +45,7 @@ pub use solid::{Operation, Solid};
 pub use sphere::Sphere;
 pub use triangle::Triangle;
 
+use crate::flat_shape::FlatShape;
 use crate::surface::SurfacePoint;
 use math::{Bounds3, DirectionCone, Normal3, Point3, Ray, Vec2, Vec3, Vector3};
 
@@ -207,7 +208,7 @@ impl Shape {
         let special = match self {
             Self::Sphere(shape) => shape.pdf_from(reference),
             Self::BilinearPatch(shape) => shape.pdf_from(reference, hit.uv),
-            Self::Triangle(shape) => shape.pdf_from(reference, wi),
+            Self::Triangle(shape) => shape.pdf_from(reference, hit.uv),
             _ => None,
         };
         let pdf = special.unwrap_or_else(|| {
@@ -215,6 +216,16 @@ impl Shape {
             self.pdf_area(surface.p.p, surface.n) * reference.area_per_solid_angle(surface.p.p, surface.n)
         });
         if pdf.is_finite() { pdf } else { 0.0 }
+    }
+
+    /// As plain data for sampling in lanes: a triangle with the same outside everywhere, or a
+    /// rectangle without attributes.
+    pub fn flat_shape(&self) -> Option<FlatShape> {
+        match self {
+            Self::BilinearPatch(shape) => shape.flat_shape(),
+            Self::Triangle(shape) => shape.flat_shape(),
+            _ => None,
+        }
     }
 
     /// A cone of all normals, on the side of [`ShapeSample::n`].

@@ -49,7 +49,7 @@ impl<R: Real> ShapeSampleContext<R> {
 
     /// dA/dω = d²/|cos θ| of an area at `p` with normal `n`.
     #[inline(always)]
-    pub(super) fn area_per_solid_angle(&self, p: Point3<R>, n: Normal3<R>) -> R {
+    pub(crate) fn area_per_solid_angle(&self, p: Point3<R>, n: Normal3<R>) -> R {
         let toward = p - self.p.p;
         let distance2 = toward.length_squared();
         distance2 * distance2.sqrt() / n.dot(toward).abs()

@@ -1,10 +1,10 @@
 //! The triangle p(b₁, b₂) = p₀ + b₁(p₁ − p₀) + b₂(p₂ − p₀).
 //!
-//! Seen from a point, it is sampled by the solid angle of its projection on the unit sphere
-//! ([Arvo 1995]), warped to the cosine at that point; where that solid
-//! angle is too small or too near a hemisphere for floats, by area ([Pharr 2023 §6.5]).
+//! Seen from a point, it is sampled by solid angle and cosine where floats allow that (`flat_shape.rs`),
+//! elsewhere by area.
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::flat_shape::{FlatShape, SeenTriangle};
 use crate::patch::{Patch, tangent};
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
@@ -12,10 +12,7 @@ use crate::watertight::Sheared;
 use math::{
     Bounds3, DVec3, Normal3, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, coordinate_system, face_forward,
 };
-use sampling::warp::{SphericalTriangle, bilinear_pdf, sample_bilinear, sample_uniform_triangle};
-
-/// Solid angles in steradians between which a triangle is sampled by solid angle.
-const SPHERICAL: std::ops::RangeInclusive<f32> = 3e-4..=6.22;
+use sampling::warp::sample_uniform_triangle;
 
 /// A triangle with vertex attributes, in render space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,36 +100,26 @@ impl Triangle {
 
     /// By solid angle, where that is neither too small nor too large.
     pub(super) fn sample_from(&self, reference: &ShapeSampleContext, u: Vec2) -> Option<ShapeSample> {
-        let seen = self.seen_from(reference)?;
-        let (u, pdf) = match self.weights(reference) {
-            Some(w) => {
-                let warped = sample_bilinear(u, w);
-                (warped, bilinear_pdf(warped, w))
-            }
-            None => (u, 1.0),
-        };
-        let (_, [_, b1, b2]) = seen.sample(u);
-        Some(self.sample_at(Vec2::new(b1, b2), pdf * seen.pdf()))
+        let (b, pdf) = self.seen_from(reference)?.sample(u);
+        Some(self.sample_at(b, pdf))
     }
 
-    /// The density by solid angle towards a point of the triangle.
-    pub(super) fn pdf_from(&self, reference: &ShapeSampleContext, wi: Vector3) -> Option<f32> {
-        let seen = self.seen_from(reference)?;
-        let warp = self.weights(reference).map_or(1.0, |w| bilinear_pdf(seen.invert(wi), w));
-        Some(seen.pdf() * warp)
+    /// The density by solid angle towards the point at `b`.
+    pub(super) fn pdf_from(&self, reference: &ShapeSampleContext, b: Vec2) -> Option<f32> {
+        self.seen_from(reference).map(|seen| seen.pdf(b))
     }
 
-    fn seen_from(&self, reference: &ShapeSampleContext) -> Option<SphericalTriangle> {
-        SphericalTriangle::new(self.p, reference.p.p).filter(|s| SPHERICAL.contains(&s.solid_angle()))
+    fn seen_from(&self, reference: &ShapeSampleContext) -> Option<SeenTriangle> {
+        Some(SeenTriangle::new(self.p, reference)).filter(SeenTriangle::is_valid)
     }
 
-    /// Weights at the corners of the unit square: u₁ = 0 becomes corner 1, and u₁ = 1 the side from
-    /// corner 0 to corner 2.
-    fn weights(&self, reference: &ShapeSampleContext) -> Option<[f32; 4]> {
-        (reference.ns != Vec3::ZERO).then(|| {
-            let [w0, w1, w2] = self.p.map(|p| p - reference.p.p);
-            reference.cosine_weights([w1, w1, w0, w2])
-        })
+    /// As plain data for sampling, if it has area and the same outside everywhere.
+    pub(crate) fn flat_shape(&self) -> Option<FlatShape> {
+        let sides = self.sides(&self.p);
+        let [n, others @ ..] = [Vec2::ZERO, Vec2::X, Vec2::Y].map(|b| self.outside(b));
+        let has_area = sides[0].cross(sides[1]).length_squared() >= f32::MIN_POSITIVE;
+        let is_flat = has_area && others == [n; 2];
+        is_flat.then_some(FlatShape { corner: self.p[0], sides, n, is_triangle: true })
     }
 
     fn sample_at(&self, b: Vec2, pdf: f32) -> ShapeSample {

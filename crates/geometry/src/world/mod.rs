@@ -136,18 +136,6 @@ impl World {
         }
     }
 
-    /// A primitive of the top group as plain data, if it is a rectangle without attributes, which
-    /// is sampled by solid angle.
-    pub fn rectangle(&self, geometry: GeometryId, primitive: u32) -> Option<Patch> {
-        match self.geometry(geometry) {
-            Geometry::Shapes(shapes) => match &shapes[primitive as usize] {
-                Shape::BilinearPatch(patch) => patch.rectangle(),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
     fn surface_within(&self, path: &[InstanceId], ray: &Ray, hit: &Hit) -> SurfacePoint {
         match path {
             [] => self.surface_in_group(ray, hit),

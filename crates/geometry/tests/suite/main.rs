@@ -5,6 +5,7 @@ mod build;
 mod common;
 mod curves;
 mod extents;
+mod flat_shapes;
 mod implicit;
 mod instances;
 mod instruction_sets;

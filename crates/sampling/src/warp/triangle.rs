@@ -1,13 +1,23 @@
 //! Triangles: in the plane, uniformly by area; as seen from a point, uniformly by solid angle.
 //!
-//! The plane warp folds the square along its diagonal without a square root [Heitz 2019]. The
-//! spherical one cuts off a part of the triangle with u₀ of its solid angle by an arc through b,
-//! then walks u₁ along that arc [Arvo 1995], [Pharr 2023 §6.5.4]. Solid angles are those of
-//! [Van Oosterom 1983]; arithmetic is in double precision, so that small and thin triangles need no
-//! special case.
+//! The plane warp folds the square along its diagonal without a square root [Heitz 2019].
+//!
+//! The spherical one cuts off a part of the triangle with u₀ of its solid angle Ω by a line from
+//! corner 1 to the opposite side, then walks u₁ along that line [Arvo 1995]. Let a, b and c be the
+//! unit directions to the corners, and a⊥ the unit vector at right angles to a on the side of c.
+//! The solid angle, and that between a, b and the direction at the angle φ from a towards c, are
+//! [Van Oosterom 1983]
+//!
+//! ```text
+//! tan(Ω/2) = V / (1 + a·b + b·c + c·a)        V = |a·(b × c)|
+//! tan(u₀Ω/2) = h·W / (1 + a·b + h·b·a⊥)       W = |a·(b × a⊥)|,  h = tan(φ/2)
+//! ```
+//!
+//! of which the second is solved for h without cancellation. Angles become places along the sides
+//! of the triangle itself, so that points lie inside of it however small it looks.
 
-use lanes::Real;
-use math::{DVec3, Point3, Vec2, Vector3};
+use lanes::{Real, atan2, sin_cos};
+use math::{Point3, Vec2, Vec3, Vector3};
 
 /// Barycentric coordinates, uniform over a triangle.
 #[inline(always)]
@@ -31,117 +41,129 @@ pub fn invert_uniform_triangle(b: [f32; 3]) -> Vec2 {
     if b[0] > b[1] { Vec2::new(b[0] + b[1], 2.0 * b[1]) } else { Vec2::new(2.0 * b[0], b[1] + b[0]) }
 }
 
-/// A triangle as seen from a point.
+/// A triangle as seen from a point, for each lane.
 #[derive(Clone, Copy, Debug)]
-pub struct SphericalTriangle {
-    /// Vertices relative to the point.
-    vertices: [DVec3; 3],
-    /// Unit directions to them.
-    a: DVec3,
-    b: DVec3,
-    c: DVec3,
-    cos_alpha: f64,
-    sin_alpha: f64,
-    solid_angle: f64,
+pub struct SphericalTriangle<R: Real = f32> {
+    /// From the point to corner 0.
+    to_corner: Vector3<R>,
+    /// From corner 0 to corners 1 and 2.
+    sides: [Vector3<R>; 2],
+    /// Distances of the corners.
+    distances: [R; 3],
+    /// Unit directions to corners 0 and 1.
+    a: Vector3<R>,
+    b: Vector3<R>,
+    /// 1 + a·b.
+    one_plus_cos: R,
+    volume: R,
+    solid_angle: R,
 }
 
-impl SphericalTriangle {
-    /// The triangle with these vertices seen from `p`; `None` if it has no solid angle there.
-    pub fn new(vertices: [Point3; 3], p: Point3) -> Option<SphericalTriangle> {
-        let vertices = vertices.map(|v| v.as_dvec3() - p.as_dvec3());
-        let [a, b, c] = vertices.map(|v| v.try_normalize());
-        let (a, b, c) = (a?, b?, c?);
-        let solid_angle = solid_angle(a, b, c);
-        let (n_ab, n_ca) = (a.cross(b).try_normalize()?, c.cross(a).try_normalize()?);
-        let cos_alpha = -n_ab.dot(n_ca);
-        let sin_alpha = n_ab.cross(n_ca).length();
-        (solid_angle > 0.0 && sin_alpha > 0.0).then_some(SphericalTriangle {
-            vertices,
-            a,
-            b,
-            c,
-            cos_alpha,
-            sin_alpha,
-            solid_angle,
-        })
+impl<R: Real> SphericalTriangle<R> {
+    /// The triangle with these corners seen from `p`.
+    #[inline(always)]
+    pub fn new(corners: [Point3<R>; 3], p: Point3<R>) -> Self {
+        let [p0, p1, p2] = corners;
+        let (v0, v1, v2) = (p0 - p, p1 - p, p2 - p);
+        let sides = [p1 - p0, p2 - p0];
+        let (l0, l1, l2) = (v0.length(), v1.length(), v2.length());
+        let (a, b, c) = (v0 * (R::one() / l0), v1 * (R::one() / l1), v2 * (R::one() / l2));
+        // All corners have the same product with the normal; that of the nearest is rounded least.
+        let n = (sides[0] * (R::one() / l1)).cross(sides[1] * (R::one() / l2));
+        let nearest = Vec3::select(l1.lt(l0), v1, v0);
+        let nearest = Vec3::select(l2.lt(l0.min(l1)), v2, nearest);
+        let volume = (nearest.dot(n) * (R::one() / l0)).abs();
+        let one_plus_cos = R::splat(0.5) * (a + b).length_squared();
+        let solid_angle = R::splat(2.0) * atan2(volume, one_plus_cos + c.dot(a + b));
+        let distances = [l0, l1, l2];
+        Self { to_corner: v0, sides, distances, a, b, one_plus_cos, volume, solid_angle }
+    }
+
+    /// Where it has a solid angle. Elsewhere all else is meaningless.
+    #[inline(always)]
+    pub fn is_valid(&self) -> R::Mask {
+        // NaN, where a corner is the point, fails.
+        self.volume.gt(R::zero()) & self.solid_angle.gt(R::zero())
     }
 
     /// In steradians.
-    #[inline]
-    pub fn solid_angle(&self) -> f32 {
-        self.solid_angle as f32
+    #[inline(always)]
+    pub fn solid_angle(&self) -> R {
+        self.solid_angle
     }
 
     /// The density of [`sample`](Self::sample) per solid angle.
-    #[inline]
-    pub fn pdf(&self) -> f32 {
-        (1.0 / self.solid_angle) as f32
+    #[inline(always)]
+    pub fn pdf(&self) -> R {
+        R::one() / self.solid_angle
     }
 
-    /// A direction from the point to the triangle, and the barycentric coordinates of the point of
-    /// the triangle.
-    pub fn sample(&self, u: Vec2) -> (Vector3, [f32; 3]) {
-        let Self { a, b, c, cos_alpha, sin_alpha, .. } = *self;
-        // The vertex c' on the arc from a to c for which the triangle a b c' has u₀ of the solid
-        // angle; φ is that solid angle less α, and cos_b the cosine of the arc from a to c'.
-        let (sin_area, cos_area) = (u.x as f64 * self.solid_angle).sin_cos();
-        let sin_phi = sin_area * cos_alpha - cos_area * sin_alpha;
-        let cos_phi = cos_area * cos_alpha + sin_area * sin_alpha;
-        let k1 = cos_phi - cos_alpha;
-        let k2 = sin_phi + sin_alpha * a.dot(b);
-        let numerator = (k2 * cos_phi - k1 * sin_phi) * cos_alpha - k2;
-        let denominator = (k2 * sin_phi + k1 * cos_phi) * sin_alpha;
-        let cos_b = if denominator == 0.0 { 1.0 } else { (numerator / denominator).clamp(-1.0, 1.0) };
-        let sin_b = (1.0 - cos_b * cos_b).max(0.0).sqrt();
-        let cut = cos_b * a + sin_b * perpendicular(c, a);
+    /// A point of the triangle, by its barycentric coordinates at corners 1 and 2.
+    #[inline(always)]
+    pub fn sample(&self, u: Vec2<R>) -> Vec2<R> {
+        let [l0, l1, l2] = self.distances;
+        let side = Line::new(l0, self.a, self.sides[1]);
+        let (sin, cos) = sin_cos(R::splat(0.5) * u.x * self.solid_angle);
+        // h as a fraction; V·l₂/height is W.
+        let across = self.sides[1] - self.a * side.along;
+        let above = sin * self.one_plus_cos;
+        let below = (cos * (self.volume * l2) - sin * (self.sides[0].dot(across) / l1)) / side.height;
+        let below = below.max(R::zero());
+        let t = side.place(R::splat(2.0) * above * below, (below - above) * (below + above));
 
-        // 1 − cos θ along the arc from b to c'.
-        let height = u.y as f64 * one_minus_dot(cut, b);
-        let sin_theta = (height * (2.0 - height)).max(0.0).sqrt();
-        let w = (1.0 - height) * b + sin_theta * perpendicular(cut, b);
-        (w.as_vec3().into(), self.barycentric(w))
+        let line = Line::new(l1, self.b, self.sides[1] * t - self.sides[0]);
+        let rise = u.y * line.one_minus_cos(R::one());
+        let sin = (rise * (R::splat(2.0) - rise)).max(R::zero()).sqrt();
+        let s = line.place(sin, R::one() - rise);
+        Vec2::new(R::one() - s, s * t)
     }
 
-    /// The `u` that [`sample`](Self::sample) sends to the direction `w`, which must meet the
-    /// triangle.
-    pub fn invert(&self, w: Vector3) -> Vec2 {
-        let Self { a, b, c, .. } = *self;
-        let w = w.as_dvec3();
-        let Some(cut) = b.cross(w).cross(c.cross(a)).try_normalize() else {
-            return Vec2::ZERO;
-        };
-        let cut = if cut.dot(a + c) < 0.0 { -cut } else { cut };
-        let u0 = solid_angle(a, b, cut) / self.solid_angle;
-        let u1 = one_minus_dot(w, b) / one_minus_dot(cut, b);
-        Vec2::new(u0.clamp(0.0, 1.0) as f32, u1.clamp(0.0, 1.0) as f32)
-    }
-
-    /// The barycentric coordinates of a direction, by Cramer's rule, clamped to the triangle.
-    fn barycentric(&self, w: DVec3) -> [f32; 3] {
-        let [v0, v1, v2] = self.vertices;
-        let parts = [v1.cross(v2).dot(w), v2.cross(v0).dot(w), v0.cross(v1).dot(w)];
-        let sum: f64 = parts.iter().sum();
-        let b0 = (parts[0] / sum).clamp(0.0, 1.0);
-        let b1 = (parts[1] / sum).clamp(0.0, 1.0 - b0);
-        [b0 as f32, b1 as f32, (1.0 - b0 - b1) as f32]
+    /// The `u` that [`sample`](Self::sample) sends to a point of the triangle.
+    #[inline(always)]
+    pub fn invert(&self, point: Vec2<R>) -> Vec2<R> {
+        let [zero, one] = [R::zero(), R::one()];
+        let [_, l1, l2] = self.distances;
+        let s = (one - point.x).max(zero);
+        let t = R::select(s.gt(zero), point.y / s, zero).clamp(zero, one);
+        let to_side = self.to_corner + self.sides[1] * t;
+        let denominator = self.one_plus_cos * to_side.length() + to_side.dot(self.a + self.b);
+        let cut_off = R::splat(2.0) * atan2(t * (self.volume * l2), denominator);
+        let line = Line::new(l1, self.b, self.sides[1] * t - self.sides[0]);
+        let u = Vec2::new(cut_off / self.solid_angle, line.one_minus_cos(s) / line.one_minus_cos(one));
+        Vec2::new(u.x.clamp(zero, one), u.y.clamp(zero, one))
     }
 }
 
-/// The unit vector orthogonal to the unit vector `axis` on the side of `v`; 0 if `v` lies along the
-/// axis.
-fn perpendicular(v: DVec3, axis: DVec3) -> DVec3 {
-    (v - v.dot(axis) * axis).normalize_or_zero()
+/// A line from a corner, in the plane of the line and the point that it is seen from.
+#[derive(Clone, Copy)]
+struct Line<R: Real> {
+    /// Distance of the corner.
+    distance: R,
+    /// The line's components along the direction to the corner and at right angles to it.
+    along: R,
+    height: R,
 }
 
-/// 1 − a·b of unit vectors, without cancellation.
-fn one_minus_dot(a: DVec3, b: DVec3) -> f64 {
-    0.5 * (a - b).length_squared()
-}
+impl<R: Real> Line<R> {
+    #[inline(always)]
+    fn new(distance: R, direction: Vector3<R>, line: Vector3<R>) -> Self {
+        let along = line.dot(direction);
+        Self { distance, along, height: (line - direction * along).length() }
+    }
 
-/// The solid angle of a spherical triangle of unit vectors: tan(Ω/2) = |a·(b×c)| / (1 + a·b + b·c +
-/// c·a).
-fn solid_angle(a: DVec3, b: DVec3, c: DVec3) -> f64 {
-    // The triple product of edges is accurate for small triangles.
-    let volume = a.dot((b - a).cross(c - a)).abs();
-    2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+    /// The place in [0, 1] along the line that is seen at an angle from the corner, given by sine
+    /// and cosine up to a common factor.
+    #[inline(always)]
+    fn place(&self, sin: R, cos: R) -> R {
+        let below = (self.height * cos - self.along * sin).max(R::splat(f32::MIN_POSITIVE));
+        (self.distance * sin / below).clamp(R::zero(), R::one())
+    }
+
+    /// 1 − cos of the angle from the corner at which a place is seen, without cancellation.
+    #[inline(always)]
+    fn one_minus_cos(&self, place: R) -> R {
+        let (x, y) = (self.distance + place * self.along, place * self.height);
+        let distance = (x * x + y * y).sqrt();
+        R::select(x.gt(R::zero()), y * y / (distance + x), distance - x) / distance
+    }
 }

@@ -9,6 +9,31 @@ use testkit::{LaneFunction, lanes_agree};
 
 struct Warps;
 
+/// The polygons seen from a point.
+struct Polygons;
+
+impl LaneFunction for Polygons {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let at = |i: usize| Vec3::new(u[i], u[i + 1], u[i + 2]);
+        let (p, corner, u) = (at(0), at(3), Vec2::new(u[12], u[13]));
+        let triangle = SphericalTriangle::new([corner, at(6), at(9)], p);
+        let rectangle = SphericalRectangle::new(p, corner, at(6), at(9));
+        let mut results = vec![triangle.solid_angle(), rectangle.solid_angle()];
+        for (point, is_valid) in [
+            (triangle.sample(u), triangle.is_valid()),
+            (triangle.invert(u), triangle.is_valid()),
+            (rectangle.sample(u), rectangle.is_valid()),
+            (rectangle.invert(at(12)), rectangle.is_valid()),
+        ] {
+            for x in point.to_array() {
+                results.push(R::select(is_valid, x, R::zero()));
+            }
+        }
+        results
+    }
+}
+
 impl LaneFunction for Warps {
     #[inline(always)]
     fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
@@ -74,4 +99,9 @@ fn samplers_do_not_depend_on_the_number_of_lanes() {
             lanes_agree(&Draws(Sampler::ZSobol(ZSobol::new(32, resolution, r, 5)), index), 3, 50);
         }
     }
+}
+
+#[test]
+fn polygons_do_not_depend_on_the_number_of_lanes() {
+    lanes_agree(&Polygons, 15, 500);
 }
