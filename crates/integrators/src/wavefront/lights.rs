@@ -1,6 +1,9 @@
 //! Samples of lights, one for each lane.
+//!
+//! They are computed by a kernel of its own, not as a part of those that use them, as random
+//! numbers are (`numbers.rs`).
 
-use lanes::{Each, Int, MAX_LANES, Mask, Real};
+use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Vec2, Vec3, Vector3};
 use scene::Interfaces;
 use scene::light::{LightId, LightLiSample, LightSampleContext};
@@ -30,15 +33,6 @@ pub(super) struct LightLanes<R: Real> {
     pub passes: R::Mask,
 }
 
-/// Values of lanes while they are set one by one.
-struct LaneValues<const C: usize>([[f32; MAX_LANES]; C]);
-
-impl<const C: usize> LaneValues<C> {
-    fn set(&mut self, lane: usize, first: usize, values: &[f32]) {
-        values.iter().enumerate().for_each(|(i, &value)| self.0[first + i][lane] = value);
-    }
-}
-
 /// One sample of one light for each lane of `active`, chosen by `u` and `u_light`.
 #[inline(always)]
 pub(super) fn sample<R: Real>(
@@ -49,104 +43,146 @@ pub(super) fn sample<R: Real>(
     lambda: &SampledWavelengths<R>,
     active: R::Mask,
 ) -> LightLanes<R> {
-    let inputs = Inputs {
+    let samples = pass.instruction_set.dispatch(Sample {
+        pass,
         context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
         time: context.time.to_array(),
-        u: [u_light.x, u_light.y].each(R::to_array),
+        u: [u, u_light.x, u_light.y].each(R::to_array),
         lambda: lambda.lambda().each(R::to_array),
         lambda_pdf: lambda.pdf().0.each(R::to_array),
-    };
-    let mut values = LaneValues([[0.0; MAX_LANES]; 17]);
-    let mut masks = [0; 4];
-    let (lights, pmf, chosen) = pass.direct.lights().sample_lanes(context, u, active);
-    let (rows, mut in_lanes) = pass.rectangles.rows::<R>(lights, chosen);
-    let mut sampled = None;
-    if in_lanes.any() {
-        match pass.rectangles.emission::<R>(pass.pixels.scene, rows, in_lanes) {
-            Some(emission) => {
-                let (rectangles, scale) = pass.rectangles.get::<R>(rows);
-                let (sample, valid) = rectangles.sample_from(context, u_light);
-                in_lanes = in_lanes & valid;
-                sampled = Some((sample, emission, scale));
-            }
-            None => in_lanes = R::Mask::splat(false),
-        }
-    }
-    let (others, lights) = (chosen & !in_lanes, lights.to_array());
-    each(others.bits(), |lane| inputs.sample(pass, LightId(lights[lane]), lane, &mut values, &mut masks));
-    let number = |column: usize| R::load(&values.0[column]);
+        active: active.bits(),
+    });
+    let number = |column: usize| R::load(&samples.columns[column]);
     let vector = |first: usize| Vec3::new(number(first), number(first + 1), number(first + 2));
-    let [valid, is_delta, is_distant, passes] = masks.each(R::Mask::from_bits);
-    let l = SampledSpectrum([0, 1, 2, 3].each(number));
-    let (wi, pdf, n) = (vector(N), number(N + 3) * pmf, vector(N + 10));
-    let p = Point3Error::new(vector(N + 4), vector(N + 7));
-    let Some((sample, emission, scale)) = sampled else {
-        return LightLanes { valid, l, wi, pdf, p, n, is_delta, is_distant, passes };
-    };
-    let (toward, is_apart) = (sample.p.p - context.p.p).normalize_masked();
-    let emits = if emission.two_sided { in_lanes } else { in_lanes & sample.n.dot(toward).le(R::zero()) };
-    let radiance = emission.radiance.spectrum.sample(lambda) * scale;
-    let is_lit = emits & is_apart & !radiance.is_black();
+    let [valid, is_delta, is_distant, passes] = samples.masks.each(R::Mask::from_bits);
     LightLanes {
-        valid: valid | is_lit,
-        l: SampledSpectrum::select(in_lanes, radiance, l),
-        wi: Vec3::select(in_lanes, toward, wi),
-        pdf: R::select(in_lanes, sample.pdf * pmf, pdf),
-        p: Point3Error::new(
-            Vec3::select(in_lanes, sample.p.p, p.p),
-            Vec3::select(in_lanes, sample.p.error, p.error),
-        ),
-        n: Vec3::select(in_lanes, sample.n, n),
+        valid,
+        l: SampledSpectrum([0, 1, 2, 3].each(number)),
+        wi: vector(Samples::WI),
+        pdf: number(Samples::PDF),
+        p: Point3Error::new(vector(Samples::P), vector(Samples::P_ERROR)),
+        n: vector(Samples::NORMAL),
         is_delta,
         is_distant,
-        // Interfaces occlude none of the lights that have a surface.
-        passes: passes | is_lit,
+        passes,
     }
 }
 
-/// What samples depend on, in arrays.
-struct Inputs {
-    context: [[[f32; MAX_LANES]; 3]; 4],
-    time: [f32; MAX_LANES],
-    u: [[f32; MAX_LANES]; 2],
-    lambda: [[f32; MAX_LANES]; N],
-    lambda_pdf: [[f32; MAX_LANES]; N],
+/// Light samples in arrays.
+struct Samples {
+    /// Radiance, direction, density, position, its error and normal.
+    columns: [[f32; MAX_LANES]; 17],
+    /// The lanes that have a sample, and those of delta lights, of distant ones, and of those that
+    /// interfaces do not occlude.
+    masks: [u32; 4],
 }
 
-impl Inputs {
+impl Samples {
+    const WI: usize = N;
+    const PDF: usize = N + 3;
+    const P: usize = N + 4;
+    const P_ERROR: usize = N + 7;
+    const NORMAL: usize = N + 10;
+
+    /// Sets numbers of all lanes.
+    #[inline(always)]
+    fn store<R: Real>(&mut self, first: usize, values: &[R]) {
+        for (column, value) in self.columns[first..].iter_mut().zip(values) {
+            value.store(column);
+        }
+    }
+
+    /// Sets numbers of one lane.
+    fn set(&mut self, lane: usize, first: usize, values: &[f32]) {
+        for (column, &value) in self.columns[first..].iter_mut().zip(values) {
+            column[lane] = value;
+        }
+    }
+}
+
+/// Samples lights; has all that samples depend on, in arrays.
+struct Sample<'a, 'b> {
+    pass: &'b Pass<'a>,
+    context: [[[f32; MAX_LANES]; 3]; 4],
+    time: [f32; MAX_LANES],
+    /// Numbers that choose the light and the point.
+    u: [[f32; MAX_LANES]; 3],
+    lambda: [[f32; MAX_LANES]; N],
+    lambda_pdf: [[f32; MAX_LANES]; N],
+    /// The lanes to sample.
+    active: u32,
+}
+
+impl Kernel for Sample<'_, '_> {
+    type Output = Samples;
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Samples {
+        let mut samples = Samples { columns: [[0.0; MAX_LANES]; 17], masks: [0; 4] };
+        let Pass { direct, area_lights, pixels, .. } = self.pass;
+        let [p, error, n, ns] = [0, 1, 2, 3].each(|i| vector::<R>(&self.context[i]));
+        let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: R::load(&self.time) };
+        let [u, x, y] = [0, 1, 2].each(|i| R::load(&self.u[i]));
+        let active = R::Mask::from_bits(self.active);
+        let (lights, pmf, chosen) = direct.lights().sample_lanes(&context, u, active);
+        let (rows, in_lanes) = area_lights.rows::<R>(lights, chosen);
+        if in_lanes.any() {
+            let shapes = area_lights.shapes::<R>(rows);
+            let (sample, valid) = shapes.sample_from(&context, Vec2::new(x, y));
+            let (wi, is_apart) = (sample.p.p - p).normalize_masked();
+            let [lambda, lambda_pdf] =
+                [&self.lambda, &self.lambda_pdf].each(|numbers| [0, 1, 2, 3].each(|i| R::load(&numbers[i])));
+            let lambda = SampledWavelengths::new(lambda, lambda_pdf);
+            let mask = in_lanes & valid & is_apart;
+            let l = area_lights.radiance(pixels.scene, rows, (sample.n, -wi), &lambda, mask);
+            let is_lit = (mask & !l.is_black()).bits();
+            // Interfaces occlude none of the lights that have a surface.
+            samples.masks = [is_lit, 0, 0, is_lit];
+            samples.store(0, &l.0);
+            samples.store(Samples::WI, &wi.to_array());
+            samples.store(Samples::PDF, &[sample.pdf]);
+            samples.store(Samples::P, &sample.p.p.to_array());
+            samples.store(Samples::P_ERROR, &sample.p.error.to_array());
+            samples.store(Samples::NORMAL, &sample.n.to_array());
+        }
+        let (mut others, lights) = ((chosen & !in_lanes).bits(), lights.to_array());
+        while others != 0 {
+            let lane = others.trailing_zeros() as usize;
+            self.sample_one(LightId(lights[lane]), lane, &mut samples);
+            others &= others - 1;
+        }
+        let pdf = R::load(&samples.columns[Samples::PDF]) * pmf;
+        samples.store(Samples::PDF, &[pdf]);
+        samples
+    }
+}
+
+impl Sample<'_, '_> {
     fn context(&self, lane: usize) -> LightSampleContext {
         let [p, error, n, ns] = self.context.each_ref().map(|v| Vec3::from_array(v.map(|c| c[lane])));
         LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
     }
 
     /// Samples the light of one lane.
-    fn sample(
-        &self,
-        pass: &Pass,
-        id: LightId,
-        lane: usize,
-        values: &mut LaneValues<17>,
-        [valid, is_delta, is_distant, passes]: &mut [u32; 4],
-    ) {
-        let (scene, bit) = (pass.pixels.scene, 1 << lane);
-        let [x, y] = self.u.each_ref().map(|u| u[lane]);
+    fn sample_one(&self, id: LightId, lane: usize, samples: &mut Samples) {
+        let (scene, bit) = (self.pass.pixels.scene, 1 << lane);
+        let [_, x, y] = self.u.each_ref().map(|u| u[lane]);
         let lambda = self.lambda.each_ref().map(|v| v[lane]);
         let lambda = SampledWavelengths::new(lambda, self.lambda_pdf.each_ref().map(|v| v[lane]));
         let sample = scene.sample_light(id, &self.context(lane), Vec2::new(x, y), &lambda, true);
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };
         let light = scene.light(id);
-        *valid |= bit;
-        *is_delta |= if light.is_delta() { bit } else { 0 };
-        *is_distant |= if p.is_none() { bit } else { 0 };
-        *passes |= if pass.direct.interfaces(light) == Interfaces::Pass { bit } else { 0 };
-        values.set(lane, 0, &l.0);
-        values.set(lane, N, &wi.to_array());
-        values.set(lane, N + 3, &[pdf]);
+        let passes = self.pass.direct.interfaces(light) == Interfaces::Pass;
+        let is = [true, light.is_delta(), p.is_none(), passes];
+        samples.masks.iter_mut().zip(is).for_each(|(mask, is)| *mask |= if is { bit } else { 0 });
+        samples.set(lane, 0, &l.0);
+        samples.set(lane, Samples::WI, &wi.to_array());
+        samples.set(lane, Samples::PDF, &[pdf]);
         if let Some(p) = p {
-            values.set(lane, N + 4, &p.p.to_array());
-            values.set(lane, N + 7, &p.error.to_array());
+            samples.set(lane, Samples::P, &p.p.to_array());
+            samples.set(lane, Samples::P_ERROR, &p.error.to_array());
         }
-        values.set(lane, N + 10, &n.to_array());
+        samples.set(lane, Samples::NORMAL, &n.to_array());
     }
 }
 
@@ -155,11 +191,7 @@ fn arrays<R: Real>(v: Vector3<R>) -> [[f32; MAX_LANES]; 3] {
     v.to_array().each(R::to_array)
 }
 
-/// Calls `f` with the index of each bit that is set.
 #[inline(always)]
-fn each(mut bits: u32, mut f: impl FnMut(usize)) {
-    while bits != 0 {
-        f(bits.trailing_zeros() as usize);
-        bits &= bits - 1;
-    }
+fn vector<R: Real>(columns: &[[f32; MAX_LANES]; 3]) -> Vector3<R> {
+    Vec3::from_array(columns.each(|column| R::load(&column)))
 }

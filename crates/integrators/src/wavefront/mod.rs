@@ -15,8 +15,10 @@
 //!
 //! Estimates and random numbers are those of [`Path`](crate::Path), whichever paths share a batch.
 
+mod area_lights;
 mod begin;
 mod columns;
+mod emission;
 mod finish;
 mod lights;
 mod materials;
@@ -24,7 +26,6 @@ mod numbers;
 mod pass;
 mod paths;
 mod queues;
-mod rectangles;
 mod shade;
 mod stages;
 
@@ -36,9 +37,9 @@ use rayon::prelude::*;
 use sampling::Sampler;
 use scene::{Interfaces, Scene, View};
 
+use self::area_lights::AreaLights;
 use self::materials::LaneMaterials;
 use self::pass::Pass;
-use self::rectangles::RectangleLights;
 use self::stages::Stages;
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
@@ -58,7 +59,7 @@ pub struct Wavefront {
     sampler: Sampler,
     direct: DirectLighting,
     materials: LaneMaterials,
-    rectangles: RectangleLights,
+    area_lights: AreaLights,
     instruction_set: InstructionSet,
 }
 
@@ -72,7 +73,7 @@ impl Wavefront {
             sampler,
             direct: DirectLighting::none(),
             materials: LaneMaterials::default(),
-            rectangles: RectangleLights::default(),
+            area_lights: AreaLights::default(),
             instruction_set: InstructionSet::detect(),
         }
     }
@@ -91,7 +92,7 @@ impl Integrator for Wavefront {
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
         self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
         self.materials = LaneMaterials::new(scene, view);
-        self.rectangles = RectangleLights::new(scene);
+        self.area_lights = AreaLights::new(scene);
         Ok(())
     }
 
@@ -112,7 +113,7 @@ impl Integrator for Wavefront {
             settings: &self.settings,
             direct: &self.direct,
             materials: &self.materials,
-            rectangles: &self.rectangles,
+            area_lights: &self.area_lights,
             pixels: &pixels,
             control,
             instruction_set: self.instruction_set,

@@ -3,8 +3,8 @@
 use description::PathDesc;
 use lanes::InstructionSet;
 
+use super::area_lights::AreaLights;
 use super::materials::LaneMaterials;
-use super::rectangles::RectangleLights;
 use crate::Control;
 use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
@@ -15,7 +15,7 @@ pub(super) struct Pass<'a> {
     pub settings: &'a PathDesc,
     pub direct: &'a DirectLighting,
     pub materials: &'a LaneMaterials,
-    pub rectangles: &'a RectangleLights,
+    pub area_lights: &'a AreaLights,
     pub pixels: &'a PixelSamples<'a>,
     pub control: &'a Control,
     pub instruction_set: InstructionSet,

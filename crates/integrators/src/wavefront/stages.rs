@@ -6,9 +6,11 @@ use math::Ray;
 use sampling::Sampler;
 use scattering::{Bsdf, each_bxdf};
 use scene::Interfaces;
+use scene::light::LightId;
 use scene::material::{Material, MaterialId, MaterialModel};
 
 use super::begin::Begin;
+use super::emission::{Emit, LightHit};
 use super::finish::{Finish, finish_with_first_hits};
 use super::pass::Pass;
 use super::paths::Paths;
@@ -31,6 +33,8 @@ pub(super) struct Stages<'a> {
     hits: Vec<Option<Hit>>,
     /// Hits to be shaded in lanes: material, index of the hit, path.
     lanes: Vec<(u32, u32, u32)>,
+    /// Hits of lights that shine in lanes.
+    lit: Vec<LightHit>,
     turns: Vec<u32>,
     rows: Vec<u32>,
     occluded: Vec<bool>,
@@ -49,6 +53,7 @@ impl<'a> Stages<'a> {
             rays: Vec::new(),
             hits: Vec::new(),
             lanes: Vec::new(),
+            lit: Vec::new(),
             turns: Vec::new(),
             rows: Vec::new(),
             occluded: Vec::new(),
@@ -92,19 +97,30 @@ impl<'a> Stages<'a> {
     fn shade(&mut self) {
         let scene = self.pass.pixels.scene;
         self.lanes.clear();
+        self.lit.clear();
         for (turn, (&row, hit)) in self.active.iter().zip(&self.hits).enumerate() {
-            let entry = hit.as_ref().map(|hit| &scene.geometries()[hit.geometry.0 as usize]);
-            match entry {
-                Some(entry)
-                    if self.pass.materials.contains(entry.material)
-                        && entry.first_light.is_none()
-                        && self.paths.depth[row as usize] < self.pass.settings.max_depth =>
-                {
-                    self.lanes.push((entry.material.0, turn as u32, row));
-                }
-                _ => self.queues.scalar.push((row, turn as u32)),
+            let (turn, entry) =
+                (turn as u32, hit.as_ref().map(|hit| &scene.geometries()[hit.geometry.0 as usize]));
+            let (Some(hit), Some(entry)) = (hit, entry) else {
+                self.queues.scalar.push((row, turn));
+                continue;
+            };
+            let light = self.pass.area_lights.light_of(scene, hit);
+            if let Some(LightId(light)) = light {
+                self.lit.push(LightHit { row, turn, light });
+            }
+            let is_emitted = entry.first_light.is_none() || light.is_some();
+            let is_last = self.paths.depth[row as usize] == self.pass.settings.max_depth;
+            if is_emitted && is_last && scene.materials()[entry.material.0 as usize].material.stops() {
+                continue;
+            }
+            if is_emitted && !is_last && self.pass.materials.contains(entry.material) {
+                self.lanes.push((entry.material.0, turn, row));
+            } else {
+                self.queues.scalar.push((row, turn));
             }
         }
+        self.emit();
         self.lanes.sort_unstable();
         let lanes = std::mem::take(&mut self.lanes);
         for group in lanes.chunk_by(|a, b| a.0 == b.0) {
@@ -120,6 +136,16 @@ impl<'a> Stages<'a> {
         self.queues.scalar.clear();
         self.active.clear();
         std::mem::swap(&mut self.active, &mut self.queues.next);
+    }
+
+    /// Adds the emission at hits of lights that shine in lanes.
+    fn emit(&mut self) {
+        self.pass.instruction_set.dispatch(Emit {
+            pass: self.pass,
+            hits: &self.hits,
+            found: &self.lit,
+            paths: &mut self.paths,
+        });
     }
 
     /// Shades hits of one material.
@@ -154,7 +180,8 @@ impl<'a> Stages<'a> {
 
     /// Shades one path.
     fn shade_path(&mut self, path: u32, hit: Option<Hit>) {
-        let Pass { settings, direct, pixels: &PixelSamples { scene, view, index, .. }, .. } = self.pass;
+        let Pass { settings, direct, area_lights, pixels, .. } = self.pass;
+        let &PixelSamples { scene, view, index, .. } = pixels;
         let row = path as usize;
         let mut state = self.paths.state(row);
         let mut lambda = self.paths.lambda(row);
@@ -164,7 +191,7 @@ impl<'a> Stages<'a> {
             return;
         };
         let mut surface = scene.interaction(&hit, scene.world().surface(&state.ray.ray, &hit));
-        if surface.area_light.is_some() {
+        if surface.area_light.is_some() && area_lights.light_of(scene, &hit).is_none() {
             let l = state.beta * direct.emitted(scene, &surface, state.origin.as_ref(), &lambda);
             self.paths.add_light(row, l);
         }

@@ -28,19 +28,26 @@ pub struct BvhLightSampler {
     /// The ids of the lights infinitely far away.
     infinite: Vec<u32>,
     /// By light.
-    trails: Vec<Trail>,
+    trails: Trails,
 }
 
-/// The place of a light. In the tree: the path from the root, where bit i is set for the right
-/// child at depth i; trees are less than 64 deep. Elsewhere: one of two reserved values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Trail(u64);
+/// The places of the lights, each in two words. In the tree: the path from the root, where bit i of
+/// word 0 is set for the right child at depth i, and of word 1 at depth 32 + i; trees are less than
+/// 64 deep. Elsewhere: word 1 is [`ELSEWHERE`](Self::ELSEWHERE).
+#[derive(Clone, Debug)]
+struct Trails([Vec<u32>; 2]);
 
-impl Trail {
-    /// Not in the sampler: its power is zero.
-    const NOWHERE: Self = Self(u64::MAX);
-    /// Among the lights infinitely far away.
-    const INFINITE: Self = Self(u64::MAX - 1);
+impl Trails {
+    /// Word 1 of a light that is not in the tree.
+    const ELSEWHERE: u32 = u32::MAX;
+    /// Word 0 there of a light whose power is zero, which is never chosen.
+    const NOWHERE: u32 = 0;
+    /// Word 0 there of a light infinitely far away.
+    const INFINITE: u32 = 1;
+
+    fn set(&mut self, light: u32, words: [u32; 2]) {
+        self.0.iter_mut().zip(words).for_each(|(words, word)| words[light as usize] = word);
+    }
 }
 
 /// The bit of a leaf's kind; no node has an index as large.
@@ -64,7 +71,7 @@ impl BvhLightSampler {
         assert!(lights.len() <= Self::MAX_LIGHTS, "too many lights for a tree");
         let mut infinite = Vec::new();
         let mut bounded = Vec::new();
-        let mut trails = vec![Trail::NOWHERE; lights.len()];
+        let mut trails = Trails([Trails::NOWHERE, Trails::ELSEWHERE].map(|word| vec![word; lights.len()]));
         for light in lights.iter() {
             if cancel.load(Ordering::Relaxed) {
                 return None;
@@ -73,7 +80,7 @@ impl BvhLightSampler {
             match light.bounds() {
                 None => {
                     infinite.push(id.0);
-                    trails[id.0 as usize] = Trail::INFINITE;
+                    trails.set(id.0, [Trails::INFINITE, Trails::ELSEWHERE]);
                 }
                 Some(bounds) if bounds.phi > 0.0 => bounded.push((id, bounds)),
                 Some(_) => {}
@@ -93,7 +100,9 @@ impl BvhLightSampler {
     fn store_trails(&mut self, node: usize, trail: u64, depth: u32) {
         match self.kinds.get(node) {
             None => (),
-            Some(&kind) if kind >= LEAF => self.trails[(kind & !LEAF) as usize] = Trail(trail),
+            Some(&kind) if kind >= LEAF => {
+                self.trails.set(kind & !LEAF, [trail as u32, (trail >> 32) as u32]);
+            }
             Some(&right) => {
                 self.store_trails(node + 1, trail, depth + 1);
                 self.store_trails(right as usize, trail | (1 << depth), depth + 1);
@@ -195,28 +204,49 @@ impl BvhLightSampler {
         valid.then_some((LightId(light), pmf))
     }
 
-    pub(super) fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
-        let mut trail = match self.trails[light.0 as usize] {
-            Trail::NOWHERE => return 0.0,
-            Trail::INFINITE => return self.infinite_probability() / self.infinite.len() as f32,
-            Trail(trail) => trail,
-        };
-        let (mut pmf, mut node) = (self.tree_probability::<f32>(context), 0);
-        while self.kinds[node as usize] < LEAF {
-            let mut children = [node + 1, self.kinds[node as usize]];
-            if trail & 1 == 1 {
-                children.swap(0, 1);
-            }
-            let [way, other] = children;
-            let importance = self.importance::<f32>(way, context);
-            if importance == 0.0 {
-                return 0.0;
-            }
-            pmf *= importance / (importance + self.importance::<f32>(other, context));
-            node = way;
-            trail >>= 1;
+    /// See [`LightSampler::pmf_lanes`](super::LightSampler::pmf_lanes).
+    #[inline(always)]
+    pub(super) fn pmf_lanes<R: Real>(
+        &self,
+        context: &LightSampleContext<R>,
+        lights: R::Int,
+        active: R::Mask,
+    ) -> R {
+        let (zero, root) = (R::zero(), R::Int::splat(0));
+        if !active.any() {
+            return zero;
         }
-        pmf
+        let lights = R::Int::select(active, lights, root);
+        let [low, high] =
+            [R::Int::gather(&self.trails.0[0], lights), R::Int::gather(&self.trails.0[1], lights)];
+        let in_tree = active & high.lt(R::Int::splat(Trails::ELSEWHERE));
+        let is_infinite = low.eq(R::Int::splat(Trails::INFINITE));
+        let share = self.infinite_probability() / self.infinite.len().max(1) as f32;
+        let mut pmf = R::select(is_infinite, R::splat(share), zero);
+        if !in_tree.any() {
+            return pmf;
+        }
+        pmf = R::select(in_tree, self.tree_probability(context), pmf);
+        let (mut descends, mut node, mut trail, mut depth) = (in_tree, root, low, 0);
+        loop {
+            let kind = R::Int::gather(&self.kinds, node);
+            descends = descends & kind.lt(R::Int::splat(LEAF));
+            if !descends.any() {
+                return pmf;
+            }
+            // Lanes that have arrived read the first node, and keep their own.
+            let left = R::Int::select(descends, node.wrapping_add(R::Int::splat(1)), root);
+            let right = R::Int::select(descends, kind, root);
+            let goes_left = (trail & R::Int::splat(1)).eq(R::Int::splat(0));
+            let (a, b) = (self.importance(left, context), self.importance(right, context));
+            let importance = R::select(goes_left, a, b);
+            let chosen = R::select(importance.eq(zero), zero, importance / (a + b));
+            pmf = R::select(descends, pmf * chosen, pmf);
+            descends = descends & chosen.gt(zero);
+            node = R::Int::select(descends, R::Int::select(goes_left, left, right), node);
+            depth += 1;
+            trail = if depth == 32 { high } else { trail.shr(1) };
+        }
     }
 }
 

@@ -83,10 +83,16 @@ impl LightSampler {
     /// The probability with which `light` is chosen for the point `context`.
     #[inline]
     pub fn pmf(&self, context: &LightSampleContext, light: LightId) -> f32 {
+        self.pmf_lanes::<f32>(context, light.0, true)
+    }
+
+    /// [`pmf`](Self::pmf) for each lane of `active`. All lanes have the same as alone.
+    #[inline(always)]
+    pub fn pmf_lanes<R: Real>(&self, context: &LightSampleContext<R>, lights: R::Int, active: R::Mask) -> R {
         match self {
-            Self::Uniform(s) => s.pmf(),
-            Self::Power(s) => s.pmf(light),
-            Self::Bvh(s) => s.pmf(context, light),
+            Self::Uniform(s) => R::splat(s.pmf()),
+            Self::Power(s) => s.pmf_lanes(lights, active),
+            Self::Bvh(s) => s.pmf_lanes(context, lights, active),
         }
     }
 }

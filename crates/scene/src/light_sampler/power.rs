@@ -53,4 +53,17 @@ impl PowerLightSampler {
         }
         (R::Int::load(&lights), R::load(&pmf), R::Mask::from_bits(valid))
     }
+
+    /// See [`LightSampler::pmf_lanes`](super::LightSampler::pmf_lanes).
+    #[inline(always)]
+    pub(super) fn pmf_lanes<R: Real>(&self, lights: R::Int, active: R::Mask) -> R {
+        let (lights, active) = (lights.to_array(), active.bits());
+        let mut pmf = [0.0; MAX_LANES];
+        for (lane, &light) in lights[..R::LANES].iter().enumerate() {
+            if active >> lane & 1 == 1 {
+                pmf[lane] = self.pmf(LightId(light));
+            }
+        }
+        R::load(&pmf)
+    }
 }

@@ -82,6 +82,17 @@ impl Material {
             Self::Mix(_) | Self::Interface => None,
         }
     }
+
+    /// Whether a path that does not scatter ends there with its wavelengths as they are: no ray
+    /// passes through the material, and it is not dispersive.
+    pub fn stops(&self) -> bool {
+        match self {
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Conductor(_) => true,
+            Self::Dielectric(m) => !is_dispersive(&m.eta),
+            Self::ThinDielectric(m) => !is_dispersive(&m.eta),
+            Self::Mix(_) | Self::Interface => false,
+        }
+    }
 }
 
 /// A material with its normal map: a row of the scene's [table of
@@ -127,9 +138,15 @@ fn chosen<'a>(
 #[inline(always)]
 fn dispersed_index<R: Real>(eta: &Spectrum, lambda: &mut SampledWavelengths<R>) -> R {
     let index = eta.at(lambda.lambda()[0]);
-    if !matches!(eta, Spectrum::Constant(_)) {
+    if is_dispersive(eta) {
         lambda.terminate_secondary();
     }
     // A spectrum is zero outside of its table, where the index is unknown.
     R::select(index.eq(R::zero()), R::one(), index)
+}
+
+/// Whether an index of refraction varies with the wavelength.
+#[inline(always)]
+fn is_dispersive(eta: &Spectrum) -> bool {
+    !matches!(eta, Spectrum::Constant(_))
 }

@@ -5,7 +5,7 @@ use alhazen_scene::Scene;
 use alhazen_scene::light::{LightId, LightSampleContext};
 use alhazen_scene::light_sampler::LightSampler;
 use description::{InfiniteRadiance, LightKind, LightSamplerDesc, SceneDesc};
-use lanes::{InstructionSet, Kernel, Mask, Real};
+use lanes::{InstructionSet, Int, Kernel, Mask, Real};
 use math::{Point3Error, Vec3};
 use std::sync::atomic::AtomicBool;
 use testkit::Random;
@@ -53,12 +53,15 @@ fn contexts(scene: &Scene, count: usize) -> Vec<LightSampleContext> {
     contexts
 }
 
-type Choice = Option<(LightId, u32)>;
+/// A light, and the bits of the probability of its choice, and of that of a given light.
+type Choice = Option<(LightId, u32, u32)>;
 
 struct Choose<'a> {
     sampler: &'a LightSampler,
     contexts: &'a [LightSampleContext],
     u: &'a [f32],
+    /// The lights whose probabilities are asked for.
+    lights: &'a [u32],
     /// Bit i: whether each i-th of sixteen points chooses.
     active: u32,
 }
@@ -81,10 +84,11 @@ impl Kernel for Choose<'_> {
             let context = LightSampleContext { p: Point3Error::exact(p), n, ns: n, time: R::splat(TIME) };
             let active = R::Mask::from_bits(self.active >> (first % 16) & ((1 << R::LANES) - 1));
             let (lights, pmf, valid) = self.sampler.sample_lanes(&context, R::load(&self.u[first..]), active);
-            let (lights, pmf) = (lanes::Int::to_array(lights), pmf.to_array());
+            let given = self.sampler.pmf_lanes(&context, R::Int::load(&self.lights[first..]), valid);
+            let (lights, pmf, given) = (lights.to_array(), pmf.to_array(), given.to_array());
             for (lane, choice) in choices[first..first + R::LANES].iter_mut().enumerate() {
                 if valid.bits() >> lane & 1 == 1 {
-                    *choice = Some((LightId(lights[lane]), pmf[lane].to_bits()));
+                    *choice = Some((LightId(lights[lane]), pmf[lane].to_bits(), given[lane].to_bits()));
                 }
             }
         }
@@ -100,16 +104,23 @@ fn lanes_choose_as_each_alone() {
         let contexts = contexts(&scene, 1024);
         let mut u: Vec<f32> = contexts.iter().map(|_| random.get_1d()).collect();
         (u[1], u[2]) = (0.0, math::ONE_MINUS_EPSILON);
+        let count = scene.lights().len() as f32;
+        let given: Vec<u32> = contexts.iter().map(|_| (random.get_1d() * count) as u32).collect();
         for kind in [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh] {
             let sampler = scene.light_sampler(kind, &AtomicBool::new(false)).expect("nobody cancels it");
             let active = 0xbe7f;
             let alone: Vec<Choice> = (0..u.len())
                 .map(|i| sampler.sample(&contexts[i], u[i]).filter(|_| active >> (i % 16) & 1 == 1))
-                .map(|choice| choice.map(|(light, pmf)| (light, pmf.to_bits())))
+                .enumerate()
+                .map(|(i, choice)| {
+                    let (light, pmf) = choice?;
+                    assert!((sampler.pmf(&contexts[i], light) / pmf - 1.0).abs() < 1e-5);
+                    Some((light, pmf.to_bits(), sampler.pmf(&contexts[i], LightId(given[i])).to_bits()))
+                })
                 .collect();
             assert_eq!(alone.iter().any(Option::is_some), bounded + infinite > 0);
             for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
-                let choose = Choose { sampler: &sampler, contexts: &contexts, u: &u, active };
+                let choose = Choose { sampler: &sampler, contexts: &contexts, u: &u, lights: &given, active };
                 let chosen = set.dispatch(choose);
                 assert!(chosen == alone, "{bounded} and {infinite} lights, {kind:?}, {set:?}");
             }

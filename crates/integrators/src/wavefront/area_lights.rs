@@ -1,0 +1,134 @@
+//! The lights that are sampled, and shine, in lanes: triangles and rectangles of one colour.
+
+use geometry::{FlatShape, Hit};
+use lanes::{Int, Mask, Real};
+use math::{Normal3, Vec3, Vector3};
+use scene::Scene;
+use scene::light::{Light, LightId};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+/// Scenes with more lights sample all of them one by one, so that the table stays small.
+const MAX_LIGHTS: usize = 1 << 16;
+
+/// Numbers of a row: corner, sides, normal, scale of the emission, and 1 for triangles.
+const NUMBERS: usize = 14;
+
+/// The triangles and rectangles among the lights of a scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AreaLights {
+    /// The row of each light; [`NONE`](Self::NONE) for those not in the table.
+    row: Vec<u32>,
+    numbers: Vec<f32>,
+    /// The emission of each row.
+    emission: Vec<u32>,
+}
+
+impl AreaLights {
+    /// The row of lights that are not in the table.
+    const NONE: u32 = u32::MAX;
+
+    /// Those of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut table = Self::default();
+        if scene.lights().len() > MAX_LIGHTS {
+            return table;
+        }
+        for light in scene.lights().iter() {
+            let row = table.emission.len() as u32;
+            let added = table.add(scene, light.row(), light.primitive());
+            table.row.push(if added.is_some() { row } else { Self::NONE });
+        }
+        table
+    }
+
+    fn add(&mut self, scene: &Scene, light: &Light, primitive: u32) -> Option<()> {
+        let Light::Area(area) = light else { return None };
+        let emission = &scene.emissions()[area.emission.0 as usize];
+        let is_plain = emission.image.is_none() && !area.invisible && area.alpha.is_none();
+        if !is_plain || !area.instance.is_top() {
+            return None;
+        }
+        let shape = scene.world().geometry(area.geometry).shape(primitive)?.flat_shape()?;
+        let scale = area.scales.as_ref().map_or(emission.radiance.scale, |scales| scales[primitive as usize]);
+        for v in [shape.corner, shape.sides[0], shape.sides[1], shape.n] {
+            self.numbers.extend(v.to_array());
+        }
+        self.numbers.extend([scale, if shape.is_triangle { 1.0 } else { 0.0 }]);
+        self.emission.push(area.emission.0);
+        Some(())
+    }
+
+    /// The light of a hit, if it is in the table.
+    #[inline]
+    pub fn light_of(&self, scene: &Scene, hit: &Hit) -> Option<LightId> {
+        let first = scene.geometries()[hit.geometry.0 as usize].first_light?;
+        let light = first + hit.primitive;
+        let is_row = hit.instance.is_top() && self.row.get(light as usize).is_some_and(|&r| r != Self::NONE);
+        is_row.then_some(LightId(light))
+    }
+
+    /// The rows of these lights, and the lanes of `mask` whose lights are in the table; the rows
+    /// of others are 0.
+    #[inline(always)]
+    pub fn rows<R: Real>(&self, lights: R::Int, mask: R::Mask) -> (R::Int, R::Mask) {
+        if self.emission.is_empty() {
+            return (R::Int::splat(0), R::Mask::splat(false));
+        }
+        let rows = R::Int::gather(&self.row, R::Int::select(mask, lights, R::Int::splat(0)));
+        let is_row = mask & !rows.eq(R::Int::splat(Self::NONE));
+        (R::Int::select(is_row, rows, R::Int::splat(0)), is_row)
+    }
+
+    /// The shapes of these rows.
+    #[inline(always)]
+    pub fn shapes<R: Real>(&self, rows: R::Int) -> FlatShape<R> {
+        FlatShape {
+            corner: self.vector::<R>(rows, 0),
+            sides: [self.vector::<R>(rows, 3), self.vector::<R>(rows, 6)],
+            n: self.vector::<R>(rows, 9),
+            is_triangle: self.number::<R>(rows, 13).gt(R::zero()),
+        }
+    }
+
+    /// The radiance of these rows along `w` from points with the normals `n` of their shapes, in
+    /// the lanes of a mask; zero elsewhere.
+    #[inline(always)]
+    pub fn radiance<R: Real>(
+        &self,
+        scene: &Scene,
+        rows: R::Int,
+        (n, w): (Normal3<R>, Vector3<R>),
+        lambda: &SampledWavelengths<R>,
+        mask: R::Mask,
+    ) -> SampledSpectrum<R> {
+        let ids = R::Int::gather(&self.emission, rows);
+        let is_outside = n.dot(w).ge(R::zero());
+        let mut radiance = SampledSpectrum::splat(R::zero());
+        let mut left = mask;
+        while left.any() {
+            let id = ids.to_array()[left.bits().trailing_zeros() as usize % R::LANES];
+            let same = left & ids.eq(R::Int::splat(id));
+            left = left & !same;
+            let emission = &scene.emissions()[id as usize];
+            let emits = if emission.two_sided { same } else { same & is_outside };
+            let l = emission.radiance.spectrum.sample(lambda);
+            radiance = SampledSpectrum::select(emits, l, radiance);
+        }
+        radiance * self.number::<R>(rows, 12)
+    }
+
+    #[inline(always)]
+    fn number<R: Real>(&self, rows: R::Int, column: u32) -> R {
+        let first = rows.wrapping_mul(R::Int::splat(NUMBERS as u32));
+        R::gather(&self.numbers, first.wrapping_add(R::Int::splat(column)))
+    }
+
+    #[inline(always)]
+    fn vector<R: Real>(&self, rows: R::Int, column: u32) -> Vector3<R> {
+        Vec3::new(
+            self.number::<R>(rows, column),
+            self.number::<R>(rows, column + 1),
+            self.number::<R>(rows, column + 2),
+        )
+    }
+}

@@ -1,0 +1,82 @@
+//! Light that paths find by hitting the lights of [`AreaLights`](super::area_lights::AreaLights).
+
+use geometry::Hit;
+use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
+use math::{Point3Error, Vec2};
+use scene::light::LightSampleContext;
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::columns::Rows;
+use super::pass::Pass;
+use super::paths::Paths;
+use crate::transport::direct::power_heuristic;
+
+/// A hit of a light of the table.
+pub(super) struct LightHit {
+    /// The path.
+    pub row: u32,
+    /// The index of its hit.
+    pub turn: u32,
+    /// The light.
+    pub light: u32,
+}
+
+/// Adds the emission of the lights that paths have hit, with the weights of
+/// [`DirectLighting::emitted`](crate::transport::direct::DirectLighting::emitted).
+pub(super) struct Emit<'a, 'b> {
+    pub pass: Pass<'a>,
+    pub hits: &'b [Option<Hit>],
+    pub found: &'b [LightHit],
+    pub paths: &'b mut Paths,
+}
+
+impl Kernel for Emit<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(mut self) {
+        for found in self.found.chunks(R::LANES) {
+            self.add::<R>(found);
+        }
+    }
+}
+
+impl Emit<'_, '_> {
+    #[inline(always)]
+    fn add<R: Real>(&mut self, found: &[LightHit]) {
+        let ([mut x, mut y], mut queue, mut lights) = ([[0.0; MAX_LANES]; 2], [0; MAX_LANES], [0; MAX_LANES]);
+        for (lane, &LightHit { row, turn, light }) in found.iter().enumerate() {
+            let hit = self.hits[turn as usize].as_ref().expect("invariant: lights are hit");
+            (x[lane], y[lane]) = (hit.uv.x, hit.uv.y);
+            (queue[lane], lights[lane]) = (row, light);
+        }
+        let rows = Rows::<R>::first(&queue[..found.len()]);
+        let uv = Vec2::new(R::load(&x), R::load(&y));
+        let lights = R::Int::load(&lights);
+
+        let (Pass { direct, area_lights, pixels, .. }, paths) = (self.pass, &mut *self.paths);
+        let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
+        let shapes = area_lights.shapes::<R>(table_rows);
+        let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
+        let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+        let wo = -paths.direction.vector(rows);
+        let l = area_lights.radiance(pixels.scene, table_rows, (shapes.n, wo), &lambda, active);
+        let is_lit = active & !l.is_black();
+
+        let pdf = R::gather(&paths.pdf, rows.indices);
+        let is_weighted = is_lit & pdf.gt(R::zero());
+        let mut weight = R::one();
+        if is_weighted.any() {
+            let [p, error, n, ns] = &paths.vertex;
+            let p = Point3Error::new(p.vector(rows), error.vector(rows));
+            let time = R::gather(&paths.time, rows.indices);
+            let context = LightSampleContext { p, n: n.vector(rows), ns: ns.vector(rows), time };
+            let pmf = direct.lights().pmf_lanes(&context, lights, is_weighted);
+            let other = pmf * shapes.pdf_from(&context, uv);
+            weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
+        }
+        let beta = paths.beta.spectrum::<R>(rows);
+        let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + beta * (l * weight);
+        paths.l.set(rows, is_lit, sum.0);
+    }
+}
