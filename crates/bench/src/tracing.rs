@@ -7,7 +7,7 @@ use crate::mesh::BenchMesh;
 use crate::rays::{Answer, BenchRay, Query, RaySet, ray_sets};
 use crate::table::{Table, ratios};
 use crate::timing::in_turn;
-use geometry::{BuildQuality, Hit, RayStats, World};
+use geometry::{BuildQuality, Hit, HitColumns, RayBuffer, RayColumns, RayStats, World};
 use math::Ray;
 use std::error::Error;
 
@@ -132,12 +132,16 @@ pub fn trace(world: &World, set: &RaySet) -> Answer {
 pub fn trace_batches(world: &World, set: &RaySet, size: usize) -> Answer {
     let mut answer = Answer::default();
     let stats = &mut RayStats::default();
-    let (mut hits, mut occluded) = (vec![None; size], vec![false; size]);
-    for rays in set.rays.chunks(size) {
+    let (mut hits, mut occluded) = (HitColumns::default(), vec![false; size]);
+    let all: RayBuffer = set.rays.iter().copied().collect();
+    let all = all.columns();
+    for rows in all.rows.chunks(size) {
+        let rays = RayColumns { rows, ..all };
         match set.query {
             Query::Closest => {
-                world.intersect_batch(rays, &keep_all, &mut hits[..rays.len()], stats);
-                hits[..rays.len()].iter().flatten().for_each(|hit| answer.add(hit.t));
+                world.intersect_batch(rays, &keep_all, &mut hits, stats);
+                let found = hits.t.iter().zip(&hits.geometry).filter(|(_, id)| **id != HitColumns::NONE);
+                found.for_each(|(t, _)| answer.add(*t));
             }
             Query::Any => {
                 world.occluded_batch(rays, &keep_all, &mut occluded[..rays.len()], stats);

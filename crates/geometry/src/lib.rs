@@ -11,6 +11,7 @@
 
 mod bvh;
 mod curve;
+mod facet;
 mod flat_shape;
 mod patch;
 mod placement;
@@ -25,7 +26,7 @@ pub use bvh::BuildQuality;
 pub use curve::{CurveProfile, CurveSegment, Curves, SplineBasis, bezier_segments};
 pub use flat_shape::FlatShape;
 pub use lanes::InstructionSet;
-pub use patch::{Patch, PatchLanes, PatchPoints};
+pub use patch::{Patch, PatchPoints};
 pub use shape::{
     BilinearPatch, Cone, Cylinder, Disk, Formula, FormulaError, Hyperboloid, Implicit, MeshAttributes,
     MeshError, MovingMesh, MovingTriangle, Operation, Paraboloid, Plane, Shape, ShapeHit, ShapeSample,
@@ -35,6 +36,6 @@ pub use sphere_set::{SphereSet, SphereSetError};
 pub use surface::{Shading, SurfacePoint};
 pub use tessellation::{MeshArrays, displaced, loop_subdivision};
 pub use world::{
-    Geometry, GeometryId, GroupId, Hit, Instance, InstanceId, InstancePath, RayStats, RefitError, World,
-    WorldBuilder,
+    AcceptAll, Filter, Geometry, GeometryId, GroupId, Hit, HitColumns, Instance, InstanceId, InstancePath,
+    PointColumns, RayBuffer, RayColumns, RayStats, RefitError, World, WorldBuilder,
 };

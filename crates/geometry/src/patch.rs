@@ -1,11 +1,10 @@
 //! Triangles and bilinear patches as plain data, from which lanes compute surface points.
 
-use crate::surface::any_tangents;
-use lanes::{MAX_LANES, Real};
-use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, face_forward, gamma};
+use lanes::{Each, Real};
+use math::{Normal3, Point3, Point3Error, Vec2, Vec3, Vector3, coordinate_system, face_forward, gamma};
 
 /// A triangle or a bilinear patch, `p(a, b) = corner + a·sides[0] + b·sides[1] + a·b·twist`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patch {
     /// p(0, 0).
     pub corner: Point3,
@@ -17,8 +16,6 @@ pub struct Patch {
     pub normals: Option<[Normal3; 3]>,
     /// Texture coordinates at p(0, 0), p(1, 0) and p(0, 1).
     pub uv: [Vec2; 3],
-    /// ∂p/∂u at p(0, 0).
-    pub dpdu: Vector3,
     /// Whether the outside is not on the side of `sides[0] × sides[1]`.
     pub flips: bool,
 }
@@ -38,88 +35,106 @@ pub struct PatchPoints<R: Real> {
     pub dpdu: Vector3<R>,
 }
 
-/// Primitives, one for each lane, with the parameters of the hits.
-#[derive(Clone, Debug)]
-pub struct PatchLanes {
-    values: [[f32; MAX_LANES]; Self::COLUMNS],
+/// Triangles or patches, one in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct PatchLanes<R: Real> {
+    pub corner: Point3<R>,
+    pub sides: [Vector3<R>; 2],
+    /// `None` where no lane has any.
+    pub twist: Option<Vector3<R>>,
+    /// Zero in lanes without shading normals; `None` where no lane has any.
+    pub normals: Option<[Normal3<R>; 3]>,
+    pub uv: [Vec2<R>; 3],
+    /// −1 where the outside is not on the side of `sides[0] × sides[1]`, else 1.
+    pub sign: R,
 }
 
-impl PatchLanes {
-    /// Corner, sides, normals, ∂p/∂u, twist, parameters, the signs of the normals, texture
-    /// coordinates.
-    const COLUMNS: usize = 3 + 6 + 9 + 3 + 3 + 2 + 1 + 6;
-
-    /// No primitives.
+impl<R: Real> PatchLanes<R> {
+    /// The same in all lanes.
     #[inline(always)]
-    pub fn new() -> Self {
-        Self { values: [[0.0; MAX_LANES]; Self::COLUMNS] }
-    }
-
-    /// Sets a lane.
-    #[inline]
-    pub fn set(&mut self, lane: usize, patch: &Patch, uv: Vec2) {
-        let normals = patch.normals.unwrap_or([Vec3::ZERO; 3]);
-        let Patch { corner, sides, dpdu, twist, .. } = *patch;
-        let vectors = [corner, sides[0], sides[1], normals[0], normals[1], normals[2], dpdu, twist];
-        for (i, v) in vectors.into_iter().enumerate() {
-            for (axis, value) in v.to_array().into_iter().enumerate() {
-                self.values[3 * i + axis][lane] = value;
-            }
-        }
-        let sign = if patch.flips { -1.0 } else { 1.0 };
-        let [st0, st1, st2] = patch.uv;
-        let numbers = [uv.x, uv.y, sign, st0.x, st0.y, st1.x, st1.y, st2.x, st2.y];
-        for (i, value) in numbers.into_iter().enumerate() {
-            self.values[3 * vectors.len() + i][lane] = value;
+    pub fn splat(patch: &Patch) -> Self {
+        let [right, up] = patch.sides;
+        let [a, b, c] = patch.uv;
+        let normals = match patch.normals {
+            Some(normals) => Some(normals.each(Vec3::broadcast)),
+            None => None,
+        };
+        let twist = if patch.twist == Vec3::ZERO { None } else { Some(Vec3::broadcast(patch.twist)) };
+        Self {
+            corner: Vec3::broadcast(patch.corner),
+            sides: [Vec3::broadcast(right), Vec3::broadcast(up)],
+            twist,
+            normals,
+            uv: [Vec2::broadcast(a), Vec2::broadcast(b), Vec2::broadcast(c)],
+            sign: R::splat(if patch.flips { -1.0 } else { 1.0 }),
         }
     }
 
+    /// `a` where the mask is true, else `b`.
     #[inline(always)]
-    fn number<R: Real>(&self, column: usize) -> R {
-        R::load(&self.values[column])
+    pub fn select(mask: R::Mask, a: &Self, b: &Self) -> Self {
+        let none = Vec3::splat(R::zero());
+        let twist = match (a.twist, b.twist) {
+            (None, None) => None,
+            (a, b) => Some(Vec3::select(mask, a.unwrap_or(none), b.unwrap_or(none))),
+        };
+        let normals = match (a.normals, b.normals) {
+            (None, None) => None,
+            (a, b) => Some(select_each(mask, a.unwrap_or([none; 3]), b.unwrap_or([none; 3]))),
+        };
+        let [right, up] = [0, 1].each(|side: usize| Vec3::select(mask, a.sides[side], b.sides[side]));
+        Self {
+            corner: Vec3::select(mask, a.corner, b.corner),
+            sides: [right, up],
+            twist,
+            normals,
+            uv: [0, 1, 2].each(|corner: usize| Vec2::select(mask, a.uv[corner], b.uv[corner])),
+            sign: R::select(mask, a.sign, b.sign),
+        }
     }
 
+    /// The points with parameters (a, b), and a mask of those that have a normal.
     #[inline(always)]
-    fn pair<R: Real>(&self, first: usize) -> Vec2<R> {
-        Vec2::new(self.number(first), self.number(first + 1))
-    }
-
-    #[inline(always)]
-    fn vector<R: Real>(&self, first: usize) -> Vector3<R> {
-        Vec3::new(self.number(first), self.number(first + 1), self.number(first + 2))
-    }
-
-    /// The points of the hits.
-    #[inline(always)]
-    pub fn points<R: Real>(&self) -> PatchPoints<R> {
-        let (corner, sides) = (self.vector::<R>(0), [self.vector::<R>(3), self.vector::<R>(6)]);
-        let normals = [self.vector::<R>(9), self.vector::<R>(12), self.vector::<R>(15)];
-        let (dpdu, twist) = (self.vector::<R>(18), self.vector::<R>(21));
-        let (a, b, sign) = (self.number::<R>(24), self.number::<R>(25), self.number::<R>(26));
-        let [along, across, twisted] = [sides[0] * a, sides[1] * b, twist * (a * b)];
-        let size = corner.abs() + along.abs() + across.abs() + twisted.abs();
-        let p = Point3Error::new(corner + along + across + twisted, size * R::splat(gamma(5)));
-        let cross = (sides[0] + twist * b).cross(sides[1] + twist * a);
-        let n = cross.normalize() * sign;
+    pub fn points(&self, a: R, b: R) -> (PatchPoints<R>, R::Mask) {
+        let Self { corner, sides: [right, up], .. } = *self;
+        let [along, across] = [right * a, up * b];
+        let (mut p, mut size) = (corner + along + across, corner.abs() + along.abs() + across.abs());
+        let [mut du, mut dv] = [right, up];
+        if let Some(twist) = self.twist {
+            let twisted = twist * (a * b);
+            (p, size) = (p + twisted, size + twisted.abs());
+            (du, dv) = (du + twist * b, dv + twist * a);
+        }
+        let p = Point3Error::new(p, size * R::splat(gamma(5)));
+        let cross = du.cross(dv);
+        let squared = cross.length_squared();
+        let side = cross / squared.sqrt();
+        let mut n = side * self.sign;
         let c = R::one() - a - b;
-        let uv = self.pair(27) * c + self.pair(29) * a + self.pair(31) * b;
-        let mixed = normals[0] * c + normals[1] * a + normals[2] * b;
-        let (ns, is_smooth) = mixed.normalize_masked();
-        let ns = Vec3::select(is_smooth, ns, n);
-        PatchPoints { p, n: face_forward(n, ns), ns, uv, dpdu: dpdu + twist * b }
+        let mut ns = n;
+        if let Some(normals) = self.normals {
+            let (mixed, is_smooth) = (normals[0] * c + normals[1] * a + normals[2] * b).normalize_masked();
+            ns = Vec3::select(is_smooth, mixed, n);
+            n = face_forward(n, ns);
+        }
+        let uv = self.uv[0] * c + self.uv[1] * a + self.uv[2] * b;
+        let points = PatchPoints { p, n, ns, uv, dpdu: tangent([du, dv], &self.uv, side) };
+        (points, squared.ge(R::splat(f32::MIN_POSITIVE)))
     }
 }
 
-impl Default for PatchLanes {
-    fn default() -> Self {
-        Self::new()
-    }
+#[inline(always)]
+fn select_each<R: Real>(mask: R::Mask, a: [Vector3<R>; 3], b: [Vector3<R>; 3]) -> [Vector3<R>; 3] {
+    [Vec3::select(mask, a[0], b[0]), Vec3::select(mask, a[1], b[1]), Vec3::select(mask, a[2], b[2])]
 }
 
-/// ∂p/∂u of a triangle by its texture coordinates, or any tangent.
-pub(crate) fn tangent(sides: [Vector3; 2], uv: &[Vec2; 3], n: Normal3) -> Vector3 {
-    let (du, dv) = (uv[1] - uv[0], uv[2] - uv[0]);
-    let determinant = du.x * dv.y - dv.x * du.y;
-    let dpdu = (sides[0] * dv.y - sides[1] * du.y) / determinant;
-    if dpdu.is_finite() && dpdu.length_squared() > 0.0 { dpdu } else { any_tangents(n)[0] }
+/// ∂p/∂u by the texture coordinates of the corners, or any tangent where they have no area.
+#[inline(always)]
+fn tangent<R: Real>([du, dv]: [Vector3<R>; 2], uv: &[Vec2<R>; 3], n: Normal3<R>) -> Vector3<R> {
+    let (st_du, st_dv) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let determinant = st_du.x * st_dv.y - st_dv.x * st_du.y;
+    let dpdu = (du * st_dv.y - dv * st_du.y) / determinant;
+    let squared = dpdu.length_squared();
+    let is_tangent = squared.gt(R::zero()) & squared.lt(R::splat(f32::INFINITY));
+    Vec3::select(is_tangent, dpdu, coordinate_system(n).0)
 }

@@ -63,6 +63,17 @@ pub trait Real:
     /// `a` where the mask is true, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
+    /// Appends the lanes where the mask is true.
+    #[inline(always)]
+    fn append(self, mask: Self::Mask, to: &mut Vec<f32>) {
+        let mut bits = [0; MAX_LANES];
+        let count = self.to_bits().compress(mask, &mut bits);
+        let len = to.len();
+        to.resize(len + Self::LANES, 0.0);
+        Self::from_bits(Self::Int::load(&bits)).store(&mut to[len..]);
+        to.truncate(len + count);
+    }
+
     /// |`self`|.
     fn abs(self) -> Self;
 
@@ -222,6 +233,15 @@ pub trait Int:
             count += (bits >> lane & 1) as usize;
         }
         count
+    }
+
+    /// Appends the lanes where the mask is true.
+    #[inline(always)]
+    fn append(self, mask: Self::Mask, to: &mut Vec<u32>) {
+        let len = to.len();
+        to.resize(len + Self::Real::LANES, 0);
+        let count = self.compress(mask, &mut to[len..]);
+        to.truncate(len + count);
     }
 
     /// The sum modulo 2³².

@@ -13,7 +13,7 @@ use crate::texture::{FloatTextureId, TextureContext, Textures};
 use crate::traits::SceneTraits;
 use crate::view::View;
 use description::LightSamplerDesc;
-use geometry::{GeometryId, Hit, RayStats, SurfacePoint, World};
+use geometry::{Filter, GeometryId, Hit, HitColumns, RayColumns, RayStats, SurfacePoint, World};
 use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
 use scattering::{Bsdf, Diffuse};
@@ -171,7 +171,7 @@ impl Scene {
 
     /// The nearest hit at 0 < t < `t_max`.
     pub fn hit(&self, ray: &Ray, t_max: f32, stats: &mut RayStats) -> Option<Hit> {
-        self.world.intersect(ray, t_max, &|hit, ray| self.passes_alpha_test(hit, ray), stats)
+        self.world.intersect(ray, t_max, &self.visible(), stats)
     }
 
     /// Whether one of 64 × 64 camera rays, spread over a view of the given resolution, hits a
@@ -223,36 +223,36 @@ impl Scene {
 
     /// Whether an occluding surface lies at 0 < t < `t_max`.
     pub fn occluded(&self, ray: &Ray, t_max: f32, interfaces: Interfaces, stats: &mut RayStats) -> bool {
-        self.world.occluded(ray, t_max, &|hit, ray| self.stops(hit, ray, interfaces), stats)
+        self.world.occluded(ray, t_max, &self.stopping(interfaces), stats)
     }
 
-    /// [`hit`](Self::hit) for each ray and its `t_max`.
-    ///
-    /// # Panics
-    /// If `hits` and `rays` differ in length.
-    pub fn hit_batch(&self, rays: &[(Ray, f32)], hits: &mut [Option<Hit>], stats: &mut RayStats) {
-        self.world.intersect_batch(rays, &|hit, ray| self.passes_alpha_test(hit, ray), hits, stats);
+    /// [`hit`](Self::hit) for each ray.
+    pub fn hit_batch(&self, rays: RayColumns, hits: &mut HitColumns, stats: &mut RayStats) {
+        self.world.intersect_batch(rays, &self.visible(), hits, stats);
     }
 
-    /// [`occluded`](Self::occluded) for each ray and its `t_max`.
+    /// [`occluded`](Self::occluded) for each ray.
     ///
     /// # Panics
     /// If `occluded` and `rays` differ in length.
     pub fn occluded_batch(
         &self,
-        rays: &[(Ray, f32)],
+        rays: RayColumns,
         interfaces: Interfaces,
         occluded: &mut [bool],
         stats: &mut RayStats,
     ) {
-        let stops = |hit: &Hit, ray: &Ray| self.stops(hit, ray, interfaces);
-        self.world.occluded_batch(rays, &stops, occluded, stats);
+        self.world.occluded_batch(rays, &self.stopping(interfaces), occluded, stats);
     }
 
-    /// Whether a hit stops a shadow ray.
-    fn stops(&self, hit: &Hit, ray: &Ray, interfaces: Interfaces) -> bool {
-        let passes = interfaces == Interfaces::Pass && self.is_interface(hit, ray);
-        !passes && self.passes_alpha_test(hit, ray)
+    /// The hits that are visible.
+    fn visible(&self) -> Surfaces<'_> {
+        self.stopping(Interfaces::Stop)
+    }
+
+    /// The hits that stop shadow rays.
+    fn stopping(&self, interfaces: Interfaces) -> Surfaces<'_> {
+        Surfaces { scene: self, interfaces }
     }
 
     /// Whether the point or direction of a light sample is visible from a surface.
@@ -373,5 +373,27 @@ impl Scene {
         }
         let reflectance = bsdf.rho(s.wo, [(sampler.get_1d(), sampler.get_2d())]);
         Some(Bsdf::new(s.shading.n, s.shading.dpdu, Diffuse { reflectance }.into()))
+    }
+}
+
+/// The hits on surfaces that are not cut out by alpha, and on interfaces where these stop rays.
+struct Surfaces<'a> {
+    scene: &'a Scene,
+    interfaces: Interfaces,
+}
+
+impl Filter for Surfaces<'_> {
+    #[inline(always)]
+    fn accepts(&self, hit: &Hit, ray: &Ray) -> bool {
+        let passes = self.interfaces == Interfaces::Pass && self.scene.is_interface(hit, ray);
+        !passes && self.scene.passes_alpha_test(hit, ray)
+    }
+
+    fn concerns(&self, geometry: GeometryId) -> bool {
+        let entry = &self.scene.entries[geometry.0 as usize];
+        let material = &self.scene.materials[entry.material.0 as usize].material;
+        let may_pass =
+            self.interfaces == Interfaces::Pass && matches!(material, Material::Interface | Material::Mix(_));
+        may_pass || entry.alpha.is_some()
     }
 }

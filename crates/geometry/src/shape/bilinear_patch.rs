@@ -11,6 +11,7 @@
 //! sampled by solid angle and cosine there (`flat_shape.rs`).
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::facet::FacetFrame;
 use crate::flat_shape::{FlatShape, SeenRectangle};
 use crate::patch::Patch;
 use crate::placement::{ROUNDING, rounded};
@@ -228,7 +229,6 @@ impl BilinearPatch {
             twist,
             normals: None,
             uv: [Vec2::ZERO, Vec2::X, Vec2::Y],
-            dpdu: sides[0],
             flips: self.flips,
         })
     }
@@ -239,6 +239,25 @@ impl BilinearPatch {
         let n = self.outside(Vec2::ZERO);
         let is_flat = self.is_rectangle && self.image.is_none();
         is_flat.then_some(FlatShape { corner, sides, n, is_triangle: false })
+    }
+
+    /// For rays that are tested in lanes.
+    pub(crate) fn facet(&self) -> FacetFrame {
+        match &self.flat {
+            Some(flat) => FacetFrame {
+                corner: flat.corner,
+                sides: [flat.right, flat.up],
+                twist: DVec3::ZERO,
+                is_triangle: false,
+                beyond: flat.beyond[0].max(flat.beyond[1]),
+            },
+            None => {
+                let [corner, p10, p01, p11] = self.p.map(|p| p.as_dvec3());
+                let sides = [p10 - corner, p01 - corner];
+                let twist = p11 - p10 - sides[1];
+                FacetFrame { corner, sides, twist, is_triangle: false, beyond: 0.0 }
+            }
+        }
     }
 
     pub(super) fn area(&self) -> f32 {

@@ -188,6 +188,42 @@ impl TriangleMesh {
         self.positions[vertex as usize]
     }
 
+    /// The vertex indices of all triangles, one after another.
+    #[inline(always)]
+    pub(crate) fn all_indices(&self) -> &[u32] {
+        self.indices.as_flattened()
+    }
+
+    /// The positions of all vertices.
+    #[inline(always)]
+    pub(crate) fn positions(&self) -> &[Point3] {
+        &self.positions
+    }
+
+    /// The shading normals of all vertices.
+    #[inline(always)]
+    pub(crate) fn normals(&self) -> Option<&[Normal3]> {
+        self.normals.as_deref()
+    }
+
+    /// The texture coordinates of all vertices.
+    #[inline(always)]
+    pub(crate) fn uvs(&self) -> Option<&[Vec2]> {
+        self.uvs.as_deref()
+    }
+
+    /// Whether vertices have shading tangents.
+    #[inline(always)]
+    pub(crate) fn has_tangents(&self) -> bool {
+        self.tangents.is_some()
+    }
+
+    /// Whether the outside is where the corners run clockwise.
+    #[inline(always)]
+    pub(crate) fn flips(&self) -> bool {
+        self.flips
+    }
+
     /// Prefetches the indices of a triangle.
     #[inline(always)]
     pub(crate) fn prefetch_indices(&self, triangle: usize) {

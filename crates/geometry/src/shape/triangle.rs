@@ -4,8 +4,9 @@
 //! elsewhere by area.
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
+use crate::facet::FacetFrame;
 use crate::flat_shape::{FlatShape, SeenTriangle};
-use crate::patch::{Patch, tangent};
+use crate::patch::Patch;
 use crate::placement::{ROUNDING, rounded};
 use crate::surface::{Shading, SurfacePoint, any_tangents, barycentric, by_texture};
 use crate::watertight::Sheared;
@@ -80,9 +81,15 @@ impl Triangle {
         if self.s.is_some() || n.length_squared() < f32::MIN_POSITIVE {
             return None;
         }
-        let dpdu = tangent(sides, &self.uv, n);
         let twist = Vec3::ZERO;
-        Some(Patch { corner: self.p[0], sides, twist, normals: self.n, uv: self.uv, dpdu, flips: self.flips })
+        Some(Patch { corner: self.p[0], sides, twist, normals: self.n, uv: self.uv, flips: self.flips })
+    }
+
+    /// For rays that are tested in lanes.
+    pub(crate) fn facet(&self) -> FacetFrame {
+        let [corner, p1, p2] = self.p.map(|p| p.as_dvec3());
+        let sides = [p1 - corner, p2 - corner];
+        FacetFrame { corner, sides, twist: DVec3::ZERO, is_triangle: true, beyond: 0.0 }
     }
 
     pub(super) fn area(&self) -> f32 {

@@ -1,6 +1,7 @@
 //! Building a world from geometries and instances.
 
 use super::World;
+use super::facets::Facets;
 use super::geometry::{Geometry, GeometryId};
 use super::group::Group;
 use super::instance::{GroupId, Instance, InstanceId, InstancePath, PreparedInstance};
@@ -130,7 +131,9 @@ impl WorldBuilder {
         }
         let groups = groups.into_iter().flatten().collect();
         let instruction_set = InstructionSet::detect();
-        World { tables: Tables { groups, geometries, group_of, instances, instruction_set, extents } }
+        let Members { geometries: top, instances: placed } = &members[GroupId::TOP.0 as usize];
+        let facets = if placed.is_empty() { Facets::new(top, &geometries) } else { None };
+        World { tables: Tables { groups, geometries, group_of, instances, facets, instruction_set, extents } }
     }
 }
 

@@ -6,11 +6,16 @@
 
 mod batch;
 mod builder;
+mod columns;
 mod enumerate;
+mod facet_rays;
+mod facets;
+mod filter;
 mod geometry;
 mod group;
 mod hit;
 mod instance;
+mod points;
 mod query;
 mod ray_order;
 mod ray_packet;
@@ -23,9 +28,9 @@ mod triangle_block;
 mod triangle_numbering;
 mod triangles;
 
-use crate::patch::Patch;
-use crate::shape::{Shape, ShapeHit};
+use crate::shape::ShapeHit;
 use crate::surface::SurfacePoint;
+use facet_rays::FacetRay;
 use group::Group;
 use lanes::InstructionSet;
 use math::{AnimatedTransform, Bounds3, Ray};
@@ -34,9 +39,12 @@ use tables::Tables;
 use trace::Trace;
 
 pub use builder::WorldBuilder;
+pub use columns::{HitColumns, RayBuffer, RayColumns};
+pub use filter::{AcceptAll, Filter};
 pub use geometry::{Geometry, GeometryId};
 pub use hit::Hit;
 pub use instance::{GroupId, Instance, InstanceId, InstancePath};
+pub use points::PointColumns;
 pub use refit::RefitError;
 pub use stats::RayStats;
 
@@ -80,26 +88,25 @@ impl World {
         &self,
         ray: &Ray,
         t_max: f32,
-        filter: &impl Fn(&Hit, &Ray) -> bool,
+        filter: &impl Filter,
         stats: &mut RayStats,
     ) -> Option<Hit> {
         self.trace(ray, Nearest::new(ray, t_max, filter), stats)
     }
 
     /// Whether there is a hit at 0 < t < `t_max` that `filter` accepts.
-    pub fn occluded(
-        &self,
-        ray: &Ray,
-        t_max: f32,
-        filter: &impl Fn(&Hit, &Ray) -> bool,
-        stats: &mut RayStats,
-    ) -> bool {
+    pub fn occluded(&self, ray: &Ray, t_max: f32, filter: &impl Filter, stats: &mut RayStats) -> bool {
         self.trace(ray, Any::new(ray, t_max, filter), stats)
     }
 
     #[inline]
     fn trace<Q: Query>(&self, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
         stats.rays += 1;
+        if let Some(facets) = &self.tables.facets {
+            stats.primitives += facets.len() as u64;
+            FacetRay { tables: &self.tables, facets, ray, query: &mut query }.trace();
+            return query.answer();
+        }
         let mut trace = Trace { tables: &self.tables, ray, instance: InstancePath::TOP, stats };
         trace.group(self.tables.top(), &mut query);
         query.answer()
@@ -117,23 +124,6 @@ impl World {
     /// The surface at a hit of `ray`.
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         self.surface_within(hit.instance.ids(), ray, hit)
-    }
-
-    /// The primitive of a hit as plain data: a triangle, or a bilinear patch without attributes, of
-    /// the top group.
-    #[inline]
-    pub fn patch(&self, hit: &Hit) -> Option<Patch> {
-        if !hit.instance.is_top() {
-            return None;
-        }
-        match self.geometry(hit.geometry) {
-            Geometry::Mesh(mesh) => mesh.triangle(hit.primitive as usize).patch(),
-            Geometry::Shapes(shapes) => match &shapes[hit.primitive as usize] {
-                Shape::BilinearPatch(patch) => patch.patch(),
-                _ => None,
-            },
-            _ => None,
-        }
     }
 
     fn surface_within(&self, path: &[InstanceId], ray: &Ray, hit: &Hit) -> SurfacePoint {

@@ -3,6 +3,7 @@
 //! The answer does not depend on the order in which hits are offered: of hits at the same distance,
 //! the one with the first instance, geometry and primitive is the nearest.
 
+use super::filter::Filter;
 use super::hit::Hit;
 use math::Ray;
 
@@ -38,13 +39,13 @@ pub(super) struct Nearest<'a, F> {
     hit: Option<Hit>,
 }
 
-impl<'a, F: Fn(&Hit, &Ray) -> bool> Nearest<'a, F> {
+impl<'a, F: Filter> Nearest<'a, F> {
     pub fn new(ray: &'a Ray, t_max: f32, filter: &'a F) -> Self {
         Self { ray, filter, t_max, hit: None }
     }
 }
 
-impl<F: Fn(&Hit, &Ray) -> bool> Query for Nearest<'_, F> {
+impl<F: Filter> Query for Nearest<'_, F> {
     const ANY: bool = false;
 
     type Answer = Option<Hit>;
@@ -70,7 +71,7 @@ impl<F: Fn(&Hit, &Ray) -> bool> Query for Nearest<'_, F> {
     fn offer(&mut self, hit: Hit) -> bool {
         let is_nearer = hit.t < self.t_max
             || hit.t == self.t_max && self.hit.as_ref().is_some_and(|other| precedes(hit, other));
-        if is_nearer && (self.filter)(&hit, self.ray) {
+        if is_nearer && self.filter.accepts(&hit, self.ray) {
             self.t_max = hit.t;
             self.hit = Some(hit);
         }
@@ -94,13 +95,13 @@ pub(super) struct Any<'a, F> {
     found: bool,
 }
 
-impl<'a, F: Fn(&Hit, &Ray) -> bool> Any<'a, F> {
+impl<'a, F: Filter> Any<'a, F> {
     pub fn new(ray: &'a Ray, t_max: f32, filter: &'a F) -> Self {
         Self { ray, filter, t_max, found: false }
     }
 }
 
-impl<F: Fn(&Hit, &Ray) -> bool> Query for Any<'_, F> {
+impl<F: Filter> Query for Any<'_, F> {
     const ANY: bool = true;
 
     type Answer = bool;
@@ -124,7 +125,7 @@ impl<F: Fn(&Hit, &Ray) -> bool> Query for Any<'_, F> {
 
     #[inline(always)]
     fn offer(&mut self, hit: Hit) -> bool {
-        self.found = hit.t < self.t_max && (self.filter)(&hit, self.ray);
+        self.found = hit.t < self.t_max && self.filter.accepts(&hit, self.ray);
         self.found
     }
 }

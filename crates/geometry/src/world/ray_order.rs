@@ -4,7 +4,8 @@
 //! Rays are sorted along a Z-order curve through their origins [Morton 1966] by a radix sort.
 //! Sorted by direction first, consecutive rays would share fewer nodes.
 
-use math::{Bounds3, Ray};
+use super::columns::RayColumns;
+use math::{Bounds3, Vec3};
 
 /// Fewer rays share too few nodes to make up for the sort.
 const MIN_RAYS: usize = 1 << 14;
@@ -22,17 +23,18 @@ const CODE: u32 = 64 - 2 * DIGIT;
 
 /// The indices of all rays in the order of the curve; `None` where rays are few, or coherent as
 /// given.
-pub(super) fn coherent_order(rays: &[(Ray, f32)]) -> Option<Vec<usize>> {
+pub(super) fn coherent_order(rays: &RayColumns) -> Option<Vec<usize>> {
     if rays.len() < MIN_RAYS {
         return None;
     }
     let mut bounds = Bounds3::EMPTY;
     let mut path_length = 0.0;
-    let mut last = rays[0].0.o;
-    for (ray, _) in rays.iter().filter(|(ray, _)| ray.o.is_finite()) {
-        bounds = bounds.union(Bounds3::around([ray.o]));
-        path_length += ray.o.distance(last);
-        last = ray.o;
+    let origins = || (0..rays.len()).map(|place| rays.ray(place).o);
+    let mut last = rays.ray(0).o;
+    for o in origins().filter(|o| o.is_finite()) {
+        bounds = bounds.union(Bounds3::around([o]));
+        path_length += o.distance(last);
+        last = o;
     }
     let size = (bounds.max - bounds.min).max_element();
     if path_length <= rays.len() as f32 * COHERENT * size {
@@ -40,12 +42,12 @@ pub(super) fn coherent_order(rays: &[(Ray, f32)]) -> Option<Vec<usize>> {
     }
     let most = (1 << BITS) - 1;
     let scale = most as f32 / size;
-    let key = |(index, (ray, _)): (u64, &(Ray, f32))| {
+    let key = |(index, o): (u64, Vec3)| {
         // The cast makes NaN zero.
-        let [x, y, z] = ((ray.o - bounds.min) * scale).to_array().map(|x| spread((x as u32).min(most)));
+        let [x, y, z] = ((o - bounds.min) * scale).to_array().map(|x| spread((x as u32).min(most)));
         u64::from(x | y << 1 | z << 2) << CODE | index
     };
-    let mut keys: Vec<u64> = (0..).zip(rays).map(key).collect();
+    let mut keys: Vec<u64> = (0..).zip(origins()).map(key).collect();
     let mut sorted = vec![0; keys.len()];
     for digit in 0..2 {
         sort_by_digit(&keys, CODE + digit * DIGIT, &mut sorted);
@@ -82,10 +84,11 @@ fn spread(x: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::columns::RayBuffer;
     use super::*;
-    use math::Vec3;
+    use math::Ray;
 
-    fn rays(n: usize, origin: impl Fn(usize) -> Vec3) -> Vec<(Ray, f32)> {
+    fn rays(n: usize, origin: impl Fn(usize) -> Vec3) -> RayBuffer {
         (0..n).map(|i| (Ray::new(origin(i), Vec3::X, 0.0), f32::INFINITY)).collect()
     }
 
@@ -98,9 +101,10 @@ mod tests {
     #[test]
     fn scattered_rays_are_reordered_once_each_with_neighbours_nearby() {
         let rays = rays(MIN_RAYS, scattered);
+        let rays = rays.columns();
         let order = coherent_order(&rays).expect("an order");
         let way = |order: &[usize]| -> f32 {
-            order.windows(2).map(|pair| rays[pair[0]].0.o.distance(rays[pair[1]].0.o)).sum()
+            order.windows(2).map(|pair| rays.ray(pair[0]).o.distance(rays.ray(pair[1]).o)).sum()
         };
         let as_given: Vec<usize> = (0..MIN_RAYS).collect();
         assert!(way(&order) < 0.2 * way(&as_given));
@@ -111,10 +115,10 @@ mod tests {
 
     #[test]
     fn few_rays_and_coherent_rays_keep_their_order() {
-        assert!(coherent_order(&[]).is_none());
-        assert!(coherent_order(&rays(MIN_RAYS - 1, scattered)).is_none());
-        assert!(coherent_order(&rays(MIN_RAYS, |i| Vec3::splat(i as f32))).is_none());
-        assert!(coherent_order(&rays(MIN_RAYS, |_| Vec3::ONE)).is_none());
+        assert!(coherent_order(&rays(0, scattered).columns()).is_none());
+        assert!(coherent_order(&rays(MIN_RAYS - 1, scattered).columns()).is_none());
+        assert!(coherent_order(&rays(MIN_RAYS, |i| Vec3::splat(i as f32)).columns()).is_none());
+        assert!(coherent_order(&rays(MIN_RAYS, |_| Vec3::ONE).columns()).is_none());
     }
 
     #[test]
@@ -122,7 +126,7 @@ mod tests {
         let odd = |i: usize| {
             if i.is_multiple_of(3) { Vec3::NAN } else { scattered(i) * [1.0, f32::INFINITY][i % 2] }
         };
-        let mut order = coherent_order(&rays(MIN_RAYS, odd)).expect("an order");
+        let mut order = coherent_order(&rays(MIN_RAYS, odd).columns()).expect("an order");
         order.sort_unstable();
         assert!(order.into_iter().eq(0..MIN_RAYS));
     }

@@ -6,6 +6,7 @@
 
 #![allow(unsafe_code)]
 
+use super::columns::RayColumns;
 use super::group::Group;
 use super::instance::InstancePath;
 use super::query::Query;
@@ -21,21 +22,27 @@ use std::ops::Range;
 /// The largest difference between directions of a packet, relative to their length.
 const SPREAD: f32 = 0.1;
 
-/// Whether rays are worth tracing as a packet: they have one origin, and similar directions with
-/// the same signs and the same main axis.
+/// The rays of a batch from a place on, if they are worth tracing as a packet: they have one origin,
+/// and similar directions with the same signs and the same main axis.
 #[inline(always)]
-pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH]) -> bool {
-    let lead = &rays[0].0;
+pub(super) fn coherent_packet(rays: &RayColumns, first: usize) -> Option<[(Ray, f32); WIDTH]> {
+    let lead = rays.ray(first);
     let axis = main_axis(lead.d);
     let spread = lead.d.length_squared() * (SPREAD * SPREAD);
-    rays.iter().all(|(ray, t_max)| {
-        ray.o == lead.o
+    let mut packet = [(lead, 0.0); WIDTH];
+    for (i, (ray, t_max)) in packet.iter_mut().enumerate() {
+        (*ray, *t_max) = (rays.ray(first + i), rays.t_max(first + i));
+        let is_coherent = ray.o == lead.o
             && is_valid(ray)
             && *t_max >= 0.0
             && ray.d.distance_squared(lead.d) < spread
             && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
-            && main_axis(ray.d) == axis
-    })
+            && main_axis(ray.d) == axis;
+        if !is_coherent {
+            return None;
+        }
+    }
+    Some(packet)
 }
 
 /// Coherent rays.

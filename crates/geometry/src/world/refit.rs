@@ -1,7 +1,9 @@
 //! Refitting a world whose geometries move.
 
 use super::World;
+use super::facets::Facets;
 use super::geometry::{Geometry, GeometryId};
+use super::instance::GroupId;
 use super::tables::Tables;
 use rayon::prelude::*;
 use std::fmt;
@@ -47,7 +49,7 @@ impl World {
                 return Err(RefitError::Different(*id));
             }
         }
-        let Tables { groups, geometries, group_of, instances, .. } = &mut self.tables;
+        let Tables { groups, geometries, group_of, instances, facets, .. } = &mut self.tables;
         let mut is_stale = vec![false; groups.len()];
         for (id, new) in moved {
             is_stale[group_of[id.0 as usize].0 as usize] = true;
@@ -64,6 +66,10 @@ impl World {
             }
         }
         top.refit_items(geometries, instances, inner_groups);
+        *facets = facets.take().and_then(|_| {
+            let of_top = (0..).map(GeometryId).zip(&*group_of).filter(|(_, group)| **group == GroupId::TOP);
+            Facets::new(&of_top.map(|(id, _)| id).collect::<Vec<_>>(), geometries)
+        });
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! The tables of a world, joined by ids.
 
+use super::facets::Facets;
 use super::geometry::{Geometry, GeometryId};
 use super::group::Group;
 use super::instance::{GroupId, PreparedInstance};
@@ -16,6 +17,8 @@ pub(super) struct Tables {
     pub group_of: Vec<GroupId>,
     /// By [`super::InstanceId`].
     pub instances: Vec<PreparedInstance>,
+    /// The top group, if it is so small that no tree is of use.
+    pub facets: Option<Facets>,
     /// Rays are traced with it; the processor has it.
     pub instruction_set: InstructionSet,
     /// Whether rays are tested against bounding volumes before primitives.

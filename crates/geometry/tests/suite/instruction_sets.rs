@@ -35,12 +35,13 @@ fn agree(geometries: Vec<Geometry>, rays: impl IntoIterator<Item = Ray>) {
                 assert_eq!(hits, hit.is_some_and(|hit| hit.t < t_max), "{set:?} {ray:?} up to {t_max}");
             }
         }
-        let mut hits = vec![None; rays.len()];
+        let mut hits = HitColumns::default();
         let mut occluded = vec![true; rays.len()];
-        world.intersect_batch(&rays, &keep_all, &mut hits, &mut together);
-        world.occluded_batch(&rays, &keep_all, &mut occluded, &mut RayStats::default());
+        let batch: RayBuffer = rays.iter().copied().collect();
+        world.intersect_batch(batch.columns(), &keep_all, &mut hits, &mut together);
+        world.occluded_batch(batch.columns(), &keep_all, &mut occluded, &mut RayStats::default());
         for (i, expected) in expected.iter().enumerate() {
-            assert_eq!(bits(hits[i]), *expected, "{set:?} {:?} in a batch", rays[i]);
+            assert_eq!(bits(hits.get(i)), *expected, "{set:?} {:?} in a batch", rays[i]);
             assert_eq!(occluded[i], expected.is_some(), "{set:?} {:?} in a batch", rays[i]);
         }
         assert_eq!(together.rays, alone.rays);
@@ -142,15 +143,20 @@ fn batches_call_filters() {
         .into()
     };
     let below_four = |hit: &Hit, _: &Ray| hit.geometry.0 < 4;
-    let rays: Vec<_> = (0..64)
+    let rays: RayBuffer = (0..64)
         .map(|i| (Ray::new(Vec3::Z * 20.0, Vec3::new(i as f32 * 1e-3, 0.01, -1.0), 0.0), 40.0))
         .collect();
     for (set, world) in worlds((0..10).map(|i| plane(i as f32)).collect()) {
-        let mut hits = vec![None; rays.len()];
-        world.intersect_batch(&rays, &below_four, &mut hits, &mut RayStats::default());
-        assert!(hits.iter().all(|hit| hit.is_some_and(|hit| hit.geometry == GeometryId(3))), "{set:?}");
-        let mut occluded = vec![false; rays.len()];
-        world.occluded_batch(&rays, &|hit, _| hit.geometry.0 > 9, &mut occluded, &mut RayStats::default());
+        let mut hits = HitColumns::default();
+        world.intersect_batch(rays.columns(), &below_four, &mut hits, &mut RayStats::default());
+        assert_eq!(hits.geometry, [3; 64], "{set:?}");
+        let mut occluded = vec![false; 64];
+        world.occluded_batch(
+            rays.columns(),
+            &|hit: &Hit, _: &Ray| hit.geometry.0 > 9,
+            &mut occluded,
+            &mut RayStats::default(),
+        );
         assert!(!occluded.contains(&true), "{set:?}");
     }
 }

@@ -5,6 +5,7 @@ mod build;
 mod common;
 mod curves;
 mod extents;
+mod facets;
 mod flat_shapes;
 mod implicit;
 mod instances;

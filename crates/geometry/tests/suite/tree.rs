@@ -72,8 +72,8 @@ proptest! {
         let rng = &mut Rng::new(seed, 0);
         let step = |rng: &mut Rng| (rng.uniform_f32() * 5.0).floor();
         let lattice = |rng: &mut Rng| Vec3::new(step(rng), step(rng), step(rng));
-        let positions: Vec<_> = (0..120).map(|_| lattice(rng)).collect();
-        let indices = (0..40).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let positions: Vec<_> = (0..360).map(|_| lattice(rng)).collect();
+        let indices = (0..120).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let geometry = mesh(positions, indices, &Transform::IDENTITY).into();
         let axes = [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z, Vec3::ONE, Vec3::new(1.0, -1.0, 0.0)];
         let rays: Vec<_> = (0..200).map(|i| Ray::new(lattice(rng) - 2.0 * axes[i % 8], axes[i % 8], 0.0)).collect();

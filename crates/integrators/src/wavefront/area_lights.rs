@@ -1,6 +1,6 @@
 //! The lights that are sampled, and shine, in lanes: triangles and rectangles of one colour.
 
-use geometry::{FlatShape, Hit};
+use geometry::{FlatShape, HitColumns};
 use lanes::{Int, Mask, Real};
 use math::{Normal3, Vec3, Vector3};
 use scene::Scene;
@@ -58,13 +58,17 @@ impl AreaLights {
         Some(())
     }
 
-    /// The light of a hit, if it is in the table.
+    /// Whether a light is in the table.
     #[inline]
-    pub fn light_of(&self, scene: &Scene, hit: &Hit) -> Option<LightId> {
-        let first = scene.geometries()[hit.geometry.0 as usize].first_light?;
-        let light = first + hit.primitive;
-        let is_row = hit.instance.is_top() && self.row.get(light as usize).is_some_and(|&r| r != Self::NONE);
-        is_row.then_some(LightId(light))
+    pub fn contains(&self, LightId(light): LightId) -> bool {
+        self.row.get(light as usize).is_some_and(|&row| row != Self::NONE)
+    }
+
+    /// The light of a hit on a geometry whose first light is given, if it is in the table.
+    #[inline]
+    pub fn light_of(&self, first: u32, hits: &HitColumns, turn: u32) -> Option<LightId> {
+        let light = LightId(first + hits.primitive[turn as usize]);
+        (self.contains(light) && hits.is_in_top_group(turn as usize)).then_some(light)
     }
 
     /// The rows of these lights, and the lanes of `mask` whose lights are in the table; the rows

@@ -65,6 +65,16 @@ impl<const C: usize> Default for Columns<C> {
 }
 
 impl<const C: usize> Columns<C> {
+    /// Appends a row.
+    pub fn push(&mut self, row: [f32; C]) {
+        self.0.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+
+    /// Removes all rows.
+    pub fn clear(&mut self) {
+        self.0.iter_mut().for_each(Vec::clear);
+    }
+
     /// Changes to `count` rows, all with the same number in all columns.
     pub fn fill(&mut self, count: usize, value: f32) {
         self.0.iter_mut().for_each(|column| fill(column, count, value));
@@ -73,6 +83,14 @@ impl<const C: usize> Columns<C> {
     /// Makes place for `count` rows, of any numbers.
     pub fn grow(&mut self, count: usize) {
         self.0.iter_mut().for_each(|column| grow(column, count));
+    }
+
+    /// Appends the lanes of a mask.
+    #[inline(always)]
+    pub fn append<R: Real>(&mut self, mask: R::Mask, values: [R; C]) {
+        for (column, value) in self.0.iter_mut().zip(values) {
+            value.append(mask, column);
+        }
     }
 
     /// A row.
@@ -124,6 +142,12 @@ impl<const C: usize> Columns<C> {
 }
 
 impl Columns<3> {
+    /// The columns.
+    pub fn slices(&self) -> [&[f32]; 3] {
+        let [x, y, z] = &self.0;
+        [x, y, z]
+    }
+
     /// Vectors in lanes.
     #[inline(always)]
     pub fn vector<R: Real>(&self, rows: Rows<R>) -> Vector3<R> {

@@ -1,6 +1,6 @@
 //! Light that paths find by hitting the lights of [`AreaLights`](super::area_lights::AreaLights).
 
-use geometry::Hit;
+use geometry::HitColumns;
 use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Point3Error, Vec2};
 use scene::light::LightSampleContext;
@@ -25,7 +25,7 @@ pub(super) struct LightHit {
 /// [`DirectLighting::emitted`](crate::transport::direct::DirectLighting::emitted).
 pub(super) struct Emit<'a, 'b> {
     pub pass: Pass<'a>,
-    pub hits: &'b [Option<Hit>],
+    pub hits: &'b HitColumns,
     pub found: &'b [LightHit],
     pub paths: &'b mut Paths,
 }
@@ -46,8 +46,8 @@ impl Emit<'_, '_> {
     fn add<R: Real>(&mut self, found: &[LightHit]) {
         let ([mut x, mut y], mut queue, mut lights) = ([[0.0; MAX_LANES]; 2], [0; MAX_LANES], [0; MAX_LANES]);
         for (lane, &LightHit { row, turn, light }) in found.iter().enumerate() {
-            let hit = self.hits[turn as usize].as_ref().expect("invariant: lights are hit");
-            (x[lane], y[lane]) = (hit.uv.x, hit.uv.y);
+            let [u, v] = self.hits.uv.each_ref().map(|column| column[turn as usize]);
+            (x[lane], y[lane]) = (u, v);
             (queue[lane], lights[lane]) = (row, light);
         }
         let rows = Rows::<R>::first(&queue[..found.len()]);

@@ -1,5 +1,6 @@
 //! The paths of a batch, in columns.
 
+use geometry::RayColumns;
 use lanes::MAX_LANES;
 use math::{Bounds2i, Differentials, Point3Error, Ray, RayDifferential, Vec3};
 use scene::light::LightSampleContext;
@@ -86,6 +87,12 @@ impl Paths {
     pub fn ray(&self, row: usize) -> Ray {
         let [o, d] = [&self.origin, &self.direction].map(|columns| Vec3::from_array(columns.row(row)));
         Ray::new(o, d, self.time[row])
+    }
+
+    /// The rays of paths.
+    pub fn rays<'a>(&'a self, rows: &'a [u32]) -> RayColumns<'a> {
+        let (o, d) = (self.origin.slices(), self.direction.slices());
+        RayColumns { o, d, time: &self.time, t_max: None, rows }
     }
 
     /// The wavelengths of a path.

@@ -1,10 +1,11 @@
 //! What stages hand to each other.
 
-use lanes::{Each, MAX_LANES, Mask, Real};
-use math::{Ray, Vec3};
-use spectrum::SampledSpectrum;
+use geometry::RayBuffer;
+use lanes::{Int, Mask, Real};
+use math::Ray;
+use spectrum::{N, SampledSpectrum};
 
-use super::columns::Rows;
+use super::columns::{Columns, Rows};
 
 /// The queues of a batch.
 #[derive(Default)]
@@ -14,15 +15,15 @@ pub(super) struct Queues {
     /// Hits to be shaded one by one: path, and index of its hit.
     pub scalar: Vec<(u32, u32)>,
     /// Shadow rays; those that interfaces occlude, and those that pass them.
-    pub shadows: [Vec<ShadowRay>; 2],
+    pub shadows: [ShadowRays; 2],
 }
 
-/// A shadow ray, and the light that its path gets unless it is occluded.
-pub(super) struct ShadowRay {
-    pub path: u32,
-    pub l: SampledSpectrum,
-    pub ray: Ray,
-    pub t_max: f32,
+/// Shadow rays, and the light that their paths get unless they are occluded.
+#[derive(Default)]
+pub(super) struct ShadowRays {
+    pub paths: Vec<u32>,
+    pub l: Columns<N>,
+    pub rays: RayBuffer,
 }
 
 /// Shadow rays in lanes.
@@ -32,28 +33,28 @@ pub(super) struct Shadow<R: Real> {
     pub t_max: R,
 }
 
-impl Queues {
-    /// Adds the shadow rays of a mask's lanes, which pass interfaces where `passes` is true.
+impl ShadowRays {
+    /// Adds a ray.
+    pub fn push(&mut self, path: u32, l: SampledSpectrum, ray: &Ray, t_max: f32) {
+        self.paths.push(path);
+        self.l.push(l.0);
+        self.rays.push(ray, t_max);
+    }
+
+    /// Adds the rays of a mask's lanes.
     #[inline(always)]
-    pub fn push_shadows<R: Real>(
-        &mut self,
-        rows: Rows<R>,
-        mask: R::Mask,
-        passes: R::Mask,
-        shadow: &Shadow<R>,
-    ) {
-        let Shadow { l, ray, t_max } = shadow;
-        let l = l.0.each(R::to_array);
-        let [o, d] = [ray.o, ray.d].each(|v| v.to_array().each(R::to_array));
-        let (time, t_max, passes) = (ray.time.to_array(), t_max.to_array(), passes.bits());
-        rows.each_of(mask, |lane, row| {
-            let vector = |v: &[[f32; MAX_LANES]; 3]| Vec3::from_array(v.each(|c| c[lane]));
-            self.shadows[(passes >> lane & 1) as usize].push(ShadowRay {
-                path: row as u32,
-                l: SampledSpectrum(l.each(|l| l[lane])),
-                ray: Ray::new(vector(&o), vector(&d), time[lane]),
-                t_max: t_max[lane],
-            });
-        });
+    pub fn append<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, shadow: &Shadow<R>) {
+        if mask.any() {
+            rows.indices.append(mask, &mut self.paths);
+            self.l.append(mask, shadow.l.0);
+            self.rays.append(&shadow.ray, shadow.t_max, mask);
+        }
+    }
+
+    /// Removes all rays.
+    pub fn clear(&mut self) {
+        self.paths.clear();
+        self.l.clear();
+        self.rays.clear();
     }
 }

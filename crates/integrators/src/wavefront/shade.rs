@@ -1,6 +1,6 @@
 //! Shading in lanes: next-event estimation, a sample of the BSDF and Russian roulette.
 
-use geometry::{Hit, PatchLanes, PatchPoints};
+use geometry::{PatchPoints, PointColumns};
 use lanes::{Int, Kernel, Mask, Real};
 use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
@@ -23,7 +23,8 @@ use crate::transport::roulette::CERTAIN;
 pub(super) struct Shade<'a, 'b, M> {
     pub pass: Pass<'a>,
     pub material: &'a M,
-    pub hits: &'b [Option<Hit>],
+    /// Their surface points.
+    pub points: &'b PointColumns,
     /// Indices of hits, and their paths.
     pub turns: &'b [u32],
     pub rows: &'b [u32],
@@ -36,8 +37,8 @@ impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
 
     #[inline(always)]
     fn run<R: Real>(mut self) {
-        for (turns, rows) in self.turns.chunks(R::LANES).zip(self.rows.chunks(R::LANES)) {
-            self.shade::<R>(turns, rows);
+        for (part, rows) in self.rows.chunks(R::LANES).enumerate() {
+            self.shade::<R>(part * R::LANES, rows);
         }
     }
 }
@@ -58,8 +59,8 @@ struct Vertices<R: Real> {
 
 impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
-    fn shade<R: Real>(&mut self, turns: &[u32], queue: &[u32]) {
-        let mut vertices = self.vertices::<R>(turns, queue);
+    fn shade<R: Real>(&mut self, first: usize, queue: &[u32]) {
+        let mut vertices = self.vertices::<R>(first, queue);
         let PatchPoints { p, n, ns, uv, dpdu } = vertices.surface;
         let none = Vec3::splat(R::zero());
         let zero = R::zero();
@@ -97,27 +98,19 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     }
 
     #[inline(always)]
-    fn vertices<R: Real>(&mut self, turns: &[u32], queue: &[u32]) -> Vertices<R> {
+    fn vertices<R: Real>(&mut self, first: usize, queue: &[u32]) -> Vertices<R> {
         let rows = Rows::<R>::first(queue);
-        let mut patches = PatchLanes::new();
-        let mut left_out = 0;
-        for (lane, (&turn, &row)) in turns.iter().zip(queue).enumerate() {
-            let hit = self.hits[turn as usize].as_ref().expect("invariant: paths without hit have ended");
-            match self.pass.pixels.scene.world().patch(hit) {
-                Some(patch) => patches.set(lane, &patch, hit.uv),
-                None => {
-                    left_out |= 1 << lane;
-                    self.queues.scalar.push((row, turn));
-                }
-            }
-        }
+        let (surface, found) = self.points.get::<R>(first);
+        rows.each_of(rows.active & !found, |lane, row| {
+            self.queues.scalar.push((row as u32, self.turns[first + lane]));
+        });
         let paths = &*self.paths;
         let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
         let [x, y] = &paths.pixel;
         Vertices {
             rows,
-            active: rows.active & !R::Mask::from_bits(left_out),
-            surface: patches.points::<R>(),
+            active: rows.active & found,
+            surface,
             wo: -paths.direction.vector(rows).normalize(),
             time: R::gather(&paths.time, rows.indices),
             lambda: SampledWavelengths::new([a, b, c, d], pdf),
@@ -170,7 +163,9 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let d = Vec3::select(light.is_distant, wi, target.d);
         let t_max = R::select(light.is_distant, R::splat(f32::INFINITY), R::splat(Ray::SHADOW_END));
         let shadow = Shadow { l, ray: Ray::new(o, d, time), t_max };
-        self.queues.push_shadows(vertices.rows, lit, light.passes, &shadow);
+        let [stopped, passing] = &mut self.queues.shadows;
+        stopped.append(vertices.rows, lit & !light.passes, &shadow);
+        passing.append(vertices.rows, lit & light.passes, &shadow);
     }
 
     /// Continues the paths along a direction of the BSDF, unless Russian roulette ends them.

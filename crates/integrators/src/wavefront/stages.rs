@@ -1,20 +1,20 @@
 //! The stages of a batch.
 
 use film::FilmTile;
-use geometry::{Hit, RayStats};
-use math::Ray;
+use geometry::{Hit, HitColumns, PointColumns, RayStats};
 use sampling::Sampler;
 use scattering::{Bsdf, each_bxdf};
 use scene::Interfaces;
 use scene::light::LightId;
 use scene::material::{Material, MaterialId, MaterialModel};
+use spectrum::SampledSpectrum;
 
 use super::begin::Begin;
 use super::emission::{Emit, LightHit};
 use super::finish::{Finish, finish_with_first_hits};
 use super::pass::Pass;
 use super::paths::Paths;
-use super::queues::{Queues, ShadowRay};
+use super::queues::Queues;
 use super::shade::Shade;
 use crate::Cancelled;
 use crate::transport::direct::{Connection, light_context};
@@ -29,8 +29,8 @@ pub(super) struct Stages<'a> {
     queues: Queues,
     /// The paths under way.
     active: Vec<u32>,
-    rays: Vec<(Ray, f32)>,
-    hits: Vec<Option<Hit>>,
+    hits: HitColumns,
+    points: PointColumns,
     /// Hits to be shaded in lanes: material, index of the hit, path.
     lanes: Vec<(u32, u32, u32)>,
     /// Hits of lights that shine in lanes.
@@ -50,8 +50,8 @@ impl<'a> Stages<'a> {
             paths: Paths::default(),
             queues: Queues::default(),
             active: Vec::new(),
-            rays: Vec::new(),
-            hits: Vec::new(),
+            hits: HitColumns::default(),
+            points: PointColumns::default(),
             lanes: Vec::new(),
             lit: Vec::new(),
             turns: Vec::new(),
@@ -86,11 +86,8 @@ impl<'a> Stages<'a> {
 
     /// Finds the nearest hit of each path's ray.
     fn extend(&mut self) {
-        self.rays.clear();
-        self.rays.extend(self.active.iter().map(|&row| (self.paths.ray(row as usize), f32::INFINITY)));
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
-        self.pass.pixels.scene.hit_batch(&self.rays, &mut self.hits, &mut self.stats);
+        let rays = self.paths.rays(&self.active);
+        self.pass.pixels.scene.hit_batch(rays, &mut self.hits, &mut self.stats);
     }
 
     /// Continues each path from its hit.
@@ -98,14 +95,16 @@ impl<'a> Stages<'a> {
         let scene = self.pass.pixels.scene;
         self.lanes.clear();
         self.lit.clear();
-        for (turn, (&row, hit)) in self.active.iter().zip(&self.hits).enumerate() {
-            let (turn, entry) =
-                (turn as u32, hit.as_ref().map(|hit| &scene.geometries()[hit.geometry.0 as usize]));
-            let (Some(hit), Some(entry)) = (hit, entry) else {
+        for (turn, (&row, &geometry)) in self.active.iter().zip(&self.hits.geometry).enumerate() {
+            let turn = turn as u32;
+            let Some(entry) = scene.geometries().get(geometry as usize) else {
                 self.queues.scalar.push((row, turn));
                 continue;
             };
-            let light = self.pass.area_lights.light_of(scene, hit);
+            let light = match entry.first_light {
+                Some(first) => self.pass.area_lights.light_of(first, &self.hits, turn),
+                None => None,
+            };
             if let Some(LightId(light)) = light {
                 self.lit.push(LightHit { row, turn, light });
             }
@@ -129,8 +128,7 @@ impl<'a> Stages<'a> {
         self.lanes = lanes;
         let scalar = std::mem::take(&mut self.queues.scalar);
         for &(row, turn) in &scalar {
-            let hit = self.hits[turn as usize].take();
-            self.shade_path(row, hit);
+            self.shade_path(row, self.hits.get(turn as usize));
         }
         self.queues.scalar = scalar;
         self.queues.scalar.clear();
@@ -154,6 +152,7 @@ impl<'a> Stages<'a> {
         self.rows.clear();
         self.turns.extend(group.iter().map(|&(_, turn, _)| turn));
         self.rows.extend(group.iter().map(|&(_, _, row)| row));
+        self.pass.pixels.scene.world().points(&self.hits, &self.turns, &mut self.points);
         match &self.pass.pixels.scene.materials()[material.0 as usize].material {
             Material::Diffuse(material) => self.dispatch(material),
             Material::DiffuseTransmission(material) => self.dispatch(material),
@@ -170,7 +169,7 @@ impl<'a> Stages<'a> {
         self.pass.instruction_set.dispatch(Shade {
             pass: self.pass,
             material,
-            hits: &self.hits,
+            points: &self.points,
             turns: &self.turns,
             rows: &self.rows,
             paths: &mut self.paths,
@@ -191,7 +190,7 @@ impl<'a> Stages<'a> {
             return;
         };
         let mut surface = scene.interaction(&hit, scene.world().surface(&state.ray.ray, &hit));
-        if surface.area_light.is_some() && area_lights.light_of(scene, &hit).is_none() {
+        if surface.area_light.is_some_and(|light| !area_lights.contains(light)) {
             let l = state.beta * direct.emitted(scene, &surface, state.origin.as_ref(), &lambda);
             self.paths.add_light(row, l);
         }
@@ -217,7 +216,7 @@ impl<'a> Stages<'a> {
                 let connection = direct.connect(scene, sampler, (&surface, &context), &bsdf, &lambda);
                 if let Some(Connection { ray, t_max, interfaces, l }) = connection {
                     let queue = &mut self.queues.shadows[(interfaces == Interfaces::Pass) as usize];
-                    queue.push(ShadowRay { path, l: state.beta * l, ray, t_max });
+                    queue.push(path, state.beta * l, &ray, t_max);
                 }
             }
             Scattered::sample(&surface, &bsdf, sampler)
@@ -236,17 +235,16 @@ impl<'a> Stages<'a> {
     /// Traces the shadow rays.
     fn connect(&mut self) {
         for (queue, interfaces) in self.queues.shadows.iter_mut().zip([Interfaces::Stop, Interfaces::Pass]) {
-            self.rays.clear();
-            self.rays.extend(queue.iter().map(|shadow| (shadow.ray, shadow.t_max)));
             self.occluded.clear();
-            self.occluded.resize(queue.len(), false);
+            self.occluded.resize(queue.paths.len(), false);
             let scene = self.pass.pixels.scene;
-            scene.occluded_batch(&self.rays, interfaces, &mut self.occluded, &mut self.stats);
-            for (shadow, occluded) in queue.drain(..).zip(&self.occluded) {
+            scene.occluded_batch(queue.rays.columns(), interfaces, &mut self.occluded, &mut self.stats);
+            for (shadow, (&path, occluded)) in queue.paths.iter().zip(&self.occluded).enumerate() {
                 if !occluded {
-                    self.paths.add_light(shadow.path as usize, shadow.l);
+                    self.paths.add_light(path as usize, SampledSpectrum(queue.l.row(shadow)));
                 }
             }
+            queue.clear();
         }
     }
 
