@@ -33,6 +33,8 @@ pub struct PatchPoints<R: Real> {
     pub uv: Vec2<R>,
     /// ∂p/∂u.
     pub dpdu: Vector3<R>,
+    /// ∂p/∂v.
+    pub dpdv: Vector3<R>,
 }
 
 /// Triangles or patches, one in each lane.
@@ -108,8 +110,8 @@ impl<R: Real> PatchLanes<R> {
         let p = Point3Error::new(p, size * R::splat(gamma(5)));
         let cross = du.cross(dv);
         let squared = cross.length_squared();
-        let side = cross / squared.sqrt();
-        let mut n = side * self.sign;
+        let mut n = cross / squared.sqrt() * self.sign;
+        let [dpdu, dpdv] = tangents([du, dv], &self.uv, n);
         let c = R::one() - a - b;
         let mut ns = n;
         if let Some(normals) = self.normals {
@@ -118,7 +120,7 @@ impl<R: Real> PatchLanes<R> {
             n = face_forward(n, ns);
         }
         let uv = self.uv[0] * c + self.uv[1] * a + self.uv[2] * b;
-        let points = PatchPoints { p, n, ns, uv, dpdu: tangent([du, dv], &self.uv, side) };
+        let points = PatchPoints { p, n, ns, uv, dpdu, dpdv };
         (points, squared.ge(R::splat(f32::MIN_POSITIVE)))
     }
 }
@@ -128,13 +130,16 @@ fn select_each<R: Real>(mask: R::Mask, a: [Vector3<R>; 3], b: [Vector3<R>; 3]) -
     [Vec3::select(mask, a[0], b[0]), Vec3::select(mask, a[1], b[1]), Vec3::select(mask, a[2], b[2])]
 }
 
-/// ∂p/∂u by the texture coordinates of the corners, or any tangent where they have no area.
+/// ∂p/∂u and ∂p/∂v by the texture coordinates of the corners, or any tangents where they have no
+/// area.
 #[inline(always)]
-fn tangent<R: Real>([du, dv]: [Vector3<R>; 2], uv: &[Vec2<R>; 3], n: Normal3<R>) -> Vector3<R> {
+fn tangents<R: Real>([du, dv]: [Vector3<R>; 2], uv: &[Vec2<R>; 3], n: Normal3<R>) -> [Vector3<R>; 2] {
     let (st_du, st_dv) = (uv[1] - uv[0], uv[2] - uv[0]);
     let determinant = st_du.x * st_dv.y - st_dv.x * st_du.y;
     let dpdu = (du * st_dv.y - dv * st_du.y) / determinant;
-    let squared = dpdu.length_squared();
-    let is_tangent = squared.gt(R::zero()) & squared.lt(R::splat(f32::INFINITY));
-    Vec3::select(is_tangent, dpdu, coordinate_system(n).0)
+    let dpdv = (dv * st_du.x - du * st_dv.x) / determinant;
+    let squared = dpdu.cross(dpdv).length_squared();
+    let is_regular = squared.gt(R::zero()) & squared.lt(R::splat(f32::INFINITY));
+    let (any_u, any_v) = coordinate_system(n);
+    [Vec3::select(is_regular, dpdu, any_u), Vec3::select(is_regular, dpdv, any_v)]
 }

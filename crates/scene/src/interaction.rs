@@ -1,36 +1,16 @@
 //! A surface interaction: the point of a hit with its material, its light and its footprint.
 //!
-//! The footprint of a pixel on the surface comes from the ray differentials, if the ray has them —
-//! the neighbouring rays hit the tangent plane at p + ∂p/∂x — and otherwise from the camera's
-//! [minimum differentials](crate::camera::Camera::approximate_dp_dxy); ∂(u,v)/∂(x,y) then follow by
-//! least squares from ∂p/∂(u,v). Reflections and refractions off smooth surfaces carry the
-//! differentials on ([Igehy 1999]; [Pharr 2023 §10.1]).
+//! Reflections and refractions off smooth surfaces carry ray differentials on ([Igehy 1999]; [Pharr
+//! 2023 §10.1.3]).
 
-use crate::camera::differential_scale;
+use crate::footprint::Footprint;
 use crate::id::{LightId, MaterialId};
 use crate::light::LightSampleContext;
 use crate::texture::TextureContext;
 use crate::view::View;
 use geometry::SurfacePoint;
-use math::{Differentials, Point3, Ray, RayDifferential, Vec3, Vector3, difference_of_products};
+use math::{Differentials, Point3, Ray, RayDifferential, Vec3, Vector3};
 use scattering::BsdfSample;
-
-/// Derivatives of the surface point by film position, in pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Footprint {
-    /// ∂p/∂x.
-    pub dpdx: Vector3,
-    /// ∂p/∂y.
-    pub dpdy: Vector3,
-    /// ∂u/∂x.
-    pub dudx: f32,
-    /// ∂u/∂y.
-    pub dudy: f32,
-    /// ∂v/∂x.
-    pub dvdx: f32,
-    /// ∂v/∂y.
-    pub dvdy: f32,
-}
 
 /// A point on a surface of the scene.
 #[derive(Clone, Debug)]
@@ -66,51 +46,14 @@ impl SurfaceInteraction {
     /// The context of texture evaluation.
     #[inline]
     pub fn texture_context(&self) -> TextureContext {
-        let f = &self.footprint;
-        TextureContext {
-            p: self.surface.p.p,
-            n: self.surface.n,
-            uv: self.surface.uv,
-            dpdx: f.dpdx,
-            dpdy: f.dpdy,
-            dudx: f.dudx,
-            dudy: f.dudy,
-            dvdx: f.dvdx,
-            dvdy: f.dvdy,
-            face_index: 0,
-        }
+        TextureContext::new(self.surface.p.p, self.surface.n, self.surface.uv, &self.footprint)
     }
 
     /// Computes the footprint of the pixel of `ray`.
     pub fn compute_footprint(&mut self, ray: &RayDifferential, view: &View) {
         let s = &self.surface;
-        let plane = |o: Point3, d: Vector3| {
-            let t = s.n.dot(s.p.p - o) / s.n.dot(d);
-            t.is_finite().then(|| o + d * t - s.p.p)
-        };
-        let seen = ray
-            .differentials
-            .and_then(|d| Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?]));
-        let [dpdx, dpdy] = seen.unwrap_or_else(|| {
-            // Without jitter, all samples of a pixel have the same position, and each covers the
-            // whole pixel.
-            let samples = if view.options.disable_pixel_jitter { 1 } else { view.samples_per_pixel };
-            view.camera.approximate_dp_dxy(s.p.p, s.n, s.time, differential_scale(samples))
-        });
-        // Normal equations of [∂p/∂u ∂p/∂v]·[du dv]ᵀ = dp.
-        let (a, b, c) = (s.dpdu.dot(s.dpdu), s.dpdu.dot(s.dpdv), s.dpdv.dot(s.dpdv));
-        let inverse = difference_of_products(a, c, b, b).recip();
-        let inverse = if inverse.is_finite() { inverse } else { 0.0 };
-        let solve = |dp: Vector3| {
-            let (x, y) = (s.dpdu.dot(dp), s.dpdv.dot(dp));
-            let clean = |v: f32| if v.is_finite() { v.clamp(-1e8, 1e8) } else { 0.0 };
-            (
-                clean(difference_of_products(c, x, b, y) * inverse),
-                clean(difference_of_products(a, y, b, x) * inverse),
-            )
-        };
-        let ((dudx, dvdx), (dudy, dvdy)) = (solve(dpdx), solve(dpdy));
-        self.footprint = Footprint { dpdx, dpdy, dudx, dudy, dvdx, dvdy };
+        let across = view.pixel_on_plane(ray.differentials.as_ref(), s.p.p, s.n, s.time);
+        self.footprint = Footprint::new(across, [s.dpdu, s.dpdv]);
     }
 
     /// The ray that leaves along `d`.

@@ -5,6 +5,7 @@
 
 pub mod camera;
 mod compile;
+mod footprint;
 mod id;
 mod interaction;
 pub mod light;
@@ -17,8 +18,9 @@ mod traits;
 mod view;
 
 pub use compile::{Compiled, compile};
+pub use footprint::Footprint;
 pub use geometry::RayStats;
-pub use interaction::{Footprint, SurfaceInteraction};
+pub use interaction::SurfaceInteraction;
 pub use names::Names;
 pub use scene::{GeometryEntry, InstanceEntry, Interfaces, Scene};
 pub use traits::{Occurrence, SceneTraits};

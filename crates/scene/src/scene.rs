@@ -1,7 +1,8 @@
 //! The compiled scene: geometry, materials and lights.
 
 use crate::camera::{CameraRay, CameraSample};
-use crate::interaction::{Footprint, SurfaceInteraction};
+use crate::footprint::Footprint;
+use crate::interaction::SurfaceInteraction;
 use crate::light::{
     AreaEmission, LightId, LightLeSample, LightLiSample, LightRef, LightSampleContext, LightTable, Lights,
     SceneSphere,
@@ -198,7 +199,7 @@ impl Scene {
                 let offset: u32 = instances.map(|instance| instance.first_light).sum();
                 LightId(offset + first + hit.primitive)
             }),
-            footprint: Footprint::default(),
+            footprint: Footprint::point(),
         }
     }
 

@@ -16,14 +16,14 @@ use math::{Point3Error, Vec2, Vec3, Vector3};
 /// Surface points in columns.
 #[derive(Clone, Debug, Default)]
 pub struct PointColumns {
-    /// Position, its error, normal, shading normal, ∂p/∂u, and texture coordinates.
+    /// Position, its error, normal, shading normal, ∂p/∂u, ∂p/∂v, and texture coordinates.
     values: [Vec<f32>; PointColumns::COLUMNS],
     /// 1 where there is a point, else 0.
     found: Vec<u32>,
 }
 
 impl PointColumns {
-    const COLUMNS: usize = 3 + 3 + 3 + 3 + 3 + 2;
+    const COLUMNS: usize = 3 + 3 + 3 + 3 + 3 + 3 + 2;
 
     /// The points from a place on, and a mask of the lanes that have one.
     #[inline(always)]
@@ -33,7 +33,8 @@ impl PointColumns {
             n: self.vector(6, first),
             ns: self.vector(9, first),
             dpdu: self.vector(12, first),
-            uv: Vec2::new(self.number(15, first), self.number(16, first)),
+            dpdv: self.vector(15, first),
+            uv: Vec2::new(self.number(18, first), self.number(19, first)),
         };
         (points, R::Int::load(&self.found[first..]).eq(R::Int::splat(1)))
     }
@@ -57,9 +58,9 @@ impl PointColumns {
 
     #[inline(always)]
     fn set<R: Real>(&mut self, first: usize, points: &PatchPoints<R>, found: R::Mask) {
-        let PatchPoints { p, n, ns, uv, dpdu } = points;
+        let PatchPoints { p, n, ns, uv, dpdu, dpdv } = points;
         let mut next = 0;
-        for v in [&p.p, &p.error, n, ns, dpdu] {
+        for v in [&p.p, &p.error, n, ns, dpdu, dpdv] {
             for x in [v.x, v.y, v.z] {
                 x.store(&mut self.values[next][first..]);
                 next += 1;

@@ -3,35 +3,58 @@
 use scene::material::{Material, MaterialEntry, MaterialId};
 use scene::{Scene, View};
 
-/// Which materials of a scene are shaded in lanes; the others are shaded path by path.
+/// How the hits of a material are shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shading {
+    /// Path by path.
+    Scalar,
+    /// In lanes.
+    Lanes,
+    /// In lanes, with the footprint of the pixel.
+    LanesWithFootprint,
+}
+
+/// How the materials of a scene are shaded.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LaneMaterials(Vec<bool>);
+pub(super) struct LaneMaterials(Vec<Row>);
+
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    shading: Shading,
+    may_be_specular: bool,
+}
 
 impl LaneMaterials {
-    /// Those of a view. Lanes have no footprints of pixels: where textures are filtered, only
-    /// diffuse surfaces of one colour need none.
+    /// Those of a view.
     pub fn new(scene: &Scene, view: &View) -> Self {
         let (with_footprints, textures) = (scene.needs_footprints(view), scene.textures());
-        let is_in_lanes = |entry: &MaterialEntry| {
+        let row = |entry: &MaterialEntry| {
             let is_plain = entry.normal_map.is_none() && !view.options.force_diffuse;
-            is_plain
-                && match &entry.material {
-                    Material::Diffuse(diffuse) => {
-                        !with_footprints || textures.constant_spectrum(diffuse.reflectance).is_some()
-                    }
-                    Material::DiffuseTransmission(_)
-                    | Material::Conductor(_)
-                    | Material::Dielectric(_)
-                    | Material::ThinDielectric(_) => !with_footprints,
-                    Material::Mix(_) | Material::Interface => false,
+            let (is_in_lanes, is_constant, may_be_specular) = match &entry.material {
+                Material::Diffuse(diffuse) => {
+                    (true, textures.constant_spectrum(diffuse.reflectance).is_some(), false)
                 }
+                Material::DiffuseTransmission(_) => (true, false, false),
+                Material::Conductor(_) | Material::Dielectric(_) | Material::ThinDielectric(_) => {
+                    (true, false, true)
+                }
+                Material::Mix(_) | Material::Interface => (false, false, true),
+            };
+            let shading = match (is_plain && is_in_lanes, with_footprints && !is_constant) {
+                (false, _) => Shading::Scalar,
+                (true, false) => Shading::Lanes,
+                (true, true) => Shading::LanesWithFootprint,
+            };
+            Row { shading, may_be_specular }
         };
-        Self(scene.materials().iter().map(is_in_lanes).collect())
+        Self(scene.materials().iter().map(row).collect())
     }
 
-    /// Whether a material is shaded in lanes.
+    /// How the hit of a path with or without ray differentials is shaded: differentials go on only
+    /// from specular scattering, and that is not computed in lanes.
     #[inline]
-    pub fn contains(&self, id: MaterialId) -> bool {
-        self.0[id.0 as usize]
+    pub fn shading(&self, id: MaterialId, has_differentials: bool) -> Shading {
+        let Row { shading, may_be_specular } = self.0[id.0 as usize];
+        if may_be_specular && has_differentials { Shading::Scalar } else { shading }
     }
 }

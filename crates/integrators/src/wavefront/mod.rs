@@ -20,6 +20,7 @@ mod begin;
 mod columns;
 mod emission;
 mod finish;
+mod groups;
 mod lights;
 mod materials;
 mod numbers;

@@ -82,6 +82,12 @@ impl Paths {
         fill(&mut self.pdf, rows, 0.0);
     }
 
+    /// Whether a path has ray differentials.
+    #[inline]
+    pub fn has_differentials(&self, row: u32) -> bool {
+        self.differentials.get(row as usize).is_some_and(Option::is_some)
+    }
+
     /// The ray of a path.
     #[inline]
     pub fn ray(&self, row: usize) -> Ray {

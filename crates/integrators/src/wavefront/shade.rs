@@ -1,10 +1,11 @@
 //! Shading in lanes: next-event estimation, a sample of the BSDF and Russian roulette.
 
 use geometry::{PatchPoints, PointColumns};
-use lanes::{Int, Kernel, Mask, Real};
+use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
+use scene::Footprint;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
 use scene::texture::TextureContext;
@@ -23,6 +24,7 @@ use crate::transport::roulette::CERTAIN;
 pub(super) struct Shade<'a, 'b, M> {
     pub pass: Pass<'a>,
     pub material: &'a M,
+    pub with_footprint: bool,
     /// Their surface points.
     pub points: &'b PointColumns,
     /// Indices of hits, and their paths.
@@ -61,21 +63,9 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, first: usize, queue: &[u32]) {
         let mut vertices = self.vertices::<R>(first, queue);
-        let PatchPoints { p, n, ns, uv, dpdu } = vertices.surface;
-        let none = Vec3::splat(R::zero());
-        let zero = R::zero();
-        let context = TextureContext {
-            p: p.p,
-            n,
-            uv,
-            dpdx: none,
-            dpdy: none,
-            dudx: zero,
-            dudy: zero,
-            dvdx: zero,
-            dvdy: zero,
-            face_index: 0,
-        };
+        let PatchPoints { p, n, ns, uv, dpdu, .. } = vertices.surface;
+        let footprint = if self.with_footprint { self.footprint(&vertices) } else { Footprint::point() };
+        let context = TextureContext::new(p.p, n, uv, &footprint);
         let before = vertices.lambda;
         let textures = self.pass.pixels.scene.textures();
         let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
@@ -121,6 +111,28 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
                 dimension: R::Int::gather(&paths.dimension, rows.indices),
             },
         }
+    }
+
+    /// The footprints of pixels at the vertices.
+    #[inline(always)]
+    fn footprint<R: Real>(&self, vertices: &Vertices<R>) -> Footprint<R> {
+        let PatchPoints { p, n, dpdu, dpdv, .. } = vertices.surface;
+        let [p, n] = [p.p, n].each(|v| v.to_array().each(R::to_array));
+        let time = vertices.time.to_array();
+        let mut across = [[[0.0; MAX_LANES]; 3]; 2];
+        vertices.rows.each_of(vertices.active, |lane, row| {
+            let differentials = self.paths.differentials[row].as_ref();
+            let [p, n] = [&p, &n].map(|v| Vec3::new(v[0][lane], v[1][lane], v[2][lane]));
+            let view = self.pass.pixels.view;
+            let lane_across = view.pixel_on_plane(differentials, p, n, time[lane]);
+            for (across, v) in across.iter_mut().zip(lane_across) {
+                for (across, value) in across.iter_mut().zip(v.to_array()) {
+                    across[lane] = value;
+                }
+            }
+        });
+        let [dpdx, dpdy] = across;
+        Footprint::new([load(&dpdx), load(&dpdy)], [dpdu, dpdv])
     }
 
     /// Stores wavelengths whose densities the material has changed.
@@ -221,6 +233,11 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
             self.queues.next.push(row as u32);
         });
     }
+}
+
+#[inline(always)]
+fn load<R: Real>(v: &[[f32; MAX_LANES]; 3]) -> Vector3<R> {
+    Vec3::new(R::load(&v[0]), R::load(&v[1]), R::load(&v[2]))
 }
 
 /// The contexts of light sampling: as in `transport/direct.rs`, a point that scatters to one side

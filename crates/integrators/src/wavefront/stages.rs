@@ -12,6 +12,8 @@ use spectrum::SampledSpectrum;
 use super::begin::Begin;
 use super::emission::{Emit, LightHit};
 use super::finish::{Finish, finish_with_first_hits};
+use super::groups::Groups;
+use super::materials::Shading;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
@@ -31,12 +33,10 @@ pub(super) struct Stages<'a> {
     active: Vec<u32>,
     hits: HitColumns,
     points: PointColumns,
-    /// Hits to be shaded in lanes: material, index of the hit, path.
-    lanes: Vec<(u32, u32, u32)>,
+    /// Hits to be shaded in lanes.
+    lanes: Groups,
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
-    turns: Vec<u32>,
-    rows: Vec<u32>,
     occluded: Vec<bool>,
     /// Counts the rays.
     pub stats: RayStats,
@@ -52,10 +52,8 @@ impl<'a> Stages<'a> {
             active: Vec::new(),
             hits: HitColumns::default(),
             points: PointColumns::default(),
-            lanes: Vec::new(),
+            lanes: Groups::default(),
             lit: Vec::new(),
-            turns: Vec::new(),
-            rows: Vec::new(),
             occluded: Vec::new(),
             stats: RayStats::default(),
         }
@@ -93,7 +91,7 @@ impl<'a> Stages<'a> {
     /// Continues each path from its hit.
     fn shade(&mut self) {
         let scene = self.pass.pixels.scene;
-        self.lanes.clear();
+        self.lanes.clear(scene.materials().len());
         self.lit.clear();
         for (turn, (&row, &geometry)) in self.active.iter().zip(&self.hits.geometry).enumerate() {
             let turn = turn as u32;
@@ -113,17 +111,18 @@ impl<'a> Stages<'a> {
             if is_emitted && is_last && scene.materials()[entry.material.0 as usize].material.stops() {
                 continue;
             }
-            if is_emitted && !is_last && self.pass.materials.contains(entry.material) {
-                self.lanes.push((entry.material.0, turn, row));
+            let shading = self.pass.materials.shading(entry.material, self.paths.has_differentials(row));
+            if is_emitted && !is_last && shading != Shading::Scalar {
+                self.lanes.push(entry.material, turn, row);
             } else {
                 self.queues.scalar.push((row, turn));
             }
         }
         self.emit();
-        self.lanes.sort_unstable();
+        self.lanes.sort();
         let lanes = std::mem::take(&mut self.lanes);
-        for group in lanes.chunk_by(|a, b| a.0 == b.0) {
-            self.shade_in_lanes(MaterialId(group[0].0), group);
+        for (material, turns, rows) in lanes.iter() {
+            self.shade_in_lanes(material, turns, rows);
         }
         self.lanes = lanes;
         let scalar = std::mem::take(&mut self.queues.scalar);
@@ -147,31 +146,35 @@ impl<'a> Stages<'a> {
     }
 
     /// Shades hits of one material.
-    fn shade_in_lanes(&mut self, material: MaterialId, group: &[(u32, u32, u32)]) {
-        self.turns.clear();
-        self.rows.clear();
-        self.turns.extend(group.iter().map(|&(_, turn, _)| turn));
-        self.rows.extend(group.iter().map(|&(_, _, row)| row));
-        self.pass.pixels.scene.world().points(&self.hits, &self.turns, &mut self.points);
-        match &self.pass.pixels.scene.materials()[material.0 as usize].material {
-            Material::Diffuse(material) => self.dispatch(material),
-            Material::DiffuseTransmission(material) => self.dispatch(material),
-            Material::Conductor(material) => self.dispatch(material),
-            Material::Dielectric(material) => self.dispatch(material),
-            Material::ThinDielectric(material) => self.dispatch(material),
+    fn shade_in_lanes(&mut self, id: MaterialId, turns: &[u32], rows: &[u32]) {
+        self.pass.pixels.scene.world().points(&self.hits, turns, &mut self.points);
+        let with_footprint = self.pass.materials.shading(id, false) == Shading::LanesWithFootprint;
+        match &self.pass.pixels.scene.materials()[id.0 as usize].material {
+            Material::Diffuse(material) => self.dispatch(material, with_footprint, turns, rows),
+            Material::DiffuseTransmission(material) => self.dispatch(material, with_footprint, turns, rows),
+            Material::Conductor(material) => self.dispatch(material, with_footprint, turns, rows),
+            Material::Dielectric(material) => self.dispatch(material, with_footprint, turns, rows),
+            Material::ThinDielectric(material) => self.dispatch(material, with_footprint, turns, rows),
             Material::Mix(_) | Material::Interface => {
                 unreachable!("invariant: mixes and interfaces are not shaded in lanes")
             }
         }
     }
 
-    fn dispatch<M: MaterialModel>(&mut self, material: &'a M) {
+    fn dispatch<M: MaterialModel>(
+        &mut self,
+        material: &'a M,
+        with_footprint: bool,
+        turns: &[u32],
+        rows: &[u32],
+    ) {
         self.pass.instruction_set.dispatch(Shade {
             pass: self.pass,
             material,
+            with_footprint,
             points: &self.points,
-            turns: &self.turns,
-            rows: &self.rows,
+            turns,
+            rows,
             paths: &mut self.paths,
             queues: &mut self.queues,
         });

@@ -33,6 +33,7 @@ mod spectrum_type;
 #[cfg(test)]
 mod tests;
 
+use crate::footprint::Footprint;
 use lanes::Real;
 use math::{Normal3, Point2, Point3, Vector3};
 
@@ -77,6 +78,13 @@ pub struct TextureContext<R = f32> {
 }
 
 impl<R: Real> TextureContext<R> {
+    /// The context of a point with normal `n` and parameters `uv`.
+    #[inline(always)]
+    pub fn new(p: Point3<R>, n: Normal3<R>, uv: Point2<R>, footprint: &Footprint<R>) -> Self {
+        let Footprint { dpdx, dpdy, dudx, dudy, dvdx, dvdy } = *footprint;
+        Self { p, dpdx, dpdy, n, uv, dudx, dudy, dvdx, dvdy, face_index: 0 }
+    }
+
     /// The context of a lane.
     #[inline(always)]
     pub(crate) fn lane(&self, lane: usize) -> TextureContext {
