@@ -12,6 +12,7 @@ pub use geometry;
 pub use image;
 pub use import;
 pub use integrators;
+pub use lanes;
 pub use math;
 pub use sampling;
 pub use scattering;

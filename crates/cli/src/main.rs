@@ -27,6 +27,7 @@ mod values;
 use std::io::ErrorKind;
 use std::process::ExitCode;
 
+use alhazen::lanes::InstructionSet;
 use args::{Cli, Command};
 use clap::Parser;
 use failure::Failure;
@@ -36,6 +37,9 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
     };
+    if let Err(message) = InstructionSet::requested() {
+        return Failure::Usage(message).report(cli.command.json());
+    }
     let done = |()| ExitCode::SUCCESS;
     let result = match &cli.command {
         Command::Render(arguments) => render::render(arguments),

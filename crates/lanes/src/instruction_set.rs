@@ -29,9 +29,27 @@ impl InstructionSet {
     pub const ALL: [Self; 6] =
         [Self::Avx512, Self::Avx2, Self::Neon, Self::Sse2, Self::Portable, Self::Scalar];
 
-    /// The best one that this processor has.
+    /// The environment variable that names the instruction set to use: `avx512`, `avx2`, `neon`,
+    /// `sse2`, `portable` or `scalar`.
+    pub const VARIABLE: &str = "ALHAZEN_INSTRUCTION_SET";
+
+    /// The one that [`VARIABLE`](Self::VARIABLE) names, or else the best one that this processor
+    /// has.
     pub fn detect() -> Self {
-        Self::ALL.into_iter().find(|set| set.is_available()).unwrap_or(Self::Scalar)
+        let best = || Self::ALL.into_iter().find(|set| set.is_available());
+        Self::requested().ok().flatten().or_else(best).unwrap_or(Self::Scalar)
+    }
+
+    /// The one that [`VARIABLE`](Self::VARIABLE) names, if it is set. It is an error if there is no
+    /// such set, or if the processor does not have it.
+    pub fn requested() -> Result<Option<Self>, String> {
+        let Some(name) = std::env::var_os(Self::VARIABLE) else { return Ok(None) };
+        let named = |set: &Self| name.eq_ignore_ascii_case(format!("{set:?}"));
+        match Self::ALL.into_iter().find(named) {
+            Some(set) if set.is_available() => Ok(Some(set)),
+            Some(set) => Err(format!("{}: this processor has no {set:?}", Self::VARIABLE)),
+            None => Err(format!("{}: there is no instruction set {name:?}", Self::VARIABLE)),
+        }
     }
 
     /// Whether this processor has it.

@@ -260,3 +260,23 @@ fn threads_never_change_a_bit_and_seeds_do() {
     assert_eq!(pixel, one[(20 + 25 * 50) * 3..][..3], "a pixel alone is the pixel of the whole");
     assert!(bits(&["--threads", "1", "--seed", "1"]) != one, "the seed changed nothing");
 }
+
+/// The instruction set is a matter of speed alone.
+#[test]
+fn every_instruction_set_gives_the_same_file() {
+    let folder = Folder::with_scene("instruction-set");
+    let render = |set: &str, output: &str| {
+        let mut command = folder.command(&["render", "scene.pbrt", "-o", output, "--quiet"]);
+        command.env("ALHAZEN_INSTRUCTION_SET", set).output().expect("the program runs")
+    };
+    for (set, output) in [("portable", "a.pfm"), ("Scalar", "b.pfm")] {
+        assert!(render(set, output).status.success());
+    }
+    folder.alhazen(&["render", "scene.pbrt", "-o", "c.pfm"]).expect(0);
+    let file = |name: &str| std::fs::read(folder.path().join(name)).expect("a picture");
+    assert!(file("a.pfm") == file("b.pfm") && file("b.pfm") == file("c.pfm"));
+    let unknown = render("avx3", "d.pfm");
+    assert_eq!(unknown.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
+    assert!(message.contains("ALHAZEN_INSTRUCTION_SET: there is no instruction set \"avx3\""), "{message}");
+}
