@@ -99,8 +99,11 @@ pub fn node_index(largest: usize, value: usize, ratios: [usize; 2]) -> usize {
 
 /// Coefficients over the RGB cube of one colour space.
 pub struct RgbToSpectrumTable {
-    coefficients: Box<[[f32; 3]]>,
+    /// Three coefficients and a zero, so that a node is a vector.
+    nodes: Box<[[f32; 4]]>,
     values: [f32; VALUES],
+    /// The values by [`value_coordinate`].
+    coordinates: [f32; VALUES],
     ratios: [f32; RATIOS],
 }
 
@@ -109,11 +112,14 @@ impl RgbToSpectrumTable {
     ///
     /// # Panics
     /// If there are not [`NODES`] of them.
-    pub fn new(coefficients: Box<[[f32; 3]]>) -> Self {
-        assert_eq!(coefficients.len(), NODES, "invariant: a table has all its nodes");
+    pub fn new(coefficients: impl IntoIterator<Item = [f32; 3]>) -> Self {
+        let nodes: Box<[_]> = coefficients.into_iter().map(|[a, b, c]| [a, b, c, 0.0]).collect();
+        assert_eq!(nodes.len(), NODES, "invariant: a table has all its nodes");
+        let values = std::array::from_fn(|i| node_value(i) as f32);
         Self {
-            coefficients,
-            values: std::array::from_fn(|i| node_value(i) as f32),
+            nodes,
+            values,
+            coordinates: values.map(value_coordinate),
             ratios: std::array::from_fn(|i| node_ratio(i) as f32),
         }
     }
@@ -130,18 +136,18 @@ impl RgbToSpectrumTable {
             });
             [(0.5 * (blue + red) - green) as f32, (0.5 * (red - blue)) as f32, green as f32]
         });
-        Self::new(coefficients.collect())
+        Self::new(coefficients)
     }
 
     /// The table as bytes, six a node.
     pub fn encode(&self) -> Vec<u8> {
-        let node = |&[c0, c1, c2]: &[f32; 3]| {
+        let node = |&[c0, c1, c2, _]: &[f32; 4]| {
             [c0 - c1 + c2, c2, c0 + c1 + c2].map(|x| {
                 let step = (f64::from(x).asinh() / ASINH_RANGE + 1.0) * 32767.5;
                 step.round().clamp(0.0, 65535.0) as u16
             })
         };
-        self.coefficients.iter().flat_map(node).flat_map(u16::to_le_bytes).collect()
+        self.nodes.iter().flat_map(node).flat_map(u16::to_le_bytes).collect()
     }
 
     /// The reflectance for `rgb`, its components clamped to [0, 1].
@@ -157,27 +163,28 @@ impl RgbToSpectrumTable {
 
         let (darkest, z) = (self.values[0], largest_value.max(self.values[0]));
         let z0 = self.values.partition_point(|&v| v <= z).clamp(1, VALUES - 1) - 1;
-        let [a, b, c] = [self.values[z0], z, self.values[z0 + 1]].map(value_coordinate);
-        let tz = (b - a) / (c - a);
+        let [a, b] = [self.coordinates[z0], self.coordinates[z0 + 1]];
+        let tz = (value_coordinate(z) - a) / (b - a);
 
-        let mut coefficients = [0.0; 3];
+        let mut sums = [0.0; 4];
         for (dz, wz) in [(0, 1.0 - tz), (1, tz)] {
             for (dy, wy) in [(0, 1.0 - ty), (1, ty)] {
                 for (dx, wx) in [(0, 1.0 - tx), (1, tx)] {
-                    let node = self.coefficients[node_index(largest, z0 + dz, [x0 + dx, y0 + dy])];
+                    let node = self.nodes[node_index(largest, z0 + dz, [x0 + dx, y0 + dy])];
                     let weight = wz * wy * wx;
-                    for (sum, c) in coefficients.iter_mut().zip(node) {
+                    for (sum, c) in sums.iter_mut().zip(node) {
                         *sum += weight * c;
                     }
                 }
             }
         }
+        let [c0, c1, mut c2, _] = sums;
         if largest_value < darkest {
             // All wavelengths get darker together; scaling the whole polynomial would lighten where
             // it is positive.
-            coefficients[2] *= (darkest / largest_value).sqrt();
+            c2 *= (darkest / largest_value).sqrt();
         }
-        RgbSigmoidPolynomial { coefficients }
+        RgbSigmoidPolynomial { coefficients: [c0, c1, c2] }
     }
 
     /// The node below a ratio, and how far the ratio is from it to the next.
@@ -218,10 +225,10 @@ mod tests {
         let mut nodes = vec![[0.0; 3]; NODES];
         nodes[5] = [-1.5, 0.25, 3.0];
         nodes[6] = [40.0, -7.0, -90.0];
-        let table = RgbToSpectrumTable::new(nodes.into());
+        let table = RgbToSpectrumTable::new(nodes);
         let again = RgbToSpectrumTable::decode(&table.encode());
         for i in [4, 5, 6] {
-            for (a, b) in table.coefficients[i].iter().zip(again.coefficients[i]) {
+            for (a, b) in table.nodes[i].iter().zip(again.nodes[i]) {
                 assert!((a - b).abs() <= 4e-4 * (1.0 + a.abs().max(90.0 * f32::from(i == 6))), "{a} {b}");
             }
         }

@@ -202,7 +202,7 @@ fn fit_table(observer: &Observer) -> RgbToSpectrumTable {
             }
         }
     });
-    RgbToSpectrumTable::new(coefficients.into())
+    RgbToSpectrumTable::new(coefficients)
 }
 
 /// The coefficients of a column of nodes: all values of the largest component, with fixed ratios of
