@@ -58,6 +58,8 @@ real! {
     to_int(a) = _mm512_cvttps_epi32(a);
     -> Self, if there is an instruction:
     gather(table, indices) = _mm512_i32gather_ps::<4>(indices, table);
+    -> (), if there is an instruction:
+    scatter(value, mask, table, indices) = _mm512_mask_i32scatter_ps::<4>(table, mask, indices, value);
 }
 
 int! {
@@ -84,6 +86,9 @@ int! {
     -> Self, if there is an instruction:
     gather(table, indices) = _mm512_i32gather_epi32::<4>(indices, table.cast());
     compress(a, mask) = _mm512_maskz_compress_epi32(mask, a);
+    -> (), if there is an instruction:
+    scatter(value, mask, table, indices) =
+        _mm512_mask_i32scatter_epi32::<4>(table.cast(), mask, indices, value);
 }
 
 mask! {

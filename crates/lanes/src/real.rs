@@ -60,6 +60,22 @@ pub trait Real:
         Self::from_fn(|lane| table[indices[lane] as usize])
     }
 
+    /// Writes the lanes where the mask is true to places of a table. Of lanes with the same index
+    /// the last one counts.
+    ///
+    /// # Panics
+    /// If any index lies outside of the table.
+    #[inline(always)]
+    fn scatter(self, mask: Self::Mask, table: &mut [f32], indices: Self::Int) {
+        let (lanes, indices, bits) = (self.to_array(), indices.to_array(), mask.bits());
+        for lane in 0..Self::LANES {
+            let place = &mut table[indices[lane] as usize];
+            if bits >> lane & 1 == 1 {
+                *place = lanes[lane];
+            }
+        }
+    }
+
     /// `a` where the mask is true, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
@@ -215,6 +231,22 @@ pub trait Int:
     fn gather(table: &[u32], indices: Self) -> Self {
         let indices = indices.to_array();
         Self::from_fn(|lane| table[indices[lane] as usize])
+    }
+
+    /// Writes the lanes where the mask is true to places of a table. Of lanes with the same index
+    /// the last one counts.
+    ///
+    /// # Panics
+    /// If any index lies outside of the table.
+    #[inline(always)]
+    fn scatter(self, mask: Self::Mask, table: &mut [u32], indices: Self) {
+        let (lanes, indices, bits) = (self.to_array(), indices.to_array(), mask.bits());
+        for lane in 0..Self::Real::LANES {
+            let place = &mut table[indices[lane] as usize];
+            if bits >> lane & 1 == 1 {
+                *place = lanes[lane];
+            }
+        }
     }
 
     /// `a` where the mask is true, else `b`.

@@ -109,7 +109,7 @@ macro_rules! instruction_set {
 
 /// Makes a vector of `vector!` a [`Real`](crate::Real), which has the arithmetic of that table.
 /// Masks and integers are those that `mask!` and `int!` define. `gather` has a pointer, and indices
-/// that lie inside of the table.
+/// that lie inside of the table; `scatter` likewise.
 macro_rules! real {
     (
         $real:ident, $int:ident, $mask:ident: $n:literal;
@@ -119,6 +119,10 @@ macro_rules! real {
         -> Mask: $($comparison:ident($left:ident, $right:ident) = $compared:expr;)*
         -> Int: $($conversion:ident($from:ident) = $converted:expr;)*
         $(-> Self, if there is an instruction: gather($table:ident, $indices:ident) = $gather:expr;)?
+        $(
+            -> (), if there is an instruction:
+            scatter($written:ident, $lanes:ident, $places:ident, $at:ident) = $scatter:expr;
+        )?
     ) => {
         #[allow(unused_unsafe)]
         impl $crate::Real for $real {
@@ -164,6 +168,15 @@ macro_rules! real {
                     }
                     let ($table, $indices) = (table.as_ptr(), indices.0);
                     unsafe { Self($gather) }
+                }
+            )?
+
+            $(
+                #[inline(always)]
+                fn scatter(self, mask: $mask, table: &mut [f32], indices: $int) {
+                    assert!($crate::tables::are_inside(table.len(), indices), "a place for each lane");
+                    let ($written, $lanes, $places, $at) = (self.0, mask.0, table.as_mut_ptr(), indices.0);
+                    unsafe { $scatter }
                 }
             )?
 
@@ -264,7 +277,7 @@ macro_rules! arithmetic {
 }
 
 /// Defines integers for the lanes of a `real!` as a newtype over a register. `gather` has a
-/// pointer, and indices that lie inside of the table.
+/// pointer, and indices that lie inside of the table; `scatter` likewise.
 macro_rules! int {
     (
         $(#[$doc:meta])* $int:ident($register:ty), $real:ident, $mask:ident: $n:literal;
@@ -283,6 +296,10 @@ macro_rules! int {
             -> Self, if there is an instruction:
             gather($table:ident, $indices:ident) = $gather:expr;
             compress($all:ident, $kept:ident) = $compress:expr;
+        )?
+        $(
+            -> (), if there is an instruction:
+            scatter($written:ident, $lanes:ident, $places:ident, $at:ident) = $scatter:expr;
         )?
     ) => {
         $(#[$doc])*
@@ -335,6 +352,15 @@ macro_rules! int {
                     let ($all, $kept) = (self.0, mask.0);
                     $crate::Int::store(unsafe { Self($compress) }, to);
                     $crate::Mask::bits(mask).count_ones() as usize
+                }
+            )?
+
+            $(
+                #[inline(always)]
+                fn scatter(self, mask: $mask, table: &mut [u32], indices: Self) {
+                    assert!($crate::tables::are_inside(table.len(), indices), "a place for each lane");
+                    let ($written, $lanes, $places, $at) = (self.0, mask.0, table.as_mut_ptr(), indices.0);
+                    unsafe { $scatter }
                 }
             )?
 

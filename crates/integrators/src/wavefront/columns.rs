@@ -135,8 +135,7 @@ impl<const C: usize> Columns<C> {
     #[inline(always)]
     pub fn set<R: Real>(&mut self, rows: Rows<R>, mask: R::Mask, values: [R; C]) {
         for (column, value) in self.0.iter_mut().zip(values) {
-            let value = value.to_array();
-            rows.each_of(mask, |lane, row| column[row] = value[lane]);
+            value.scatter(mask, column, rows.indices);
         }
     }
 }

@@ -198,7 +198,8 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let valid = valid & vertices.active;
 
         // The first scattering event is never the last by roulette.
-        let is_first = R::Int::gather(&self.paths.depth, rows.indices).eq(R::Int::splat(0));
+        let depth = R::Int::gather(&self.paths.depth, rows.indices);
+        let is_first = depth.eq(R::Int::splat(0));
         let probability = (beta * eta_scale).max_component();
         let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
         let draws = plays & probability.gt(R::zero());
@@ -218,20 +219,20 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
             columns.set(rows, survives, v.to_array());
         }
         let is_specular = flags.is_specular();
-        let pdf = R::select(is_specular, R::zero(), pdf).to_array();
-        let (eta_scale, dimension) = (eta_scale.to_array(), vertices.address.dimension.to_array());
-        let (is_specular, draws) = (is_specular.bits(), draws.bits());
-        rows.each_of(survives, |lane, row| {
-            paths.pdf[row] = pdf[lane];
-            paths.eta_scale[row] = eta_scale[lane];
-            paths.depth[row] += 1;
-            paths.rough_before[row] |= is_specular >> lane & 1 == 0;
-            paths.dimension[row] = dimension[lane] + (draws >> lane & 1);
-            if let Some(kept) = paths.differentials.get_mut(row) {
-                *kept = None;
-            }
-            self.queues.next.push(row as u32);
-        });
+        R::select(is_specular, R::zero(), pdf).scatter(survives, &mut paths.pdf, rows.indices);
+        eta_scale.scatter(survives, &mut paths.eta_scale, rows.indices);
+        let one = R::Int::splat(1);
+        depth.wrapping_add(one).scatter(survives, &mut paths.depth, rows.indices);
+        let dimension = vertices.address.dimension;
+        let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
+        dimension.scatter(survives, &mut paths.dimension, rows.indices);
+        if self.pass.settings.regularize {
+            rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
+        }
+        if !paths.differentials.is_empty() {
+            rows.each_of(survives, |_, row| paths.differentials[row] = None);
+        }
+        rows.indices.append(survives, &mut self.queues.next);
     }
 }
 

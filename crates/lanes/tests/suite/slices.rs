@@ -40,6 +40,49 @@ fn tables_are_read_at_indices() {
     }
 }
 
+/// Numbers written to random places of tables of zeros.
+struct Scatter {
+    mask: u32,
+    indices: [u32; MAX_LANES],
+    length: usize,
+}
+
+impl Kernel for Scatter {
+    type Output = (usize, Vec<f32>, Vec<u32>);
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let (mask, indices) = (R::Mask::from_bits(self.mask), R::Int::load(&self.indices));
+        let lanes = R::Int::from_fn(|lane| lane as u32 + 1);
+        let (mut reals, mut ints) = (vec![0.0; self.length], vec![0; self.length]);
+        lanes.to_real().scatter(mask, &mut reals, indices);
+        lanes.scatter(mask, &mut ints, indices);
+        (R::LANES, reals, ints)
+    }
+}
+
+#[test]
+fn tables_are_written_at_indices() {
+    for round in 0..1000 {
+        let length = 1 + hash(round) % 100;
+        let indices: [u32; MAX_LANES] = std::array::from_fn(|lane| hash(16 * round + lane as u32) % length);
+        let mask = hash(round + 77) & 0xffff;
+        for set in available() {
+            let (lanes, reals, ints) = set.dispatch(Scatter { mask, indices, length: length as usize });
+            let mut expected = vec![0; length as usize];
+            for lane in (0..lanes).filter(|lane| mask >> lane & 1 == 1) {
+                expected[indices[lane] as usize] = lane as u32 + 1;
+            }
+            assert_eq!(ints, expected, "{set:?}");
+            assert!(reals.iter().zip(&expected).all(|(real, int)| *real == *int as f32), "{set:?}");
+        }
+    }
+    for set in available() {
+        let scatter = || set.dispatch(Scatter { mask: 0, indices: [5; MAX_LANES], length: 5 });
+        assert!(catch_unwind(AssertUnwindSafe(scatter)).is_err(), "{set:?}");
+    }
+}
+
 #[test]
 fn indices_outside_of_a_table_panic() {
     for length in [0, 1, 5] {
