@@ -36,15 +36,15 @@ pub(super) struct LightLanes<R: Real> {
 /// One sample of one light for each lane of `active`, chosen by `u` and `u_light`.
 #[inline(always)]
 pub(super) fn sample<R: Real>(
-    pass: &Pass,
+    (pass, samples): (&Pass, &mut Samples),
     context: &LightSampleContext<R>,
-    u: R,
-    u_light: Vec2<R>,
+    (u, u_light): (R, Vec2<R>),
     lambda: &SampledWavelengths<R>,
     active: R::Mask,
 ) -> LightLanes<R> {
-    let samples = pass.instruction_set.dispatch(Sample {
+    pass.instruction_set.dispatch(Sample {
         pass,
+        samples,
         context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
         time: context.time.to_array(),
         u: [u, u_light.x, u_light.y].each(R::to_array),
@@ -68,8 +68,9 @@ pub(super) fn sample<R: Real>(
     }
 }
 
-/// Light samples in arrays.
-struct Samples {
+/// Light samples in arrays, which are made once.
+#[derive(Default)]
+pub(super) struct Samples {
     /// Radiance, direction, density, position, its error and normal.
     columns: [[f32; MAX_LANES]; 17],
     /// The lanes that have a sample, and those of delta lights, of distant ones, and of those that
@@ -103,6 +104,8 @@ impl Samples {
 /// Samples lights; has all that samples depend on, in arrays.
 struct Sample<'a, 'b> {
     pass: &'b Pass<'a>,
+    /// Changed where lanes have a sample.
+    samples: &'b mut Samples,
     context: [[[f32; MAX_LANES]; 3]; 4],
     time: [f32; MAX_LANES],
     /// Numbers that choose the light and the point.
@@ -114,11 +117,11 @@ struct Sample<'a, 'b> {
 }
 
 impl Kernel for Sample<'_, '_> {
-    type Output = Samples;
+    type Output = ();
 
     #[inline(always)]
-    fn run<R: Real>(self) -> Samples {
-        let mut samples = Samples { columns: [[0.0; MAX_LANES]; 17], masks: [0; 4] };
+    fn run<R: Real>(mut self) {
+        self.samples.masks = [0; 4];
         let Pass { direct, area_lights, pixels, .. } = self.pass;
         let [p, error, n, ns] = [0, 1, 2, 3].each(|i| vector::<R>(&self.context[i]));
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: R::load(&self.time) };
@@ -137,6 +140,7 @@ impl Kernel for Sample<'_, '_> {
             let l = area_lights.radiance(pixels.scene, rows, (sample.n, -wi), &lambda, mask);
             let is_lit = (mask & !l.is_black()).bits();
             // Interfaces occlude none of the lights that have a surface.
+            let samples = &mut *self.samples;
             samples.masks = [is_lit, 0, 0, is_lit];
             samples.store(0, &l.0);
             samples.store(Samples::WI, &wi.to_array());
@@ -148,12 +152,11 @@ impl Kernel for Sample<'_, '_> {
         let (mut others, lights) = ((chosen & !in_lanes).bits(), lights.to_array());
         while others != 0 {
             let lane = others.trailing_zeros() as usize;
-            self.sample_one(LightId(lights[lane]), lane, &mut samples);
+            self.sample_one(LightId(lights[lane]), lane);
             others &= others - 1;
         }
-        let pdf = R::load(&samples.columns[Samples::PDF]) * pmf;
-        samples.store(Samples::PDF, &[pdf]);
-        samples
+        let pdf = R::load(&self.samples.columns[Samples::PDF]) * pmf;
+        self.samples.store(Samples::PDF, &[pdf]);
     }
 }
 
@@ -164,7 +167,7 @@ impl Sample<'_, '_> {
     }
 
     /// Samples the light of one lane.
-    fn sample_one(&self, id: LightId, lane: usize, samples: &mut Samples) {
+    fn sample_one(&mut self, id: LightId, lane: usize) {
         let (scene, bit) = (self.pass.pixels.scene, 1 << lane);
         let [_, x, y] = self.u.each_ref().map(|u| u[lane]);
         let lambda = self.lambda.each_ref().map(|v| v[lane]);
@@ -174,6 +177,7 @@ impl Sample<'_, '_> {
         let light = scene.light(id);
         let passes = self.pass.direct.interfaces(light) == Interfaces::Pass;
         let is = [true, light.is_delta(), p.is_none(), passes];
+        let samples = &mut *self.samples;
         samples.masks.iter_mut().zip(is).for_each(|(mask, is)| *mask |= if is { bit } else { 0 });
         samples.set(lane, 0, &l.0);
         samples.set(lane, Samples::WI, &wi.to_array());

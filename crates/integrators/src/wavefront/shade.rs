@@ -12,7 +12,7 @@ use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
-use super::lights::{self, LightLanes};
+use super::lights::{self, LightLanes, Samples};
 use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::paths::Paths;
@@ -32,6 +32,7 @@ pub(super) struct Shade<'a, 'b, M> {
     pub rows: &'b [u32],
     pub paths: &'b mut Paths,
     pub queues: &'b mut Queues,
+    pub light_samples: &'b mut Samples,
 }
 
 impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
@@ -153,14 +154,15 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         vertices: &Vertices<R>,
         bsdf: &Bsdf<B, R>,
         contexts: &LightSampleContext<R>,
-        (u, u_light): (R, Vec2<R>),
+        u: (R, Vec2<R>),
         is_non_specular: R::Mask,
     ) {
         let samples = vertices.active & is_non_specular;
         if !samples.any() {
             return;
         }
-        let light = lights::sample(&self.pass, contexts, u, u_light, &vertices.lambda, samples);
+        let sampling = (&self.pass, &mut *self.light_samples);
+        let light = lights::sample(sampling, contexts, u, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let f = bsdf.f(wo, wi, TransportMode::Radiance);

@@ -13,6 +13,7 @@ use super::begin::Begin;
 use super::emission::{Emit, LightHit};
 use super::finish::{Finish, finish_with_first_hits};
 use super::groups::Groups;
+use super::lights::Samples;
 use super::materials::Shading;
 use super::pass::Pass;
 use super::paths::Paths;
@@ -38,6 +39,7 @@ pub(super) struct Stages<'a> {
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
     occluded: Vec<bool>,
+    light_samples: Samples,
     /// Counts the rays.
     pub stats: RayStats,
 }
@@ -55,6 +57,7 @@ impl<'a> Stages<'a> {
             lanes: Groups::default(),
             lit: Vec::new(),
             occluded: Vec::new(),
+            light_samples: Samples::default(),
             stats: RayStats::default(),
         }
     }
@@ -96,7 +99,9 @@ impl<'a> Stages<'a> {
         for (turn, (&row, &geometry)) in self.active.iter().zip(&self.hits.geometry).enumerate() {
             let turn = turn as u32;
             let Some(entry) = scene.geometries().get(geometry as usize) else {
-                self.queues.scalar.push((row, turn));
+                if !scene.infinite_lights().is_empty() {
+                    self.queues.scalar.push((row, turn));
+                }
                 continue;
             };
             let light = match entry.first_light {
@@ -177,6 +182,7 @@ impl<'a> Stages<'a> {
             rows,
             paths: &mut self.paths,
             queues: &mut self.queues,
+            light_samples: &mut self.light_samples,
         });
     }
 
