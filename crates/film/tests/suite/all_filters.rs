@@ -3,8 +3,9 @@
 use alhazen_film::Filter;
 use alhazen_film::filter::MAX_RADIUS;
 use description::FilterDesc;
+use lanes::Real;
 use math::Vec2;
-use testkit::{Chi2, Moments, Random, integrate, t_test};
+use testkit::{Chi2, LaneFunction, Moments, Random, integrate, lanes_agree, t_test};
 
 /// Filters of every kind, with names for failures.
 fn all() -> Vec<(&'static str, Filter)> {
@@ -190,5 +191,23 @@ fn invalid_parameters_are_refused_by_name() {
     ] {
         let (named, message) = Filter::new(&desc).unwrap_err();
         assert_eq!(named, parameter, "{message}");
+    }
+}
+
+impl LaneFunction for Sampled<'_> {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let sample = self.0.sample(Vec2::new(u[0], u[1]));
+        vec![sample.offset.x, sample.offset.y, sample.weight]
+    }
+}
+
+/// A sample of a filter.
+struct Sampled<'a>(&'a Filter);
+
+#[test]
+fn samples_do_not_depend_on_the_number_of_lanes() {
+    for (_, filter) in all() {
+        lanes_agree(&Sampled(&filter), 2, 200);
     }
 }

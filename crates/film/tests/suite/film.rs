@@ -1,8 +1,9 @@
 //! The film as a whole: order, merging, refusal, bounds and development.
 
-use alhazen_film::{Film, Layer, compile};
+use alhazen_film::{Film, FilmTile, Layer, compile};
 use description::{ColorSpaceDesc, FilmKind, FilterDesc, GBufferSpace, SceneDesc, Severity, Span, Spanned};
 use image::Pixels;
+use lanes::{InstructionSet, Kernel, Real};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
 
@@ -290,4 +291,60 @@ fn the_imaging_ratio_is_exposure_time_times_iso_over_100() {
     desc.film.sensor.iso = 800.0;
     let brighter = picture(&desc);
     assert!((0..3).all(|c| (brighter[c] / plain[c] - 4.0).abs() < 1e-5), "{brighter:?} {plain:?}");
+}
+
+/// Adds the samples of all pixels of a tile, in lanes.
+struct AddLanes<'a, 'film>(&'a mut FilmTile<'film>, &'a [Sample]);
+
+impl Kernel for AddLanes<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let Self(tile, samples) = self;
+        for (first, samples) in samples.chunks(R::LANES).enumerate() {
+            let at = |lane: usize| &samples[lane.min(samples.len() - 1)];
+            let l = SampledSpectrum([0, 1, 2, 3].map(|i: usize| R::from_fn(|lane| at(lane).l[i])));
+            let lambda = SampledWavelengths::sample_visible(R::from_fn(|lane| at(lane).u));
+            let weight = R::from_fn(|lane| at(lane).weight);
+            tile.add_lanes(first * R::LANES, samples.len(), &l, &lambda, weight);
+        }
+    }
+}
+
+#[test]
+fn samples_in_lanes_are_added_like_single_ones() {
+    let resolution = [19, 21];
+    let mut with_layers = scene(resolution);
+    with_layers.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
+    for desc in [scene(resolution), with_layers] {
+        for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
+            let [mut single, mut lanes] = [film_of(&desc), film_of(&desc)];
+            for seed in 0..4 {
+                let mut all = samples(19 * 21, resolution, seed);
+                // Refused, and near the limits of the sums.
+                all[3].l = SampledSpectrum::splat(f32::NAN);
+                all[40].l = SampledSpectrum::splat(f32::INFINITY);
+                all[77].weight = f32::NAN;
+                all[90].weight = 1e13;
+                all[100].l = SampledSpectrum::splat(3e8);
+                all[101].l = SampledSpectrum::ZERO;
+                let mut rest = &mut all[..];
+                for tile in lanes.tiles_mut().expect("memory") {
+                    let mut tile = tile;
+                    let bounds = tile.bounds();
+                    let (these, others) = rest.split_at_mut(bounds.area());
+                    let rows = bounds.min[1]..bounds.max[1];
+                    let pixels = rows.flat_map(|y| (bounds.min[0]..bounds.max[0]).map(move |x| [x, y]));
+                    these.iter_mut().zip(pixels).for_each(|(sample, pixel)| sample.pixel = pixel);
+                    set.dispatch(AddLanes(&mut tile, these));
+                    rest = others;
+                }
+                all.iter().for_each(|sample| add(&mut single, sample));
+            }
+            assert_eq!(floats(&lanes), floats(&single), "{set:?}");
+            assert_eq!(lanes.sample_count(), single.sample_count());
+            assert_eq!(lanes.rejected(), single.rejected());
+        }
+    }
 }

@@ -9,7 +9,8 @@ use spectrum::{N, SampledSpectrum, SampledWavelengths};
 use super::columns::{Column, Columns, fill, grow};
 use crate::transport::path_state::{Origin, PathState};
 
-/// The paths of a batch; a path is a row. Columns are longer, so that a vector can begin at any row.
+/// The paths of a batch; a path is a row. Columns are longer, so that a vector can begin at any
+/// row.
 #[derive(Default)]
 pub(super) struct Paths {
     count: usize,

@@ -1,10 +1,10 @@
-//! Warps and samplers in lanes give the bits of single numbers.
+//! Warps, tables and samplers in lanes give the bits of single numbers.
 
-use alhazen_sampling::Sampler;
 use alhazen_sampling::sampler::*;
 use alhazen_sampling::warp::*;
-use lanes::{Each, Real};
-use math::{Vec2, Vec3};
+use alhazen_sampling::{PiecewiseConstant2d, Sampler};
+use lanes::{Each, Int, Real};
+use math::{Bounds2, Vec2, Vec3};
 use testkit::{LaneFunction, lanes_agree};
 
 struct Warps;
@@ -46,6 +46,7 @@ impl LaneFunction for Warps {
             sample_bilinear(p, w),
             Vec2::new(bilinear_pdf(p, w), sample_linear(u[0], u[2], u[3])),
             Vec2::new(linear_pdf(u[0], u[2], u[3]), uniform_cone_pdf(u[2])),
+            Vec2::new(sample_tent(u[0], u[2]), sample_tent(u[1], u[3])),
         ] {
             results.extend(p.to_array());
         }
@@ -66,6 +67,28 @@ impl LaneFunction for Warps {
 #[test]
 fn warps_do_not_depend_on_the_number_of_lanes() {
     lanes_agree(&Warps, 6, 500);
+}
+
+/// A sample of a table.
+struct Table(PiecewiseConstant2d);
+
+impl LaneFunction for Table {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let (p, pdf, [column, row]) = self.0.sample(Vec2::new(u[0], u[1]));
+        vec![p.x, p.y, pdf, column.to_real(), row.to_real()]
+    }
+}
+
+#[test]
+fn tables_do_not_depend_on_the_number_of_lanes() {
+    let domain = Bounds2::new(Vec2::new(-1.0, 0.5), Vec2::new(3.0, 0.75));
+    // Steep in one half, zero in the other, and nowhere positive.
+    let steep = |i: usize| if i % 17 < 9 { 0.0 } else { (i as f32).exp2() };
+    let tables = [(0..77).map(steep).collect::<Vec<f32>>(), vec![0.0; 77], vec![-2.5]];
+    for values in &tables {
+        lanes_agree(&Table(PiecewiseConstant2d::new(values, values.len().min(11), domain)), 2, 200);
+    }
 }
 
 /// A sample of a sampler: pixel and dimension by the lane's numbers.

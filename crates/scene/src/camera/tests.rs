@@ -5,7 +5,9 @@ use description::{
     CameraDesc, CameraKind, FilmDesc, LensDesc, RealisticCameraDesc, RenderSpace, ScreenDesc,
     SphericalMapping, Stated, TransformDesc,
 };
+use lanes::Real;
 use math::{DMat4, DVec3, Vec3};
+use testkit::{LaneFunction, lanes_agree};
 
 pub(super) const RESOLUTION: [u32; 2] = [200, 150];
 const LENS: LensDesc = LensDesc { radius: 0.3, focal_distance: 4.0 };
@@ -315,5 +317,31 @@ fn invalid_cameras_are_reported() {
         (realistic, [8, 8], (true, vec!["not-drawn"])),
     ] {
         assert_eq!(codes(desc, resolution), expected);
+    }
+}
+
+/// A ray of a camera.
+struct Rays<'a>(&'a Camera);
+
+impl LaneFunction for Rays<'_> {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let film = Vec2::new(u[0] * R::splat(200.0), u[1] * R::splat(150.0));
+        let sample = CameraSample { film, lens: Vec2::new(u[2], u[3]), time: u[4], filter_weight: R::one() };
+        let ray = self.0.ray(&sample);
+        vec![ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, ray.time]
+    }
+}
+
+#[test]
+fn rays_do_not_depend_on_the_number_of_lanes() {
+    let still = somewhere();
+    let end = still.start * DMat4::from_rotation_y(0.3) * DMat4::from_translation(DVec3::new(1.0, 0.0, 2.0));
+    let moving = TransformDesc { end, times: [0.2, 0.8], ..still };
+    for (_, kind) in kinds() {
+        for place in [still, moving] {
+            let camera = build(kind.clone(), place, RenderSpace::CameraWorld);
+            lanes_agree(&Rays(&camera), 5, 50);
+        }
     }
 }
