@@ -9,7 +9,8 @@
 //! |---|---|
 //! | `begin` | camera rays of one sample of each pixel |
 //! | `extend` | the nearest hit of each path's ray |
-//! | `shade` | emission at the hit, light sample, BSDF sample and Russian roulette |
+//! | `emit` | emission at the hits of triangles and rectangles of one colour |
+//! | `shade` | other emission, light sample, BSDF sample and Russian roulette |
 //! | `connect` | shadow rays to the light samples |
 //! | `finish` | adds the paths' radiance to the film |
 //!
