@@ -6,8 +6,8 @@
 //! - t = −(N·(o − c) + k) / N·d, where c is a point near the middle and k its height, and
 //! - x = U·(o − c + t·d) + x₀, and y likewise by V, where U and V are the dual vectors of e₁, e₂.
 //!
-//! These are the parameters u and v where there is no twist (as in [Baldwin and Weber 2016]). With
-//! a twist of (a, b, h) along e₁, e₂ and N they solve u·(1 + v·A) = x and v·(1 + u·B) = y, where
+//! These are the parameters u and v where there is no twist [Baldwin 2016]. With a twist of
+//! (a, b, h) along e₁, e₂ and N they solve u·(1 + v·A) = x and v·(1 + u·B) = y, where
 //! A = a − h·U·d/N·d and B = b − h·V·d/N·d, and the height uv·h adds to t.
 //!
 //! This is computed in floats. A bound of all errors tells hits and misses from what floats cannot
@@ -268,13 +268,12 @@ impl<R: Real> RayLanes<R> {
         let is_clear = height.abs().gt(near);
         let ahead = t.gt(zero);
         let length = self.length * facet.scale;
-        // Where a ray grazes a facet without a twist, the error is above 1.
-        let mut certain = inside.ge(error) & is_clear & ahead;
+        let mut certain = inside.ge(error) & is_clear & ahead & !grazes;
         if self.is_bounded {
             certain = certain & ((self.t_max - t) * length).gt(error);
         }
         let excluded = (inside + error).lt(zero) | (is_clear & !ahead) | ((t - nearest) * length).gt(error);
-        Meeting { certain: certain & !grazes, uncertain: (!excluded | grazes) & !certain, t, uv }
+        Meeting { certain, uncertain: (!excluded | grazes) & !certain, t, uv }
     }
 }
 

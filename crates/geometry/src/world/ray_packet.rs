@@ -22,8 +22,8 @@ use std::ops::Range;
 /// The largest difference between directions of a packet, relative to their length.
 const SPREAD: f32 = 0.1;
 
-/// The rays of a batch from a place on, if they are worth tracing as a packet: they have one origin,
-/// and similar directions with the same signs and the same main axis.
+/// The rays of a batch from a place on, if they are worth tracing as a packet: they have one
+/// origin, and similar directions with the same signs and the same main axis.
 #[inline(always)]
 pub(super) fn coherent_packet(rays: &RayColumns, first: usize) -> Option<[(Ray, f32); WIDTH]> {
     let lead = rays.ray(first);

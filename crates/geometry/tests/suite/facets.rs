@@ -76,7 +76,7 @@ fn hits_are_those_of_the_shapes() {
                 let (Some(hit), Some((t, geometry, primitive))) = (hit, expected) else { continue };
                 let size = ray.o.length() + t * ray.d.length() + 4.0;
                 let distance = (hit.t - t).abs() * ray.d.length();
-                assert!(distance < 1e-3 * size, "{ray:?} {hit:?} at {t}");
+                assert!(distance < 1e-2 * size, "{ray:?} {hit:?} at {t}");
                 hits += 1;
                 others += (distance > 1e-5 * size) as u32;
                 others += ((hit.geometry.0, hit.primitive) != (geometry, primitive)) as u32;
@@ -143,7 +143,7 @@ fn turned_boxes_are_closed() {
         let mut rays = RayBuffer::default();
         for [a, b, ..] in SIDES {
             for _ in 0..300 {
-                let o = m.point(point_in(rng, 0.4) + Vec3::splat(0.5));
+                let o = m.point(point_in(rng, 0.1) + Vec3::splat(0.5));
                 let target = m.point(corner(a).lerp(corner(b), rng.uniform_f32()));
                 rays.push(&Ray::new(o, target - o, 0.0), f32::INFINITY);
             }

@@ -11,6 +11,7 @@ mod implicit;
 mod instances;
 mod instruction_sets;
 mod motion;
+mod points;
 mod solids;
 mod sphere_sets;
 mod tessellation;

@@ -168,6 +168,38 @@ fn the_lanes_of_a_mask_are_written_one_after_another() {
     }
 }
 
+/// The lanes of a mask, appended twice to one number.
+struct Append([u32; MAX_LANES], u32);
+
+impl Kernel for Append {
+    type Output = (Vec<u32>, Vec<f32>);
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let (mut integers, mut floats) = (vec![7], vec![7.0]);
+        let lanes = R::Int::load(&self.0);
+        for _ in 0..2 {
+            lanes.append(Mask::from_bits(self.1), &mut integers);
+            lanes.to_real().append(Mask::from_bits(self.1), &mut floats);
+        }
+        (integers, floats)
+    }
+}
+
+#[test]
+fn the_lanes_of_a_mask_are_appended() {
+    for set in available() {
+        let lanes = LaneCount::of(set);
+        let numbers = std::array::from_fn(|lane| 100 + lane as u32);
+        for bits in [0, 1, 0b1010, 0x8001, 0xffff].map(|bits| bits & ((1 << lanes) - 1)) {
+            let (integers, floats) = set.dispatch(Append(numbers, bits));
+            let kept: Vec<u32> = (0..lanes).filter(|i| bits >> i & 1 == 1).map(|i| numbers[i]).collect();
+            assert_eq!(integers, [&[7], &*kept, &*kept].concat(), "{set:?}: {bits:b}");
+            assert!(floats.iter().map(|&x| x as u32).eq(integers), "{set:?}: {bits:b}");
+        }
+    }
+}
+
 /// What a mask says of its bits: them, and whether any or all are set.
 struct Bits(u32);
 

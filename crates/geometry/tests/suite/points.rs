@@ -1,0 +1,98 @@
+//! Surface points of the hits of batches are those of single hits.
+
+use crate::common::*;
+use alhazen_geometry::*;
+use math::*;
+use sampling::Rng;
+use std::sync::Arc;
+
+/// A mesh with any shading normals and texture coordinates.
+fn with_attributes(rng: &mut Rng, plain: &TriangleMesh, tangents: bool) -> Geometry {
+    let (mut positions, mut indices) = (Vec::new(), Vec::new());
+    for triangle in 0..plain.len() {
+        positions.extend(plain.corners(triangle));
+        indices.push([0, 1, 2].map(|corner| 3 * triangle as u32 + corner));
+    }
+    let n = positions.len();
+    let mut vectors = |_| -> Arc<[Vec3]> { (0..n).map(|_| direction(rng)).collect() };
+    let (normals, tangents) = (Some(vectors(0)), tangents.then(|| vectors(1)));
+    let uvs = Some((0..n).map(|_| uniform_2d(rng)).collect());
+    let attributes = MeshAttributes { normals, tangents, uvs };
+    let m = Transform::scale(Vec3::new(-1.0, 1.0, 1.0));
+    TriangleMesh::new(positions.into(), indices.into(), attributes, &m, true).expect("a mesh").into()
+}
+
+fn patches(rng: &mut Rng) -> Geometry {
+    let patch = |i: u32| {
+        let mut p = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y];
+        p[3].z += if i.is_multiple_of(2) { 0.1 } else { 0.0 };
+        BilinearPatch::new(p, None, None, &Transform::translate(point_in(rng, 2.0)), i.is_multiple_of(3))
+    };
+    let patches: Vec<Shape> = (0..9).map(patch).map(Shape::from).collect();
+    Geometry::Shapes(patches.into())
+}
+
+/// The number of hits that have a point, and of those that have none.
+fn compare(world: &World, rng: &mut Rng) -> [u32; 2] {
+    let rays: RayBuffer =
+        (0..5003).map(|_| (Ray::new(point_in(rng, 3.0), direction(rng), 0.0), f32::INFINITY)).collect();
+    let rays = rays.columns();
+    let mut hits = HitColumns::default();
+    world.intersect_batch(rays, &AcceptAll, &mut hits, &mut RayStats::default());
+    let places: Vec<u32> =
+        (0..rays.len() as u32).rev().filter(|&place| hits.get(place as usize).is_some()).collect();
+    let mut points = PointColumns::default();
+    world.points(&hits, &places, &mut points);
+    let mut counts = [0; 2];
+    for (i, &place) in places.iter().enumerate() {
+        let hit = hits.get(place as usize).expect("a hit");
+        let (point, found) = points.get::<f32>(i);
+        let is_of_meshes = match world.geometry(hit.geometry) {
+            Geometry::Mesh(_) => hit.geometry.0 != 3,
+            Geometry::Shapes(shapes) => matches!(shapes[0], Shape::BilinearPatch(_)),
+            _ => false,
+        };
+        assert_eq!(found, is_of_meshes && hit.instance.is_top(), "{hit:?}");
+        counts[usize::from(!found)] += 1;
+        if !found {
+            continue;
+        }
+        let surface = world.surface(&rays.ray(place as usize), &hit);
+        let near = |a: Vec3, b: Vec3, what: &str| {
+            assert!((a - b).length() <= 1e-4 * (1.0 + b.length()), "{what} {a:?} and {b:?} of {hit:?}");
+        };
+        let error = point.p.error + surface.p.error;
+        assert!((point.p.p - surface.p.p).abs().cmple(error).all(), "{hit:?}");
+        near(point.n, surface.n, "normals");
+        near(point.ns, surface.shading.n, "shading normals");
+        near(point.dpdu.normalize(), surface.dpdu.normalize(), "tangents");
+        assert!((point.uv - surface.uv).length() < 1e-5, "{hit:?}");
+    }
+    counts
+}
+
+#[test]
+fn few_facets() {
+    let rng = &mut Rng::new(1, 0);
+    let mut geometries = vec![cube(&Transform::IDENTITY).into(), patches(rng)];
+    geometries.push(with_attributes(rng, &cube(&Transform::translate(Vec3::X)), false));
+    let [found, others] = compare(&world(geometries), rng);
+    assert!(found > 1000 && others == 0, "{found} {others}");
+}
+
+#[test]
+fn meshes_of_trees_and_what_has_no_point() {
+    let rng = &mut Rng::new(2, 0);
+    let mut builder = World::builder();
+    let group = builder.add_group();
+    let at = |x: f32| Transform::translate(Vec3::X * x);
+    builder.add_geometry(GroupId::TOP, ball(20, 0.1, &at(1.0)));
+    builder.add_geometry(GroupId::TOP, with_attributes(rng, &ball(20, 0.1, &at(1.5)), false));
+    builder.add_geometry(GroupId::TOP, patches(rng));
+    builder.add_geometry(GroupId::TOP, with_attributes(rng, &ball(20, 0.1, &at(0.2)), true));
+    builder.add_geometry(GroupId::TOP, Shape::from(Sphere::whole(&at(-2.0), false, 0.5)));
+    builder.add_geometry(group, ball(9, 0.1, &at(-1.0)));
+    builder.add_instance(GroupId::TOP, Instance { group, render_from_instance: at(0.5).into() });
+    let [found, others] = compare(&builder.build(), rng);
+    assert!(found > 1000 && others > 100, "{found} {others}");
+}
