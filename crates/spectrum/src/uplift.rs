@@ -15,7 +15,7 @@
 
 use crate::rgb::Rgb;
 use crate::sampled::{LAMBDA_MAX, LAMBDA_MIN};
-use lanes::Real;
+use lanes::{Each, Real};
 
 /// A reflectance made from RGB: a sigmoid of a quadratic polynomial of wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +34,7 @@ impl RgbSigmoidPolynomial {
     /// The reflectance at `lambda` nanometres, in [0, 1].
     #[inline(always)]
     pub fn at<R: Real>(&self, lambda: R) -> R {
-        let [c0, c1, c2] = self.coefficients.map(R::splat);
+        let [c0, c1, c2] = self.coefficients.each(R::splat);
         let t = (lambda - R::splat(540.0)) / R::splat(100.0);
         sigmoid((c0 * t + c1) * t + c2)
     }

@@ -183,7 +183,10 @@ fn triangles<R: Real>(mesh: &TriangleMesh, triangle: R::Int) -> PatchLanes<R> {
     let corners = [first, second, third].each(|place| R::Int::gather(indices, place));
     let [a, b, c] = vertices(mesh.positions(), corners);
     let uv = match mesh.uvs() {
-        Some(uvs) => corners.each(|corner| pair(pairs(uvs), corner.shl(1))),
+        Some(uvs) => {
+            let (numbers, [a, b, c]) = (pairs(uvs), corners);
+            [pair(numbers, a.shl(1)), pair(numbers, b.shl(1)), pair(numbers, c.shl(1))]
+        }
         None => Triangle::DEFAULT_UV.each(Vec2::broadcast),
     };
     PatchLanes {

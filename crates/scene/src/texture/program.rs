@@ -162,10 +162,14 @@ impl Textures {
     /// The number at a point.
     #[inline(always)]
     pub fn float<R: Real>(&self, id: FloatTextureId, ctx: &TextureContext<R>) -> R {
-        match self.constant(id) {
-            Some(value) => R::splat(value),
-            None => R::from_fn(|lane| self.varying_float(id, &ctx.lane(lane))),
+        if let Some(value) = self.constant(id) {
+            return R::splat(value);
         }
+        let mut values = [0.0; MAX_LANES];
+        for (lane, value) in values[..R::LANES].iter_mut().enumerate() {
+            *value = self.varying_float(id, &ctx.lane(lane));
+        }
+        R::load(&values)
     }
 
     /// The spectrum at a point.
