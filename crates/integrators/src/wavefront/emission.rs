@@ -1,9 +1,11 @@
-//! Light that paths find by hitting the lights of [`AreaLights`](super::area_lights::AreaLights).
+//! Light that paths find: by hitting the lights of [`AreaLights`](super::area_lights::AreaLights),
+//! and by leaving the scene towards uniform infinite lights.
 
 use geometry::HitColumns;
 use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Point3Error, Vec2};
-use scene::light::LightSampleContext;
+use scene::Scene;
+use scene::light::{Light, LightSampleContext};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
@@ -78,5 +80,43 @@ impl Emit<'_, '_> {
         let beta = paths.beta.spectrum::<R>(rows);
         let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + beta * (l * weight);
         paths.l.set(rows, is_lit, sum.0);
+    }
+}
+
+/// Adds the radiance of uniform infinite lights to the paths of a queue, which have left the scene.
+/// Light samples leave these lights out, so that their light counts fully.
+pub(super) struct Escape<'a> {
+    pub scene: &'a Scene,
+    pub queue: &'a [u32],
+    pub paths: &'a mut Paths,
+}
+
+impl Escape<'_> {
+    /// Whether all infinite lights of a scene are uniform.
+    pub fn is_enough(scene: &Scene) -> bool {
+        let mut lights = scene.infinite_lights().iter();
+        lights.all(|&id| matches!(scene.light(id).row(), Light::UniformInfinite(_)))
+    }
+}
+
+impl Kernel for Escape<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let Self { scene, queue, paths } = self;
+        for queue in queue.chunks(R::LANES) {
+            let rows = Rows::<R>::first(queue);
+            let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
+            let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+            let mut l = SampledSpectrum::splat(R::zero());
+            for &id in scene.infinite_lights() {
+                if let Light::UniformInfinite(light) = scene.light(id).row() {
+                    l += light.radiance.sample(&lambda);
+                }
+            }
+            let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + paths.beta.spectrum::<R>(rows) * l;
+            paths.l.set(rows, rows.active, sum.0);
+        }
     }
 }

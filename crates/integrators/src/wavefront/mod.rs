@@ -10,6 +10,7 @@
 //! | `begin` | camera rays of one sample of each pixel |
 //! | `extend` | the nearest hit of each path's ray |
 //! | `emit` | emission at the hits of triangles and rectangles of one colour |
+//! | `escape` | light from infinity, of paths without a hit |
 //! | `shade` | other emission, light sample, BSDF sample and Russian roulette |
 //! | `connect` | shadow rays to the light samples |
 //! | `finish` | adds the paths' radiance to the film |

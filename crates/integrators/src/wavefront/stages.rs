@@ -10,7 +10,7 @@ use scene::material::{Material, MaterialId, MaterialModel};
 use spectrum::SampledSpectrum;
 
 use super::begin::Begin;
-use super::emission::{Emit, LightHit};
+use super::emission::{Emit, Escape, LightHit};
 use super::finish::{Finish, finish_with_first_hits};
 use super::groups::Groups;
 use super::lights::Samples;
@@ -36,6 +36,8 @@ pub(super) struct Stages<'a> {
     points: PointColumns,
     /// Hits to be shaded in lanes.
     lanes: Groups,
+    /// The paths that have left the scene.
+    escaped: Vec<u32>,
     /// Hits of lights that shine in lanes.
     lit: Vec<LightHit>,
     occluded: Vec<bool>,
@@ -55,6 +57,7 @@ impl<'a> Stages<'a> {
             hits: HitColumns::default(),
             points: PointColumns::default(),
             lanes: Groups::default(),
+            escaped: Vec::new(),
             lit: Vec::new(),
             occluded: Vec::new(),
             light_samples: Samples::default(),
@@ -96,12 +99,11 @@ impl<'a> Stages<'a> {
         let scene = self.pass.pixels.scene;
         self.lanes.clear(scene.materials().len());
         self.lit.clear();
+        self.escaped.clear();
         for (turn, (&row, &geometry)) in self.active.iter().zip(&self.hits.geometry).enumerate() {
             let turn = turn as u32;
             let Some(entry) = scene.geometries().get(geometry as usize) else {
-                if !scene.infinite_lights().is_empty() {
-                    self.queues.scalar.push((row, turn));
-                }
+                self.escaped.push(row);
                 continue;
             };
             let light = match entry.first_light {
@@ -124,6 +126,7 @@ impl<'a> Stages<'a> {
             }
         }
         self.emit();
+        self.escape();
         self.lanes.sort();
         let lanes = std::mem::take(&mut self.lanes);
         for (material, turns, rows) in lanes.iter() {
@@ -132,7 +135,8 @@ impl<'a> Stages<'a> {
         self.lanes = lanes;
         let scalar = std::mem::take(&mut self.queues.scalar);
         for &(row, turn) in &scalar {
-            self.shade_path(row, self.hits.get(turn as usize));
+            let hit = self.hits.get(turn as usize).expect("invariant: paths without hit have ended");
+            self.shade_path(row, &hit);
         }
         self.queues.scalar = scalar;
         self.queues.scalar.clear();
@@ -148,6 +152,21 @@ impl<'a> Stages<'a> {
             found: &self.lit,
             paths: &mut self.paths,
         });
+    }
+
+    /// Adds the light from infinity to the paths that have left the scene.
+    fn escape(&mut self) {
+        let Pass { direct, pixels: &PixelSamples { scene, .. }, .. } = self.pass;
+        let (queue, paths) = (&self.escaped, &mut self.paths);
+        if Escape::is_enough(scene) {
+            self.pass.instruction_set.dispatch(Escape { scene, queue, paths });
+            return;
+        }
+        for row in queue.iter().map(|&row| row as usize) {
+            let (state, lambda) = (paths.state(row), paths.lambda(row));
+            let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
+            paths.add_light(row, l);
+        }
     }
 
     /// Shades hits of one material.
@@ -187,18 +206,13 @@ impl<'a> Stages<'a> {
     }
 
     /// Shades one path.
-    fn shade_path(&mut self, path: u32, hit: Option<Hit>) {
+    fn shade_path(&mut self, path: u32, hit: &Hit) {
         let Pass { settings, direct, area_lights, pixels, .. } = self.pass;
         let &PixelSamples { scene, view, index, .. } = pixels;
         let row = path as usize;
         let mut state = self.paths.state(row);
         let mut lambda = self.paths.lambda(row);
-        let Some(hit) = hit else {
-            let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
-            self.paths.add_light(row, l);
-            return;
-        };
-        let mut surface = scene.interaction(&hit, scene.world().surface(&state.ray.ray, &hit));
+        let mut surface = scene.interaction(hit, scene.world().surface(&state.ray.ray, hit));
         if surface.area_light.is_some_and(|light| !area_lights.contains(light)) {
             let l = state.beta * direct.emitted(scene, &surface, state.origin.as_ref(), &lambda);
             self.paths.add_light(row, l);
