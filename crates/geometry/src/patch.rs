@@ -57,10 +57,10 @@ impl<R: Real> PatchLanes<R> {
     pub fn splat(patch: &Patch) -> Self {
         let [right, up] = patch.sides;
         let [a, b, c] = patch.uv;
-        let normals = match patch.normals {
-            Some(normals) => Some(normals.each(Vec3::broadcast)),
-            None => None,
-        };
+        let mut normals = None;
+        if let Some(given) = patch.normals {
+            normals = Some(given.each(Vec3::broadcast));
+        }
         let twist = if patch.twist == Vec3::ZERO { None } else { Some(Vec3::broadcast(patch.twist)) };
         Self {
             corner: Vec3::broadcast(patch.corner),

@@ -46,8 +46,7 @@ impl<Q: Query> FacetRay<'_, Q> {
     fn in_lanes<R: Real>(self) {
         let Self { tables, facets, ray, query } = self;
         let t_max = query.t_max();
-        // NaN has no hits either.
-        if !is_valid(ray) || !(t_max > 0.0) {
+        if !is_valid(ray) || t_max.is_nan() || t_max <= 0.0 {
             return;
         }
         let (rays, _) =

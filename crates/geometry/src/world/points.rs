@@ -189,14 +189,16 @@ fn triangles<R: Real>(mesh: &TriangleMesh, triangle: R::Int) -> PatchLanes<R> {
         }
         None => Triangle::DEFAULT_UV.each(Vec2::broadcast),
     };
+    // No closure, which would be called without the instruction set.
+    let mut normals = None;
+    if let Some(given) = mesh.normals() {
+        normals = Some(vertices(given, corners));
+    }
     PatchLanes {
         corner: a,
         sides: [b - a, c - a],
         twist: None,
-        normals: match mesh.normals() {
-            Some(normals) => Some(vertices(normals, corners)),
-            None => None,
-        },
+        normals,
         uv,
         sign: R::splat(if mesh.flips() { -1.0 } else { 1.0 }),
     }
