@@ -1,7 +1,7 @@
 //! The triangle p(b₁, b₂) = p₀ + b₁(p₁ − p₀) + b₂(p₂ − p₀).
 //!
-//! Seen from a point, it is sampled by solid angle and cosine where floats allow that (`flat_shape.rs`),
-//! elsewhere by area.
+//! Seen from a point, it is sampled by solid angle and cosine where floats allow that
+//! (`flat_shape.rs`), elsewhere by area.
 
 use super::sample::{ShapeHit, ShapeSample, ShapeSampleContext};
 use crate::facet::FacetFrame;
