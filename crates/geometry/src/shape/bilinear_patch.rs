@@ -51,8 +51,8 @@ struct Flat {
     cross: DVec3,
     /// Its direction.
     n: Normal3,
-    /// How far u and v may be outside of [0, 1], so that patches overlap that had an edge in common
-    /// before each was replaced by a parallelogram. Zero for an exact one.
+    /// How far u and v may be outside of [0, 1] for a ray along the normal, so that patches overlap
+    /// that had an edge in common before each was replaced by a parallelogram. Zero for an exact one.
     beyond: [f64; 2],
     /// How far the patch is from the parallelogram.
     error: DVec3,
@@ -78,6 +78,9 @@ impl Flat {
         (error.length() <= most).then_some(flat)
     }
 
+    /// The largest value of `beyond` for a ray that grazes the plane.
+    const MOST_BEYOND: f64 = 1e-3;
+
     /// A quarter of the sum of rounding errors of four transformed points, relative to the largest
     /// coordinate.
     const ROUNDING: f64 = gamma(8) as f64;
@@ -94,8 +97,13 @@ impl Flat {
         let moment = o.cross(d);
         let u = self.up.dot(moment) * inverse;
         let v = -self.right.dot(moment) * inverse;
+        // A patch moved away from the plane is met further along it by a ray that grazes it.
+        let secant = (d.length_squared() * self.cross.length_squared()).sqrt() * inverse.abs();
         // NaN, where the ray runs along the plane, fails.
-        let is_inside = |x: f64, beyond: f64| (-beyond..=1.0 + beyond).contains(&x);
+        let is_inside = |x: f64, beyond: f64| {
+            let beyond = (beyond * secant).min(Self::MOST_BEYOND);
+            (-beyond..=1.0 + beyond).contains(&x)
+        };
         let is_met =
             t > 0.0 && (t as f32) < t_max && is_inside(u, self.beyond[0]) && is_inside(v, self.beyond[1]);
         let within = |x: f64| x.clamp(0.0, 1.0) as f32;
@@ -456,8 +464,8 @@ mod tests {
     use super::*;
     use sampling::Rng;
 
-    /// Rays from the middle to points on the edges, where two sides were replaced by parallelograms
-    /// that may not quite meet.
+    /// Rays from inside to points on the edges, where two sides were replaced by parallelograms that
+    /// may not quite meet.
     #[test]
     fn rotated_boxes_are_flat_and_closed() {
         const SIDES: [[usize; 4]; 6] =
@@ -472,13 +480,14 @@ mod tests {
             let sides = SIDES.map(|side| BilinearPatch::new(side.map(corner), None, None, &m, false));
             let flats = sides.iter().map(|side| side.flat.expect("a rectangle"));
             inexact += flats.filter(|flat| flat.error != DVec3::ZERO).count();
-            let o = m.point(Vec3::splat(0.5));
             for [a, b, ..] in SIDES {
-                for _ in 0..200 {
-                    let target = m.point(corner(a).lerp(corner(b), rng.uniform_f32()));
+                for _ in 0..2000 {
+                    let o = m.point(Vec3::splat(0.5) + random() * 0.499);
+                    let target = m.point(corner(a).lerp(corner(b), random().x.abs()));
                     let ray = Ray::new(o, target - o, 0.0);
                     let hit = sides.iter().find_map(|side| side.intersect(&ray, f32::INFINITY));
-                    assert!(hit.is_some_and(|hit| (hit.t - 1.0).abs() < 1e-5), "{ray:?} {hit:?}");
+                    // A ray that grazes a side may meet it a little beyond the edge.
+                    assert!(hit.is_some_and(|hit| (hit.t - 1.0).abs() < 2e-3), "{ray:?} {hit:?}");
                 }
             }
         }

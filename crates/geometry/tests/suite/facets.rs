@@ -142,8 +142,8 @@ fn turned_boxes_are_closed() {
         let world = world(SIDES.map(|side| patch(side.map(corner), &m)));
         let mut rays = RayBuffer::default();
         for [a, b, ..] in SIDES {
-            for _ in 0..300 {
-                let o = m.point(point_in(rng, 0.1) + Vec3::splat(0.5));
+            for _ in 0..2000 {
+                let o = m.point(point_in(rng, 0.499) + Vec3::splat(0.5));
                 let target = m.point(corner(a).lerp(corner(b), rng.uniform_f32()));
                 rays.push(&Ray::new(o, target - o, 0.0), f32::INFINITY);
             }
