@@ -52,7 +52,8 @@ struct Flat {
     /// Its direction.
     n: Normal3,
     /// How far u and v may be outside of [0, 1] for a ray along the normal, so that patches overlap
-    /// that had an edge in common before each was replaced by a parallelogram. Zero for an exact one.
+    /// that had an edge in common before each was replaced by a parallelogram. Zero for an exact
+    /// one.
     beyond: [f64; 2],
     /// How far the patch is from the parallelogram.
     error: DVec3,
@@ -464,8 +465,8 @@ mod tests {
     use super::*;
     use sampling::Rng;
 
-    /// Rays from inside to points on the edges, where two sides were replaced by parallelograms that
-    /// may not quite meet.
+    /// Rays from inside to points on the edges, where two sides were replaced by parallelograms
+    /// that may not quite meet.
     #[test]
     fn rotated_boxes_are_flat_and_closed() {
         const SIDES: [[usize; 4]; 6] =
