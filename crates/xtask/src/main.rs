@@ -2,7 +2,6 @@
 
 mod bench;
 mod command;
-mod dist;
 mod rgb_table;
 mod test;
 mod tidy;
@@ -19,7 +18,6 @@ usage: cargo xtask TASK
              the ray engine beside Embree, on a million triangles
   bench render [--help | OPTIONS]
              whole renders beside Mitsuba 3: CPU time and error
-  dist       the release build, optimised for what it did while it rendered some scenes
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -30,7 +28,6 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(workspace()),
         ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
-        ["dist"] => dist::run(workspace()),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");
