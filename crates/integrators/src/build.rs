@@ -13,7 +13,8 @@ use scene::texture::color_space;
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
     AmbientOcclusion, Bdpt, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping, PixelLoop,
-    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, Wavefront, Whitted,
+    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, WaveIntegrator, Wavefront,
+    Whitted,
 };
 
 /// The result of [`build`].
@@ -172,16 +173,21 @@ impl Builder<'_> {
         self.path(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass, sampler)
     }
 
+    /// An algorithm that both engines have.
+    fn waves(&self, rays: impl WaveIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
+        match self.desc.options.engine {
+            Engine::Wavefront => Box::new(Wavefront::new(rays, sampler)),
+            Engine::Scalar => pixels(rays, sampler),
+        }
+    }
+
     fn path(&mut self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
         if desc.light_sampler == LightSamplerDesc::Exhaustive {
             let message = "light sampler `exhaustive` is not drawn yet; drawn with `bvh`";
             let span = self.desc.integrator.origin.parameter("lightsampler");
             self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
         }
-        match self.desc.options.engine {
-            Engine::Wavefront => Box::new(Wavefront::new(desc, interfaces, sampler)),
-            Engine::Scalar => pixels(Path::new(desc, interfaces), sampler),
-        }
+        self.waves(Path::new(desc, interfaces), sampler)
     }
 }
 

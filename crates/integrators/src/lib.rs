@@ -2,8 +2,9 @@
 //!
 //! An [`Integrator`] fills a film in passes; a [`Session`] runs the passes until a limit is reached
 //! or it is cancelled. An algorithm that only estimates the radiance along a ray is a
-//! [`RayIntegrator`], and [`PixelLoop`] turns it into an integrator. [`build`] builds the algorithm
-//! that a scene names.
+//! [`RayIntegrator`], and [`PixelLoop`] turns it into an integrator. Some of them are also a
+//! [`WaveIntegrator`], which a [`Wavefront`] does to many rays at once, in the lanes of vectors.
+//! [`build`] builds the algorithm that a scene names.
 //!
 //! | algorithm | what it traces |
 //! |---|---|
@@ -13,7 +14,6 @@
 //! | [`RandomWalk`] | paths in uniform directions, without next-event estimation |
 //! | [`SimplePath`] | paths by light sampling and BSDF sampling, each optional |
 //! | [`Path`] | paths by both with multiple importance sampling, and Russian roulette |
-//! | [`Wavefront`] | the paths of [`Path`], many at once in the lanes of vectors |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected at all pairs of vertices |
 //! | [`Mlt`] | Markov chains of paths, distributed in proportion to their contribution |
@@ -52,4 +52,4 @@ pub use photons::{MAX_PHOTON_PATHS, PhotonMapping, Sppm, Vcm};
 pub use radiosity::Radiosity;
 pub use session::{Limits, Progress, Session, SessionState, Stop};
 pub use transport::Tracer;
-pub use wavefront::Wavefront;
+pub use wavefront::{WaveIntegrator, Wavefront};

@@ -106,13 +106,16 @@ impl Compiled {
         }
     }
 
-    fn wavefront(&self, sampler: &Sampler) -> Wavefront {
-        Wavefront::new(self.settings(), Interfaces::Stop, sampler.clone())
+    fn path(&self) -> integrators::Path {
+        integrators::Path::new(self.settings(), Interfaces::Stop)
+    }
+
+    fn wavefront(&self, sampler: &Sampler) -> Wavefront<integrators::Path> {
+        Wavefront::new(self.path(), sampler.clone())
     }
 
     fn scalar(&self, sampler: &Sampler) -> Box<dyn Integrator> {
-        let path = integrators::Path::new(self.settings(), Interfaces::Stop);
-        Box::new(PixelLoop::new(path, sampler.clone()))
+        Box::new(PixelLoop::new(self.path(), sampler.clone()))
     }
 }
 

@@ -20,9 +20,9 @@ use crate::{Cancelled, Control, RayIntegrator, Tracer};
 /// Path tracing.
 #[derive(Clone, Debug)]
 pub struct Path {
-    settings: PathDesc,
+    pub(crate) settings: PathDesc,
     interfaces: Interfaces,
-    direct: DirectLighting,
+    pub(crate) direct: DirectLighting,
 }
 
 impl Path {

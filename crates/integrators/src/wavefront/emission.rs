@@ -11,7 +11,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 use super::columns::Rows;
 use super::pass::Pass;
 use super::paths::Paths;
-use crate::transport::direct::power_heuristic;
+use crate::transport::direct::{DirectLighting, power_heuristic};
 
 /// A hit of a light of the table.
 pub(super) struct LightHit {
@@ -27,6 +27,7 @@ pub(super) struct LightHit {
 /// [`DirectLighting::emitted`](crate::transport::direct::DirectLighting::emitted).
 pub(super) struct Emit<'a, 'b> {
     pub pass: Pass<'a>,
+    pub direct: &'b DirectLighting,
     pub hits: &'b HitColumns,
     pub found: &'b [LightHit],
     pub paths: &'b mut Paths,
@@ -56,7 +57,7 @@ impl Emit<'_, '_> {
         let uv = Vec2::new(R::load(&x), R::load(&y));
         let lights = R::Int::load(&lights);
 
-        let (Pass { direct, area_lights, pixels, .. }, paths) = (self.pass, &mut *self.paths);
+        let (Pass { area_lights, pixels, .. }, paths) = (self.pass, &mut *self.paths);
         let (table_rows, active) = area_lights.rows::<R>(lights, rows.active);
         let shapes = area_lights.shapes::<R>(table_rows);
         let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
@@ -73,7 +74,7 @@ impl Emit<'_, '_> {
             let p = Point3Error::new(p.vector(rows), error.vector(rows));
             let time = R::gather(&paths.time, rows.indices);
             let context = LightSampleContext { p, n: n.vector(rows), ns: ns.vector(rows), time };
-            let pmf = direct.lights().pmf_lanes(&context, lights, is_weighted);
+            let pmf = self.direct.lights().pmf_lanes(&context, lights, is_weighted);
             let other = pmf * shapes.pdf_from(&context, uv);
             weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
         }

@@ -10,6 +10,7 @@ use scene::light::{LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 use super::pass::Pass;
+use crate::transport::direct::DirectLighting;
 
 /// Light samples, before their visibility is tested.
 pub(super) struct LightLanes<R: Real> {
@@ -36,7 +37,7 @@ pub(super) struct LightLanes<R: Real> {
 /// One sample of one light for each lane of `active`, chosen by `u` and `u_light`.
 #[inline(always)]
 pub(super) fn sample<R: Real>(
-    (pass, samples): (&Pass, &mut Samples),
+    (pass, direct, samples): (&Pass, &DirectLighting, &mut Samples),
     context: &LightSampleContext<R>,
     (u, u_light): (R, Vec2<R>),
     lambda: &SampledWavelengths<R>,
@@ -44,6 +45,7 @@ pub(super) fn sample<R: Real>(
 ) -> LightLanes<R> {
     pass.instruction_set.dispatch(Sample {
         pass,
+        direct,
         samples,
         context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
         time: context.time.to_array(),
@@ -104,6 +106,7 @@ impl Samples {
 /// Samples lights; has all that samples depend on, in arrays.
 struct Sample<'a, 'b> {
     pass: &'b Pass<'a>,
+    direct: &'b DirectLighting,
     /// Changed where lanes have a sample.
     samples: &'b mut Samples,
     context: [[[f32; MAX_LANES]; 3]; 4],
@@ -122,12 +125,12 @@ impl Kernel for Sample<'_, '_> {
     #[inline(always)]
     fn run<R: Real>(mut self) {
         self.samples.masks = [0; 4];
-        let Pass { direct, area_lights, pixels, .. } = self.pass;
+        let Pass { area_lights, pixels, .. } = self.pass;
         let [p, error, n, ns] = [0, 1, 2, 3].each(|i| vector::<R>(&self.context[i]));
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: R::load(&self.time) };
         let [u, x, y] = [0, 1, 2].each(|i| R::load(&self.u[i]));
         let active = R::Mask::from_bits(self.active);
-        let (lights, pmf, chosen) = direct.lights().sample_lanes(&context, u, active);
+        let (lights, pmf, chosen) = self.direct.lights().sample_lanes(&context, u, active);
         let (rows, in_lanes) = area_lights.rows::<R>(lights, chosen);
         if in_lanes.any() {
             let shapes = area_lights.shapes::<R>(rows);
@@ -175,7 +178,7 @@ impl Sample<'_, '_> {
         let sample = scene.sample_light(id, &self.context(lane), Vec2::new(x, y), &lambda, true);
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };
         let light = scene.light(id);
-        let passes = self.pass.direct.interfaces(light) == Interfaces::Pass;
+        let passes = self.direct.interfaces(light) == Interfaces::Pass;
         let is = [true, light.is_delta(), p.is_none(), passes];
         let samples = &mut *self.samples;
         samples.masks.iter_mut().zip(is).for_each(|(mask, is)| *mask |= if is { bit } else { 0 });

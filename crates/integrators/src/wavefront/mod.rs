@@ -1,4 +1,4 @@
-//! Path tracing by wavefronts: many paths at once, one stage after another.
+//! Tracing by wavefronts: many paths at once, one stage after another.
 //!
 //! The paths of a batch of tiles go through each stage together: all are extended by a ray, then
 //! all are shaded, then all shadow rays are traced, and so on until none is left. A stage does one
@@ -9,15 +9,16 @@
 //! |---|---|
 //! | `begin` | camera rays of one sample of each pixel |
 //! | `extend` | the nearest hit of each path's ray |
-//! | `emit` | emission at the hits of triangles and rectangles of one colour |
-//! | `escape` | light from infinity, of paths without a hit |
-//! | `shade` | other emission, light sample, BSDF sample and Russian roulette |
-//! | `connect` | shadow rays to the light samples |
+//! | `shade` | what the algorithm does at the hits: its [`WaveIntegrator`] |
+//! | `connect` | shadow rays |
 //! | `finish` | adds the paths' radiance to the film |
 //!
-//! Estimates and random numbers are those of [`Path`](crate::Path), whichever paths share a batch.
+//! Estimates and random numbers are those of the algorithm's [`RayIntegrator`], whichever paths
+//! share a batch. `path.rs` and `shade.rs` have what is of path tracing; the other files serve all
+//! algorithms.
 
 mod area_lights;
+mod batch;
 mod begin;
 mod columns;
 mod emission;
@@ -27,26 +28,24 @@ mod lights;
 mod materials;
 mod numbers;
 mod pass;
+mod path;
 mod paths;
 mod queues;
 mod shade;
-mod stages;
 
-use description::PathDesc;
 use film::{Film, FilmTile};
 use geometry::RayStats;
 use lanes::InstructionSet;
 use rayon::prelude::*;
 use sampling::Sampler;
-use scene::{Interfaces, Scene, View};
+use scene::{Scene, View};
 
 use self::area_lights::AreaLights;
+use self::batch::Batch;
 use self::materials::LaneMaterials;
 use self::pass::Pass;
-use self::stages::Stages;
-use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, PassError};
+use crate::{Cancelled, Control, Integrator, PassError, RayIntegrator};
 
 /// The most tiles of a batch: 4096 paths, whose state stays in the second-level cache.
 const BATCH_TILES: usize = 16;
@@ -54,27 +53,29 @@ const BATCH_TILES: usize = 16;
 /// Batches per thread, so that threads end a pass at nearly the same time.
 const BATCHES_PER_THREAD: usize = 4;
 
-/// Path tracing by wavefronts.
+/// An algorithm that can be done to many paths at once.
+pub trait WaveIntegrator: RayIntegrator {
+    /// Continues each active path from its hit: adds light, asks for shadow rays, and gives the
+    /// paths that go on their next rays.
+    fn shade(&self, batch: &mut Batch);
+}
+
+/// Runs a [`WaveIntegrator`] for each sample of each pixel.
 #[derive(Clone, Debug)]
-pub struct Wavefront {
-    settings: PathDesc,
-    interfaces: Interfaces,
+pub struct Wavefront<A> {
+    algorithm: A,
     sampler: Sampler,
-    direct: DirectLighting,
     materials: LaneMaterials,
     area_lights: AreaLights,
     instruction_set: InstructionSet,
 }
 
-impl Wavefront {
-    /// Has no lights before [`prepare`](Integrator::prepare). `interfaces` says whether interfaces
-    /// occlude delta lights.
-    pub fn new(settings: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Self {
+impl<A: WaveIntegrator> Wavefront<A> {
+    /// With as many passes as the sampler has samples per pixel.
+    pub fn new(algorithm: A, sampler: Sampler) -> Self {
         Self {
-            settings,
-            interfaces,
+            algorithm,
             sampler,
-            direct: DirectLighting::none(),
             materials: LaneMaterials::default(),
             area_lights: AreaLights::default(),
             instruction_set: InstructionSet::detect(),
@@ -85,15 +86,30 @@ impl Wavefront {
     pub fn with_instruction_set(self, instruction_set: InstructionSet) -> Self {
         Self { instruction_set, ..self }
     }
+
+    /// Traces one path for each pixel of the tiles. After a cancellation nothing is added to them.
+    fn trace(&self, batch: &mut Batch, mut tiles: Vec<FilmTile>) -> Result<(), Cancelled> {
+        let control = batch.pass.control;
+        batch.begin(&tiles);
+        while !batch.active.is_empty() {
+            control.check()?;
+            batch.extend();
+            self.algorithm.shade(batch);
+            batch.go_on();
+            control.check()?;
+            batch.connect();
+        }
+        batch.finish(&mut tiles)
+    }
 }
 
-impl Integrator for Wavefront {
+impl<A: WaveIntegrator> Integrator for Wavefront<A> {
     fn passes(&self) -> u32 {
         self.sampler.samples_per_pixel()
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.direct = DirectLighting::new(scene, self.settings.light_sampler, self.interfaces, control)?;
+        self.algorithm.prepare(scene, view, control)?;
         self.materials = LaneMaterials::new(scene, view);
         self.area_lights = AreaLights::new(scene);
         Ok(())
@@ -113,21 +129,20 @@ impl Integrator for Wavefront {
         let batches = BATCHES_PER_THREAD * rayon::current_num_threads();
         let batch_tiles = tiles.len().div_ceil(batches).clamp(1, BATCH_TILES);
         let pass = Pass {
-            settings: &self.settings,
-            direct: &self.direct,
             materials: &self.materials,
             area_lights: &self.area_lights,
             pixels: &pixels,
             control,
             instruction_set: self.instruction_set,
         };
-        let batch = |stages: &mut Stages, tiles: Vec<FilmTile>| {
-            let done = stages.run(tiles);
-            let stats = std::mem::take(&mut stages.stats);
+        let this = &*self;
+        let run = |batch: &mut Batch, tiles: Vec<FilmTile>| {
+            let done = this.trace(batch, tiles);
+            let stats = std::mem::take(&mut batch.stats);
             control.count(&stats);
             done.map(|()| stats)
         };
-        let batches = tiles.into_par_iter().chunks(batch_tiles).map_init(|| Stages::new(pass), batch);
+        let batches = tiles.into_par_iter().chunks(batch_tiles).map_init(|| Batch::new(pass), run);
         Ok(batches.try_reduce(RayStats::default, |mut sum, stats| {
             sum += stats;
             Ok(sum)

@@ -1,19 +1,15 @@
 //! What all batches of a pass share.
 
-use description::PathDesc;
 use lanes::InstructionSet;
 
 use super::area_lights::AreaLights;
 use super::materials::LaneMaterials;
 use crate::Control;
-use crate::transport::direct::DirectLighting;
 use crate::transport::pixel_samples::PixelSamples;
 
 /// What all batches of a pass share.
 #[derive(Clone, Copy)]
 pub(super) struct Pass<'a> {
-    pub settings: &'a PathDesc,
-    pub direct: &'a DirectLighting,
     pub materials: &'a LaneMaterials,
     pub area_lights: &'a AreaLights,
     pub pixels: &'a PixelSamples<'a>,

@@ -1,5 +1,6 @@
 //! Shading in lanes: next-event estimation, a sample of the BSDF and Russian roulette.
 
+use description::PathDesc;
 use geometry::{PatchPoints, PointColumns};
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
@@ -17,12 +18,14 @@ use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, Shadow};
-use crate::transport::direct::power_heuristic;
+use crate::transport::direct::{DirectLighting, power_heuristic};
 use crate::transport::roulette::CERTAIN;
 
 /// Shades hits of one material.
 pub(super) struct Shade<'a, 'b, M> {
     pub pass: Pass<'a>,
+    pub settings: &'a PathDesc,
+    pub direct: &'a DirectLighting,
     pub material: &'a M,
     pub with_footprint: bool,
     /// Their surface points.
@@ -72,7 +75,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
         self.keep_wavelengths(&vertices, &before);
         let mut bsdf = Bsdf::new(ns, dpdu, bxdf);
-        if self.pass.settings.regularize {
+        if self.settings.regularize {
             let rough: u32 = queue.iter().enumerate().map(|(lane, &row)| self.rough(row) << lane).sum();
             bsdf.regularize(R::Mask::from_bits(rough));
         }
@@ -161,7 +164,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         if !samples.any() {
             return;
         }
-        let sampling = (&self.pass, &mut *self.light_samples);
+        let sampling = (&self.pass, self.direct, &mut *self.light_samples);
         let light = lights::sample(sampling, contexts, u, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
@@ -228,7 +231,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let dimension = vertices.address.dimension;
         let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
         dimension.scatter(survives, &mut paths.dimension, rows.indices);
-        if self.pass.settings.regularize {
+        if self.settings.regularize {
             rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
         }
         if !paths.differentials.is_empty() {

@@ -1,0 +1,183 @@
+//! A batch of paths, and the stages that it goes through whatever the algorithm.
+
+use film::FilmTile;
+use geometry::{HitColumns, PointColumns, RayStats};
+use sampling::Sampler;
+use scene::Interfaces;
+use scene::light::LightId;
+use spectrum::SampledSpectrum;
+
+use super::begin::Begin;
+use super::emission::{Emit, Escape, LightHit};
+use super::finish::{Finish, finish_with_first_hits};
+use super::groups::Groups;
+use super::lights::Samples;
+use super::materials::Shading;
+use super::pass::Pass;
+use super::paths::Paths;
+use super::queues::Queues;
+use crate::Cancelled;
+use crate::transport::direct::DirectLighting;
+use crate::transport::pixel_samples::PixelSamples;
+
+/// The paths of some tiles, one for each pixel. Between the stages here an algorithm
+/// [shades](super::WaveIntegrator::shade) the hits.
+pub struct Batch<'a> {
+    pub(super) pass: Pass<'a>,
+    pub(super) sampler: Sampler,
+    pub(super) paths: Paths,
+    pub(super) queues: Queues,
+    /// The paths whose rays are traced, in the order of their hits.
+    pub(super) active: Vec<u32>,
+    pub(super) hits: HitColumns,
+    /// Surface points of some of the hits.
+    pub(super) points: PointColumns,
+    /// Hits to be shaded in lanes.
+    pub(super) lanes: Groups,
+    /// The paths that have left the scene.
+    escaped: Vec<u32>,
+    /// Hits of lights that shine in lanes.
+    lit: Vec<LightHit>,
+    occluded: Vec<bool>,
+    pub(super) light_samples: Samples,
+    /// Counts the rays.
+    pub(super) stats: RayStats,
+}
+
+impl<'a> Batch<'a> {
+    pub(super) fn new(pass: Pass<'a>) -> Self {
+        Self {
+            pass,
+            sampler: pass.pixels.sampler.clone(),
+            paths: Paths::default(),
+            queues: Queues::default(),
+            active: Vec::new(),
+            hits: HitColumns::default(),
+            points: PointColumns::default(),
+            lanes: Groups::default(),
+            escaped: Vec::new(),
+            lit: Vec::new(),
+            occluded: Vec::new(),
+            light_samples: Samples::default(),
+            stats: RayStats::default(),
+        }
+    }
+
+    /// Starts a path for each pixel.
+    pub(super) fn begin(&mut self, tiles: &[FilmTile]) {
+        let Pass { pixels, instruction_set, .. } = self.pass;
+        let with_differentials = pixels.scene.needs_footprints(pixels.view);
+        self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials);
+        instruction_set.dispatch(Begin { pass: self.pass, paths: &mut self.paths, with_differentials });
+        self.active.clear();
+        self.active.extend(0..self.paths.len() as u32);
+    }
+
+    /// Finds the nearest hit of each path's ray.
+    pub(super) fn extend(&mut self) {
+        let rays = self.paths.rays(&self.active);
+        self.pass.pixels.scene.hit_batch(rays, &mut self.hits, &mut self.stats);
+    }
+
+    /// Sorts the hits into those to be shaded in lanes, grouped by material, and those to be shaded
+    /// one by one (`queues.scalar`). Adds the light from infinity, and that of the lights that
+    /// shine in lanes. Paths of `max_depth` scattering events end where no more than this happens.
+    pub(super) fn classify(&mut self, max_depth: u32, direct: &DirectLighting) {
+        let scene = self.pass.pixels.scene;
+        self.lanes.clear(scene.materials().len());
+        self.lit.clear();
+        self.escaped.clear();
+        for (turn, (&row, &geometry)) in self.active.iter().zip(&self.hits.geometry).enumerate() {
+            let turn = turn as u32;
+            let Some(entry) = scene.geometries().get(geometry as usize) else {
+                self.escaped.push(row);
+                continue;
+            };
+            let light = match entry.first_light {
+                Some(first) => self.pass.area_lights.light_of(first, &self.hits, turn),
+                None => None,
+            };
+            if let Some(LightId(light)) = light {
+                self.lit.push(LightHit { row, turn, light });
+            }
+            let is_emitted = entry.first_light.is_none() || light.is_some();
+            let is_last = self.paths.depth[row as usize] == max_depth;
+            if is_emitted && is_last && scene.materials()[entry.material.0 as usize].material.stops() {
+                continue;
+            }
+            let shading = self.pass.materials.shading(entry.material, self.paths.has_differentials(row));
+            if is_emitted && !is_last && shading != Shading::Scalar {
+                self.lanes.push(entry.material, turn, row);
+            } else {
+                self.queues.scalar.push((row, turn));
+            }
+        }
+        self.lanes.sort();
+        self.emit(direct);
+        self.escape(direct);
+    }
+
+    /// Adds the emission at hits of lights that shine in lanes.
+    fn emit(&mut self, direct: &DirectLighting) {
+        self.pass.instruction_set.dispatch(Emit {
+            pass: self.pass,
+            direct,
+            hits: &self.hits,
+            found: &self.lit,
+            paths: &mut self.paths,
+        });
+    }
+
+    /// Adds the light from infinity to the paths that have left the scene.
+    fn escape(&mut self, direct: &DirectLighting) {
+        let &PixelSamples { scene, .. } = self.pass.pixels;
+        let (queue, paths) = (&self.escaped, &mut self.paths);
+        if Escape::is_enough(scene) {
+            self.pass.instruction_set.dispatch(Escape { scene, queue, paths });
+            return;
+        }
+        for row in queue.iter().map(|&row| row as usize) {
+            let (state, lambda) = (paths.state(row), paths.lambda(row));
+            let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
+            paths.add_light(row, l);
+        }
+    }
+
+    /// Goes on with the paths that have a next ray.
+    pub(super) fn go_on(&mut self) {
+        self.active.clear();
+        std::mem::swap(&mut self.active, &mut self.queues.next);
+    }
+
+    /// Traces the shadow rays.
+    pub(super) fn connect(&mut self) {
+        for (queue, interfaces) in self.queues.shadows.iter_mut().zip([Interfaces::Stop, Interfaces::Pass]) {
+            self.occluded.clear();
+            self.occluded.resize(queue.paths.len(), false);
+            let scene = self.pass.pixels.scene;
+            scene.occluded_batch(queue.rays.columns(), interfaces, &mut self.occluded, &mut self.stats);
+            for (shadow, (&path, occluded)) in queue.paths.iter().zip(&self.occluded).enumerate() {
+                if !occluded {
+                    self.paths.add_light(path as usize, SampledSpectrum(queue.l.row(shadow)));
+                }
+            }
+            queue.clear();
+        }
+    }
+
+    /// Adds the radiance of all paths to the film.
+    pub(super) fn finish(&mut self, tiles: &mut [FilmTile]) -> Result<(), Cancelled> {
+        let mut first = 0;
+        for tile in tiles {
+            let (pixels, with_first_hits) = (tile.bounds().area(), tile.wants_first_hit());
+            let finish = Finish { paths: &self.paths, first, tile };
+            if with_first_hits {
+                finish_with_first_hits(&self.pass, &mut self.sampler, &mut self.stats, finish)?;
+            } else {
+                self.pass.instruction_set.dispatch(finish);
+            }
+            first += pixels;
+        }
+        Ok(())
+    }
+}
