@@ -103,7 +103,7 @@ impl Builder<'_> {
             IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
             IntegratorDesc::Whitted(desc) => pixels(Whitted(desc), sampler),
             IntegratorDesc::AmbientOcclusion(desc) => {
-                pixels(AmbientOcclusion::new(desc, color_space), sampler)
+                self.waves(AmbientOcclusion::new(desc, color_space), sampler)
             }
             IntegratorDesc::RandomWalk(desc) => pixels(RandomWalk(desc), sampler),
             IntegratorDesc::SimplePath(desc) => pixels(SimplePath(desc), sampler),

@@ -6,14 +6,16 @@
 //! unoccluded point is white (A = 1). Lights and materials are ignored; a camera ray that hits
 //! nothing is black. Sources: [Zhukov 1998], [Pharr 2023 §13].
 
-use description::AmbientOcclusionDesc;
-use math::{Frame, RayDifferential};
-use sampling::warp;
-use scene::Interfaces;
-use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::f32::consts::PI;
 
-use crate::transport::path_state::pass_through;
+use description::AmbientOcclusionDesc;
+use lanes::Real;
+use math::{Frame, Ray, RayDifferential, Vec2, Vec3, Vector3};
+use sampling::warp;
+use scene::Interfaces;
+use scene::light::LightSampleContext;
+use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
+
 use crate::{RayIntegrator, Tracer};
 
 /// Ambient occlusion.
@@ -31,36 +33,54 @@ impl AmbientOcclusion {
         let white_scale = 1.0 / white.to_photometric();
         Self { settings, white, white_scale }
     }
+
+    /// The distance from which on surfaces do not occlude.
+    pub(crate) fn max_distance(&self) -> f32 {
+        self.settings.max_distance
+    }
+
+    /// A ray over the hemisphere of a point on the side of `wo`, and the light along it if nothing
+    /// occludes it.
+    #[inline(always)]
+    pub(crate) fn sample<R: Real>(
+        &self,
+        (point, wo): (&LightSampleContext<R>, Vector3<R>),
+        u: Vec2<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> (Ray<R>, SampledSpectrum<R>) {
+        let (wi, pdf) = if self.settings.cos_sample {
+            let wi = warp::sample_cosine_hemisphere(u);
+            (wi, warp::cosine_hemisphere_pdf(wi.z))
+        } else {
+            (warp::sample_uniform_hemisphere(u), R::splat(warp::uniform_hemisphere_pdf()))
+        };
+        let n = Vec3::select(point.n.dot(wo).lt(R::zero()), -point.n, point.n);
+        let scale = R::splat(self.white_scale) * wi.z / (R::splat(PI) * pdf);
+        let scale = R::select(pdf.eq(R::zero()), R::zero(), scale);
+        (point.spawn_ray(Frame::from_z(n).from_local(wi)), self.white.sample(lambda) * scale)
+    }
 }
 
 impl RayIntegrator for AmbientOcclusion {
     fn li(
         &self,
         tracer: &mut Tracer,
-        mut ray: RayDifferential,
+        RayDifferential { mut ray, .. }: RayDifferential,
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum {
-        let surface = loop {
-            let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
-                return SampledSpectrum::ZERO;
-            };
-            if tracer.bsdf(&mut surface, &ray, lambda).is_some() {
-                break surface.surface;
+        loop {
+            let Some(hit) = tracer.hit(&ray) else { return SampledSpectrum::ZERO };
+            let surface = tracer.scene.interaction(&hit, tracer.scene.world().surface(&ray, &hit));
+            if tracer.scene.is_interface(&hit, &ray) {
+                ray = surface.spawn_ray(ray.d);
+                continue;
             }
-            ray = pass_through(&ray, &surface, t);
-        };
-        let u = tracer.sampler.get_2d();
-        let (wi, pdf) = if self.settings.cos_sample {
-            let wi = warp::sample_cosine_hemisphere(u);
-            (wi, warp::cosine_hemisphere_pdf(wi.z))
-        } else {
-            (warp::sample_uniform_hemisphere(u), warp::uniform_hemisphere_pdf())
-        };
-        let n = if surface.n.dot(surface.wo) < 0.0 { -surface.n } else { surface.n };
-        let outward = surface.spawn_ray(Frame::from_z(n).from_local(wi));
-        if pdf == 0.0 || tracer.occluded(&outward, self.settings.max_distance, Interfaces::Stop) {
-            return SampledSpectrum::ZERO;
+            let (u, point) = (tracer.sampler.get_2d(), surface.light_context());
+            let (outward, l) = self.sample((&point, surface.surface.wo), u, lambda);
+            if l.is_black() || tracer.occluded(&outward, self.settings.max_distance, Interfaces::Stop) {
+                return SampledSpectrum::ZERO;
+            }
+            return l;
         }
-        self.white.sample(lambda) * (self.white_scale * wi.z / (PI * pdf))
     }
 }

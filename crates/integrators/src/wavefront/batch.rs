@@ -63,10 +63,9 @@ impl<'a> Batch<'a> {
         }
     }
 
-    /// Starts a path for each pixel.
-    pub(super) fn begin(&mut self, tiles: &[FilmTile]) {
-        let Pass { pixels, instruction_set, .. } = self.pass;
-        let with_differentials = pixels.scene.needs_footprints(pixels.view);
+    /// Starts a path for each pixel, whose camera ray may have differentials.
+    pub(super) fn begin(&mut self, tiles: &[FilmTile], with_differentials: bool) {
+        let instruction_set = self.pass.instruction_set;
         self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials);
         instruction_set.dispatch(Begin { pass: self.pass, paths: &mut self.paths, with_differentials });
         self.active.clear();

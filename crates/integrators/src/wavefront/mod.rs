@@ -14,9 +14,9 @@
 //! | `finish` | adds the paths' radiance to the film |
 //!
 //! Estimates and random numbers are those of the algorithm's [`RayIntegrator`], whichever paths
-//! share a batch. `path.rs` and `shade.rs` have what is of path tracing; the other files serve all
-//! algorithms.
+//! share a batch. An algorithm has one file; `shade.rs` is of path tracing, too.
 
+mod ambient_occlusion;
 mod area_lights;
 mod batch;
 mod begin;
@@ -55,6 +55,9 @@ const BATCHES_PER_THREAD: usize = 4;
 
 /// An algorithm that can be done to many paths at once.
 pub trait WaveIntegrator: RayIntegrator {
+    /// Whether it reads textures, for which camera rays have differentials.
+    const READS_TEXTURES: bool = true;
+
     /// Continues each active path from its hit: adds light, asks for shadow rays, and gives the
     /// paths that go on their next rays.
     fn shade(&self, batch: &mut Batch);
@@ -90,7 +93,8 @@ impl<A: WaveIntegrator> Wavefront<A> {
     /// Traces one path for each pixel of the tiles. After a cancellation nothing is added to them.
     fn trace(&self, batch: &mut Batch, mut tiles: Vec<FilmTile>) -> Result<(), Cancelled> {
         let control = batch.pass.control;
-        batch.begin(&tiles);
+        let PixelSamples { scene, view, .. } = batch.pass.pixels;
+        batch.begin(&tiles, A::READS_TEXTURES && scene.needs_footprints(view));
         while !batch.active.is_empty() {
             control.check()?;
             batch.extend();

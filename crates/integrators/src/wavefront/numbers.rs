@@ -70,6 +70,14 @@ pub(super) fn draw_1d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> R 
     draw.numbers(pass).one(0)
 }
 
+/// The next two coordinates of each lane.
+#[inline(always)]
+pub(super) fn draw_2d<R: Real>(pass: &Pass, address: &mut Address<R::Int>) -> Vec2<R> {
+    let mut draw = Draw::new(pass, address);
+    draw.push(Coordinates::Two, address);
+    draw.numbers(pass).two(0)
+}
+
 /// Coordinates that a sampler gives at once.
 #[derive(Clone, Copy)]
 enum Coordinates {

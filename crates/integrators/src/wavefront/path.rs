@@ -83,8 +83,7 @@ impl Path {
             let l = state.beta * self.direct.emitted(scene, &surface, state.origin.as_ref(), &lambda);
             paths.add_light(row, l);
         }
-        let pixel = paths.pixel.each_ref().map(|column| column[row] as i32);
-        sampler.start_pixel_sample(pixel, index, paths.dimension[row]);
+        paths.resume(sampler, row, index);
         let Some(mut bsdf) = scene.bsdf(view, &mut surface, &state.ray, &mut lambda, sampler) else {
             state.pass_through(&surface, hit.t);
             paths.set_state(row, &state);

@@ -1,12 +1,14 @@
 //! The paths of a batch, in columns.
 
 use geometry::RayColumns;
-use lanes::MAX_LANES;
+use lanes::{Int, MAX_LANES, Real};
 use math::{Bounds2i, Differentials, Point3Error, Ray, RayDifferential, Vec3};
+use sampling::Sampler;
+use sampling::sampler::Address;
 use scene::light::LightSampleContext;
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
-use super::columns::{Column, Columns, fill, grow};
+use super::columns::{Column, Columns, Rows, fill, grow};
 use crate::transport::path_state::{Origin, PathState};
 
 /// The paths of a batch; a path is a row. Columns are longer, so that a vector can begin at any
@@ -96,10 +98,40 @@ impl Paths {
         Ray::new(o, d, self.time[row])
     }
 
+    /// Changes the ray of a path.
+    pub fn set_ray(&mut self, row: usize, ray: &Ray) {
+        self.origin.set_row(row, ray.o.to_array());
+        self.direction.set_row(row, ray.d.to_array());
+    }
+
     /// The rays of paths.
     pub fn rays<'a>(&'a self, rows: &'a [u32]) -> RayColumns<'a> {
         let (o, d) = (self.origin.slices(), self.direction.slices());
         RayColumns { o, d, time: &self.time, t_max: None, rows }
+    }
+
+    /// The next address of the sampler of each path, at the sample of an index.
+    #[inline(always)]
+    pub fn address<R: Real>(&self, rows: Rows<R>, index: u32) -> Address<R::Int> {
+        let [x, y] = &self.pixel;
+        Address {
+            pixel: [R::Int::gather(x, rows.indices), R::Int::gather(y, rows.indices)],
+            index,
+            dimension: R::Int::gather(&self.dimension, rows.indices),
+        }
+    }
+
+    /// Lets a sampler go on with a path, at the sample of an index.
+    pub fn resume(&self, sampler: &mut Sampler, row: usize, index: u32) {
+        let pixel = self.pixel.each_ref().map(|column| column[row] as i32);
+        sampler.start_pixel_sample(pixel, index, self.dimension[row]);
+    }
+
+    /// The wavelengths of paths in lanes.
+    #[inline(always)]
+    pub fn lambda_lanes<R: Real>(&self, rows: Rows<R>) -> SampledWavelengths<R> {
+        let [a, b, c, d, pdf @ ..] = self.wavelengths.get(rows);
+        SampledWavelengths::new([a, b, c, d], pdf)
     }
 
     /// The wavelengths of a path.
@@ -141,8 +173,7 @@ impl Paths {
     /// Changes a path between two vertices.
     pub fn set_state(&mut self, row: usize, state: &PathState) {
         let RayDifferential { ray, differentials } = state.ray;
-        self.origin.set_row(row, ray.o.to_array());
-        self.direction.set_row(row, ray.d.to_array());
+        self.set_ray(row, &ray);
         if let Some(kept) = self.differentials.get_mut(row) {
             *kept = differentials;
         }

@@ -1,0 +1,110 @@
+//! The hits of ambient occlusion: one shadow ray over the hemisphere of each.
+
+use geometry::{PatchPoints, PointColumns};
+use lanes::{Kernel, Real};
+use scene::light::LightSampleContext;
+use scene::material::Material;
+
+use super::WaveIntegrator;
+use super::batch::Batch;
+use super::columns::Rows;
+use super::numbers::draw_2d;
+use super::pass::Pass;
+use super::paths::Paths;
+use super::queues::{Queues, Shadow};
+use crate::AmbientOcclusion;
+
+impl WaveIntegrator for AmbientOcclusion {
+    const READS_TEXTURES: bool = false;
+
+    fn shade(&self, batch: &mut Batch) {
+        let scene = batch.pass.pixels.scene;
+        let (mut turns, mut rows) = (Vec::new(), Vec::new());
+        for (turn, (&row, &geometry)) in batch.active.iter().zip(&batch.hits.geometry).enumerate() {
+            let Some(entry) = scene.geometries().get(geometry as usize) else { continue };
+            if let Material::Interface | Material::Mix(_) =
+                scene.materials()[entry.material.0 as usize].material
+            {
+                batch.queues.scalar.push((row, turn as u32));
+            } else {
+                turns.push(turn as u32);
+                rows.push(row);
+            }
+        }
+        scene.world().points(&batch.hits, &turns, &mut batch.points);
+        batch.pass.instruction_set.dispatch(Occlude {
+            pass: batch.pass,
+            algorithm: self,
+            points: &batch.points,
+            turns: &turns,
+            rows: &rows,
+            paths: &batch.paths,
+            queues: &mut batch.queues,
+        });
+        let mut scalar = std::mem::take(&mut batch.queues.scalar);
+        for (row, turn) in scalar.drain(..) {
+            self.shade_path(batch, row, turn);
+        }
+        batch.queues.scalar = scalar;
+    }
+}
+
+/// Asks for the shadow rays of hits.
+struct Occlude<'a, 'b> {
+    pass: Pass<'a>,
+    algorithm: &'b AmbientOcclusion,
+    /// Their surface points.
+    points: &'b PointColumns,
+    /// Indices of hits, and their paths.
+    turns: &'b [u32],
+    rows: &'b [u32],
+    paths: &'b Paths,
+    queues: &'b mut Queues,
+}
+
+impl Kernel for Occlude<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<R: Real>(self) {
+        let Self { pass, algorithm, points, turns, rows, paths, queues } = self;
+        let t_max = R::splat(algorithm.max_distance());
+        for (part, queue) in rows.chunks(R::LANES).enumerate() {
+            let first = part * R::LANES;
+            let rows = Rows::<R>::first(queue);
+            let (PatchPoints { p, n, ns, .. }, found) = points.get::<R>(first);
+            rows.each_of(rows.active & !found, |lane, row| {
+                queues.scalar.push((row as u32, turns[first + lane]));
+            });
+            let u = draw_2d::<R>(&pass, &mut paths.address(rows, pass.pixels.index));
+            let time = R::gather(&paths.time, rows.indices);
+            let point = LightSampleContext { p, n, ns, time };
+            let wo = -paths.direction.vector(rows);
+            let (ray, l) = algorithm.sample((&point, wo), u, &paths.lambda_lanes(rows));
+            let [shadows, _] = &mut queues.shadows;
+            shadows.append(rows, rows.active & found & !l.is_black(), &Shadow { l, ray, t_max });
+        }
+    }
+}
+
+impl AmbientOcclusion {
+    /// Continues one path from its hit.
+    fn shade_path(&self, batch: &mut Batch, path: u32, turn: u32) {
+        let Batch { pass, paths, sampler, queues, hits, .. } = batch;
+        let (scene, row) = (pass.pixels.scene, path as usize);
+        let hit = hits.get(turn as usize).expect("invariant: paths without hit have ended");
+        let ray = paths.ray(row);
+        let surface = scene.interaction(&hit, scene.world().surface(&ray, &hit));
+        if scene.is_interface(&hit, &ray) {
+            paths.set_ray(row, &surface.spawn_ray(ray.d));
+            queues.next.push(path);
+            return;
+        }
+        paths.resume(sampler, row, pass.pixels.index);
+        let (u, point) = (sampler.get_2d(), surface.light_context());
+        let (ray, l) = self.sample((&point, surface.surface.wo), u, &paths.lambda(row));
+        if !l.is_black() {
+            queues.shadows[0].push(path, l, &ray, self.max_distance());
+        }
+    }
+}
