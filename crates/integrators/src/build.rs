@@ -100,8 +100,8 @@ impl Builder<'_> {
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         let color_space = color_space(self.desc.film.color_space);
         match self.desc.integrator.value.clone() {
-            IntegratorDesc::RayCasting => pixels(RayCasting, sampler),
-            IntegratorDesc::Whitted(desc) => pixels(Whitted(desc), sampler),
+            IntegratorDesc::RayCasting => self.waves(RayCasting, sampler),
+            IntegratorDesc::Whitted(desc) => self.waves(Whitted(desc), sampler),
             IntegratorDesc::AmbientOcclusion(desc) => {
                 self.waves(AmbientOcclusion::new(desc, color_space), sampler)
             }

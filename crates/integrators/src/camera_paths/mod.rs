@@ -14,4 +14,5 @@ pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;
 pub use simple_path::SimplePath;
+pub(crate) use whitted::Node;
 pub use whitted::Whitted;

@@ -9,7 +9,7 @@
 use math::RayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::direct::{Shadows, all_lights};
+use crate::transport::direct::connect_all;
 use crate::transport::path_state::pass_through;
 use crate::{RayIntegrator, Tracer};
 
@@ -32,7 +32,11 @@ impl RayIntegrator for RayCasting {
             l += tracer.scene.emitted(&surface, surface.surface.wo, lambda);
             match tracer.bsdf(&mut surface, &ray, lambda) {
                 Some(bsdf) => {
-                    return l + all_lights(tracer, &surface, &bsdf, Shadows::Ignored, lambda);
+                    let mut sum = SampledSpectrum::ZERO;
+                    connect_all(tracer.scene, tracer.sampler, &surface, &bsdf, lambda, |light| {
+                        sum += light.l
+                    });
+                    return l + sum;
                 }
                 None => ray = pass_through(&ray, &surface, t),
             }

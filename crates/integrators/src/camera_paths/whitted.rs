@@ -10,22 +10,50 @@
 
 use description::WhittedDesc;
 use math::RayDifferential;
-use scattering::{Directions, TransportMode};
+use sampling::Sampler;
+use scattering::{Bsdf, Directions, TransportMode};
+use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::direct::{Shadows, all_lights};
-use crate::transport::path_state::pass_through;
+use crate::transport::direct::{Connection, connect_all};
+use crate::transport::path_state::{pass_through, throughput};
 use crate::{RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Whitted(pub WhittedDesc);
 
-/// A ray to be traced.
-struct Pending {
-    ray: RayDifferential,
-    beta: SampledSpectrum,
-    depth: u32,
+/// A ray to be traced: a node of the tree.
+pub(crate) struct Node {
+    pub ray: RayDifferential,
+    /// Path throughput.
+    pub beta: SampledSpectrum,
+    /// Scattering events so far.
+    pub depth: u32,
+}
+
+impl Node {
+    /// The reflected and the refracted ray, as far as they exist, of the surface that the ray has
+    /// hit.
+    pub fn children(
+        &self,
+        surface: &SurfaceInteraction,
+        bsdf: &Bsdf,
+        sampler: &mut Sampler,
+    ) -> [Option<Self>; 2] {
+        if !bsdf.flags().is_specular() {
+            return [None, None];
+        }
+        [Directions::Reflection, Directions::Transmission].map(|directions| {
+            let (uc, u) = (sampler.get_1d(), sampler.get_2d());
+            let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, directions)?;
+            sample.flags.is_specular().then(|| Self {
+                ray: surface.spawn_scattered(&self.ray, &sample),
+                beta: self.beta * throughput(surface, &sample),
+                depth: self.depth + 1,
+            })
+        })
+    }
 }
 
 impl RayIntegrator for Whitted {
@@ -36,37 +64,34 @@ impl RayIntegrator for Whitted {
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum {
         let mut l = SampledSpectrum::ZERO;
-        let mut rest = Vec::new();
-        let mut next = Some(Pending { ray, beta: SampledSpectrum::ONE, depth: 0 });
-        while let Some(Pending { ray, beta, depth }) = next.take().or_else(|| rest.pop()) {
+        let mut next = Some(Node { ray, beta: SampledSpectrum::ONE, depth: 0 });
+        let (mut rest, mut connections) = (Vec::new(), Vec::new());
+        while let Some(node) = next.take().or_else(|| rest.pop()) {
+            let Node { ray, beta, depth } = node;
             let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
                 l += beta * tracer.scene.escaped(&ray.ray, lambda);
                 continue;
             };
             l += beta * tracer.scene.emitted(&surface, surface.surface.wo, lambda);
             let Some(bsdf) = tracer.bsdf(&mut surface, &ray, lambda) else {
-                next = Some(Pending { ray: pass_through(&ray, &surface, t), beta, depth });
+                next = Some(Node { ray: pass_through(&ray, &surface, t), ..node });
                 continue;
             };
             if depth == self.0.max_depth {
                 continue;
             }
-            l += beta * all_lights(tracer, &surface, &bsdf, Shadows::Cast, lambda);
-            if !bsdf.flags().is_specular() {
-                continue;
+            let (scene, sampler) = (tracer.scene, &mut *tracer.sampler);
+            connect_all(scene, sampler, &surface, &bsdf, lambda, |light| connections.push(light));
+            let mut sum = SampledSpectrum::ZERO;
+            for Connection { ray, t_max, interfaces, l } in connections.drain(..) {
+                if !tracer.occluded(&ray, t_max, interfaces) {
+                    sum += l;
+                }
             }
-            for directions in [Directions::Reflection, Directions::Transmission] {
-                let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
-                let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, directions);
-                let Some(sample) = sample.filter(|sample| sample.flags.is_specular()) else { continue };
-                let cos_theta = sample.wi.dot(surface.surface.shading.n).abs();
-                let scattered = Pending {
-                    ray: surface.spawn_scattered(&ray, &sample),
-                    beta: beta * sample.f * (cos_theta / sample.pdf),
-                    depth: depth + 1,
-                };
-                rest.extend(next.replace(scattered));
-            }
+            l += beta * sum;
+            let [reflected, refracted] = node.children(&surface, &bsdf, tracer.sampler);
+            next = reflected;
+            rest.extend(refracted);
         }
         l
     }

@@ -147,46 +147,36 @@ pub(crate) struct Connection {
     pub t_max: f32,
     /// Whether interfaces occlude it.
     pub interfaces: Interfaces,
-    /// The weighted light that the vertex scatters if nothing occludes the ray.
+    /// The light that the vertex scatters if nothing occludes the ray, over its density and
+    /// weighted.
     pub l: SampledSpectrum,
 }
 
-/// Whether surfaces cast shadows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Shadows {
-    /// Every surface does.
-    Cast,
-    /// None does.
-    Ignored,
-}
-
-/// Direct light that a surface scatters to `wo`, by one sample of every light.
-pub(crate) fn all_lights(
-    tracer: &mut Tracer,
+/// Connects a surface to one point of every light, and calls `connect` where light arrives there.
+/// It is not weighted against BSDF sampling.
+pub(crate) fn connect_all(
+    scene: &Scene,
+    sampler: &mut Sampler,
     surface: &SurfaceInteraction,
     bsdf: &Bsdf,
-    shadows: Shadows,
     lambda: &SampledWavelengths,
-) -> SampledSpectrum {
+    mut connect: impl FnMut(Connection),
+) {
     if !bsdf.flags().is_non_specular() {
-        return SampledSpectrum::ZERO;
+        return;
     }
-    let scene = tracer.scene;
     let context = light_context(surface, bsdf.flags());
     each_bxdf!(bsdf.bxdf, bxdf => {
         let bsdf = Bsdf { bxdf, frame: bsdf.frame };
-        let mut sum = SampledSpectrum::ZERO;
         for light in (0..scene.lights().len() as u32).map(LightId) {
-            let (u, interfaces) = (tracer.sampler.get_2d(), Interfaces::before(scene.light(light)));
+            let (u, interfaces) = (sampler.get_2d(), Interfaces::before(scene.light(light)));
             let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
             let l = scattered(surface, &bsdf, &sample);
-            if !l.is_black()
-                && (shadows == Shadows::Ignored || tracer.sees(&surface.surface, &sample, interfaces))
-            {
-                sum += l / sample.pdf;
+            if !l.is_black() {
+                let (ray, t_max) = sample.shadow_ray(&surface.surface);
+                connect(Connection { ray, t_max, interfaces, l: l / sample.pdf });
             }
         }
-        sum
     })
 }
 

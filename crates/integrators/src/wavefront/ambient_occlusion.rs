@@ -1,6 +1,6 @@
 //! The hits of ambient occlusion: one shadow ray over the hemisphere of each.
 
-use geometry::{PatchPoints, PointColumns};
+use geometry::{Hit, PatchPoints, PointColumns};
 use lanes::{Kernel, Real};
 use scene::light::LightSampleContext;
 use scene::material::Material;
@@ -41,11 +41,7 @@ impl WaveIntegrator for AmbientOcclusion {
             paths: &batch.paths,
             queues: &mut batch.queues,
         });
-        let mut scalar = std::mem::take(&mut batch.queues.scalar);
-        for (row, turn) in scalar.drain(..) {
-            self.shade_path(batch, row, turn);
-        }
-        batch.queues.scalar = scalar;
+        batch.shade_others(|batch, path, hit| self.shade_path(batch, path, hit));
     }
 }
 
@@ -89,13 +85,12 @@ impl Kernel for Occlude<'_, '_> {
 
 impl AmbientOcclusion {
     /// Continues one path from its hit.
-    fn shade_path(&self, batch: &mut Batch, path: u32, turn: u32) {
-        let Batch { pass, paths, sampler, queues, hits, .. } = batch;
+    fn shade_path(&self, batch: &mut Batch, path: u32, hit: &Hit) {
+        let Batch { pass, paths, sampler, queues, .. } = batch;
         let (scene, row) = (pass.pixels.scene, path as usize);
-        let hit = hits.get(turn as usize).expect("invariant: paths without hit have ended");
         let ray = paths.ray(row);
-        let surface = scene.interaction(&hit, scene.world().surface(&ray, &hit));
-        if scene.is_interface(&hit, &ray) {
+        let surface = scene.interaction(hit, scene.world().surface(&ray, hit));
+        if scene.is_interface(hit, &ray) {
             paths.set_ray(row, &surface.spawn_ray(ray.d));
             queues.next.push(path);
             return;

@@ -1,11 +1,13 @@
 //! A batch of paths, and the stages that it goes through whatever the algorithm.
 
 use film::FilmTile;
-use geometry::{HitColumns, PointColumns, RayStats};
+use geometry::{Hit, HitColumns, PointColumns, RayStats};
 use sampling::Sampler;
-use scene::Interfaces;
+use scattering::Bsdf;
 use scene::light::LightId;
-use spectrum::SampledSpectrum;
+use scene::material::{Material, MaterialId, MaterialModel};
+use scene::{Interfaces, SurfaceInteraction};
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::begin::Begin;
 use super::emission::{Emit, Escape, LightHit};
@@ -16,8 +18,10 @@ use super::materials::Shading;
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::Queues;
+use super::shade::{AtVertices, Shade};
 use crate::Cancelled;
 use crate::transport::direct::DirectLighting;
+use crate::transport::path_state::PathState;
 use crate::transport::pixel_samples::PixelSamples;
 
 /// The paths of some tiles, one for each pixel. Between the stages here an algorithm
@@ -42,6 +46,15 @@ pub struct Batch<'a> {
     pub(super) light_samples: Samples,
     /// Counts the rays.
     pub(super) stats: RayStats,
+}
+
+/// A vertex of one path.
+pub(super) struct Vertex {
+    /// The path before it scatters there.
+    pub state: PathState,
+    pub lambda: SampledWavelengths,
+    pub surface: SurfaceInteraction,
+    pub bsdf: Bsdf,
 }
 
 impl<'a> Batch<'a> {
@@ -139,6 +152,100 @@ impl<'a> Batch<'a> {
             let (state, lambda) = (paths.state(row), paths.lambda(row));
             let l = state.beta * direct.escaped(scene, &state.ray, state.origin.as_ref(), &lambda);
             paths.add_light(row, l);
+        }
+    }
+
+    /// Shades the hits that are shaded in lanes.
+    pub(super) fn shade_in_lanes<A: AtVertices>(&mut self, algorithm: &A) {
+        let scene = self.pass.pixels.scene;
+        let lanes = std::mem::take(&mut self.lanes);
+        for (id, turns, rows) in lanes.iter() {
+            scene.world().points(&self.hits, turns, &mut self.points);
+            match &scene.materials()[id.0 as usize].material {
+                Material::Diffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::DiffuseTransmission(material) => {
+                    self.dispatch(algorithm, (id, material), turns, rows);
+                }
+                Material::Conductor(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Dielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::ThinDielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::Mix(_) | Material::Interface => {
+                    unreachable!("invariant: mixes and interfaces are not shaded in lanes")
+                }
+            }
+        }
+        self.lanes = lanes;
+    }
+
+    fn dispatch<M: MaterialModel, A: AtVertices>(
+        &mut self,
+        algorithm: &A,
+        (id, material): (MaterialId, &M),
+        turns: &[u32],
+        rows: &[u32],
+    ) {
+        let with_footprint = self.pass.materials.shading(id, false) == Shading::LanesWithFootprint;
+        self.pass.instruction_set.dispatch(Shade {
+            pass: self.pass,
+            algorithm,
+            material,
+            with_footprint,
+            points: &self.points,
+            turns,
+            rows,
+            paths: &mut self.paths,
+            queues: &mut self.queues,
+            light_samples: &mut self.light_samples,
+        });
+    }
+
+    /// Calls `shade` with each path whose hit is not shaded in lanes, and the hit.
+    pub(super) fn shade_others(&mut self, shade: impl Fn(&mut Self, u32, &Hit)) {
+        let mut scalar = std::mem::take(&mut self.queues.scalar);
+        for (path, turn) in scalar.drain(..) {
+            let hit = self.hits.get(turn as usize).expect("invariant: paths without hit have ended");
+            shade(self, path, &hit);
+        }
+        self.queues.scalar = scalar;
+    }
+
+    /// The vertex of a path at a hit, to which the batch's sampler has gone on. Adds emission.
+    /// `None` where the ray passes through the surface.
+    pub(super) fn vertex(&mut self, path: u32, hit: &Hit, direct: &DirectLighting) -> Option<Vertex> {
+        let Self { pass, paths, sampler, queues, .. } = self;
+        let &PixelSamples { scene, view, index, .. } = pass.pixels;
+        let row = path as usize;
+        let mut state = paths.state(row);
+        let mut lambda = paths.lambda(row);
+        let mut surface = scene.interaction(hit, scene.world().surface(&state.ray.ray, hit));
+        if surface.area_light.is_some_and(|light| !pass.area_lights.contains(light)) {
+            let l = state.beta * direct.emitted(scene, &surface, state.origin.as_ref(), &lambda);
+            paths.add_light(row, l);
+        }
+        paths.resume(sampler, row, index);
+        let Some(bsdf) = scene.bsdf(view, &mut surface, &state.ray, &mut lambda, sampler) else {
+            state.pass_through(&surface, hit.t);
+            paths.set_state(row, &state);
+            queues.next.push(path);
+            return None;
+        };
+        paths.set_lambda(row, &lambda);
+        Some(Vertex { state, lambda, surface, bsdf })
+    }
+
+    /// Gives the paths that have no next ray their last waiting one.
+    pub(super) fn go_on_with_waiting(&mut self) {
+        let Queues { next, waiting, .. } = &mut self.queues;
+        if waiting.is_empty() {
+            return;
+        }
+        let mut goes_on = vec![false; self.paths.len()];
+        next.iter().for_each(|&row| goes_on[row as usize] = true);
+        for &row in self.active.iter().filter(|&&row| !goes_on[row as usize]) {
+            if let Some(state) = waiting.get_mut(row as usize).and_then(Vec::pop) {
+                self.paths.set_state(row as usize, &state);
+                next.push(row);
+            }
         }
     }
 

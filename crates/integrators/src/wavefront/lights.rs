@@ -4,7 +4,7 @@
 //! numbers are (`numbers.rs`).
 
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
-use math::{Normal3, Point3Error, Vec2, Vec3, Vector3};
+use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use scene::Interfaces;
 use scene::light::{LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
@@ -34,10 +34,25 @@ pub(super) struct LightLanes<R: Real> {
     pub passes: R::Mask,
 }
 
-/// One sample of one light for each lane of `active`, chosen by `u` and `u_light`.
+impl<R: Real> LightLanes<R> {
+    /// The shadow rays from points with geometric normals, and their ends.
+    #[inline(always)]
+    pub fn shadow_rays(&self, p: Point3Error<R>, n: Normal3<R>, time: R) -> (Ray<R>, R) {
+        let target = Ray::between(p, n, self.p, self.n, time);
+        let away = offset_ray_origin(p, n, self.wi);
+        let o = Vec3::select(self.is_distant, away, target.o);
+        let d = Vec3::select(self.is_distant, self.wi, target.d);
+        let t_max = R::select(self.is_distant, R::splat(f32::INFINITY), R::splat(Ray::SHADOW_END));
+        (Ray::new(o, d, time), t_max)
+    }
+}
+
+/// One sample of `light` for each lane of `active`; without it, of a light chosen by `u`. Only a
+/// given light is sampled in directions that are left to the BSDF otherwise.
 #[inline(always)]
 pub(super) fn sample<R: Real>(
     (pass, direct, samples): (&Pass, &DirectLighting, &mut Samples),
+    light: Option<LightId>,
     context: &LightSampleContext<R>,
     (u, u_light): (R, Vec2<R>),
     lambda: &SampledWavelengths<R>,
@@ -46,6 +61,7 @@ pub(super) fn sample<R: Real>(
     pass.instruction_set.dispatch(Sample {
         pass,
         direct,
+        light,
         samples,
         context: [context.p.p, context.p.error, context.n, context.ns].each(arrays),
         time: context.time.to_array(),
@@ -107,6 +123,7 @@ impl Samples {
 struct Sample<'a, 'b> {
     pass: &'b Pass<'a>,
     direct: &'b DirectLighting,
+    light: Option<LightId>,
     /// Changed where lanes have a sample.
     samples: &'b mut Samples,
     context: [[[f32; MAX_LANES]; 3]; 4],
@@ -130,7 +147,10 @@ impl Kernel for Sample<'_, '_> {
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: R::load(&self.time) };
         let [u, x, y] = [0, 1, 2].each(|i| R::load(&self.u[i]));
         let active = R::Mask::from_bits(self.active);
-        let (lights, pmf, chosen) = self.direct.lights().sample_lanes(&context, u, active);
+        let (lights, pmf, chosen) = match self.light {
+            Some(LightId(light)) => (R::Int::splat(light), R::one(), active),
+            None => self.direct.lights().sample_lanes(&context, u, active),
+        };
         let (rows, in_lanes) = area_lights.rows::<R>(lights, chosen);
         if in_lanes.any() {
             let shapes = area_lights.shapes::<R>(rows);
@@ -175,7 +195,8 @@ impl Sample<'_, '_> {
         let [_, x, y] = self.u.each_ref().map(|u| u[lane]);
         let lambda = self.lambda.each_ref().map(|v| v[lane]);
         let lambda = SampledWavelengths::new(lambda, self.lambda_pdf.each_ref().map(|v| v[lane]));
-        let sample = scene.sample_light(id, &self.context(lane), Vec2::new(x, y), &lambda, true);
+        let (context, is_chosen) = (self.context(lane), self.light.is_none());
+        let sample = scene.sample_light(id, &context, Vec2::new(x, y), &lambda, is_chosen);
         let Some(LightLiSample { l, wi, pdf, p, n }) = sample else { return };
         let light = scene.light(id);
         let passes = self.direct.interfaces(light) == Interfaces::Pass;

@@ -16,6 +16,7 @@
 //! Estimates and random numbers are those of the algorithm's [`RayIntegrator`], whichever paths
 //! share a batch. An algorithm has one file; `shade.rs` is of path tracing, too.
 
+mod all_lights;
 mod ambient_occlusion;
 mod area_lights;
 mod batch;
@@ -31,7 +32,9 @@ mod pass;
 mod path;
 mod paths;
 mod queues;
+mod ray_casting;
 mod shade;
+mod whitted;
 
 use film::{Film, FilmTile};
 use geometry::RayStats;

@@ -6,6 +6,7 @@ use math::Ray;
 use spectrum::{N, SampledSpectrum};
 
 use super::columns::{Columns, Rows};
+use crate::transport::path_state::PathState;
 
 /// The queues of a batch.
 #[derive(Default)]
@@ -16,6 +17,19 @@ pub(super) struct Queues {
     pub scalar: Vec<(u32, u32)>,
     /// Shadow rays; those that interfaces occlude, and those that pass them.
     pub shadows: [ShadowRays; 2],
+    /// Rays that wait until their path has no other, the last first; one stack for each path.
+    pub waiting: Vec<Vec<PathState>>,
+}
+
+impl Queues {
+    /// Lets a ray of a path wait.
+    pub fn wait(&mut self, path: u32, state: PathState) {
+        let path = path as usize;
+        if self.waiting.len() <= path {
+            self.waiting.resize_with(path + 1, Vec::new);
+        }
+        self.waiting[path].push(state);
+    }
 }
 
 /// Shadow rays, and the light that their paths get unless they are occluded.

@@ -1,9 +1,9 @@
-//! Shading in lanes: next-event estimation, a sample of the BSDF and Russian roulette.
+//! Shading in lanes: the vertices of hits and their BSDFs, and what path tracing does there:
+//! next-event estimation, a sample of the BSDF and Russian roulette.
 
-use description::PathDesc;
 use geometry::{PatchPoints, PointColumns};
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
-use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
+use math::{Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
 use scene::Footprint;
@@ -18,14 +18,31 @@ use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
 use super::paths::Paths;
 use super::queues::{Queues, Shadow};
-use crate::transport::direct::{DirectLighting, power_heuristic};
+use crate::Path;
+use crate::transport::direct::power_heuristic;
 use crate::transport::roulette::CERTAIN;
 
+/// What an algorithm does at vertices.
+pub(super) trait AtVertices: Sized {
+    /// Whether surfaces are roughened after a rough one.
+    fn regularizes(&self) -> bool {
+        false
+    }
+
+    /// Goes on from the vertices in the lanes. Most contexts of light sampling are offset to the
+    /// side of the surface that scatters.
+    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
+        shade: &mut Shade<M, Self>,
+        vertices: Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+    );
+}
+
 /// Shades hits of one material.
-pub(super) struct Shade<'a, 'b, M> {
+pub(super) struct Shade<'a, 'b, M, A> {
     pub pass: Pass<'a>,
-    pub settings: &'a PathDesc,
-    pub direct: &'a DirectLighting,
+    pub algorithm: &'b A,
     pub material: &'a M,
     pub with_footprint: bool,
     /// Their surface points.
@@ -38,7 +55,7 @@ pub(super) struct Shade<'a, 'b, M> {
     pub light_samples: &'b mut Samples,
 }
 
-impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
+impl<M: MaterialModel, A: AtVertices> Kernel for Shade<'_, '_, M, A> {
     type Output = ();
 
     #[inline(always)]
@@ -50,20 +67,22 @@ impl<M: MaterialModel> Kernel for Shade<'_, '_, M> {
 }
 
 /// The vertices of the paths in the lanes.
-struct Vertices<R: Real> {
-    rows: Rows<R>,
+pub(super) struct Vertices<R: Real> {
+    pub rows: Rows<R>,
     /// The lanes that have a vertex.
-    active: R::Mask,
-    surface: PatchPoints<R>,
-    wo: Vector3<R>,
-    time: R,
-    lambda: SampledWavelengths<R>,
+    pub active: R::Mask,
+    /// The place of the first one in the queue.
+    pub first: usize,
+    pub surface: PatchPoints<R>,
+    pub wo: Vector3<R>,
+    pub time: R,
+    pub lambda: SampledWavelengths<R>,
     /// Path throughput before the vertex.
-    beta: SampledSpectrum<R>,
-    address: Address<R::Int>,
+    pub beta: SampledSpectrum<R>,
+    pub address: Address<R::Int>,
 }
 
-impl<M: MaterialModel> Shade<'_, '_, M> {
+impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
     #[inline(always)]
     fn shade<R: Real>(&mut self, first: usize, queue: &[u32]) {
         let mut vertices = self.vertices::<R>(first, queue);
@@ -75,16 +94,12 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
         self.keep_wavelengths(&vertices, &before);
         let mut bsdf = Bsdf::new(ns, dpdu, bxdf);
-        if self.settings.regularize {
+        if self.algorithm.regularizes() {
             let rough: u32 = queue.iter().enumerate().map(|(lane, &row)| self.rough(row) << lane).sum();
             bsdf.regularize(R::Mask::from_bits(rough));
         }
-        let flags = bsdf.flags();
-        let contexts = contexts(&vertices, flags);
-        let samples_light = flags.is_non_specular();
-        let numbers = VertexNumbers::draw(&self.pass, &mut vertices.address, samples_light);
-        self.connect(&vertices, &bsdf, &contexts, numbers.light, samples_light);
-        self.scatter(&vertices, &bsdf, &contexts, numbers.bsdf);
+        let contexts = contexts(&vertices, bsdf.flags());
+        A::go_on(self, vertices, &bsdf, &contexts);
     }
 
     fn rough(&self, row: u32) -> u32 {
@@ -104,6 +119,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         Vertices {
             rows,
             active: rows.active & found,
+            first,
             surface,
             wo: -paths.direction.vector(rows).normalize(),
             time: R::gather(&paths.time, rows.indices),
@@ -149,7 +165,29 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
             });
         }
     }
+}
 
+impl AtVertices for Path {
+    #[inline(always)]
+    fn regularizes(&self) -> bool {
+        self.settings.regularize
+    }
+
+    #[inline(always)]
+    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
+        shade: &mut Shade<M, Self>,
+        mut vertices: Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+    ) {
+        let samples_light = bsdf.flags().is_non_specular();
+        let numbers = VertexNumbers::draw(&shade.pass, &mut vertices.address, samples_light);
+        shade.connect(&vertices, bsdf, contexts, numbers.light, samples_light);
+        shade.scatter(&vertices, bsdf, contexts, numbers.bsdf);
+    }
+}
+
+impl<M: MaterialModel> Shade<'_, '_, M, Path> {
     /// Next-event estimation of the lanes that are not specular.
     #[inline(always)]
     fn connect<R: Real, B: Scatter<R>>(
@@ -164,8 +202,8 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         if !samples.any() {
             return;
         }
-        let sampling = (&self.pass, self.direct, &mut *self.light_samples);
-        let light = lights::sample(sampling, contexts, u, &vertices.lambda, samples);
+        let sampling = (&self.pass, &self.algorithm.direct, &mut *self.light_samples);
+        let light = lights::sample(sampling, None, contexts, u, &vertices.lambda, samples);
         let LightLanes { valid, l, wi, pdf, .. } = light;
         let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
         let f = bsdf.f(wo, wi, TransportMode::Radiance);
@@ -174,12 +212,8 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
         let l = vertices.beta * (scattered * (weight / pdf));
         let lit = valid & !scattered.is_black();
-        let target = Ray::between(p, n, light.p, light.n, time);
-        let away = offset_ray_origin(p, n, wi);
-        let o = Vec3::select(light.is_distant, away, target.o);
-        let d = Vec3::select(light.is_distant, wi, target.d);
-        let t_max = R::select(light.is_distant, R::splat(f32::INFINITY), R::splat(Ray::SHADOW_END));
-        let shadow = Shadow { l, ray: Ray::new(o, d, time), t_max };
+        let (ray, t_max) = light.shadow_rays(p, n, time);
+        let shadow = Shadow { l, ray, t_max };
         let [stopped, passing] = &mut self.queues.shadows;
         stopped.append(vertices.rows, lit & !light.passes, &shadow);
         passing.append(vertices.rows, lit & light.passes, &shadow);
@@ -231,7 +265,7 @@ impl<M: MaterialModel> Shade<'_, '_, M> {
         let dimension = vertices.address.dimension;
         let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
         dimension.scatter(survives, &mut paths.dimension, rows.indices);
-        if self.settings.regularize {
+        if self.algorithm.settings.regularize {
             rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
         }
         if !paths.differentials.is_empty() {

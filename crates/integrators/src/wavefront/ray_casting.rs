@@ -1,0 +1,23 @@
+//! The hits of ray casting: emission, and light samples without visibility.
+
+use super::WaveIntegrator;
+use super::all_lights::AllLights;
+use super::batch::{Batch, Vertex};
+use crate::RayCasting;
+use crate::transport::direct::connect_all;
+
+impl WaveIntegrator for RayCasting {
+    fn shade(&self, batch: &mut Batch) {
+        let lights = AllLights::new(false);
+        batch.classify(u32::MAX, lights.direct());
+        batch.shade_in_lanes(&lights);
+        batch.shade_others(|batch, path, hit| {
+            let Some(vertex) = batch.vertex(path, hit, lights.direct()) else { return };
+            let Vertex { state, lambda, surface, bsdf } = vertex;
+            let Batch { pass, paths, sampler, .. } = batch;
+            connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
+                paths.add_light(path as usize, state.beta * light.l);
+            });
+        });
+    }
+}

@@ -1,0 +1,48 @@
+//! The hits of Whitted's ray tracing: emission, shadow rays to all lights, and the rays of specular
+//! surfaces.
+//!
+//! Of the tree of a pixel one ray is traced in each wave, depth first, so that random numbers are
+//! those of the scalar engine.
+
+use geometry::Hit;
+use scene::Interfaces;
+
+use super::WaveIntegrator;
+use super::all_lights::AllLights;
+use super::batch::{Batch, Vertex};
+use crate::Whitted;
+use crate::camera_paths::Node;
+use crate::transport::direct::{Connection, connect_all};
+use crate::transport::path_state::PathState;
+
+impl WaveIntegrator for Whitted {
+    fn shade(&self, batch: &mut Batch) {
+        let lights = AllLights::new(true);
+        batch.classify(self.0.max_depth, lights.direct());
+        batch.shade_in_lanes(&lights);
+        batch.shade_others(|batch, path, hit| self.shade_path(batch, &lights, path, hit));
+        batch.go_on_with_waiting();
+    }
+}
+
+impl Whitted {
+    /// Shades one path.
+    fn shade_path(&self, batch: &mut Batch, lights: &AllLights, path: u32, hit: &Hit) {
+        let Some(vertex) = batch.vertex(path, hit, lights.direct()) else { return };
+        let Vertex { state, lambda, surface, bsdf } = vertex;
+        let Batch { pass, paths, sampler, queues, .. } = batch;
+        let PathState { ray, beta, depth, .. } = state;
+        if depth < self.0.max_depth {
+            connect_all(pass.pixels.scene, sampler, &surface, &bsdf, &lambda, |light| {
+                let Connection { ray, t_max, interfaces, l } = light;
+                let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
+                queue.push(path, beta * l, &ray, t_max);
+            });
+            let children = Node { ray, beta, depth }.children(&surface, &bsdf, sampler);
+            for Node { ray, beta, depth } in children.into_iter().rev().flatten() {
+                queues.wait(path, PathState { beta, ..PathState::new(ray, depth) });
+            }
+        }
+        paths.dimension[path as usize] = sampler.dimension();
+    }
+}
