@@ -16,7 +16,7 @@ choices! {
 }
 
 choices! {
-    /// How paths from the camera are traced. Engines give the same picture within rounding.
+    /// How rays from the camera are traced. Engines give the same picture within rounding.
     pub enum Engine {
         /// Many paths at once, stage by stage, several in the lanes of vectors.
         #[default]
@@ -38,7 +38,7 @@ settings! {
         disable_wavelength_jitter: bool = false => ["disablewavelengthjitter"];
         /// Factor on the edge length to which displaced surfaces are tessellated.
         displacement_edge_scale: f32 = 1.0 => ["displacementedgescale": above(0.0)];
-        /// How paths from the camera are traced.
+        /// How `ray-casting`, `whitted`, `ambient-occlusion`, `path` and `vol-path` trace rays.
         engine: Engine = Engine::Wavefront => ["engine"];
         /// Replace every BSDF by a diffuse one of the same albedo.
         force_diffuse: bool = false => ["forcediffuse"];

@@ -1,16 +1,20 @@
-//! The engines of path tracing: the wavefront gives the same bits on every instruction set and
-//! with every number of threads, and the estimates of the scalar engine.
+//! The engines: the wavefront gives the same bits on every instruction set and with every number of
+//! threads, and the estimates of the scalar engine.
 
 use std::path::Path;
 use std::sync::Arc;
 
-use alhazen::description::{IntegratorDesc, PathDesc, SceneDesc};
+use alhazen::description::{AmbientOcclusionDesc, IntegratorDesc, PathDesc, SceneDesc};
 use alhazen::geometry::InstructionSet;
 use alhazen::import::{AssetSource, Files, import};
-use alhazen::integrators::{self, Control, Integrator, Limits, PixelLoop, Session, SessionState, Wavefront};
+use alhazen::integrators::{
+    self, AmbientOcclusion, Control, Integrator, Limits, PixelLoop, RayCasting, Session, SessionState,
+    WaveIntegrator, Wavefront, Whitted,
+};
 use alhazen::sampling::Randomize;
 use alhazen::sampling::sampler::{Independent, Sampler, ZSobol};
 use alhazen::scene::{Interfaces, Scene, View};
+use alhazen::spectrum::RgbColorSpace;
 use alhazen::{Overrides, film, scene};
 
 use crate::common::scene_text;
@@ -58,11 +62,60 @@ AttributeEnd
 LightSource "point" "point3 from" [ 0 2 3 ] "rgb I" [ 2 2 2 ]
 "#;
 
-/// The scenes of the folder and that of many lights, made small, with their names.
+/// Surfaces that are not shaded in lanes, or that more than one ray leaves: interfaces, mixes with
+/// them, alpha, panes and blocks of glass, dispersion, mirrors, instances. Textures are not filtered,
+/// so that each point has one of two values.
+const SURFACES: &str = r#"
+Option "disabletexturefiltering" true
+LookAt 0 1.5 5 0 0.8 0 0 1 0
+Camera "perspective" "float fov" 50
+Film "rgb"
+WorldBegin
+LightSource "point" "point3 from" [ 1 3 2 ] "rgb I" [ 9 9 9 ]
+LightSource "distant" "point3 from" [ -1 2 1 ] "point3 to" [ 0 0 0 ] "rgb L" [ 1 1 1 ]
+LightSource "infinite" "rgb L" [ 0.2 0.3 0.4 ]
+AttributeBegin
+    AreaLightSource "diffuse" "rgb L" [ 4 4 3 ]
+    Shape "bilinearmesh" "point3 P" [ -1 3 -1  -1 3 1  1 3 -1  1 3 1 ]
+AttributeEnd
+Texture "squares" "float" "checkerboard" "float uscale" 5 "float vscale" 5 "float tex1" 0 "float tex2" 1
+MakeNamedMaterial "nothing" "string type" "interface"
+MakeNamedMaterial "clay" "string type" "diffuse" "rgb reflectance" [ 0.7 0.4 0.3 ]
+MakeNamedMaterial "holes" "string type" "mix" "string materials" [ "nothing" "clay" ] "texture amount" "squares"
+NamedMaterial "clay"
+Shape "bilinearmesh" "point3 P" [ -4 0 -4  -4 0 4  4 0 -4  4 0 4 ]
+NamedMaterial "nothing"
+Shape "sphere" "float radius" 0.9
+Shape "bilinearmesh" "point3 P" [ -2 0.2 1.5  -1 0.2 1.5  -2 1.2 1.5  -1 1.2 1.5 ]
+NamedMaterial "holes"
+Shape "bilinearmesh" "point3 P" [ -2 0 -1.5  0 0 -1.5  -2 2 -1.5  0 2 -1.5 ]
+NamedMaterial "clay"
+Shape "bilinearmesh" "point3 P" [ 0 0 -2  2 0 -2  0 2 -2  2 2 -2 ] "texture alpha" "squares"
+Material "thindielectric"
+Shape "bilinearmesh" "point3 P" [ 0.8 0 1  1.8 0 1  0.8 1 1  1.8 1 1 ]
+Material "dielectric" "spectrum eta" "glass-F11"
+Shape "sphere" "float radius" 0.5
+Material "conductor" "float roughness" 0.3
+Shape "sphere" "float radius" 0.3 "float zmin" -0.1
+Material "conductor"
+Shape "bilinearmesh" "point3 P" [ -3 0 -3  3 0 -3.5  -3 3 -3  3 3 -3.5 ]
+Material "dielectric"
+ObjectBegin "slab"
+    Shape "bilinearmesh" "point3 P" [ -1.6 0 0.6  -0.6 0 0.6  -1.6 1 0.6  -0.6 1 0.6 ]
+    Shape "bilinearmesh" "point3 P" [ -1.6 0 0.2  -1.6 1 0.2  -0.6 0 0.2  -0.6 1 0.2 ]
+ObjectEnd
+ObjectInstance "slab"
+Translate 0.2 0.1 0.1
+ObjectInstance "slab"
+"#;
+
+/// The scenes of the folder and those above, made small, with their names.
 fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
-    let (path, assets) = scene_text(LIGHTS);
-    let lights = (small(path, &assets), "lights".to_string());
-    scenes().into_iter().map(|(path, name)| (small(&path, &Files), name)).chain([lights])
+    let texts = [(LIGHTS, "lights"), (SURFACES, "surfaces")].map(|(text, name)| {
+        let (path, assets) = scene_text(text);
+        (small(path, &assets), name.to_string())
+    });
+    scenes().into_iter().map(|(path, name)| (small(&path, &Files), name)).chain(texts)
 }
 
 fn small(path: &Path, assets: &dyn AssetSource) -> SceneDesc {
@@ -99,23 +152,41 @@ impl Compiled {
         session.state().film.develop().unwrap().values().collect()
     }
 
-    fn settings(&self) -> PathDesc {
-        match self.desc.integrator.value {
+    /// The algorithms of both engines, by the wavefront with an instruction set and scalar.
+    fn algorithms(&self, sampler: &Sampler, set: InstructionSet) -> [Engines; 4] {
+        let settings = match self.desc.integrator.value {
             IntegratorDesc::Path(settings) => settings,
             _ => PathDesc::default(),
-        }
+        };
+        let path = integrators::Path::new(settings, Interfaces::Stop);
+        let near = AmbientOcclusionDesc { max_distance: 3.0, ..AmbientOcclusionDesc::default() };
+        let occlusion = AmbientOcclusion::new(near, RgbColorSpace::srgb());
+        [
+            Engines::new("path", path, sampler, set),
+            Engines::new("ambient occlusion", occlusion, sampler, set),
+            Engines::new("ray casting", RayCasting, sampler, set),
+            Engines::new("whitted", Whitted::default(), sampler, set),
+        ]
     }
+}
 
-    fn path(&self) -> integrators::Path {
-        integrators::Path::new(self.settings(), Interfaces::Stop)
-    }
+/// An algorithm by both engines.
+struct Engines {
+    name: &'static str,
+    wavefront: Box<dyn Integrator>,
+    scalar: Box<dyn Integrator>,
+}
 
-    fn wavefront(&self, sampler: &Sampler) -> Wavefront<integrators::Path> {
-        Wavefront::new(self.path(), sampler.clone())
-    }
-
-    fn scalar(&self, sampler: &Sampler) -> Box<dyn Integrator> {
-        Box::new(PixelLoop::new(self.path(), sampler.clone()))
+impl Engines {
+    fn new(
+        name: &'static str,
+        rays: impl WaveIntegrator + Clone + 'static,
+        sampler: &Sampler,
+        set: InstructionSet,
+    ) -> Self {
+        let wavefront = Wavefront::new(rays.clone(), sampler.clone()).with_instruction_set(set);
+        let scalar = PixelLoop::new(rays, sampler.clone());
+        Self { name, wavefront: Box::new(wavefront), scalar: Box::new(scalar) }
     }
 }
 
@@ -131,11 +202,15 @@ fn instruction_sets_and_threads_never_change_a_bit() {
     for (desc, name) in cases() {
         let compiled = Compiled::new(desc);
         let [sampler, _] = samplers();
-        let expected = compiled.picture(Box::new(compiled.wavefront(&sampler)), 1);
+        let pictures = |set, threads| {
+            let algorithms = compiled.algorithms(&sampler, set);
+            algorithms.map(|engines| (engines.name, compiled.picture(engines.wavefront, threads)))
+        };
+        let expected = pictures(InstructionSet::detect(), 1);
         for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
-            let integrator = compiled.wavefront(&sampler).with_instruction_set(set);
-            let found = compiled.picture(Box::new(integrator), 2);
-            assert!(found == expected, "{name} with {set:?}");
+            for ((algorithm, found), (_, expected)) in pictures(set, 2).iter().zip(&expected) {
+                assert!(found == expected, "{name}, {algorithm} with {set:?}");
+            }
         }
     }
 }
@@ -146,12 +221,19 @@ fn the_wavefront_agrees_with_the_scalar_engine() {
     for (desc, name) in cases() {
         let compiled = Compiled::new(desc);
         for sampler in samplers() {
-            let wavefront = compiled.picture(Box::new(compiled.wavefront(&sampler)), 2);
-            let scalar = compiled.picture(compiled.scalar(&sampler), 2);
-            let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-3 * (a.abs() + b.abs()).max(1e-2);
-            let different = wavefront.iter().zip(&scalar).filter(|&pair| differs(pair)).count();
-            let allowed = if name == "textures" { wavefront.len() / 20 } else { wavefront.len() / 500 };
-            assert!(different <= allowed, "{name}: {different} of {} values differ", wavefront.len());
+            for engines in compiled.algorithms(&sampler, InstructionSet::detect()) {
+                let wavefront = compiled.picture(engines.wavefront, 2);
+                let scalar = compiled.picture(engines.scalar, 2);
+                let differs = |(a, b): (&f32, &f32)| (a - b).abs() > 1e-3 * (a.abs() + b.abs()).max(1e-2);
+                let different = wavefront.iter().zip(&scalar).filter(|&pair| differs(pair)).count();
+                let allowed = if name == "textures" { wavefront.len() / 20 } else { wavefront.len() / 500 };
+                assert!(
+                    different <= allowed,
+                    "{name}, {}: {different} of {} values differ",
+                    engines.name,
+                    wavefront.len()
+                );
+            }
         }
     }
 }
