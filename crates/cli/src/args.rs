@@ -161,9 +161,9 @@ pub struct Changes {
     /// picture is the same. [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub accelerator: Option<String>,
-    /// How ray-casting, whitted, ambient-occlusion, path and vol-path trace rays: wavefront, many at
-    /// once, or scalar, one after another. The picture is the same but for rounding. [default:
-    /// wavefront]
+    /// How ray-casting, whitted, ambient-occlusion, path and vol-path trace rays: wavefront, many
+    /// at once, or scalar, one after another. The picture is the same but for rounding.
+    /// [default: wavefront]
     #[arg(long, value_name = "NAME", value_parser = ["wavefront", "scalar"])]
     pub engine: Option<String>,
     /// Change a setting; see the list below. Can be given several times.

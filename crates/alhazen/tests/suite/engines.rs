@@ -63,8 +63,8 @@ LightSource "point" "point3 from" [ 0 2 3 ] "rgb I" [ 2 2 2 ]
 "#;
 
 /// Surfaces that are not shaded in lanes, or that more than one ray leaves: interfaces, mixes with
-/// them, alpha, panes and blocks of glass, dispersion, mirrors, instances. Textures are not filtered,
-/// so that each point has one of two values.
+/// them, alpha, panes and blocks of glass, dispersion, mirrors, instances. Textures are not
+/// filtered, so that each point has one of two values.
 const SURFACES: &str = r#"
 Option "disabletexturefiltering" true
 LookAt 0 1.5 5 0 0.8 0 0 1 0
