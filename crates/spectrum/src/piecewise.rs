@@ -72,6 +72,42 @@ impl std::error::Error for ParseError {}
 pub struct PiecewiseLinear {
     lambdas: Box<[f32]>,
     values: Box<[f32]>,
+    guide: Option<Guide>,
+}
+
+/// Where the search for an interval begins.
+#[derive(Clone, Debug, PartialEq)]
+struct Guide {
+    /// The first whole nanometre.
+    first: f32,
+    /// For each whole nanometre, the index of the last wavelength up to there, or else 0.
+    below: Box<[u32]>,
+    /// The most wavelengths between two whole nanometres.
+    between: u32,
+}
+
+impl Guide {
+    /// The most nanometres.
+    const MAX_LEN: f32 = 4096.0;
+
+    /// Binary search is faster where there are more wavelengths between two whole nanometres.
+    const MAX_BETWEEN: u32 = 4;
+
+    /// That of increasing wavelengths; `None` where binary search is better.
+    fn new(lambdas: &[f32]) -> Option<Self> {
+        let (first, last) = (lambdas[0].floor(), lambdas[lambdas.len() - 1].floor());
+        // Differences of smaller numbers and whole ones are exact.
+        let is_exact = first >= 0.0 && last < (1 << 20) as f32;
+        if !is_exact || last - first >= Self::MAX_LEN {
+            return None;
+        }
+        let upto = |lambda: f32| lambdas.partition_point(|&l| l <= lambda) as u32;
+        let whole = (0..=(last - first) as u32).map(|nanometre| first + nanometre as f32);
+        let below = whole.clone().map(|nanometre| upto(nanometre).saturating_sub(1)).collect();
+        let before = |lambda: f32| lambdas.partition_point(|&l| l < lambda) as u32;
+        let between = whole.map(|nanometre| before(nanometre + 1.0) - upto(nanometre)).max().unwrap_or(0);
+        (between <= Self::MAX_BETWEEN).then_some(Self { first, below, between })
+    }
 }
 
 impl PiecewiseLinear {
@@ -88,7 +124,7 @@ impl PiecewiseLinear {
             return Err(SpectrumError::NotIncreasing { previous: w[0].0, lambda: w[1].0 });
         }
         let (lambdas, values): (Vec<f32>, Vec<f32>) = pairs.iter().copied().unzip();
-        Ok(Self { lambdas: lambdas.into(), values: values.into() })
+        Ok(Self { guide: Guide::new(&lambdas), lambdas: lambdas.into(), values: values.into() })
     }
 
     /// From numbers, wavelength and value in turn.
@@ -152,18 +188,38 @@ impl PiecewiseLinear {
         R::select(inside | lambda.eq(l0), value, R::zero())
     }
 
-    /// The last of the given wavelengths that is at most `lambda`, or the first, by binary search
-    /// with the same steps in all lanes.
+    /// The last of the given wavelengths that is at most `lambda`, or the first, with the same steps
+    /// in all lanes.
     #[inline(always)]
     fn interval<R: Real>(&self, lambda: R) -> R::Int {
-        let (mut first, mut size) = (R::Int::splat(0), self.lambdas.len() as u32);
-        while size > 1 {
-            let half = size / 2;
-            let middle = first.wrapping_add(R::Int::splat(half));
-            first = R::Int::select(R::gather(&self.lambdas, middle).le(lambda), middle, first);
-            size -= half;
+        match &self.guide {
+            Some(guide) => {
+                let last = R::splat((guide.below.len() - 1) as f32);
+                let nanometre = (lambda - R::splat(guide.first)).floor().clamp(R::zero(), last);
+                let mut below = R::Int::gather(&guide.below, nanometre.to_int());
+                for _ in 0..guide.between {
+                    below = self.next_if_up_to(lambda, below, 1);
+                }
+                below
+            }
+            None => {
+                let (mut below, mut size) = (R::Int::splat(0), self.lambdas.len() as u32);
+                while size > 1 {
+                    below = self.next_if_up_to(lambda, below, size / 2);
+                    size -= size / 2;
+                }
+                below
+            }
         }
-        first
+    }
+
+    /// The wavelength `step` after the one at an index if it is at most `lambda`, else that one.
+    #[inline(always)]
+    fn next_if_up_to<R: Real>(&self, lambda: R, below: R::Int, step: u32) -> R::Int {
+        let next = below.wrapping_add(R::Int::splat(step));
+        let last = R::Int::splat(self.lambdas.len() as u32 - 1);
+        let next = R::Int::select(next.lt(last), next, last);
+        R::Int::select(R::gather(&self.lambdas, next).le(lambda), next, below)
     }
 
     /// The largest of the given values.
@@ -210,6 +266,31 @@ mod tests {
         }
         assert_eq!(spectrum.max_value(), 3.0);
         assert_eq!(PiecewiseLinear::from_pairs(&[(500.0, 2.0)]).unwrap().at(500.0), 2.0);
+    }
+
+    #[test]
+    fn the_guide_finds_what_a_search_finds() {
+        let spectra: [&[f32]; 6] = [
+            &[400.0, 420.0, 440.0, 460.0],
+            &[359.5, 359.75, 360.0, 361.25, 361.5, 361.999, 830.0],
+            &[0.25, 0.5, 4000.0],
+            &[555.0],
+            &[555.5],
+            &[700.0, 700.1, 700.2],
+        ];
+        for lambdas in spectra {
+            let pairs: Vec<_> = lambdas.iter().map(|&l| (l, (l * 7.3).sin())).collect();
+            let guided = PiecewiseLinear::from_pairs(&pairs).unwrap();
+            assert!(guided.guide.is_some(), "{lambdas:?}");
+            let searched = PiecewiseLinear { guide: None, ..guided.clone() };
+            let between = (0..20_000).map(|i| 0.25 * i as f32 - 100.0);
+            let around = lambdas.iter().flat_map(|l| [l.next_down(), *l, l.next_up()]);
+            for lambda in between.chain(around) {
+                assert_eq!(guided.interval(lambda), searched.interval(lambda), "{lambda} in {lambdas:?}");
+            }
+        }
+        let dense: Vec<_> = (0..1000).map(|i| (400.0 + 0.1 * i as f32, 1.0)).collect();
+        assert!(PiecewiseLinear::from_pairs(&dense).unwrap().guide.is_none());
     }
 
     #[test]
