@@ -8,6 +8,7 @@
 //! - *any-hit diffuse*: the diffuse rays again, as any-hit queries.
 
 use crate::mesh::{BenchMesh, SplitMix64};
+use geometry::RayBuffer;
 use math::{Ray, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -33,6 +34,15 @@ pub struct RaySet {
     pub query: Query,
     /// Rays.
     pub rays: Arc<[BenchRay]>,
+    /// The same for batches.
+    pub columns: RayBuffer,
+}
+
+impl RaySet {
+    fn new(name: &'static str, query: Query, rays: impl Into<Arc<[BenchRay]>>) -> Self {
+        let rays = rays.into();
+        Self { name, query, columns: rays.iter().copied().collect(), rays }
+    }
 }
 
 /// The result of tracing a set.
@@ -84,11 +94,11 @@ pub fn ray_sets(
     let shuffled = shuffled(diffuse.clone());
     let diffuse: Arc<[BenchRay]> = diffuse.into();
     [
-        RaySet { name: "primary", query: Query::Closest, rays: primary.into() },
-        RaySet { name: "diffuse", query: Query::Closest, rays: diffuse.clone() },
-        RaySet { name: "shuffled", query: Query::Closest, rays: shuffled.into() },
-        RaySet { name: "shadow", query: Query::Any, rays: shadow.into() },
-        RaySet { name: "any-hit diffuse", query: Query::Any, rays: diffuse },
+        RaySet::new("primary", Query::Closest, primary),
+        RaySet::new("diffuse", Query::Closest, diffuse.clone()),
+        RaySet::new("shuffled", Query::Closest, shuffled),
+        RaySet::new("shadow", Query::Any, shadow),
+        RaySet::new("any-hit diffuse", Query::Any, diffuse),
     ]
 }
 

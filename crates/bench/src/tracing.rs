@@ -7,7 +7,7 @@ use crate::mesh::BenchMesh;
 use crate::rays::{Answer, BenchRay, Query, RaySet, ray_sets};
 use crate::table::{Table, ratios};
 use crate::timing::in_turn;
-use geometry::{BuildQuality, Hit, HitColumns, RayBuffer, RayColumns, RayStats, World};
+use geometry::{BuildQuality, Hit, HitColumns, RayColumns, RayStats, World};
 use math::Ray;
 use std::error::Error;
 
@@ -133,8 +133,7 @@ pub fn trace_batches(world: &World, set: &RaySet, size: usize) -> Answer {
     let mut answer = Answer::default();
     let stats = &mut RayStats::default();
     let (mut hits, mut occluded) = (HitColumns::default(), vec![false; size]);
-    let all: RayBuffer = set.rays.iter().copied().collect();
-    let all = all.columns();
+    let all = set.columns.columns();
     for rows in all.rows.chunks(size) {
         let rays = RayColumns { rows, ..all };
         match set.query {

@@ -163,7 +163,7 @@ impl Bvh {
         unsafe {
             let packet = PacketSlabs::<S::F32x16>::new(rays, &self.bounds);
             let zero = S::F32x16::splat(0.0);
-            let mut furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
+            let mut furthest = largest(t_max);
             let mut stack = [const { MaybeUninit::<StackEntry>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<StackEntry>();
             push(&mut top, StackEntry::END);
@@ -175,7 +175,7 @@ impl Bvh {
                 }
                 if child.is_leaf() {
                     test(child.blocks(), next.rays(), t_max);
-                    furthest = t_max.iter().fold(0.0, |a: f32, &b| a.max(b));
+                    furthest = largest(t_max);
                 } else {
                     let node = self.nodes.get_unchecked(child.index());
                     let ends = S::F32x16::load(t_max);
@@ -219,6 +219,20 @@ impl Bvh {
             prefetch(at.wrapping_add(64 * line));
         }
     }
+}
+
+/// The largest end of a packet's rays; zero if all have stopped.
+#[inline(always)]
+fn largest(t_max: &[f32; WIDTH]) -> f32 {
+    let mut t_max = *t_max;
+    let mut half = WIDTH / 2;
+    while half > 0 {
+        for i in 0..half {
+            t_max[i] = if t_max[i] > t_max[i + half] { t_max[i] } else { t_max[i + half] };
+        }
+        half /= 2;
+    }
+    if t_max[0] > 0.0 { t_max[0] } else { 0.0 }
 }
 
 /// Tests the children of a node: returns the one to visit next, and pushes the others.
