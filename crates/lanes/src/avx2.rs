@@ -119,6 +119,8 @@ int! {
     BitXor::bitxor(a, b) = _mm256_xor_si256(a, b);
     -> Self, if there is an instruction:
     gather(table, indices) = _mm256_i32gather_epi32::<4>(table.cast(), indices);
+    gather_bytes(table, indices) = _mm256_i32gather_epi32::<1>(table.cast(), indices);
+    gather_halves(table, indices) = _mm256_i32gather_epi32::<2>(table.cast(), indices);
     compress(a, mask) = _mm256_permutevar8x32_epi32(a, true_lanes(mask));
 }
 

@@ -85,6 +85,8 @@ int! {
     BitXor::bitxor(a, b) = _mm512_xor_si512(a, b);
     -> Self, if there is an instruction:
     gather(table, indices) = _mm512_i32gather_epi32::<4>(indices, table.cast());
+    gather_bytes(table, indices) = _mm512_i32gather_epi32::<1>(indices, table.cast());
+    gather_halves(table, indices) = _mm512_i32gather_epi32::<2>(indices, table.cast());
     compress(a, mask) = _mm512_maskz_compress_epi32(mask, a);
     -> (), if there is an instruction:
     scatter(value, mask, table, indices) =

@@ -5,6 +5,7 @@
 //! operation combines lanes, except for the explicit tests of a [`Mask`], and all have the same
 //! bits on every instruction set, so that the number of lanes never changes a result.
 
+use crate::Kernel;
 use std::fmt::Debug;
 use std::ops::{
     Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign,
@@ -49,6 +50,10 @@ pub trait Real:
 
     /// Writes the lanes to the start of a slice, which must have a place for each.
     fn store(self, to: &mut [f32]);
+
+    /// Runs a kernel with these lanes as a function of its own, which is not compiled into each
+    /// caller.
+    fn call<K: Kernel>(kernel: K) -> K::Output;
 
     /// The numbers of a table at these indices.
     ///
@@ -233,6 +238,26 @@ pub trait Int:
         Self::from_fn(|lane| table[indices[lane] as usize])
     }
 
+    /// Four bytes from each of these indices on, the first one lowest; those beyond the end of the
+    /// table are 0.
+    ///
+    /// # Panics
+    /// If any index lies outside of the table.
+    #[inline(always)]
+    fn gather_bytes(table: &[u8], indices: Self) -> Self {
+        Self::load(&gather_bytes(table, &indices.to_array()[..Self::Real::LANES]))
+    }
+
+    /// The integers of a table of 16 bits each at these indices.
+    ///
+    /// # Panics
+    /// If any index lies outside of the table.
+    #[inline(always)]
+    fn gather_halves(table: &[u16], indices: Self) -> Self {
+        let indices = indices.to_array();
+        Self::from_fn(|lane| table[indices[lane] as usize].into())
+    }
+
     /// Writes the lanes where the mask is true to places of a table. Of lanes with the same index
     /// the last one counts.
     ///
@@ -354,6 +379,20 @@ pub trait Mask:
     fn all(self) -> bool {
         (!self).bits() == 0
     }
+}
+
+/// Four bytes from each index on, those beyond the end of the table 0.
+pub(crate) fn gather_bytes(table: &[u8], indices: &[u32]) -> [u32; MAX_LANES] {
+    let mut values = [0; MAX_LANES];
+    for (value, &index) in values.iter_mut().zip(indices) {
+        let from = &table[index as usize..];
+        assert!(!from.is_empty(), "an index inside of the table");
+        let mut bytes = [0; 4];
+        let count = from.len().min(4);
+        bytes[..count].copy_from_slice(&from[..count]);
+        *value = u32::from_le_bytes(bytes);
+    }
+    values
 }
 
 /// The most lanes of any vector.

@@ -1,6 +1,6 @@
 //! One lane: `f32`, `u32` and `bool` themselves.
 
-use crate::{Int, Mask, Real};
+use crate::{Int, Kernel, Mask, Real};
 
 impl Real for f32 {
     const LANES: usize = 1;
@@ -21,6 +21,11 @@ impl Real for f32 {
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
         to[0] = self;
+    }
+
+    #[inline(always)]
+    fn call<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<f32>()
     }
 
     #[inline(always)]

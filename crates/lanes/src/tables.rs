@@ -1,7 +1,7 @@
 //! Macros that implement an instruction set from a table of intrinsics.
 
 #[cfg(target_arch = "x86_64")]
-use crate::{Int, Mask};
+use crate::{Int, MAX_LANES, Mask};
 
 /// Defines a vector as a newtype over a register. Each operation is an expression of registers;
 /// `load` and `store` have pointers.
@@ -145,6 +145,12 @@ macro_rules! real {
             #[inline(always)]
             fn store(self, to: &mut [f32]) {
                 *$crate::tables::lanes_mut(to) = $crate::Vector::<$n>::store(self);
+            }
+
+            #[inline(always)]
+            fn call<K: $crate::Kernel>(kernel: K) -> K::Output {
+                // The function `run` of the table's instruction set, of which this is the vector.
+                unsafe { run($crate::simd::Widest(kernel)) }
             }
 
             #[inline(always)]
@@ -295,6 +301,8 @@ macro_rules! int {
         $(
             -> Self, if there is an instruction:
             gather($table:ident, $indices:ident) = $gather:expr;
+            gather_bytes($bytes:ident, $byte:ident) = $gather_bytes:expr;
+            gather_halves($halves:ident, $half:ident) = $gather_halves:expr;
             compress($all:ident, $kept:ident) = $compress:expr;
         )?
         $(
@@ -345,6 +353,29 @@ macro_rules! int {
                     }
                     let ($table, $indices) = (table.as_ptr(), indices.0);
                     unsafe { Self($gather) }
+                }
+
+                #[inline(always)]
+                fn gather_bytes(table: &[u8], indices: Self) -> Self {
+                    // The instruction reads four bytes.
+                    if !$crate::tables::are_inside(table.len().saturating_sub(3), indices) {
+                        let indices = $crate::Int::to_array(indices);
+                        return $crate::Int::load(&$crate::tables::gather_bytes(table, &indices[..$n]));
+                    }
+                    let ($bytes, $byte) = (table.as_ptr(), indices.0);
+                    unsafe { Self($gather_bytes) }
+                }
+
+                #[inline(always)]
+                fn gather_halves(table: &[u16], indices: Self) -> Self {
+                    // The instruction reads two numbers, of which the second one is not used.
+                    if !$crate::tables::are_inside(table.len().saturating_sub(1), indices) {
+                        let indices = $crate::Int::to_array(indices);
+                        let halves = $crate::tables::gather_each::<_, $n>(table, &indices);
+                        return $crate::Int::from_fn(|lane| halves[lane].into());
+                    }
+                    let ($halves, $half) = (table.as_ptr(), indices.0);
+                    unsafe { Self($gather_halves) & $crate::Int::splat(0xffff) }
                 }
 
                 #[inline(always)]
@@ -529,4 +560,12 @@ pub fn are_inside(length: usize, indices: impl Int) -> bool {
 #[inline(never)]
 pub fn gather_each<T: Copy, const N: usize>(table: &[T], indices: &[u32]) -> [T; N] {
     std::array::from_fn(|lane| table[indices[lane] as usize])
+}
+
+/// Four bytes from each index on, read one by one.
+#[cfg(target_arch = "x86_64")]
+#[cold]
+#[inline(never)]
+pub fn gather_bytes(table: &[u8], indices: &[u32]) -> [u32; MAX_LANES] {
+    crate::real::gather_bytes(table, indices)
 }

@@ -11,6 +11,14 @@ pub fn ln<R: Real>(x: R) -> R {
     limits(x, x, result)
 }
 
+/// log₂ x, with an error below 2 ulp; exact for powers of two, −∞ for zeros, NaN below.
+#[inline(always)]
+pub fn log2<R: Real>(x: R) -> R {
+    let (f, n) = logarithmic_parts(x);
+    let part = logarithm(f, R::zero(), R::zero()) * R::splat(std::f32::consts::LOG2_E);
+    limits(x, x, n + part)
+}
+
 /// ln(1 + x), with an error below 1 ulp, also where x is small; −∞ for −1, NaN below.
 #[inline(always)]
 pub fn ln_1p<R: Real>(x: R) -> R {

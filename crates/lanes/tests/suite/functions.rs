@@ -15,6 +15,7 @@ enum Function {
     Exp,
     ExpM1,
     Ln,
+    Log2,
     Ln1p,
     Pow,
     Cube,
@@ -26,7 +27,7 @@ enum Function {
 use Function::*;
 
 /// Functions of one number with the bounds of their errors, in ulp.
-const OF_ONE: [(Function, f64); 12] = [
+const OF_ONE: [(Function, f64); 13] = [
     (Sin, 1.6),
     (Cos, 1.6),
     (Asin, 1.4),
@@ -35,6 +36,7 @@ const OF_ONE: [(Function, f64); 12] = [
     (Exp, 1.1),
     (ExpM1, 1.7),
     (Ln, 0.9),
+    (Log2, 2.0),
     (Ln1p, 1.0),
     (Cbrt, 0.6),
     (Cube, 3.0),
@@ -56,6 +58,7 @@ impl Function {
             Exp => exp(x),
             ExpM1 => exp_m1(x),
             Ln => ln(x),
+            Log2 => log2(x),
             Ln1p => ln_1p(x),
             Pow => pow(x, y),
             Cube => powi(x, 3),
@@ -78,6 +81,7 @@ impl Function {
             Exp => x.exp(),
             ExpM1 => x.exp_m1(),
             Ln => x.ln(),
+            Log2 => x.log2(),
             Ln1p => x.ln_1p(),
             Pow => x.powf(y),
             Cube => x * x * x,
@@ -99,6 +103,7 @@ impl Function {
             Exp => x.exp(),
             ExpM1 => x.exp_m1(),
             Ln => x.ln(),
+            Log2 => x.log2(),
             Ln1p => x.ln_1p(),
             Pow => x.powf(y),
             Cube => x.powi(3),
@@ -133,7 +138,7 @@ impl Kernel for Apply<'_> {
                 }
             };
         }
-        apply! { Sin Cos Asin Acos Atan Atan2 Exp ExpM1 Ln Ln1p Pow Cube Reciprocal Cbrt Hypot }
+        apply! { Sin Cos Asin Acos Atan Atan2 Exp ExpM1 Ln Log2 Ln1p Pow Cube Reciprocal Cbrt Hypot }
         results
     }
 }

@@ -23,6 +23,82 @@ impl Kernel for Gather<'_> {
     }
 }
 
+/// Reads tables of small integers.
+#[derive(Clone, Copy)]
+struct GatherSmall<'a> {
+    bytes: &'a [u8],
+    halves: &'a [u16],
+    indices: [u32; MAX_LANES],
+}
+
+impl Kernel for GatherSmall<'_> {
+    type Output = Vec<(u32, u32)>;
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let indices = R::Int::load(&self.indices);
+        let bytes = R::Int::gather_bytes(self.bytes, indices).to_array();
+        let halves = R::Int::gather_halves(self.halves, indices).to_array();
+        (0..R::LANES).map(|lane| (bytes[lane], halves[lane])).collect()
+    }
+}
+
+#[test]
+fn tables_of_small_integers_are_read_at_indices() {
+    for round in 0..1000 {
+        let length = 1 + hash(round) % 40;
+        let halves: Vec<u16> = (0..length).map(|i| hash(i) as u16).collect();
+        let bytes: Vec<u8> = halves.iter().map(|&half| half as u8).collect();
+        let indices = std::array::from_fn(|lane| hash(16 * round + lane as u32) % length);
+        for set in available() {
+            let gather = GatherSmall { bytes: &bytes, halves: &halves, indices };
+            for (lane, found) in set.dispatch(gather).into_iter().enumerate() {
+                let index = indices[lane] as usize;
+                let byte = |i: usize| bytes.get(index + i).map_or(0, |&b| u32::from(b) << (8 * i));
+                let expected = ((0..4).map(byte).sum(), u32::from(halves[index]));
+                assert_eq!(found, expected, "{set:?}: {index} of {length}");
+            }
+            let outside = GatherSmall { indices: [length; MAX_LANES], ..gather };
+            assert!(catch_unwind(AssertUnwindSafe(|| set.dispatch(outside))).is_err());
+            let outside = GatherSmall { bytes: &[0; 100], ..outside };
+            assert!(catch_unwind(AssertUnwindSafe(|| set.dispatch(outside))).is_err());
+        }
+    }
+}
+
+/// Calls another kernel.
+struct Caller(f32);
+
+/// Squares a number in all lanes.
+struct Square(f32);
+
+impl Kernel for Caller {
+    type Output = (f32, bool);
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let (square, lanes) = R::call(Square(self.0));
+        (square, lanes == R::LANES)
+    }
+}
+
+impl Kernel for Square {
+    type Output = (f32, usize);
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> Self::Output {
+        let x = R::splat(self.0);
+        ((x * x).lane(R::LANES - 1), R::LANES)
+    }
+}
+
+#[test]
+fn a_kernel_calls_another_with_as_many_lanes() {
+    for set in available() {
+        assert_eq!(set.dispatch(Caller(3.0)), (9.0, true), "{set:?}");
+    }
+}
+
 #[test]
 fn tables_are_read_at_indices() {
     for round in 0..1000 {
