@@ -244,6 +244,21 @@ impl Image {
         wrap.apply(x, y, self.width, self.height).map_or([0.0; 3], |(x, y)| self.rgb(x, y))
     }
 
+    /// The channels that [`Self::rgb`] reads.
+    pub(crate) fn color_channels(&self) -> [usize; 3] {
+        self.color
+    }
+
+    /// The linear values of 8-bit codes.
+    pub(crate) fn decoded(&self) -> &[f32] {
+        &self.decoded
+    }
+
+    /// The number of values of all pixels and channels.
+    pub(crate) fn value_count(&self) -> usize {
+        self.pixels.len()
+    }
+
     /// Whether the image has colour: R, G and B channels.
     pub fn is_color(&self) -> bool {
         self.color[0] != self.color[1]
@@ -257,31 +272,13 @@ impl Image {
     /// The bilinearly interpolated value of a channel at `st`, where [0, 1]² covers the image and t
     /// runs down.
     pub fn bilerp(&self, st: Point2, c: usize, wrap: WrapMode) -> f32 {
-        let [(x, dx), (y, dy)] = self.texel_position(st);
-        let at = |x, y| self.channel_wrapped(x, y, c, wrap);
-        (1.0 - dy) * ((1.0 - dx) * at(x, y) + dx * at(x + 1, y))
-            + dy * ((1.0 - dx) * at(x, y + 1) + dx * at(x + 1, y + 1))
+        let [value] = self.bilinear(st, [c], wrap);
+        value
     }
 
     /// [`Self::bilerp`] of the colour.
     pub fn bilerp_rgb(&self, st: Point2, wrap: WrapMode) -> [f32; 3] {
-        let [(x, dx), (y, dy)] = self.texel_position(st);
-        let at = |x, y| self.rgb_wrapped(x, y, wrap);
-        let corners = [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)];
-        std::array::from_fn(|c| {
-            (1.0 - dy) * ((1.0 - dx) * corners[0][c] + dx * corners[1][c])
-                + dy * ((1.0 - dx) * corners[2][c] + dx * corners[3][c])
-        })
-    }
-
-    /// The texel left of and above `st`, whose centre it is nearest to from below, and the
-    /// distances from it, by axis.
-    fn texel_position(&self, st: Point2) -> [(i32, f32); 2] {
-        [(st.x, self.width), (st.y, self.height)].map(|(coordinate, size)| {
-            let position = coordinate * size as f32 - 0.5;
-            let texel = position.floor().clamp(-1e9, 1e9);
-            (texel as i32, position - texel)
-        })
+        self.bilinear(st, self.color, wrap)
     }
 
     /// The channels of these names, in this order; `None` if one is absent.

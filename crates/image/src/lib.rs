@@ -20,6 +20,7 @@ mod projection;
 mod pyramid;
 mod resample;
 mod source;
+mod texels;
 mod wrap;
 
 pub use codec::{

@@ -16,6 +16,7 @@
 
 use std::sync::{Arc, LazyLock};
 
+use lanes::{Each, Int, MAX_LANES, Mask, Real, log2};
 use math::Vec2;
 use rayon::prelude::*;
 
@@ -100,42 +101,139 @@ impl Pyramid {
     }
 
     /// The filtered value of the first channel.
-    pub fn lookup(&self, st: Vec2, dst0: Vec2, dst1: Vec2, filter: TextureFilter) -> f32 {
-        self.filtered(st, dst0, dst1, filter)
+    #[inline(always)]
+    pub fn lookup<R: Real>(&self, st: Vec2<R>, dst0: Vec2<R>, dst1: Vec2<R>, filter: TextureFilter) -> R {
+        let [value] = self.filtered(st, [dst0, dst1], filter, [0]);
+        value
     }
 
     /// The filtered colour.
-    pub fn lookup_rgb(&self, st: Vec2, dst0: Vec2, dst1: Vec2, filter: TextureFilter) -> [f32; 3] {
-        self.filtered(st, dst0, dst1, filter)
+    #[inline(always)]
+    pub fn lookup_rgb<R: Real>(
+        &self,
+        st: Vec2<R>,
+        dst0: Vec2<R>,
+        dst1: Vec2<R>,
+        filter: TextureFilter,
+    ) -> [R; 3] {
+        self.filtered(st, [dst0, dst1], filter, self.levels[0].color_channels())
     }
 
-    fn filtered<T: Texel>(&self, st: Vec2, dst0: Vec2, dst1: Vec2, filter: TextureFilter) -> T {
+    #[inline(always)]
+    fn filtered<R: Real, const C: usize>(
+        &self,
+        st: Vec2<R>,
+        dst: [Vec2<R>; 2],
+        filter: TextureFilter,
+        channels: [usize; C],
+    ) -> [R; C] {
         if let TextureFilter::Ewa { max_anisotropy } = filter {
-            return self.ewa(st, dst0, dst1, max_anisotropy);
+            return self.ewa_lanes(st, dst, max_anisotropy, channels);
         }
         let top = self.levels.len() - 1;
-        let width = 2.0 * dst0.abs().max_element().max(dst1.abs().max_element());
-        let level = top as f32 + width.max(1e-8).log2();
-        if level >= top as f32 {
-            return T::at(&self.levels[top], 0, 0, self.wrap);
+        let [a, b] = dst.each(|dst| dst.abs().max_element());
+        let width = R::splat(2.0) * a.max(b);
+        let level = R::splat(top as f32) + log2(width.max(R::splat(1e-8)));
+        let level = level.clamp(R::zero(), R::splat(top as f32));
+        let index = level.to_int();
+        let t = level - index.to_real();
+        let is_blended = if let TextureFilter::Trilinear = filter {
+            !index.eq(R::Int::splat(0)) & !index.eq(R::Int::splat(top as u32))
+        } else {
+            R::Mask::splat(false)
+        };
+
+        let mut values = [R::zero(); C];
+        let mut is_coarse = R::Mask::splat(false);
+        let (indices, mut levels) = (index.to_array(), 0_u64);
+        for &index in &indices[..R::LANES] {
+            levels |= 1 << index;
         }
-        let index = level.max(0.0) as usize;
-        let image = &self.levels[index];
-        match filter {
-            TextureFilter::Point => {
-                let position = st * size(image) - 0.5;
-                T::at(image, position.x.round() as i32, position.y.round() as i32, self.wrap)
+        let mut next = levels.trailing_zeros() as usize;
+        // Levels ascend, so that the finer of two comes first.
+        while next <= top {
+            let level = next;
+            let is_fine = index.eq(R::Int::splat(level as u32));
+            let found = self.texels_at(level, st, filter, channels, is_fine);
+            for (value, found) in values.iter_mut().zip(found) {
+                let fine = R::select(is_blended, (R::one() - t) * found, found);
+                let sum = R::select(is_coarse, *value + t * found, *value);
+                *value = R::select(is_fine, fine, sum);
             }
-            TextureFilter::Trilinear if index > 0 => {
-                let (fine, coarse) =
-                    (T::bilerp(image, st, self.wrap), T::bilerp(&self.levels[index + 1], st, self.wrap));
-                fine.lerp(coarse, level - index as f32)
-            }
-            _ => T::bilerp(image, st, self.wrap),
+            is_coarse = is_fine & is_blended;
+            levels &= !(1 << level);
+            next = if is_coarse.any() { level + 1 } else { levels.trailing_zeros() as usize };
         }
+        values
     }
 
-    fn ewa<T: Texel>(&self, st: Vec2, dst0: Vec2, dst1: Vec2, max_anisotropy: f32) -> T {
+    /// The values in one level, unfiltered by others. The last level is one texel, which is the
+    /// value in the lanes of `is_fine`; where it is blended with the level before, it is wrapped as
+    /// all levels are.
+    #[inline(always)]
+    fn texels_at<R: Real, const C: usize>(
+        &self,
+        level: usize,
+        st: Vec2<R>,
+        filter: TextureFilter,
+        channels: [usize; C],
+        is_fine: R::Mask,
+    ) -> [R; C] {
+        let image = &self.levels[level];
+        let is_top = if level + 1 == self.levels.len() { is_fine } else { R::Mask::splat(false) };
+        if is_top.all() {
+            return image.texels([R::Int::splat(0); 2], channels, self.wrap);
+        }
+        let mut values = if let TextureFilter::Point = filter {
+            let [x, y] = [(st.x, image.width()), (st.y, image.height())]
+                .each(|(coordinate, size)| nearest(coordinate * R::splat(size as f32) - R::splat(0.5)));
+            image.texels([x, y], channels, self.wrap)
+        } else {
+            image.bilinear(st, channels, self.wrap)
+        };
+        if is_top.any() {
+            let texel = image.texels::<R, C>([R::Int::splat(0); 2], channels, self.wrap);
+            for (value, texel) in values.iter_mut().zip(texel) {
+                *value = R::select(is_top, texel, *value);
+            }
+        }
+        values
+    }
+
+    /// [`Self::ewa`] lane by lane: ellipses have different numbers of texels.
+    #[inline(always)]
+    fn ewa_lanes<R: Real, const C: usize>(
+        &self,
+        st: Vec2<R>,
+        [dst0, dst1]: [Vec2<R>; 2],
+        max_anisotropy: f32,
+        channels: [usize; C],
+    ) -> [R; C] {
+        let arrays = [st, dst0, dst1].each(|v| v.to_array().each(R::to_array));
+        let mut values = [[0.0; MAX_LANES]; C];
+        for lane in 0..R::LANES {
+            let [st, dst0, dst1] = arrays.each(|[x, y]| Vec2::new(x[lane], y[lane]));
+            let found = self.ewa(st, dst0, dst1, max_anisotropy, channels);
+            for (values, found) in values.iter_mut().zip(found) {
+                values[lane] = found;
+            }
+        }
+        let mut loaded = [R::zero(); C];
+        for (loaded, values) in loaded.iter_mut().zip(&values) {
+            *loaded = R::load(values);
+        }
+        loaded
+    }
+
+    #[inline(never)]
+    fn ewa<const C: usize>(
+        &self,
+        st: Vec2,
+        dst0: Vec2,
+        dst1: Vec2,
+        max_anisotropy: f32,
+        channels: [usize; C],
+    ) -> [f32; C] {
         let (longer, mut shorter) =
             if dst0.length_squared() < dst1.length_squared() { (dst1, dst0) } else { (dst0, dst1) };
         if shorter.length() * max_anisotropy < longer.length() {
@@ -143,19 +241,31 @@ impl Pyramid {
         }
         let width = shorter.length();
         if !(width > 0.0 && width.is_finite()) {
-            return T::bilerp(&self.levels[0], st, self.wrap);
+            return self.levels[0].bilinear(st, channels, self.wrap);
         }
         let level = ((self.levels.len() - 1) as f32 + width.log2()).max(0.0);
         let index = level as usize;
-        let fine: T = self.ewa_at(index, st, longer, shorter);
-        fine.lerp(self.ewa_at(index + 1, st, longer, shorter), level - index as f32)
+        let mut values = self.ewa_at(index, st, longer, shorter, channels);
+        let coarse = self.ewa_at(index + 1, st, longer, shorter, channels);
+        let t = level - index as f32;
+        for (value, coarse) in values.iter_mut().zip(coarse) {
+            *value = (1.0 - t) * *value + t * coarse;
+        }
+        values
     }
 
     /// The elliptical average in one level: texels with A s² + B s t + C t² < 1, (s, t) from the
     /// centre.
-    fn ewa_at<T: Texel>(&self, level: usize, st: Vec2, dst0: Vec2, dst1: Vec2) -> T {
+    fn ewa_at<const C: usize>(
+        &self,
+        level: usize,
+        st: Vec2,
+        dst0: Vec2,
+        dst1: Vec2,
+        channels: [usize; C],
+    ) -> [f32; C] {
         let Some(image) = self.levels.get(level) else {
-            return T::at(&self.levels[self.levels.len() - 1], 0, 0, self.wrap);
+            return self.levels[self.levels.len() - 1].texels([0, 0], channels, self.wrap);
         };
         let center = st * size(image) - 0.5;
         let (axis0, axis1) = (dst0 * size(image), dst1 * size(image));
@@ -170,7 +280,7 @@ impl Pyramid {
         let reach = 2.0 / determinant
             * Vec2::new((determinant * c).max(0.0).sqrt(), (determinant * a).max(0.0).sqrt());
         let (first, last) = ((center - reach).map(f32::ceil), (center + reach).map(f32::floor));
-        let (mut sum, mut weight_sum) = (T::ZERO, 0.0);
+        let (mut sum, mut weight_sum) = ([0.0; C], 0.0);
         for y in first.y as i32..=last.y as i32 {
             let t = y as f32 - center.y;
             for x in first.x as i32..=last.x as i32 {
@@ -179,13 +289,18 @@ impl Pyramid {
                 if r2 < 1.0 {
                     let weight =
                         EWA_WEIGHTS[((r2 * EWA_WEIGHTS.len() as f32) as usize).min(EWA_WEIGHTS.len() - 1)];
-                    sum = sum.plus(T::at(image, x, y, self.wrap), weight);
+                    let texel: [f32; C] = image.texels([x as u32, y as u32], channels, self.wrap);
+                    sum.iter_mut().zip(texel).for_each(|(sum, value)| *sum += weight * value);
                     weight_sum += weight;
                 }
             }
         }
         // Every ellipse holds a texel's centre unless the numbers have overflowed.
-        if weight_sum > 0.0 { T::ZERO.plus(sum, 1.0 / weight_sum) } else { T::bilerp(image, st, self.wrap) }
+        if !(weight_sum > 0.0) {
+            return image.bilinear(st, channels, self.wrap);
+        }
+        let inverse = 1.0 / weight_sum;
+        sum.map(|sum| inverse * sum)
     }
 }
 
@@ -230,43 +345,14 @@ fn halved(image: &Image) -> Result<Image, ImageError> {
     Image::new(width, height, image.channels(), Pixels::F32(values))
 }
 
-/// What a lookup returns: one channel or a colour.
-trait Texel: Copy {
-    const ZERO: Self;
-    fn at(image: &Image, x: i32, y: i32, wrap: WrapMode) -> Self;
-    fn bilerp(image: &Image, st: Vec2, wrap: WrapMode) -> Self;
-    /// self + weight · other.
-    fn plus(self, other: Self, weight: f32) -> Self;
-    /// (1 − t) · self + t · other.
-    fn lerp(self, other: Self, t: f32) -> Self {
-        Self::ZERO.plus(self, 1.0 - t).plus(other, t)
-    }
-}
-
-impl Texel for f32 {
-    const ZERO: Self = 0.0;
-    fn at(image: &Image, x: i32, y: i32, wrap: WrapMode) -> Self {
-        image.channel_wrapped(x, y, 0, wrap)
-    }
-    fn bilerp(image: &Image, st: Vec2, wrap: WrapMode) -> Self {
-        image.bilerp(st, 0, wrap)
-    }
-    fn plus(self, other: Self, weight: f32) -> Self {
-        self + weight * other
-    }
-}
-
-impl Texel for [f32; 3] {
-    const ZERO: Self = [0.0; 3];
-    fn at(image: &Image, x: i32, y: i32, wrap: WrapMode) -> Self {
-        image.rgb_wrapped(x, y, wrap)
-    }
-    fn bilerp(image: &Image, st: Vec2, wrap: WrapMode) -> Self {
-        image.bilerp_rgb(st, wrap)
-    }
-    fn plus(self, other: Self, weight: f32) -> Self {
-        std::array::from_fn(|c| self[c] + weight * other[c])
-    }
+/// The nearest integer; the one farther from zero of two that are as near.
+#[inline(always)]
+fn nearest<R: Real>(x: R) -> R::Int {
+    let magnitude = x.abs();
+    let below = magnitude.floor();
+    let is_nearer_above = (magnitude - below).ge(R::splat(0.5));
+    let nearest = R::select(is_nearer_above, below + R::one(), below).copysign(x);
+    nearest.clamp(R::splat(-1e9), R::splat(1e9)).to_int()
 }
 
 #[cfg(test)]

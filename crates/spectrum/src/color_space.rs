@@ -6,6 +6,7 @@
 //!
 //! White balance scales in the Bradford cone space: M⁻¹ diag(LMS_target / LMS_source) M [Lam 1985].
 
+use lanes::Real;
 use std::fmt;
 use std::sync::{Arc, LazyLock, OnceLock};
 
@@ -129,6 +130,12 @@ impl RgbColorSpace {
         self.white
     }
 
+    /// The illuminant of this space, with unit luminance, at `lambda` nanometres.
+    #[inline(always)]
+    pub fn illuminant_at<R: Real>(&self, lambda: R) -> R {
+        self.illuminant.at(lambda)
+    }
+
     /// The illuminant of this space, with unit luminance, shared.
     pub(crate) fn shared_illuminant(&self) -> Arc<DenselySampled> {
         Arc::clone(&self.illuminant)
@@ -169,7 +176,13 @@ impl RgbColorSpace {
     /// The smooth reflectance with the colour `rgb` under this space's illuminant; components
     /// outside [0, 1] are clamped.
     pub fn to_rgb_coeffs(&self, rgb: Rgb) -> RgbSigmoidPolynomial {
-        self.table.get_or_init(|| RgbToSpectrumTable::decode(self.table_data)).polynomial(rgb)
+        self.uplifting().polynomial(rgb.to_array())
+    }
+
+    /// The table of smooth reflectances, which is decoded by the first call.
+    #[inline]
+    pub(crate) fn uplifting(&self) -> &RgbToSpectrumTable {
+        self.table.get_or_init(|| RgbToSpectrumTable::decode(self.table_data))
     }
 }
 

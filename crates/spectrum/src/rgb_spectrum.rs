@@ -10,24 +10,33 @@ use crate::color_space::RgbColorSpace;
 use crate::dense::DenselySampled;
 use crate::rgb::Rgb;
 use crate::uplift::RgbSigmoidPolynomial;
-use lanes::Real;
+use lanes::{Each, Real};
 
-/// A reflectance or transmittance, in [0, 1].
+/// A reflectance or transmittance, in [0, 1], one for each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RgbAlbedoSpectrum {
-    polynomial: RgbSigmoidPolynomial,
+pub struct RgbAlbedoSpectrum<R = f32> {
+    polynomial: RgbSigmoidPolynomial<R>,
 }
 
-impl RgbAlbedoSpectrum {
+impl<R: Real> RgbAlbedoSpectrum<R> {
     /// From RGB of a colour space, clamped to [0, 1].
-    pub fn new(space: &RgbColorSpace, rgb: Rgb) -> Self {
-        Self { polynomial: space.to_rgb_coeffs(rgb) }
+    #[inline(always)]
+    pub fn new(space: &RgbColorSpace, rgb: [R; 3]) -> Self {
+        Self { polynomial: space.uplifting().polynomial(rgb) }
     }
 
     /// The value at `lambda` nanometres.
     #[inline(always)]
-    pub fn at<R: Real>(&self, lambda: R) -> R {
+    pub fn at(&self, lambda: R) -> R {
         self.polynomial.at(lambda)
+    }
+}
+
+impl RgbAlbedoSpectrum {
+    /// The same spectrum in all lanes.
+    #[inline(always)]
+    pub fn splat<R: Real>(&self) -> RgbAlbedoSpectrum<R> {
+        RgbAlbedoSpectrum { polynomial: self.polynomial.splat() }
     }
 
     /// The largest value.
@@ -36,26 +45,36 @@ impl RgbAlbedoSpectrum {
     }
 }
 
-/// An unbounded quantity other than light, such as an absorption coefficient.
+/// An unbounded quantity other than light, such as an absorption coefficient, one for each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RgbUnboundedSpectrum {
-    scale: f32,
-    polynomial: RgbSigmoidPolynomial,
+pub struct RgbUnboundedSpectrum<R = f32> {
+    scale: R,
+    polynomial: RgbSigmoidPolynomial<R>,
 }
 
-impl RgbUnboundedSpectrum {
+impl<R: Real> RgbUnboundedSpectrum<R> {
     /// From RGB of a colour space; negative components count as zero.
-    pub fn new(space: &RgbColorSpace, rgb: Rgb) -> Self {
-        let rgb = rgb.clamp_zero();
-        let scale = 2.0 * rgb.max_component();
-        let scaled = if scale > 0.0 { rgb / scale } else { Rgb::ZERO };
-        Self { scale, polynomial: space.to_rgb_coeffs(scaled) }
+    #[inline(always)]
+    pub fn new(space: &RgbColorSpace, rgb: [R; 3]) -> Self {
+        let [r, g, b] = rgb.each(|v| v.max(R::zero()));
+        let scale = R::splat(2.0) * r.max(g).max(b);
+        let is_light = scale.gt(R::zero());
+        let scaled = [r, g, b].each(|v| R::select(is_light, v / scale, R::zero()));
+        Self { scale, polynomial: space.uplifting().polynomial(scaled) }
     }
 
     /// The value at `lambda` nanometres.
     #[inline(always)]
-    pub fn at<R: Real>(&self, lambda: R) -> R {
-        self.polynomial.at(lambda) * R::splat(self.scale)
+    pub fn at(&self, lambda: R) -> R {
+        self.polynomial.at(lambda) * self.scale
+    }
+}
+
+impl RgbUnboundedSpectrum {
+    /// The same spectrum in all lanes.
+    #[inline(always)]
+    pub fn splat<R: Real>(&self) -> RgbUnboundedSpectrum<R> {
+        RgbUnboundedSpectrum { scale: R::splat(self.scale), polynomial: self.polynomial.splat() }
     }
 
     /// The largest value.
@@ -74,13 +93,14 @@ pub struct RgbIlluminantSpectrum {
 impl RgbIlluminantSpectrum {
     /// From RGB of a colour space; negative components count as zero.
     pub fn new(space: &RgbColorSpace, rgb: Rgb) -> Self {
-        Self { factor: RgbUnboundedSpectrum::new(space, rgb), illuminant: space.shared_illuminant() }
+        let factor = RgbUnboundedSpectrum::new(space, rgb.to_array());
+        Self { factor, illuminant: space.shared_illuminant() }
     }
 
     /// The value at `lambda` nanometres.
     #[inline(always)]
     pub fn at<R: Real>(&self, lambda: R) -> R {
-        self.factor.at(lambda) * self.illuminant.at(lambda)
+        self.factor.splat().at(lambda) * self.illuminant.at(lambda)
     }
 
     /// An upper bound of the values: the largest factor times the illuminant's maximum.
@@ -91,5 +111,34 @@ impl RgbIlluminantSpectrum {
     /// The illuminant that the RGB values are multiplied by.
     pub fn illuminant(&self) -> &Arc<DenselySampled> {
         &self.illuminant
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use testkit::{LaneFunction, lanes_agree};
+
+    struct Uplifting(&'static RgbColorSpace);
+
+    impl LaneFunction for Uplifting {
+        #[inline(always)]
+        fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+            let (rgb, lambda) = ([u[0], u[1], u[2]], u[3] * R::splat(400.0) + R::splat(380.0));
+            // A quarter of the colours are nearly black.
+            let factor = R::select(u[4].lt(R::splat(0.25)), R::splat(1e-3), R::splat(1.5));
+            let scaled = rgb.each(|v| (v - R::splat(0.1)) * factor);
+            vec![
+                RgbAlbedoSpectrum::new(self.0, rgb).at(lambda),
+                RgbAlbedoSpectrum::new(self.0, scaled).at(lambda),
+                RgbUnboundedSpectrum::new(self.0, scaled).at(lambda),
+                self.0.illuminant_at(lambda),
+            ]
+        }
+    }
+
+    #[test]
+    fn colors_become_the_same_spectra_in_all_lanes() {
+        RgbColorSpace::all().into_iter().for_each(|space| lanes_agree(&Uplifting(space), 5, 300));
     }
 }

@@ -49,12 +49,12 @@ impl Spectrum {
 
     /// A reflectance from RGB.
     pub fn rgb_albedo(space: &RgbColorSpace, rgb: Rgb) -> Self {
-        Self::RgbAlbedo(RgbAlbedoSpectrum::new(space, rgb))
+        Self::RgbAlbedo(RgbAlbedoSpectrum::new(space, rgb.to_array()))
     }
 
     /// An unbounded quantity from RGB.
     pub fn rgb_unbounded(space: &RgbColorSpace, rgb: Rgb) -> Self {
-        Self::RgbUnbounded(RgbUnboundedSpectrum::new(space, rgb))
+        Self::RgbUnbounded(RgbUnboundedSpectrum::new(space, rgb.to_array()))
     }
 
     /// Light from RGB.
@@ -70,8 +70,8 @@ impl Spectrum {
             Self::PiecewiseLinear(s) => s.at(lambda),
             Self::DenselySampled(s) => s.at(lambda),
             Self::Blackbody(s) => map_lanes(lambda, |l| s.at(l)),
-            Self::RgbAlbedo(s) => s.at(lambda),
-            Self::RgbUnbounded(s) => s.at(lambda),
+            Self::RgbAlbedo(s) => s.splat().at(lambda),
+            Self::RgbUnbounded(s) => s.splat().at(lambda),
             Self::RgbIlluminant(s) => s.at(lambda),
         }
     }
@@ -95,8 +95,8 @@ impl Spectrum {
             Self::PiecewiseLinear(s) => each!(l => s.at(l)),
             Self::DenselySampled(s) => each!(l => s.at(l)),
             Self::Blackbody(s) => each!(l => map_lanes(l, |l| s.at(l))),
-            Self::RgbAlbedo(s) => each!(l => s.at(l)),
-            Self::RgbUnbounded(s) => each!(l => s.at(l)),
+            Self::RgbAlbedo(s) => each!(l => s.splat().at(l)),
+            Self::RgbUnbounded(s) => each!(l => s.splat().at(l)),
             Self::RgbIlluminant(s) => each!(l => s.at(l)),
         }
     }

@@ -13,30 +13,39 @@
 //!
 //! Sources: [Jakob 2019], [Pharr 2023 §4.6.6].
 
-use crate::rgb::Rgb;
 use crate::sampled::{LAMBDA_MAX, LAMBDA_MIN};
-use lanes::{Each, Real};
+use lanes::{Each, Int, Real};
 
-/// A reflectance made from RGB: a sigmoid of a quadratic polynomial of wavelength.
+/// A reflectance made from RGB, one for each lane: a sigmoid of a quadratic polynomial of
+/// wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RgbSigmoidPolynomial {
+pub struct RgbSigmoidPolynomial<R = f32> {
     /// Coefficients of t², t and 1, with t = (λ − 540) / 100.
-    pub coefficients: [f32; 3],
+    pub coefficients: [R; 3],
 }
 
-impl RgbSigmoidPolynomial {
+impl<R: Real> RgbSigmoidPolynomial<R> {
     /// The same reflectance at all wavelengths.
-    pub fn constant(reflectance: f32) -> Self {
-        let c2 = (reflectance - 0.5) / (reflectance * (1.0 - reflectance)).sqrt();
-        Self { coefficients: [0.0, 0.0, c2] }
+    #[inline(always)]
+    pub fn constant(reflectance: R) -> Self {
+        let c2 = (reflectance - R::splat(0.5)) / (reflectance * (R::one() - reflectance)).sqrt();
+        Self { coefficients: [R::zero(), R::zero(), c2] }
     }
 
     /// The reflectance at `lambda` nanometres, in [0, 1].
     #[inline(always)]
-    pub fn at<R: Real>(&self, lambda: R) -> R {
-        let [c0, c1, c2] = self.coefficients.each(R::splat);
+    pub fn at(&self, lambda: R) -> R {
+        let [c0, c1, c2] = self.coefficients;
         let t = (lambda - R::splat(540.0)) / R::splat(100.0);
         sigmoid((c0 * t + c1) * t + c2)
+    }
+}
+
+impl RgbSigmoidPolynomial {
+    /// The same reflectance in all lanes.
+    #[inline(always)]
+    pub fn splat<R: Real>(&self) -> RgbSigmoidPolynomial<R> {
+        RgbSigmoidPolynomial { coefficients: self.coefficients.each(R::splat) }
     }
 
     /// The largest reflectance over the range of wavelengths.
@@ -64,6 +73,9 @@ pub const RATIOS: usize = 42;
 /// Number of nodes in a table.
 pub const NODES: usize = 3 * VALUES * RATIOS * RATIOS;
 
+/// The next power of two, for a binary search.
+const PADDED_VALUES: usize = VALUES.next_power_of_two();
+
 /// Half the range of asinh that the file can express.
 const ASINH_RANGE: f64 = 10.0;
 
@@ -81,14 +93,16 @@ pub fn node_ratio(i: usize) -> f64 {
 }
 
 /// The position t in [0, 1] of a ratio among the nodes: the inverse of [`node_ratio`].
-fn ratio_position(ratio: f32) -> f32 {
-    ((0.36 + 1.6 * ratio).sqrt() - 0.6) / 0.8
+#[inline(always)]
+fn ratio_position<R: Real>(ratio: R) -> R {
+    ((R::splat(0.36) + R::splat(1.6) * ratio).sqrt() - R::splat(0.6)) / R::splat(0.8)
 }
 
 /// The variable in which coefficients are about linear over the largest component z: (z − ½) / √(z
 /// (1 − z)), kept finite at z = 1.
-fn value_coordinate(z: f32) -> f32 {
-    (z - 0.5) / (z * (1.05 - z)).sqrt()
+#[inline(always)]
+fn value_coordinate<R: Real>(z: R) -> R {
+    (z - R::splat(0.5)) / (z * (R::splat(1.05) - z)).sqrt()
 }
 
 /// Index of the node for largest component `largest`, its value node and the ratio nodes of the two
@@ -99,9 +113,10 @@ pub fn node_index(largest: usize, value: usize, ratios: [usize; 2]) -> usize {
 
 /// Coefficients over the RGB cube of one colour space.
 pub struct RgbToSpectrumTable {
-    /// Three coefficients and a zero, so that a node is a vector.
+    /// Three coefficients and a zero, so that a node lies in one cache line.
     nodes: Box<[[f32; 4]]>,
-    values: [f32; VALUES],
+    /// The values, and after them infinities.
+    values: [f32; PADDED_VALUES],
     /// The values by [`value_coordinate`].
     coordinates: [f32; VALUES],
     ratios: [f32; RATIOS],
@@ -115,11 +130,11 @@ impl RgbToSpectrumTable {
     pub fn new(coefficients: impl IntoIterator<Item = [f32; 3]>) -> Self {
         let nodes: Box<[_]> = coefficients.into_iter().map(|[a, b, c]| [a, b, c, 0.0]).collect();
         assert_eq!(nodes.len(), NODES, "invariant: a table has all its nodes");
-        let values = std::array::from_fn(|i| node_value(i) as f32);
+        let value = |i| node_value(i) as f32;
         Self {
             nodes,
-            values,
-            coordinates: values.map(value_coordinate),
+            values: std::array::from_fn(|i| if i < VALUES { value(i) } else { f32::INFINITY }),
+            coordinates: std::array::from_fn(|i| value_coordinate(value(i))),
             ratios: std::array::from_fn(|i| node_ratio(i) as f32),
         }
     }
@@ -151,46 +166,74 @@ impl RgbToSpectrumTable {
     }
 
     /// The reflectance for `rgb`, its components clamped to [0, 1].
-    pub fn polynomial(&self, rgb: Rgb) -> RgbSigmoidPolynomial {
-        let rgb = rgb.to_array().map(|v| if v > 0.0 { v.min(1.0) } else { 0.0 });
-        if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
-            return RgbSigmoidPolynomial::constant(rgb[0]);
-        }
-        let largest = (1..3).fold(0, |best, i| if rgb[i] >= rgb[best] { i } else { best });
-        let largest_value = rgb[largest];
-        let (x0, tx) = self.ratio_cell(rgb[(largest + 1) % 3] / largest_value);
-        let (y0, ty) = self.ratio_cell(rgb[(largest + 2) % 3] / largest_value);
+    #[inline(always)]
+    pub fn polynomial<R: Real>(&self, rgb: [R; 3]) -> RgbSigmoidPolynomial<R> {
+        let int = |i: usize| R::Int::splat(i as u32);
+        let [r, g, b] = rgb.each(|v| v.clamp(R::zero(), R::one()));
+        let is_grey = r.eq(g) & g.eq(b);
 
-        let (darkest, z) = (self.values[0], largest_value.max(self.values[0]));
-        let z0 = self.values.partition_point(|&v| v <= z).clamp(1, VALUES - 1) - 1;
-        let [a, b] = [self.coordinates[z0], self.coordinates[z0 + 1]];
+        // Of equal components the last one counts as the largest.
+        let (green_leads, blue_leads) = (g.ge(r), b.ge(r.max(g)));
+        let of_largest = |[r, g, b]: [R; 3]| R::select(blue_leads, b, R::select(green_leads, g, r));
+        let largest_value = of_largest([r, g, b]);
+        let largest = R::Int::select(green_leads, int(1), int(0));
+        let largest = R::Int::select(blue_leads, int(2), largest);
+        let (x0, tx) = self.ratio_cell(of_largest([g, b, r]) / largest_value);
+        let (y0, ty) = self.ratio_cell(of_largest([b, r, g]) / largest_value);
+
+        let darkest = R::splat(self.values[0]);
+        let z = largest_value.max(darkest);
+        let z0 = self.value_below(z);
+        let [a, b] = [z0, z0.wrapping_add(int(1))].each(|i| R::gather(&self.coordinates, i));
         let tz = (value_coordinate(z) - a) / (b - a);
 
-        let mut sums = [0.0; 4];
-        for (dz, wz) in [(0, 1.0 - tz), (1, tz)] {
-            for (dy, wy) in [(0, 1.0 - ty), (1, ty)] {
-                for (dx, wx) in [(0, 1.0 - tx), (1, tx)] {
-                    let node = self.nodes[node_index(largest, z0 + dz, [x0 + dx, y0 + dy])];
-                    let weight = wz * wy * wx;
-                    for (sum, c) in sums.iter_mut().zip(node) {
-                        *sum += weight * c;
-                    }
-                }
+        let row = largest.wrapping_mul(int(VALUES)).wrapping_add(z0).wrapping_mul(int(RATIOS));
+        let first = row.wrapping_add(y0).wrapping_mul(int(RATIOS)).wrapping_add(x0);
+        let mut sums = [R::zero(); 3];
+        for corner in 0..8 {
+            let [dx, dy, dz] = [corner & 1, corner >> 1 & 1, corner >> 2];
+            let wx = if dx == 0 { R::one() - tx } else { tx };
+            let wy = if dy == 0 { R::one() - ty } else { ty };
+            let wz = if dz == 0 { R::one() - tz } else { tz };
+            let weight = wz * wy * wx;
+            let node = first.wrapping_add(int(dx + RATIOS * (dy + RATIOS * dz))).shl(2);
+            for (c, sum) in sums.iter_mut().enumerate() {
+                *sum += weight * R::gather(self.nodes.as_flattened(), node.wrapping_add(int(c)));
             }
         }
-        let [c0, c1, mut c2, _] = sums;
-        if largest_value < darkest {
-            // All wavelengths get darker together; scaling the whole polynomial would lighten where
-            // it is positive.
-            c2 *= (darkest / largest_value).sqrt();
+        let [c0, c1, c2] = sums;
+        // All wavelengths get darker together; scaling the whole polynomial would lighten where it
+        // is positive.
+        let is_dark = largest_value.lt(darkest);
+        let c2 = R::select(is_dark, c2 * (darkest / largest_value).sqrt(), c2);
+
+        let constant = RgbSigmoidPolynomial::constant(r).coefficients;
+        let select = |c: usize, sum| R::select(is_grey, constant[c], sum);
+        RgbSigmoidPolynomial { coefficients: [select(0, c0), select(1, c1), select(2, c2)] }
+    }
+
+    /// The last value node that is at most `z`, which is at least that of the first one.
+    #[inline(always)]
+    fn value_below<R: Real>(&self, z: R) -> R::Int {
+        let int = |i: usize| R::Int::splat(i as u32);
+        let mut below = int(0);
+        let mut step = PADDED_VALUES / 2;
+        while step > 0 {
+            let next = below.wrapping_add(int(step));
+            below = R::Int::select(R::gather(&self.values, next).le(z), next, below);
+            step /= 2;
         }
-        RgbSigmoidPolynomial { coefficients: [c0, c1, c2] }
+        R::Int::select(below.lt(int(VALUES - 2)), below, int(VALUES - 2))
     }
 
     /// The node below a ratio, and how far the ratio is from it to the next.
-    fn ratio_cell(&self, ratio: f32) -> (usize, f32) {
-        let below = ((ratio_position(ratio) * (RATIOS - 1) as f32) as usize).min(RATIOS - 2);
-        (below, (ratio - self.ratios[below]) / (self.ratios[below + 1] - self.ratios[below]))
+    #[inline(always)]
+    fn ratio_cell<R: Real>(&self, ratio: R) -> (R::Int, R) {
+        let position = ratio_position(ratio) * R::splat((RATIOS - 1) as f32);
+        let below = position.clamp(R::zero(), R::splat((RATIOS - 2) as f32)).to_int();
+        let above = below.wrapping_add(R::Int::splat(1));
+        let [from, to] = [below, above].each(|i| R::gather(&self.ratios, i));
+        (below, (ratio - from) / (to - from))
     }
 }
 

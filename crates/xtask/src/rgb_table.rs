@@ -158,7 +158,7 @@ impl Observer {
         for i in 0..STEPS * STEPS * STEPS {
             let rgb =
                 [i % STEPS, i / STEPS % STEPS, i / (STEPS * STEPS)].map(|v| (v as f64 + 0.37) / STEPS as f64);
-            let polynomial = table.polynomial(Rgb::from(rgb.map(|v| v as f32)));
+            let polynomial = table.polynomial(rgb.map(|v| v as f32));
             let (xyz, _) = self.xyz(polynomial.coefficients.map(f64::from));
             let again = self.rgb_from_xyz.apply(xyz);
             let error = (0..3).map(|i| (again[i] - rgb[i]).abs()).fold(0.0, f64::max);

@@ -11,7 +11,7 @@ const EDGES: [(&str, &[&str]); 17] = [
     ("math", &["lanes"]),
     ("spectrum", &["lanes", "math"]),
     ("sampling", &["lanes", "math"]),
-    ("image", &["math", "spectrum"]),
+    ("image", &["lanes", "math", "spectrum"]),
     ("geometry", &["math", "lanes", "sampling"]),
     ("scattering", &["lanes", "math", "spectrum", "sampling"]),
     ("description", &["math", "spectrum", "image"]),
