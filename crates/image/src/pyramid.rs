@@ -179,22 +179,20 @@ impl Pyramid {
         channels: [usize; C],
         is_fine: R::Mask,
     ) -> [R; C] {
-        let image = &self.levels[level];
+        let (image, is_point) = (&self.levels[level], matches!(filter, TextureFilter::Point));
         let is_top = if level + 1 == self.levels.len() { is_fine } else { R::Mask::splat(false) };
-        if is_top.all() {
-            return image.texels([R::Int::splat(0); 2], channels, self.wrap);
+        let is_single = is_top | R::Mask::splat(is_point);
+        let mut values = [R::zero(); C];
+        if !is_single.all() {
+            values = image.bilinear(st, channels, self.wrap);
         }
-        let mut values = if let TextureFilter::Point = filter {
-            let [x, y] = [(st.x, image.width()), (st.y, image.height())]
-                .each(|(coordinate, size)| nearest(coordinate * R::splat(size as f32) - R::splat(0.5)));
-            image.texels([x, y], channels, self.wrap)
-        } else {
-            image.bilinear(st, channels, self.wrap)
-        };
-        if is_top.any() {
-            let texel = image.texels::<R, C>([R::Int::splat(0); 2], channels, self.wrap);
+        if is_single.any() {
+            let (x, y) = (nearest(st.x, image.width()), nearest(st.y, image.height()));
+            let zero = R::Int::splat(0);
+            let position = [R::Int::select(is_top, zero, x), R::Int::select(is_top, zero, y)];
+            let texel = image.texels::<R, C>(position, channels, self.wrap);
             for (value, texel) in values.iter_mut().zip(texel) {
-                *value = R::select(is_top, texel, *value);
+                *value = R::select(is_single, texel, *value);
             }
         }
         values
@@ -345,13 +343,15 @@ fn halved(image: &Image) -> Result<Image, ImageError> {
     Image::new(width, height, image.channels(), Pixels::F32(values))
 }
 
-/// The nearest integer; the one farther from zero of two that are as near.
+/// The texel whose centre is nearest to a coordinate; the one farther from zero of two that are as
+/// near.
 #[inline(always)]
-fn nearest<R: Real>(x: R) -> R::Int {
-    let magnitude = x.abs();
+fn nearest<R: Real>(coordinate: R, size: u32) -> R::Int {
+    let position = coordinate * R::splat(size as f32) - R::splat(0.5);
+    let magnitude = position.abs();
     let below = magnitude.floor();
     let is_nearer_above = (magnitude - below).ge(R::splat(0.5));
-    let nearest = R::select(is_nearer_above, below + R::one(), below).copysign(x);
+    let nearest = R::select(is_nearer_above, below + R::one(), below).copysign(position);
     nearest.clamp(R::splat(-1e9), R::splat(1e9)).to_int()
 }
 

@@ -20,13 +20,15 @@ impl Image {
         channels: [usize; C],
         wrap: WrapMode,
     ) -> [R; C] {
-        let one = R::Int::splat(1);
         let ((x, dx), (y, dy)) = (position(st.x, self.width()), position(st.y, self.height()));
-        let (right, below) = (x.wrapping_add(one), y.wrapping_add(one));
-        let upper_left = self.texels::<R, C>([x, y], channels, wrap);
-        let upper_right = self.texels::<R, C>([right, y], channels, wrap);
-        let lower_left = self.texels::<R, C>([x, below], channels, wrap);
-        let lower_right = self.texels::<R, C>([right, below], channels, wrap);
+        // A loop, as the code of a texel is long.
+        let mut corners = [[R::zero(); C]; 4];
+        for (corner, values) in corners.iter_mut().enumerate() {
+            let (right, below) = (corner as u32 & 1, corner as u32 >> 1);
+            let at = [x.wrapping_add(R::Int::splat(right)), y.wrapping_add(R::Int::splat(below))];
+            *values = self.texels::<R, C>(at, channels, wrap);
+        }
+        let [upper_left, upper_right, lower_left, lower_right] = corners;
         let mut values = [R::zero(); C];
         for (c, value) in values.iter_mut().enumerate() {
             *value = (R::one() - dy) * ((R::one() - dx) * upper_left[c] + dx * upper_right[c])

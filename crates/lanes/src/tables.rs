@@ -149,8 +149,13 @@ macro_rules! real {
 
             #[inline(always)]
             fn call<K: $crate::Kernel>(kernel: K) -> K::Output {
-                // The function `run` of the table's instruction set, of which this is the vector.
-                unsafe { run($crate::simd::Widest(kernel)) }
+                // A set without features of its own would be compiled into the caller.
+                #[inline(never)]
+                fn apart<K: $crate::Kernel>(kernel: K) -> K::Output {
+                    // The function `run` of the table's instruction set.
+                    unsafe { run($crate::simd::Widest(kernel)) }
+                }
+                apart(kernel)
             }
 
             #[inline(always)]

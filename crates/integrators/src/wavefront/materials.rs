@@ -31,9 +31,7 @@ impl LaneMaterials {
         let row = |entry: &MaterialEntry| {
             let is_plain = entry.normal_map.is_none() && !view.options.force_diffuse;
             let (is_in_lanes, is_constant, may_be_specular) = match &entry.material {
-                Material::Diffuse(diffuse) => {
-                    (true, textures.constant_spectrum(diffuse.reflectance).is_some(), false)
-                }
+                Material::Diffuse(diffuse) => (true, textures.is_constant(diffuse.reflectance), false),
                 Material::DiffuseTransmission(_) => (true, false, false),
                 Material::Conductor(_) | Material::Dielectric(_) | Material::ThinDielectric(_) => {
                     (true, false, true)

@@ -3,10 +3,12 @@
 //!
 //! Outside of the square the same formula extrapolates. Source: [Pharr 2023 §10.3.2].
 
+use lanes::Real;
 use math::Point2;
 
 /// The weights of the values at (0, 0), (0, 1), (1, 0), (1, 1) at the point `st`; they sum to one.
-pub(super) fn weights(st: Point2) -> [f32; 4] {
-    let (s, t) = (st.x, st.y);
-    [(1.0 - s) * (1.0 - t), (1.0 - s) * t, s * (1.0 - t), s * t]
+#[inline(always)]
+pub(super) fn weights<R: Real>(st: Point2<R>) -> [R; 4] {
+    let (s, t, one) = (st.x, st.y, R::one());
+    [(one - s) * (one - t), (one - s) * t, s * (one - t), s * t]
 }

@@ -16,44 +16,61 @@
 //! Source: [Pharr 2023 §10.3.3], with the box filter replaced as pbrt-v4 does.
 
 use super::{TexCoord2d, TexCoord3d};
+use lanes::{Mask, Real};
 use math::sqr;
 
 /// The share of the second texture on squares of the plane, in [0, 1].
-pub(super) fn squares(c: &TexCoord2d) -> f32 {
+#[inline(always)]
+pub(super) fn squares<R: Real>(c: &TexCoord2d<R>) -> R {
     let product = filtered_wave(c.st.x, radius(c.dstdx.x, c.dstdy.x))
         * filtered_wave(c.st.y, radius(c.dstdx.y, c.dstdy.y));
-    0.5 - 0.5 * product
+    R::splat(0.5) - R::splat(0.5) * product
 }
 
 /// The share of the second texture in cubes of space, in [0, 1].
-pub(super) fn cubes(c: &TexCoord3d) -> f32 {
-    let product: f32 = (0..3).map(|i| filtered_wave(c.p[i], radius(c.dpdx[i], c.dpdy[i]))).product();
-    0.5 - 0.5 * product
+#[inline(always)]
+pub(super) fn cubes<R: Real>(c: &TexCoord3d<R>) -> R {
+    let mut product = R::one();
+    for axis in 0..3 {
+        product *= filtered_wave(c.p[axis], radius(c.dpdx[axis], c.dpdy[axis]));
+    }
+    R::splat(0.5) - R::splat(0.5) * product
 }
 
 /// The filter's radius along a coordinate with these derivatives by film position.
-fn radius(dx: f32, dy: f32) -> f32 {
-    1.5 * dx.abs().max(dy.abs())
+#[inline(always)]
+fn radius<R: Real>(dx: R, dy: R) -> R {
+    R::splat(1.5) * dx.abs().max(dy.abs())
 }
 
 /// The wave averaged with a triangle of radius `r` about `x`.
-fn filtered_wave(x: f32, r: f32) -> f32 {
-    if r <= 0.5 {
-        let edge = x.round();
-        let right_of_edge = if edge.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
-        let side = if x >= edge { right_of_edge } else { -right_of_edge };
+#[inline(always)]
+fn filtered_wave<R: Real>(x: R, r: R) -> R {
+    let [half, one, two] = [0.5, 1.0, 2.0].map(R::splat);
+    let is_sharp = r.le(half);
+    let mut wave = R::zero();
+    if is_sharp.any() {
+        let below = x.floor();
+        let edge = R::select((x - below).ge(half), below + one, below);
+        let pairs = edge * half;
+        let right_of_edge = R::select(pairs.eq(pairs.floor()), one, -one);
+        let side = R::select(x.ge(edge), right_of_edge, -right_of_edge);
         // `min` makes 1 of the 0/0 of a point on an edge, seen sharp.
-        let a = ((x - edge).abs() / r).min(1.0);
-        side * (1.0 - sqr(1.0 - a))
-    } else if r.is_finite() {
-        (second_integral(x + r) - 2.0 * second_integral(x) + second_integral(x - r)) / sqr(r)
-    } else {
-        0.0
+        let a = ((x - edge).abs() / r).min(one);
+        wave = side * (one - sqr(one - a));
     }
+    if !is_sharp.all() {
+        let blurred = second_integral(x + r) - two * second_integral(x) + second_integral(x - r);
+        let blurred = R::select(r.lt(R::splat(f32::INFINITY)), blurred / sqr(r), R::zero());
+        wave = R::select(is_sharp, wave, blurred);
+    }
+    wave
 }
 
 /// A function of period 2 whose second derivative is the wave.
-fn second_integral(x: f32) -> f32 {
-    let y = 0.5 * x - (0.5 * x).floor() - 0.5;
-    y * (1.0 - 2.0 * y.abs())
+#[inline(always)]
+fn second_integral<R: Real>(x: R) -> R {
+    let half = R::splat(0.5);
+    let y = half * x - (half * x).floor() - half;
+    y * (R::one() - R::splat(2.0) * y.abs())
 }

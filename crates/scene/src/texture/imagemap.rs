@@ -9,8 +9,9 @@
 
 use super::{Mapping2d, SpectrumType, TextureContext};
 use image::{Pyramid, TextureFilter};
+use lanes::{Each, Real};
 use math::Vec2;
-use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths};
+use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
 
 /// A filtered lookup in an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +30,16 @@ pub struct ImageLookup {
 
 impl ImageLookup {
     /// The number at a point: that of the image's first channel.
-    pub(super) fn evaluate(&self, mapping: &Mapping2d, pyramid: &Pyramid, ctx: &TextureContext) -> f32 {
+    #[inline(always)]
+    pub(super) fn evaluate<R: Real>(
+        &self,
+        mapping: &Mapping2d,
+        pyramid: &Pyramid,
+        ctx: &TextureContext<R>,
+    ) -> R {
         let [st, dst0, dst1] = position(mapping, ctx);
-        let value = self.scale * pyramid.lookup(st, dst0, dst1, self.filter);
-        if self.invert { (1.0 - value).max(0.0) } else { value }
+        let value = R::splat(self.scale) * pyramid.lookup(st, dst0, dst1, self.filter);
+        if self.invert { (R::one() - value).max(R::zero()) } else { value }
     }
 }
 
@@ -49,23 +56,26 @@ pub struct SpectrumImage {
 
 impl SpectrumImage {
     /// The spectrum at a point.
-    pub(super) fn evaluate(
+    #[inline(always)]
+    pub(super) fn evaluate<R: Real>(
         &self,
         mapping: &Mapping2d,
         pyramid: &Pyramid,
-        ctx: &TextureContext,
-        lambda: &SampledWavelengths,
-    ) -> SampledSpectrum {
+        ctx: &TextureContext<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> SampledSpectrum<R> {
         let [st, dst0, dst1] = position(mapping, ctx);
         let pixel = pyramid.lookup_rgb(st, dst0, dst1, self.lookup.filter);
-        let scaled = Rgb::from(pixel) * self.lookup.scale;
-        let rgb = if self.lookup.invert { Rgb::splat(1.0) - scaled } else { scaled };
-        self.spectrum_type.from_rgb(self.space, rgb.clamp_zero()).sample(lambda)
+        let (scale, invert) = (R::splat(self.lookup.scale), self.lookup.invert);
+        let scaled = pixel.each(|v| v * scale);
+        let rgb = scaled.each(|v| if invert { R::one() - v } else { v });
+        self.spectrum_type.sample_rgb(self.space, rgb.each(|v| v.max(R::zero())), lambda)
     }
 }
 
 /// The position of a lookup in a pyramid, and its derivatives by film x and y.
-fn position(mapping: &Mapping2d, ctx: &TextureContext) -> [Vec2; 3] {
+#[inline(always)]
+fn position<R: Real>(mapping: &Mapping2d, ctx: &TextureContext<R>) -> [Vec2<R>; 3] {
     let c = mapping.map(ctx);
-    [Vec2::new(c.st.x, 1.0 - c.st.y), c.dstdx, c.dstdy]
+    [Vec2::new(c.st.x, R::one() - c.st.y), c.dstdx, c.dstdy]
 }

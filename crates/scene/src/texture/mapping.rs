@@ -20,29 +20,31 @@
 //! Source: [Pharr 2023 §10.2].
 
 use super::TextureContext;
+use super::context::ContextArrays;
+use lanes::{Each, MAX_LANES, Real};
 use math::{Point2, Point3, Transform, Vec2, Vec3, Vector3, spherical_phi, spherical_theta, sqr};
 use std::f32::consts::{PI, TAU};
 
-/// Texture coordinates in two dimensions.
+/// Texture coordinates in two dimensions, for each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TexCoord2d {
+pub struct TexCoord2d<R = f32> {
     /// (s, t).
-    pub st: Point2,
+    pub st: Point2<R>,
     /// Derivative by film x.
-    pub dstdx: Vec2,
+    pub dstdx: Vec2<R>,
     /// Derivative by film y.
-    pub dstdy: Vec2,
+    pub dstdy: Vec2<R>,
 }
 
-/// Texture coordinates in three dimensions.
+/// Texture coordinates in three dimensions, for each lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TexCoord3d {
+pub struct TexCoord3d<R = f32> {
     /// The point in texture space.
-    pub p: Point3,
+    pub p: Point3<R>,
     /// Derivative by film x.
-    pub dpdx: Vector3,
+    pub dpdx: Vector3<R>,
     /// Derivative by film y.
-    pub dpdy: Vector3,
+    pub dpdy: Vector3<R>,
 }
 
 /// A map to the plane.
@@ -77,14 +79,39 @@ pub enum Mapping2d {
 }
 
 impl Mapping2d {
-    /// The texture coordinates of a point.
-    pub fn map(&self, ctx: &TextureContext) -> TexCoord2d {
+    /// The texture coordinates of a point. Only those of the surface's own parameters are computed
+    /// in lanes.
+    #[inline(always)]
+    pub fn map<R: Real>(&self, ctx: &TextureContext<R>) -> TexCoord2d<R> {
+        if let Self::Uv { scale, delta } = self {
+            let [scale, delta] = [scale, delta].each(|v| Vec2::broadcast(*v));
+            return TexCoord2d {
+                st: scale * ctx.uv + delta,
+                dstdx: scale * Vec2::new(ctx.dudx, ctx.dvdx),
+                dstdy: scale * Vec2::new(ctx.dudy, ctx.dvdy),
+            };
+        }
+        if R::LANES == 1 {
+            let TexCoord2d { st, dstdx, dstdy } = self.map_one(&ctx.lane(0));
+            let [st, dstdx, dstdy] = [st, dstdx, dstdy].each(Vec2::broadcast);
+            return TexCoord2d { st, dstdx, dstdy };
+        }
+        let contexts = ContextArrays::new(ctx);
+        let mut numbers = [[[0.0; MAX_LANES]; 2]; 3];
+        for lane in 0..R::LANES {
+            let TexCoord2d { st, dstdx, dstdy } = self.map_one(&contexts.lane(lane));
+            for (pair, v) in numbers.iter_mut().zip([st, dstdx, dstdy]) {
+                (pair[0][lane], pair[1][lane]) = (v.x, v.y);
+            }
+        }
+        let [st, dstdx, dstdy] = numbers.each(|[x, y]| Vec2::new(R::load(&x), R::load(&y)));
+        TexCoord2d { st, dstdx, dstdy }
+    }
+
+    #[inline(never)]
+    fn map_one(&self, ctx: &TextureContext) -> TexCoord2d {
         match self {
-            Self::Uv { scale, delta } => TexCoord2d {
-                st: *scale * ctx.uv + *delta,
-                dstdx: *scale * Vec2::new(ctx.dudx, ctx.dvdx),
-                dstdy: *scale * Vec2::new(ctx.dudy, ctx.dvdy),
-            },
+            Self::Uv { .. } => unreachable!("invariant: these are mapped in lanes"),
             Self::Spherical { texture_from_render } => {
                 let at = Mapping3d { texture_from_render: *texture_from_render }.map(ctx);
                 let p = at.p;
@@ -121,6 +148,26 @@ impl Mapping3d {
     pub fn map(&self, ctx: &TextureContext) -> TexCoord3d {
         let t = &self.texture_from_render;
         TexCoord3d { p: t.point(ctx.p), dpdx: t.vector(ctx.dpdx), dpdy: t.vector(ctx.dpdy) }
+    }
+
+    /// [`map`](Self::map) for each lane, one by one.
+    #[inline(always)]
+    pub(super) fn map_lanes<R: Real>(&self, ctx: &TextureContext<R>) -> TexCoord3d<R> {
+        if R::LANES == 1 {
+            let TexCoord3d { p, dpdx, dpdy } = self.map(&ctx.lane(0));
+            let [p, dpdx, dpdy] = [p, dpdx, dpdy].each(Vec3::broadcast);
+            return TexCoord3d { p, dpdx, dpdy };
+        }
+        let contexts = ContextArrays::new(ctx);
+        let mut numbers = [[[0.0; MAX_LANES]; 3]; 3];
+        for lane in 0..R::LANES {
+            let TexCoord3d { p, dpdx, dpdy } = self.map(&contexts.lane(lane));
+            for (triple, v) in numbers.iter_mut().zip([p, dpdx, dpdy]) {
+                (triple[0][lane], triple[1][lane], triple[2][lane]) = (v.x, v.y, v.z);
+            }
+        }
+        let [p, dpdx, dpdy] = numbers.each(|v| Vec3::from_array(v.each(|numbers| R::load(&numbers))));
+        TexCoord3d { p, dpdx, dpdy }
     }
 }
 

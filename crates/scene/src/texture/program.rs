@@ -9,12 +9,13 @@
 //! referred to by its index. There is no recursion and no branch, so that any back end can run the
 //! same programs.
 
+use super::context::ContextArrays;
 use super::{
     FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage, SpectrumTextureId, TextureContext,
     bilerp, checkerboard,
 };
 use image::Pyramid;
-use lanes::{Each, MAX_LANES, Real};
+use lanes::{Each, Kernel, MAX_LANES, Real};
 use spectrum::{N, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::ops::{Add, Mul};
 use std::sync::Arc;
@@ -159,17 +160,23 @@ impl Textures {
         }
     }
 
+    /// Whether a texture of spectra is the same everywhere.
+    pub fn is_constant(&self, id: SpectrumTextureId) -> bool {
+        matches!(self.program(id.0), [Operation { code: Code::Number(_) | Code::Spectrum(_), .. }])
+    }
+
     /// The number at a point.
     #[inline(always)]
     pub fn float<R: Real>(&self, id: FloatTextureId, ctx: &TextureContext<R>) -> R {
-        if let Some(value) = self.constant(id) {
-            return R::splat(value);
+        let operations = self.program(id.0);
+        if let [Operation { code: Code::Number(value), .. }] = operations {
+            return R::splat(*value);
         }
-        let mut values = [0.0; MAX_LANES];
-        for (lane, value) in values[..R::LANES].iter_mut().enumerate() {
-            *value = self.varying_float(id, &ctx.lane(lane));
+        if R::LANES == 1 {
+            return R::splat(self.float_of_one(operations, &ctx.lane(0)));
         }
-        R::load(&values)
+        let contexts = ContextArrays::new(ctx);
+        R::load(&R::call(FloatLookup { textures: self, operations, contexts: &contexts }))
     }
 
     /// The spectrum at a point.
@@ -180,50 +187,38 @@ impl Textures {
         ctx: &TextureContext<R>,
         lambda: &SampledWavelengths<R>,
     ) -> SampledSpectrum<R> {
-        if let Some(constant) = self.constant_spectrum(id) {
-            return constant.sample(lambda);
-        }
-        let mut values = [[0.0; MAX_LANES]; N];
-        for lane in 0..R::LANES {
-            let spectrum = self.varying_spectrum(id, &ctx.lane(lane), &lambda.lane(lane));
-            for (values, value) in values.iter_mut().zip(spectrum.0) {
-                values[lane] = value;
+        let operations = self.program(id.0);
+        match operations {
+            [Operation { code: Code::Number(value), .. }] => {
+                return SampledSpectrum::splat(R::splat(*value));
             }
+            [Operation { code: Code::Spectrum(index), .. }] => {
+                return self.spectra[*index as usize].sample(lambda);
+            }
+            _ => {}
         }
+        if R::LANES == 1 {
+            let spectrum = self.spectrum_of_one(operations, &ctx.lane(0), &lambda.lane(0));
+            return SampledSpectrum(spectrum.0.each(R::splat));
+        }
+        let contexts = ContextArrays::new(ctx);
+        let lambda = lambda.lambda().each(R::to_array);
+        let values =
+            R::call(SpectrumLookup { textures: self, operations, contexts: &contexts, lambda: &lambda });
         SampledSpectrum(values.each(|values| R::load(&values)))
     }
 
-    /// The spectrum of a texture that is the same everywhere.
-    #[inline]
-    pub fn constant_spectrum(&self, id: SpectrumTextureId) -> Option<&Spectrum> {
-        match self.program(id.0) {
-            [Operation { code: Code::Spectrum(index), .. }] => Some(&self.spectra[*index as usize]),
-            _ => None,
-        }
+    fn float_of_one(&self, operations: &[Operation], ctx: &TextureContext) -> f32 {
+        self.evaluate(operations, ctx, &())
     }
 
-    fn varying_float(&self, id: FloatTextureId, ctx: &TextureContext) -> f32 {
-        // A program of numbers has no operations on spectra.
-        self.evaluate(id.0, ctx, |value| value, |value| value, |_| 0.0)
-    }
-
-    fn varying_spectrum(
+    fn spectrum_of_one(
         &self,
-        id: SpectrumTextureId,
+        operations: &[Operation],
         ctx: &TextureContext,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        let spectral = |code| match code {
-            Code::Spectrum(index) => self.spectra[index as usize].sample(lambda),
-            Code::SpectrumImage(index) => {
-                let image = &self.spectrum_images[index as usize];
-                let (mapping, pyramid) = self.image(&image.lookup);
-                image.evaluate(mapping, pyramid, ctx, lambda)
-            }
-            _ => SampledSpectrum::ZERO,
-        };
-        // A number is the spectrum that has its value at all wavelengths.
-        self.evaluate(id.0, ctx, SampledSpectrum::splat, |value| value[0], spectral)
+        self.evaluate(operations, ctx, lambda)
     }
 
     pub(super) fn program(&self, index: u32) -> &[Operation] {
@@ -236,59 +231,172 @@ impl Textures {
         (&self.mappings[lookup.mapping as usize], &self.pyramids[lookup.pyramid as usize])
     }
 
-    /// Runs a program on values `V`: `splat` converts a number to a value, `number` is its inverse,
-    /// and `spectral` evaluates the operations that return spectra.
-    #[inline]
-    fn evaluate<V: Copy + Default + Add<Output = V> + Mul<f32, Output = V>>(
+    /// Runs a program on values `V`.
+    #[inline(always)]
+    fn evaluate<R: Real, V: Value<R>>(
         &self,
-        program: u32,
-        ctx: &TextureContext,
-        splat: impl Fn(f32) -> V,
-        number: impl Fn(V) -> f32,
-        spectral: impl Fn(Code) -> V,
+        operations: &[Operation],
+        ctx: &TextureContext<R>,
+        lambda: &V::Wavelengths,
     ) -> V {
-        let leaf = |code| match code {
-            Code::Number(value) => splat(value),
-            Code::FloatImage(index) => {
-                let lookup = &self.float_images[index as usize];
-                let (mapping, pyramid) = self.image(lookup);
-                splat(lookup.evaluate(mapping, pyramid, ctx))
-            }
-            Code::Squares(index) => splat(checkerboard::squares(&self.mappings[index as usize].map(ctx))),
-            Code::Cubes(index) => splat(checkerboard::cubes(&self.solid_mappings[index as usize].map(ctx))),
-            _ => spectral(code),
-        };
-        let operations = self.program(program);
-        // The common case: one constant or one image.
-        if let [only] = operations {
-            return leaf(only.code);
-        }
         let mut slots = [V::default(); MAX_SLOTS];
         for operation in operations {
-            let operand = |i: usize| slots[usize::from(operation.operands[i])];
+            let [a, b, c, d] = operation.operands.each(usize::from);
             let value = match operation.code {
-                Code::Scale => operand(0) * number(operand(1)),
-                Code::Mix => mix([operand(0), operand(1)], number(operand(2))),
-                Code::Bilerp(index) => {
-                    let [w00, w01, w10, w11] = bilerp::weights(self.mappings[index as usize].map(ctx).st);
-                    operand(0) * w00 + operand(1) * w01 + operand(2) * w10 + operand(3) * w11
+                Code::Number(value) => V::splat(R::splat(value)),
+                Code::FloatImage(index) => {
+                    let lookup = &self.float_images[index as usize];
+                    let (mapping, pyramid) = self.image(lookup);
+                    V::splat(lookup.evaluate(mapping, pyramid, ctx))
                 }
-                code => leaf(code),
+                Code::Squares(index) => {
+                    V::splat(checkerboard::squares(&self.mappings[index as usize].map(ctx)))
+                }
+                Code::Cubes(index) => {
+                    V::splat(checkerboard::cubes(&self.solid_mappings[index as usize].map_lanes(ctx)))
+                }
+                Code::Spectrum(_) | Code::SpectrumImage(_) => V::spectral(self, operation.code, ctx, lambda),
+                Code::Scale => slots[a] * slots[b].number(),
+                Code::Mix => mix([slots[a], slots[b]], slots[c].number()),
+                Code::Bilerp(index) => {
+                    let st = self.mappings[index as usize].map(ctx).st;
+                    let [w00, w01, w10, w11] = bilerp::weights(st);
+                    slots[a] * w00 + slots[b] * w01 + slots[c] * w10 + slots[d] * w11
+                }
             };
+            // The last operation writes slot 0.
             slots[usize::from(operation.target)] = value;
         }
         slots[0]
     }
 }
 
-/// (1 − `amount`)·first + `amount`·second. A value of weight 0 may be infinite or NaN.
-#[inline]
-pub(super) fn mix<V: Add<Output = V> + Mul<f32, Output = V>>([first, second]: [V; 2], amount: f32) -> V {
-    if amount == 0.0 {
-        first
-    } else if amount == 1.0 {
-        second
-    } else {
-        first * (1.0 - amount) + second * amount
+/// What a program computes with: numbers or spectra.
+pub(super) trait Value<R: Real>: Copy + Default + Add<Output = Self> + Mul<R, Output = Self> {
+    /// The wavelengths of spectra.
+    type Wavelengths;
+
+    /// The value that stands for a number: itself, or the spectrum that has it at all wavelengths.
+    fn splat(number: R) -> Self;
+
+    /// The inverse of [`splat`](Self::splat).
+    fn number(self) -> R;
+
+    /// `a` where the mask is true, else `b`.
+    fn select(mask: R::Mask, a: Self, b: Self) -> Self;
+
+    /// The value of an operation that gives a spectrum.
+    fn spectral(textures: &Textures, code: Code, ctx: &TextureContext<R>, lambda: &Self::Wavelengths)
+    -> Self;
+}
+
+impl<R: Real> Value<R> for R {
+    type Wavelengths = ();
+
+    #[inline(always)]
+    fn splat(number: R) -> R {
+        number
     }
+
+    #[inline(always)]
+    fn number(self) -> R {
+        self
+    }
+
+    #[inline(always)]
+    fn select(mask: R::Mask, a: R, b: R) -> R {
+        R::select(mask, a, b)
+    }
+
+    /// A program of numbers has no such operations.
+    #[inline(always)]
+    fn spectral(_: &Textures, _: Code, _: &TextureContext<R>, (): &()) -> R {
+        R::zero()
+    }
+}
+
+impl<R: Real> Value<R> for SampledSpectrum<R> {
+    type Wavelengths = SampledWavelengths<R>;
+
+    #[inline(always)]
+    fn splat(number: R) -> Self {
+        SampledSpectrum::splat(number)
+    }
+
+    #[inline(always)]
+    fn number(self) -> R {
+        self[0]
+    }
+
+    #[inline(always)]
+    fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        SampledSpectrum::select(mask, a, b)
+    }
+
+    #[inline(always)]
+    fn spectral(
+        textures: &Textures,
+        code: Code,
+        ctx: &TextureContext<R>,
+        lambda: &SampledWavelengths<R>,
+    ) -> Self {
+        match code {
+            Code::SpectrumImage(index) => {
+                let image = &textures.spectrum_images[index as usize];
+                let (mapping, pyramid) = textures.image(&image.lookup);
+                image.evaluate(mapping, pyramid, ctx, lambda)
+            }
+            Code::Spectrum(index) => textures.spectra[index as usize].sample(lambda),
+            _ => SampledSpectrum::splat(R::zero()),
+        }
+    }
+}
+
+/// Runs a program of numbers. It is a kernel of its own, not a part of the kernels of materials,
+/// because it is much code.
+struct FloatLookup<'a> {
+    textures: &'a Textures,
+    operations: &'a [Operation],
+    contexts: &'a ContextArrays,
+}
+
+impl Kernel for FloatLookup<'_> {
+    type Output = [f32; MAX_LANES];
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> [f32; MAX_LANES] {
+        let value: R = self.textures.evaluate(self.operations, &self.contexts.load(), &());
+        value.to_array()
+    }
+}
+
+/// Runs a program of spectra.
+struct SpectrumLookup<'a> {
+    textures: &'a Textures,
+    operations: &'a [Operation],
+    contexts: &'a ContextArrays,
+    lambda: &'a [[f32; MAX_LANES]; N],
+}
+
+impl Kernel for SpectrumLookup<'_> {
+    type Output = [[f32; MAX_LANES]; N];
+
+    #[inline(always)]
+    fn run<R: Real>(self) -> [[f32; MAX_LANES]; N] {
+        let [a, b, c, d] = self.lambda;
+        let lambda = [a, b, c, d].each(|lambda| R::load(lambda));
+        // Spectra do not depend on the densities of wavelengths.
+        let lambda = SampledWavelengths::new(lambda, [R::one(); N]);
+        let value: SampledSpectrum<R> =
+            self.textures.evaluate(self.operations, &self.contexts.load(), &lambda);
+        value.0.each(R::to_array)
+    }
+}
+
+/// (1 − `amount`)·first + `amount`·second. A value of weight 0 may be infinite or NaN.
+#[inline(always)]
+pub(super) fn mix<R: Real, V: Value<R>>([first, second]: [V; 2], amount: R) -> V {
+    let mixed = first * (R::one() - amount) + second * amount;
+    let mixed = V::select(amount.eq(R::one()), second, mixed);
+    V::select(amount.eq(R::zero()), first, mixed)
 }

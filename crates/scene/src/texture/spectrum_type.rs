@@ -1,7 +1,11 @@
 //! Types of spectra, and spectra compiled from their descriptions.
 
 use description::{ColorSpaceDesc, Diagnostic, Span, SpectrumDesc};
-use spectrum::{Rgb, RgbColorSpace, Spectrum};
+use lanes::Real;
+use spectrum::{
+    Rgb, RgbAlbedoSpectrum, RgbColorSpace, RgbUnboundedSpectrum, SampledSpectrum, SampledWavelengths,
+    Spectrum,
+};
 
 /// The meaning of a spectrum. An RGB value becomes a different spectrum for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -25,6 +29,30 @@ impl SpectrumType {
             Self::Unbounded => Spectrum::rgb_unbounded(space, rgb),
             Self::Illuminant => Spectrum::rgb_illuminant(space, rgb),
         }
+    }
+
+    /// The spectrum of an RGB value for each lane, at sampled wavelengths.
+    #[inline(always)]
+    pub fn sample_rgb<R: Real>(
+        self,
+        space: &RgbColorSpace,
+        rgb: [R; 3],
+        lambda: &SampledWavelengths<R>,
+    ) -> SampledSpectrum<R> {
+        let mut values = *lambda.lambda();
+        if let Self::Albedo = self {
+            let spectrum = RgbAlbedoSpectrum::new(space, rgb);
+            for value in &mut values {
+                *value = spectrum.at(*value);
+            }
+            return SampledSpectrum(values);
+        }
+        let spectrum = RgbUnboundedSpectrum::new(space, rgb);
+        for value in &mut values {
+            let illuminant = if let Self::Illuminant = self { space.illuminant_at(*value) } else { R::one() };
+            *value = spectrum.at(*value) * illuminant;
+        }
+        SampledSpectrum(values)
     }
 }
 
