@@ -20,9 +20,10 @@ use crate::{
     memory::{collected, filled},
     wrap::WrapMode,
 };
+use lanes::{Real, atan2, hypot};
 use math::{
-    Point2, Vec2, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere, spherical_direction,
-    spherical_phi,
+    Point2, Vec2, Vector3, equal_area_sphere_to_square, equal_area_square_to_sphere, sin_cos,
+    spherical_direction, spherical_phi,
 };
 use rayon::prelude::*;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -49,33 +50,36 @@ impl Projection {
     }
 
     /// The unit direction that is shown at `st` ∈ [0, 1]².
-    #[inline]
-    pub fn direction(self, st: Point2) -> Vector3 {
+    #[inline(always)]
+    pub fn direction<R: Real>(self, st: Point2<R>) -> Vector3<R> {
         match self {
             Self::EqualArea => equal_area_square_to_sphere(st),
             Self::LatitudeLongitude => {
-                let (sin_theta, cos_theta) = (PI * st.y).sin_cos();
-                spherical_direction(sin_theta, cos_theta, TAU * st.x)
+                let (sin_theta, cos_theta) = sin_cos(R::splat(PI) * st.y);
+                spherical_direction(sin_theta, cos_theta, R::splat(TAU) * st.x)
             }
         }
     }
 
     /// The position in [0, 1]² at which a unit direction is shown.
-    #[inline]
-    pub fn position(self, w: Vector3) -> Point2 {
+    #[inline(always)]
+    pub fn position<R: Real>(self, w: Vector3<R>) -> Point2<R> {
         match self {
             Self::EqualArea => equal_area_sphere_to_square(w),
             // Unlike the arc cosine, this is exact near the poles.
-            Self::LatitudeLongitude => Point2::new(spherical_phi(w) / TAU, w.x.hypot(w.y).atan2(w.z) / PI),
+            Self::LatitudeLongitude => {
+                let theta = atan2(hypot(w.x, w.y), w.z);
+                Point2::new(spherical_phi(w) / R::splat(TAU), theta / R::splat(PI))
+            }
         }
     }
 
     /// Solid angle per area of [0, 1]² at `st`, as a part of 4π: its mean over the square is 1.
-    #[inline]
-    pub fn solid_angle_density(self, st: Point2) -> f32 {
+    #[inline(always)]
+    pub fn solid_angle_density<R: Real>(self, st: Point2<R>) -> R {
         match self {
-            Self::EqualArea => 1.0,
-            Self::LatitudeLongitude => FRAC_PI_2 * (PI * st.y).sin().max(0.0),
+            Self::EqualArea => R::one(),
+            Self::LatitudeLongitude => R::splat(FRAC_PI_2) * sin_cos(R::splat(PI) * st.y).0.max(R::zero()),
         }
     }
 

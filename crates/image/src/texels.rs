@@ -11,6 +11,12 @@ use crate::wrap::WrapMode;
 const MAX_VALUES: usize = 1 << 31;
 
 impl Image {
+    /// [`Image::rgb_wrapped`] in lanes: the colours at columns and rows, which are signed.
+    #[inline(always)]
+    pub fn colors<R: Real>(&self, pixels: [R::Int; 2], wrap: WrapMode) -> [R; 3] {
+        self.texels(pixels, self.color_channels(), wrap)
+    }
+
     /// The bilinearly interpolated values of channels at `st`, where [0, 1]² covers the image and t
     /// runs down.
     #[inline(always)]

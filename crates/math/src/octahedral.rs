@@ -4,35 +4,39 @@
 //! four corners, which are folded down to the lower one; within each quadrant areas are
 //! preserved. Environment images are stored this way ([Clarberg 2008]; [Pharr 2023 §3.8.3]).
 
-use crate::{Vec2, Vec3, Vector3, safe_sqrt};
+use crate::{Vec2, Vec3, Vector3, safe_sqrt, sin_cos};
+use lanes::{Real, atan};
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_4};
 
 /// The unit direction of a point of [0, 1]².
-pub fn equal_area_square_to_sphere(p: Vec2) -> Vector3 {
-    let (u, v) = (2.0 * p.x - 1.0, 2.0 * p.y - 1.0);
+#[inline(always)]
+pub fn equal_area_square_to_sphere<R: Real>(p: Vec2<R>) -> Vector3<R> {
+    let (one, two) = (R::one(), R::splat(2.0));
+    let (u, v) = (two * p.x - one, two * p.y - one);
     let (up, vp) = (u.abs(), v.abs());
-    let signed_distance = 1.0 - (up + vp);
-    let r = 1.0 - signed_distance.abs();
-    let phi = if r == 0.0 { 1.0 } else { (vp - up) / r + 1.0 } * FRAC_PI_4;
-    let z = (1.0 - r * r).copysign(signed_distance);
-    let (sin_phi, cos_phi) = phi.sin_cos();
-    let radius = r * safe_sqrt(2.0 - r * r);
+    let signed_distance = one - (up + vp);
+    let r = one - signed_distance.abs();
+    let turn = R::select(r.eq(R::zero()), one, (vp - up) / r + one);
+    let z = (one - r * r).copysign(signed_distance);
+    let (sin_phi, cos_phi) = sin_cos(turn * R::splat(FRAC_PI_4));
+    let radius = r * safe_sqrt(two - r * r);
     Vec3::new(cos_phi.copysign(u) * radius, sin_phi.copysign(v) * radius, z)
 }
 
 /// The point of [0, 1]² of a unit direction: the inverse of [`equal_area_square_to_sphere`].
-pub fn equal_area_sphere_to_square(d: Vector3) -> Vec2 {
+#[inline(always)]
+pub fn equal_area_sphere_to_square<R: Real>(d: Vector3<R>) -> Vec2<R> {
+    let (one, half) = (R::one(), R::splat(0.5));
     let (x, y, z) = (d.x.abs(), d.y.abs(), d.z.abs());
     // √(1 − z), without cancellation near the poles.
-    let r = ((x * x + y * y) / (1.0 + z)).sqrt().min(1.0);
-    let (large, small) = if x > y { (x, y) } else { (y, x) };
-    let angle = if large == 0.0 { 0.0 } else { (small / large).atan() * FRAC_2_PI };
-    let phi = if x < y { 1.0 - angle } else { angle };
-    let (mut u, mut v) = (r - phi * r, phi * r);
-    if d.z < 0.0 {
-        (u, v) = (1.0 - v, 1.0 - u);
-    }
-    Vec2::new((u.copysign(d.x) + 1.0) * 0.5, (v.copysign(d.y) + 1.0) * 0.5)
+    let r = ((x * x + y * y) / (one + z)).sqrt().min(one);
+    let (large, small) = (R::select(x.gt(y), x, y), R::select(x.gt(y), y, x));
+    let angle = R::select(large.eq(R::zero()), R::zero(), atan(small / large) * R::splat(FRAC_2_PI));
+    let phi = R::select(x.lt(y), one - angle, angle);
+    let (u, v) = (r - phi * r, phi * r);
+    let is_below = d.z.lt(R::zero());
+    let (u, v) = (R::select(is_below, one - v, u), R::select(is_below, one - u, v));
+    Vec2::new((u.copysign(d.x) + one) * half, (v.copysign(d.y) + one) * half)
 }
 
 /// Wraps a point slightly outside of [0, 1]² to the point inside with the same direction.

@@ -19,10 +19,10 @@ pub fn spherical_theta(v: Vector3) -> f32 {
 }
 
 /// φ ∈ [0, 2π) of a vector.
-#[inline]
-pub fn spherical_phi(v: Vector3) -> f32 {
-    let phi = v.y.atan2(v.x);
-    if phi < 0.0 { phi + TAU } else { phi }
+#[inline(always)]
+pub fn spherical_phi<R: Real>(v: Vector3<R>) -> R {
+    let phi = lanes::atan2(v.y, v.x);
+    R::select(phi.lt(R::zero()), phi + R::splat(TAU), phi)
 }
 
 /// cos²θ of a local direction.

@@ -98,6 +98,13 @@ impl Transform {
         self.m.transform_vector3(v.into()).into()
     }
 
+    /// [`vector`](Self::vector) in lanes.
+    #[inline(always)]
+    pub fn vector_lanes<R: Real>(&self, v: Vector3<R>) -> Vector3<R> {
+        let [x, y, z, _] = columns(&self.m).each(Vec3::broadcast);
+        x * v.x + y * v.y + z * v.z
+    }
+
     /// Maps a normal (by the inverse transpose), not normalised.
     #[inline]
     pub fn normal(&self, n: Normal3) -> Normal3 {

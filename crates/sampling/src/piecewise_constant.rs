@@ -44,9 +44,9 @@ impl PiecewiseConstant1d {
     }
 
     /// The density at `x` per length; 0 outside of the interval.
-    #[inline]
-    pub fn pdf(&self, x: f32) -> f32 {
-        self.table.pdf(0, x)
+    #[inline(always)]
+    pub fn pdf<R: Real>(&self, x: R) -> R {
+        self.table.pdf(R::Int::splat(0), x)
     }
 
     /// The `u` that [`sample`](Self::sample) sends to `x`; `None` outside of the interval.
@@ -131,30 +131,35 @@ impl Tables {
         (math::lerp(t, R::splat(self.min), R::splat(self.max)), density, cell)
     }
 
-    #[inline]
-    fn pdf(&self, row: usize, x: f32) -> f32 {
-        if x < self.min || x > self.max { 0.0 } else { self.densities[row * self.cells + self.cell(x)] }
+    #[inline(always)]
+    fn pdf<R: Real>(&self, row: R::Int, x: R) -> R {
+        let is_inside = x.ge(R::splat(self.min)) & x.le(R::splat(self.max));
+        let cell = row.wrapping_mul(R::Int::splat(self.cells as u32)).wrapping_add(self.cell(x));
+        R::select(is_inside, R::gather(&self.densities, cell), R::zero())
     }
 
     fn invert(&self, row: usize, x: f32) -> Option<f32> {
         if x < self.min || x > self.max {
             return None;
         }
-        let cell = self.cell(x);
+        let cell = self.cell(x) as usize;
         let within = (x - self.min) / (self.max - self.min) * self.cells as f32 - cell as f32;
         let edges = &self.cdf[row * (self.cells + 1) + cell..][..2];
         Some(math::lerp(within.clamp(0.0, 1.0), edges[0], edges[1]))
     }
 
-    fn cell(&self, x: f32) -> usize {
-        part((x - self.min) / (self.max - self.min), self.cells)
+    #[inline(always)]
+    fn cell<R: Real>(&self, x: R) -> R::Int {
+        part((x - R::splat(self.min)) / R::splat(self.max - self.min), self.cells)
     }
 }
 
 /// Which of `parts` equal parts of [0, 1) contains `u`.
-#[inline]
-fn part(u: f32, parts: usize) -> usize {
-    ((u * parts as f32) as usize).min(parts - 1)
+#[inline(always)]
+fn part<R: Real>(u: R, parts: usize) -> R::Int {
+    let last = R::Int::splat(parts as u32 - 1);
+    let part = (u * R::splat(parts as f32)).clamp(R::zero(), R::splat(parts as f32)).to_int();
+    R::Int::select(part.lt(last), part, last)
 }
 
 /// The guide table of a cumulative distribution: from its entry, a linear search takes two steps on
@@ -163,7 +168,7 @@ fn guide(cdf: &[f32]) -> impl Iterator<Item = u32> {
     let parts = cdf.len() - 1;
     let mut cell = 0;
     (0..parts).map(move |i| {
-        while cell + 1 < parts && part(cdf[cell + 1], parts) < i {
+        while cell + 1 < parts && (part(cdf[cell + 1], parts) as usize) < i {
             cell += 1;
         }
         cell as u32
@@ -217,18 +222,15 @@ impl PiecewiseConstant2d {
     }
 
     /// The density at `p` per area; 0 outside of the rectangle.
-    #[inline]
-    pub fn pdf(&self, p: Vec2) -> f32 {
-        if !self.domain.contains(p) {
-            return 0.0;
-        }
+    #[inline(always)]
+    pub fn pdf<R: Real>(&self, p: Vec2<R>) -> R {
         self.marginal.pdf(p.y) * self.rows.pdf(self.marginal.table.cell(p.y), p.x)
     }
 
     /// The `u` that [`sample`](Self::sample) sends to `p`; `None` outside of the rectangle.
     pub fn invert(&self, p: Vec2) -> Option<Vec2> {
         let y = self.marginal.invert(p.y)?;
-        let x = self.rows.invert(self.marginal.table.cell(p.y), p.x)?;
+        let x = self.rows.invert(self.marginal.table.cell(p.y) as usize, p.x)?;
         Some(Vec2::new(x, y))
     }
 }

@@ -14,10 +14,12 @@
 //! Directions to a moving environment are transformed at the shutter time.
 
 use super::{LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext, SceneSphere};
+use crate::texture::SpectrumType;
 use image::{Image, Projection};
-use math::{AnimatedTransform, Bounds2, Point2, Ray, Vec3, Vector3};
+use lanes::{Each, Real};
+use math::{AnimatedTransform, Bounds2, Point2, Ray, Transform, Vec2, Vec3, Vector3};
 use sampling::PiecewiseConstant2d;
-use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum};
+use spectrum::{Rgb, RgbColorSpace, SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -84,48 +86,93 @@ impl ImageInfiniteLight {
         if allow_incomplete { &self.compensated } else { &self.distribution }
     }
 
-    fn spectrum(&self, rgb: Rgb, lambda: &SampledWavelengths) -> SampledSpectrum {
-        Spectrum::rgb_illuminant(self.color_space, rgb).sample(lambda) * self.scale
+    /// Whether it is computed in lanes: its transform does not change with time.
+    #[inline]
+    pub fn is_at_rest(&self) -> bool {
+        !self.render_from_light.is_moving()
     }
 
-    fn lookup(&self, st: Point2, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let pixel = |x: f32, resolution: u32| (x * resolution as f32) as i32;
-        let (x, y) = (pixel(st.x, self.image.width()), pixel(st.y, self.image.height()));
-        let rgb = Rgb::from(self.image.rgb_wrapped(x, y, self.projection.wrap()));
-        self.spectrum(rgb.clamp_zero(), lambda)
+    /// The radiance of light at rest along directions in render space.
+    #[inline(always)]
+    pub fn le_at_rest<R: Real>(&self, w: Vector3<R>, lambda: &SampledWavelengths<R>) -> SampledSpectrum<R> {
+        self.lookup(self.position(w, self.render_from_light.start()), lambda)
     }
 
-    /// The position in the image of a direction in render space at a shutter time.
-    fn position(&self, w: Vector3, time: f32) -> Point2 {
-        self.projection.position(self.render_from_light.at(time).inverse().vector(w).normalize())
+    /// Directions to light at rest, chosen by `u`: where there is one, radiance, direction and
+    /// density per solid angle.
+    #[inline(always)]
+    pub fn sample_at_rest<R: Real>(
+        &self,
+        u: Point2<R>,
+        lambda: &SampledWavelengths<R>,
+        allow_incomplete: bool,
+    ) -> (SampledSpectrum<R>, Vector3<R>, R, R::Mask) {
+        self.sample(u, self.render_from_light.start(), lambda, allow_incomplete)
     }
 
-    fn sample(
+    /// The density per solid angle of [`sample_at_rest`](Self::sample_at_rest).
+    #[inline(always)]
+    pub fn pdf_at_rest<R: Real>(&self, wi: Vector3<R>, allow_incomplete: bool) -> R {
+        self.pdf(wi, self.render_from_light.start(), allow_incomplete)
+    }
+
+    #[inline(always)]
+    fn spectrum<R: Real>(&self, rgb: [R; 3], lambda: &SampledWavelengths<R>) -> SampledSpectrum<R> {
+        let rgb = rgb.each(|v| v.max(R::zero()));
+        SpectrumType::Illuminant.sample_rgb(self.color_space, rgb, lambda) * R::splat(self.scale)
+    }
+
+    #[inline(always)]
+    fn lookup<R: Real>(&self, st: Point2<R>, lambda: &SampledWavelengths<R>) -> SampledSpectrum<R> {
+        let size = Vec2::new(self.image.width() as f32, self.image.height() as f32).map(R::splat);
+        let pixel = (st * size).max(Vec2::splat(R::zero())).min(size);
+        let pixel = pixel.to_array().each(R::to_int);
+        self.spectrum(self.image.colors(pixel, self.projection.wrap()), lambda)
+    }
+
+    /// The position in the image of a direction in render space.
+    #[inline(always)]
+    fn position<R: Real>(&self, w: Vector3<R>, render_from_light: &Transform) -> Point2<R> {
+        self.projection.position(render_from_light.inverse().vector_lanes(w).normalize())
+    }
+
+    #[inline(always)]
+    fn sample<R: Real>(
+        &self,
+        u: Point2<R>,
+        render_from_light: &Transform,
+        lambda: &SampledWavelengths<R>,
+        allow_incomplete: bool,
+    ) -> (SampledSpectrum<R>, Vector3<R>, R, R::Mask) {
+        let (st, density, _) = self.distribution(allow_incomplete).sample(u);
+        let solid_angle = R::splat(4.0 * PI) * self.projection.solid_angle_density(st);
+        let is_chosen = !(density.eq(R::zero()) | solid_angle.eq(R::zero()));
+        let wi = render_from_light.vector_lanes(self.projection.direction(st)).normalize();
+        (self.lookup(st, lambda), wi, density / solid_angle, is_chosen)
+    }
+
+    fn sample_one(
         &self,
         u: Point2,
         time: f32,
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let (st, density, _) = self.distribution(allow_incomplete).sample(u);
-        let solid_angle = 4.0 * PI * self.projection.solid_angle_density(st);
-        if density == 0.0 || solid_angle == 0.0 {
-            return None;
-        }
-        let wi = self.render_from_light.at(time).vector(self.projection.direction(st)).normalize();
-        Some(LightLiSample {
-            l: self.lookup(st, lambda),
-            wi,
-            pdf: density / solid_angle,
-            p: None,
-            n: Vec3::ZERO,
-        })
+        let (l, wi, pdf, is_chosen) =
+            self.sample(u, &self.render_from_light.at(time), lambda, allow_incomplete);
+        is_chosen.then_some(LightLiSample { l, wi, pdf, p: None, n: Vec3::ZERO })
     }
 
-    fn pdf(&self, wi: Vector3, time: f32, allow_incomplete: bool) -> f32 {
-        let st = self.position(wi, time);
-        let solid_angle = 4.0 * PI * self.projection.solid_angle_density(st);
-        if solid_angle == 0.0 { 0.0 } else { self.distribution(allow_incomplete).pdf(st) / solid_angle }
+    #[inline(always)]
+    fn pdf<R: Real>(&self, wi: Vector3<R>, render_from_light: &Transform, allow_incomplete: bool) -> R {
+        let st = self.position(wi, render_from_light);
+        let solid_angle = R::splat(4.0 * PI) * self.projection.solid_angle_density(st);
+        let pdf = self.distribution(allow_incomplete).pdf(st) / solid_angle;
+        R::select(solid_angle.eq(R::zero()), R::zero(), pdf)
+    }
+
+    fn pdf_one(&self, wi: Vector3, time: f32, allow_incomplete: bool) -> f32 {
+        self.pdf(wi, &self.render_from_light.at(time), allow_incomplete)
     }
 }
 
@@ -144,14 +191,14 @@ impl LightModel for ImageInfiniteLight {
         for y in 0..height {
             let weight = self.projection.row_solid_angle(y, height);
             for x in 0..width {
-                sum += self.spectrum(Rgb::from(self.image.rgb(x, y)).clamp_zero(), lambda) * weight;
+                sum += self.spectrum(self.image.rgb(x, y), lambda) * weight;
             }
         }
         sum * (4.0 * PI * PI * self.scene.radius * self.scene.radius / (width * height) as f32)
     }
 
     fn le(&self, ray: &Ray, lambda: &SampledWavelengths) -> SampledSpectrum {
-        self.lookup(self.position(ray.d, ray.time), lambda)
+        self.lookup(self.position(ray.d, &self.render_from_light.at(ray.time)), lambda)
     }
 
     fn sample_li(
@@ -162,7 +209,7 @@ impl LightModel for ImageInfiniteLight {
         lambda: &SampledWavelengths,
         allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        self.sample(u, context.time, lambda, allow_incomplete)
+        self.sample_one(u, context.time, lambda, allow_incomplete)
     }
 
     fn sample_le(
@@ -173,7 +220,7 @@ impl LightModel for ImageInfiniteLight {
         time: f32,
         lambda: &SampledWavelengths,
     ) -> Option<LightLeSample> {
-        let LightLiSample { l, wi, pdf, n, .. } = self.sample(u_direction, time, lambda, false)?;
+        let LightLiSample { l, wi, pdf, n, .. } = self.sample_one(u_direction, time, lambda, false)?;
         Some(LightLeSample {
             l,
             ray: self.scene.ray_from(wi, u_position, time),
@@ -191,10 +238,10 @@ impl LightModel for ImageInfiniteLight {
         wi: Vector3,
         allow_incomplete: bool,
     ) -> f32 {
-        self.pdf(wi, context.time, allow_incomplete)
+        self.pdf_one(wi, context.time, allow_incomplete)
     }
 
     fn pdf_le_infinite(&self, ray: &Ray) -> (f32, f32) {
-        (self.scene.pdf_facing_disk(ray), self.pdf(ray.d, ray.time, false))
+        (self.scene.pdf_facing_disk(ray), self.pdf_one(ray.d, ray.time, false))
     }
 }
