@@ -81,6 +81,7 @@ impl<'a> Batch<'a> {
         let instruction_set = self.pass.instruction_set;
         self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials);
         instruction_set.dispatch(Begin { pass: self.pass, paths: &mut self.paths, with_differentials });
+        self.queues.waiting.clear();
         self.active.clear();
         self.active.extend(0..self.paths.len() as u32);
     }
@@ -145,7 +146,7 @@ impl<'a> Batch<'a> {
         let &PixelSamples { scene, .. } = self.pass.pixels;
         let (queue, paths) = (&self.escaped, &mut self.paths);
         if Escape::is_enough(scene) {
-            self.pass.instruction_set.dispatch(Escape { scene, queue, paths });
+            self.pass.instruction_set.dispatch(Escape { scene, direct, queue, paths });
             return;
         }
         for row in queue.iter().map(|&row| row as usize) {

@@ -1,11 +1,11 @@
 //! Light that paths find: by hitting the lights of [`AreaLights`](super::area_lights::AreaLights),
-//! and by leaving the scene towards uniform infinite lights.
+//! and by leaving the scene.
 
 use geometry::HitColumns;
 use lanes::{Int, Kernel, MAX_LANES, Mask, Real};
-use math::{Point3Error, Vec2};
+use math::{Point3Error, Vec2, Vector3};
 use scene::Scene;
-use scene::light::{Light, LightSampleContext};
+use scene::light::{ImageInfiniteLight, Light, LightId, LightSampleContext};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
@@ -70,10 +70,7 @@ impl Emit<'_, '_> {
         let is_weighted = is_lit & pdf.gt(R::zero());
         let mut weight = R::one();
         if is_weighted.any() {
-            let [p, error, n, ns] = &paths.vertex;
-            let p = Point3Error::new(p.vector(rows), error.vector(rows));
-            let time = R::gather(&paths.time, rows.indices);
-            let context = LightSampleContext { p, n: n.vector(rows), ns: ns.vector(rows), time };
+            let context = vertex(paths, rows);
             let pmf = self.direct.lights().pmf_lanes(&context, lights, is_weighted);
             let other = pmf * shapes.pdf_from(&context, uv);
             weight = R::select(is_weighted, power_heuristic(pdf, other), weight);
@@ -84,40 +81,78 @@ impl Emit<'_, '_> {
     }
 }
 
-/// Adds the radiance of uniform infinite lights to the paths of a queue, which have left the scene.
-/// Light samples leave these lights out, so that their light counts fully.
-pub(super) struct Escape<'a> {
+/// Adds the radiance of infinite lights to the paths of a queue, which have left the scene, with
+/// the weights of [`DirectLighting::escaped`](crate::transport::direct::DirectLighting::escaped).
+pub(super) struct Escape<'a, 'b> {
     pub scene: &'a Scene,
-    pub queue: &'a [u32],
-    pub paths: &'a mut Paths,
+    pub direct: &'a DirectLighting,
+    pub queue: &'b [u32],
+    pub paths: &'b mut Paths,
 }
 
-impl Escape<'_> {
-    /// Whether all infinite lights of a scene are uniform.
+impl Escape<'_, '_> {
+    /// Whether all infinite lights of a scene are computed in lanes.
     pub fn is_enough(scene: &Scene) -> bool {
         let mut lights = scene.infinite_lights().iter();
-        lights.all(|&id| matches!(scene.light(id).row(), Light::UniformInfinite(_)))
+        lights.all(|&id| match scene.light(id).row() {
+            Light::UniformInfinite(_) => true,
+            Light::ImageInfinite(sky) => sky.is_at_rest(),
+            _ => false,
+        })
     }
 }
 
-impl Kernel for Escape<'_> {
+impl Kernel for Escape<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<R: Real>(self) {
-        let Self { scene, queue, paths } = self;
+        let Self { scene, direct, queue, paths } = self;
         for queue in queue.chunks(R::LANES) {
             let rows = Rows::<R>::first(queue);
             let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
             let lambda = SampledWavelengths::new([a, b, c, d], pdf);
+            let w = paths.direction.vector(rows);
             let mut l = SampledSpectrum::splat(R::zero());
             for &id in scene.infinite_lights() {
-                if let Light::UniformInfinite(light) = scene.light(id).row() {
-                    l += light.radiance.sample(&lambda);
+                match scene.light(id).row() {
+                    // Light samples leave these lights out, so that their light counts fully.
+                    Light::UniformInfinite(light) => l += light.radiance.sample(&lambda),
+                    Light::ImageInfinite(sky) => {
+                        let weight = sky_weight(direct, (id, sky), paths, (rows, w));
+                        l += sky.le_at_rest(w, &lambda) * weight;
+                    }
+                    _ => unreachable!("invariant: other lights are not infinite"),
                 }
             }
             let sum: SampledSpectrum<R> = paths.l.spectrum(rows) + paths.beta.spectrum::<R>(rows) * l;
             paths.l.set(rows, rows.active, sum.0);
         }
     }
+}
+
+/// The weights of the light of a sky that paths find along directions `w`.
+#[inline(always)]
+fn sky_weight<R: Real>(
+    direct: &DirectLighting,
+    (LightId(id), sky): (LightId, &ImageInfiniteLight),
+    paths: &Paths,
+    (rows, w): (Rows<R>, Vector3<R>),
+) -> R {
+    let pdf = R::gather(&paths.pdf, rows.indices);
+    let is_weighted = rows.active & pdf.gt(R::zero());
+    if !is_weighted.any() {
+        return R::one();
+    }
+    let pmf = direct.lights().pmf_lanes(&vertex(paths, rows), R::Int::splat(id), is_weighted);
+    R::select(is_weighted, power_heuristic(pdf, pmf * sky.pdf_at_rest(w, true)), R::one())
+}
+
+/// The last vertices of paths.
+#[inline(always)]
+fn vertex<R: Real>(paths: &Paths, rows: Rows<R>) -> LightSampleContext<R> {
+    let [p, error, n, ns] = &paths.vertex;
+    let p = Point3Error::new(p.vector(rows), error.vector(rows));
+    let time = R::gather(&paths.time, rows.indices);
+    LightSampleContext { p, n: n.vector(rows), ns: ns.vector(rows), time }
 }

@@ -6,7 +6,7 @@
 use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
 use math::{Normal3, Point3Error, Ray, Vec2, Vec3, Vector3, offset_ray_origin};
 use scene::Interfaces;
-use scene::light::{LightId, LightLiSample, LightSampleContext};
+use scene::light::{ImageInfiniteLight, Light, LightId, LightLiSample, LightSampleContext};
 use spectrum::{N, SampledSpectrum, SampledWavelengths};
 
 use super::pass::Pass;
@@ -111,6 +111,14 @@ impl Samples {
         }
     }
 
+    /// Sets numbers of the lanes of a mask.
+    #[inline(always)]
+    fn blend<R: Real>(&mut self, first: usize, mask: R::Mask, values: &[R]) {
+        for (column, &value) in self.columns[first..].iter_mut().zip(values) {
+            R::select(mask, value, R::load(column)).store(column);
+        }
+    }
+
     /// Sets numbers of one lane.
     fn set(&mut self, lane: usize, first: usize, values: &[f32]) {
         for (column, &value) in self.columns[first..].iter_mut().zip(values) {
@@ -147,6 +155,9 @@ impl Kernel for Sample<'_, '_> {
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: R::load(&self.time) };
         let [u, x, y] = [0, 1, 2].each(|i| R::load(&self.u[i]));
         let active = R::Mask::from_bits(self.active);
+        let [lambda, lambda_pdf] =
+            [&self.lambda, &self.lambda_pdf].each(|numbers| [0, 1, 2, 3].each(|i| R::load(&numbers[i])));
+        let lambda = SampledWavelengths::new(lambda, lambda_pdf);
         let (lights, pmf, chosen) = match self.light {
             Some(LightId(light)) => (R::Int::splat(light), R::one(), active),
             None => self.direct.lights().sample_lanes(&context, u, active),
@@ -156,9 +167,6 @@ impl Kernel for Sample<'_, '_> {
             let shapes = area_lights.shapes::<R>(rows);
             let (sample, valid) = shapes.sample_from(&context, Vec2::new(x, y));
             let (wi, is_apart) = (sample.p.p - p).normalize_masked();
-            let [lambda, lambda_pdf] =
-                [&self.lambda, &self.lambda_pdf].each(|numbers| [0, 1, 2, 3].each(|i| R::load(&numbers[i])));
-            let lambda = SampledWavelengths::new(lambda, lambda_pdf);
             let mask = in_lanes & valid & is_apart;
             let l = area_lights.radiance(pixels.scene, rows, (sample.n, -wi), &lambda, mask);
             let is_lit = (mask & !l.is_black()).bits();
@@ -172,7 +180,18 @@ impl Kernel for Sample<'_, '_> {
             samples.store(Samples::P_ERROR, &sample.p.error.to_array());
             samples.store(Samples::NORMAL, &sample.n.to_array());
         }
-        let (mut others, lights) = ((chosen & !in_lanes).bits(), lights.to_array());
+        let mut others = chosen & !in_lanes;
+        for &id in pixels.scene.infinite_lights() {
+            let chosen = others & lights.eq(R::Int::splat(id.0));
+            if let Light::ImageInfinite(sky) = pixels.scene.light(id).row()
+                && sky.is_at_rest()
+                && chosen.any()
+            {
+                others = others & !chosen;
+                self.sample_sky::<R>((id, sky), Vec2::new(x, y), &lambda, chosen);
+            }
+        }
+        let (mut others, lights) = (others.bits(), lights.to_array());
         while others != 0 {
             let lane = others.trailing_zeros() as usize;
             self.sample_one(LightId(lights[lane]), lane);
@@ -187,6 +206,29 @@ impl Sample<'_, '_> {
     fn context(&self, lane: usize) -> LightSampleContext {
         let [p, error, n, ns] = self.context.each_ref().map(|v| Vec3::from_array(v.map(|c| c[lane])));
         LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[lane] }
+    }
+
+    /// Samples a sky, in the lanes of a mask.
+    #[inline(always)]
+    fn sample_sky<R: Real>(
+        &mut self,
+        (id, sky): (LightId, &ImageInfiniteLight),
+        u: Vec2<R>,
+        lambda: &SampledWavelengths<R>,
+        mask: R::Mask,
+    ) {
+        let (l, wi, pdf, is_chosen) = sky.sample_at_rest(u, lambda, self.light.is_none());
+        let mask = mask & is_chosen;
+        let light = self.pass.pixels.scene.light(id);
+        let passes = self.direct.interfaces(light) == Interfaces::Pass;
+        let is = [true, false, true, passes];
+        let samples = &mut *self.samples;
+        for (lanes, is) in samples.masks.iter_mut().zip(is) {
+            *lanes |= if is { mask.bits() } else { 0 };
+        }
+        samples.blend(0, mask, &l.0);
+        samples.blend(Samples::WI, mask, &wi.to_array());
+        samples.blend(Samples::PDF, mask, &[pdf]);
     }
 
     /// Samples the light of one lane.
