@@ -58,15 +58,27 @@ impl<R: Real> Ray<R> {
 
 /// The rays through the neighbouring pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Differentials {
+pub struct Differentials<R = f32> {
     /// Origin one pixel to the right.
-    pub rx_origin: Point3,
+    pub rx_origin: Point3<R>,
     /// Direction one pixel to the right.
-    pub rx_direction: Vector3,
+    pub rx_direction: Vector3<R>,
     /// Origin one pixel down.
-    pub ry_origin: Point3,
+    pub ry_origin: Point3<R>,
     /// Direction one pixel down.
-    pub ry_direction: Vector3,
+    pub ry_direction: Vector3<R>,
+}
+
+impl<R: Real> Differentials<R> {
+    /// Scales the differences from `ray` by `s`.
+    #[inline(always)]
+    pub fn scale(&mut self, ray: &Ray<R>, s: R) {
+        let (o, dir) = (ray.o, ray.d);
+        self.rx_origin = o + (self.rx_origin - o) * s;
+        self.ry_origin = o + (self.ry_origin - o) * s;
+        self.rx_direction = dir + (self.rx_direction - dir) * s;
+        self.ry_direction = dir + (self.ry_direction - dir) * s;
+    }
 }
 
 /// A ray with optional differentials, by which textures are filtered over the footprint of a pixel
@@ -83,11 +95,7 @@ impl RayDifferential {
     /// Scales the differentials by `s`: with n samples per pixel their mean spacing is 1/√n.
     pub fn scale(&mut self, s: f32) {
         if let Some(d) = &mut self.differentials {
-            let (o, dir) = (self.ray.o, self.ray.d);
-            d.rx_origin = o + (d.rx_origin - o) * s;
-            d.ry_origin = o + (d.ry_origin - o) * s;
-            d.rx_direction = dir + (d.rx_direction - dir) * s;
-            d.ry_direction = dir + (d.ry_direction - dir) * s;
+            d.scale(&self.ray, s);
         }
     }
 }

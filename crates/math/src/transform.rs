@@ -1,9 +1,6 @@
 //! Affine and projective maps with their inverses.
 
-use crate::{
-    Bounds3, DMat4, Differentials, Mat4, Normal3, Point3, Point3Error, Ray, RayDifferential, Vec3, Vector3,
-    gamma,
-};
+use crate::{Bounds3, DMat4, Mat4, Normal3, Point3, Point3Error, Ray, Vec3, Vector3, gamma};
 use lanes::{Each, Real};
 
 /// A 4 × 4 matrix and its inverse. Names read right to left: `render_from_object`.
@@ -87,9 +84,11 @@ impl Transform {
         if q.w == 1.0 { p } else { p / q.w }
     }
 
-    #[inline]
-    fn affine_point(&self, p: Point3) -> Point3 {
-        self.m.transform_point3(p.into()).into()
+    /// Maps positions in lanes by an affine map.
+    #[inline(always)]
+    pub fn affine_point<R: Real>(&self, p: Point3<R>) -> Point3<R> {
+        let [x, y, z, t] = columns(&self.m).each(Vec3::broadcast);
+        x * p.x + y * p.y + z * p.z + t
     }
 
     /// Maps a difference of positions.
@@ -106,9 +105,9 @@ impl Transform {
     }
 
     /// Maps a normal (by the inverse transpose), not normalised.
-    #[inline]
-    pub fn normal(&self, n: Normal3) -> Normal3 {
-        let [x, y, z, _] = columns(&self.inverse);
+    #[inline(always)]
+    pub fn normal<R: Real>(&self, n: Normal3<R>) -> Normal3<R> {
+        let [x, y, z, _] = columns(&self.inverse).each(Vec3::broadcast);
         Vec3::new(x.dot(n), y.dot(n), z.dot(n))
     }
 
@@ -130,19 +129,6 @@ impl Transform {
     #[inline(always)]
     pub fn ray<R: Real>(&self, ray: &Ray<R>) -> Ray<R> {
         affine_ray(&columns(&self.m).each(Vec3::broadcast), ray)
-    }
-
-    /// Maps a ray and its differentials.
-    pub fn ray_differential(&self, r: &RayDifferential) -> RayDifferential {
-        RayDifferential {
-            ray: self.ray(&r.ray),
-            differentials: r.differentials.map(|d| Differentials {
-                rx_origin: self.affine_point(d.rx_origin),
-                rx_direction: self.vector(d.rx_direction),
-                ry_origin: self.affine_point(d.ry_origin),
-                ry_direction: self.vector(d.ry_direction),
-            }),
-        }
     }
 
     /// The box around the mapped box.

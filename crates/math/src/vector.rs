@@ -4,7 +4,7 @@
 //! sense for one lane only is defined for `f32` alone.
 
 use glam::{BVec2, BVec3, DVec2, DVec3, Vec4};
-use lanes::Real;
+use lanes::{Mask, Real};
 use std::fmt;
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, DivAssign, Index, IndexMut, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -172,6 +172,13 @@ macro_rules! vector {
                 let inverse = R::one() / self.length();
                 let valid = inverse.gt(R::zero()) & inverse.lt(R::splat(f32::INFINITY));
                 (self * inverse, valid)
+            }
+
+            /// Where all coordinates are finite.
+            #[inline(always)]
+            pub fn are_finite(self) -> R::Mask {
+                let largest = R::splat(f32::MAX);
+                R::Mask::splat(true) $(& self.$c.abs().le(largest))*
             }
 
             /// The absolute value of each coordinate.

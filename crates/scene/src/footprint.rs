@@ -7,7 +7,7 @@
 
 use crate::camera::differential_scale;
 use crate::view::View;
-use lanes::Real;
+use lanes::{Mask, Real};
 use math::{Differentials, Normal3, Point3, Vec3, Vector3, difference_of_products};
 
 /// Derivatives of the surface point by film position, in pixels, for each lane.
@@ -63,26 +63,37 @@ fn or_zero<R: Real>(x: R) -> R {
 }
 
 impl View {
-    /// ∂p/∂x and ∂p/∂y of the plane through `p` with normal `n` that a ray with these differentials
-    /// hits, or that of a path that has none any more.
-    pub fn pixel_on_plane(
+    /// ∂p/∂x and ∂p/∂y of the planes through `p` with normal `n` that rays with these differentials
+    /// hit, and of paths that have none any more: those outside of the mask.
+    #[inline(always)]
+    pub fn pixel_on_plane<R: Real>(
         &self,
-        differentials: Option<&Differentials>,
-        p: Point3,
-        n: Normal3,
-        time: f32,
-    ) -> [Vector3; 2] {
-        let plane = |o: Point3, d: Vector3| {
-            let t = n.dot(p - o) / n.dot(d);
-            t.is_finite().then(|| o + d * t - p)
-        };
-        let seen = differentials
-            .and_then(|d| Some([plane(d.rx_origin, d.rx_direction)?, plane(d.ry_origin, d.ry_direction)?]));
-        seen.unwrap_or_else(|| {
-            // Without jitter, all samples of a pixel have the same position, and each covers the
-            // whole pixel.
-            let samples = if self.options.disable_pixel_jitter { 1 } else { self.samples_per_pixel };
-            self.camera.approximate_dp_dxy(p, n, time, differential_scale(samples))
-        })
+        differentials: Option<(&Differentials<R>, R::Mask)>,
+        p: Point3<R>,
+        n: Normal3<R>,
+        time: R,
+    ) -> [Vector3<R>; 2] {
+        let mut seen = [Vec3::splat(R::zero()); 2];
+        let mut is_seen = R::Mask::splat(false);
+        if let Some((d, mask)) = differentials {
+            let (dpdx, meets_x) = on_plane(d.rx_origin, d.rx_direction, p, n);
+            let (dpdy, meets_y) = on_plane(d.ry_origin, d.ry_direction, p, n);
+            (seen, is_seen) = ([dpdx, dpdy], mask & meets_x & meets_y);
+        }
+        if is_seen.all() {
+            return seen;
+        }
+        // Without jitter, all samples of a pixel have the same position, and each covers the whole
+        // pixel.
+        let samples = if self.options.disable_pixel_jitter { 1 } else { self.samples_per_pixel };
+        let [x, y] = self.camera.approximate_dp_dxy(p, n, time, differential_scale(samples));
+        [Vec3::select(is_seen, seen[0], x), Vec3::select(is_seen, seen[1], y)]
     }
+}
+
+/// From `p` to the point of a ray on the plane through `p` with normal `n`, where there is one.
+#[inline(always)]
+fn on_plane<R: Real>(o: Point3<R>, d: Vector3<R>, p: Point3<R>, n: Normal3<R>) -> (Vector3<R>, R::Mask) {
+    let t = n.dot(p - o) / n.dot(d);
+    (o + d * t - p, t.abs().le(R::splat(f32::MAX)))
 }

@@ -52,7 +52,7 @@ impl SurfaceInteraction {
     /// Computes the footprint of the pixel of `ray`.
     pub fn compute_footprint(&mut self, ray: &RayDifferential, view: &View) {
         let s = &self.surface;
-        let across = view.pixel_on_plane(ray.differentials.as_ref(), s.p.p, s.n, s.time);
+        let across = view.pixel_on_plane(ray.differentials.as_ref().map(|d| (d, true)), s.p.p, s.n, s.time);
         self.footprint = Footprint::new(across, [s.dpdu, s.dpdv]);
     }
 

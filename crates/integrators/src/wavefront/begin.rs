@@ -1,13 +1,12 @@
 //! The start of paths at the camera.
 
-use lanes::{Each, Int, Kernel, MAX_LANES, Real};
-use math::Vec2;
+use lanes::{Int, Kernel, Real};
 use sampling::sampler::Address;
-use scene::camera::{CameraSample, differential_scale};
+use scene::camera::differential_scale;
 
 use super::numbers::CameraNumbers;
 use super::pass::Pass;
-use super::paths::Paths;
+use super::paths::{Paths, numbers_of};
 use crate::transport::shutter_sample::ShutterSample;
 
 /// Gives the paths, which have pixels, their wavelengths, weights and camera rays.
@@ -45,53 +44,18 @@ impl Begin<'_, '_> {
         sample.filter_weight.store(&mut paths.filter_weight[first..]);
         let ([a, b, c, d], [p, q, r, s]) = (*lambda.lambda(), lambda.pdf().0);
         paths.wavelengths.store(first, [a, b, c, d, p, q, r, s]);
-        let ray = pixels.view.camera.ray(&sample);
+        let camera = &pixels.view.camera;
+        let ray = if self.with_differentials {
+            let (ray, mut differentials) = camera.ray_and_neighbours(&sample);
+            differentials.scale(&ray, R::splat(differential_scale(pixels.view.samples_per_pixel)));
+            paths.differentials.store(first, numbers_of(&differentials));
+            R::Int::splat(1).store(&mut paths.are_differentials[first..]);
+            ray
+        } else {
+            camera.ray(&sample)
+        };
         ray.time.store(&mut paths.time[first..]);
         paths.origin.store(first, ray.o.to_array());
         paths.direction.store(first, ray.d.to_array());
-        if self.with_differentials {
-            self.add_differentials(first, R::LANES, &Samples::new(&sample));
-        }
-    }
-
-    /// The differentials of rays, one by one.
-    #[inline(never)]
-    fn add_differentials(&mut self, first: usize, lanes: usize, samples: &Samples) {
-        let view = self.pass.pixels.view;
-        for (row, lane) in (first..self.paths.len()).zip(0..lanes) {
-            let mut ray = view.camera.ray_differential(&samples.lane(lane));
-            ray.scale(differential_scale(view.samples_per_pixel));
-            self.paths.differentials[row] = ray.differentials;
-        }
-    }
-}
-
-/// Camera samples in arrays.
-struct Samples {
-    film: [[f32; MAX_LANES]; 2],
-    lens: [[f32; MAX_LANES]; 2],
-    time: [f32; MAX_LANES],
-    filter_weight: [f32; MAX_LANES],
-}
-
-impl Samples {
-    #[inline(always)]
-    fn new<R: Real>(sample: &CameraSample<R>) -> Self {
-        Self {
-            film: sample.film.to_array().each(R::to_array),
-            lens: sample.lens.to_array().each(R::to_array),
-            time: sample.time.to_array(),
-            filter_weight: sample.filter_weight.to_array(),
-        }
-    }
-
-    fn lane(&self, lane: usize) -> CameraSample {
-        let pair = |[x, y]: &[[f32; MAX_LANES]; 2]| Vec2::new(x[lane], y[lane]);
-        CameraSample {
-            film: pair(&self.film),
-            lens: pair(&self.lens),
-            time: self.time[lane],
-            filter_weight: self.filter_weight[lane],
-        }
     }
 }

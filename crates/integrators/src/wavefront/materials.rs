@@ -30,14 +30,15 @@ impl LaneMaterials {
         let (with_footprints, textures) = (scene.needs_footprints(view), scene.textures());
         let row = |entry: &MaterialEntry| {
             let is_plain = entry.normal_map.is_none() && !view.options.force_diffuse;
-            let (is_in_lanes, is_constant, may_be_specular) = match &entry.material {
-                Material::Diffuse(diffuse) => (true, textures.is_constant(diffuse.reflectance), false),
-                Material::DiffuseTransmission(_) => (true, false, false),
-                Material::Conductor(_) | Material::Dielectric(_) | Material::ThinDielectric(_) => {
-                    (true, false, true)
-                }
-                Material::Mix(_) | Material::Interface => (false, false, true),
+            let (is_in_lanes, is_constant) = match &entry.material {
+                Material::Diffuse(diffuse) => (true, textures.is_constant(diffuse.reflectance)),
+                Material::DiffuseTransmission(_)
+                | Material::Conductor(_)
+                | Material::Dielectric(_)
+                | Material::ThinDielectric(_) => (true, false),
+                Material::Mix(_) | Material::Interface => (false, false),
             };
+            let may_be_specular = entry.material.may_be_specular(textures);
             let shading = match (is_plain && is_in_lanes, with_footprints && !is_constant) {
                 (false, _) => Shading::Scalar,
                 (true, false) => Shading::Lanes,

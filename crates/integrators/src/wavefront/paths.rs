@@ -30,8 +30,10 @@ pub(super) struct Paths {
     pub origin: Columns<3>,
     /// Its direction.
     pub direction: Columns<3>,
-    /// Its differentials; empty where nothing needs them.
-    pub differentials: Vec<Option<Differentials>>,
+    /// Its differentials: of the rays to the right and down, origin and direction each.
+    pub differentials: Columns<12>,
+    /// 1 for paths that have differentials, else 0; empty where nothing needs them.
+    pub are_differentials: Vec<u32>,
     /// Path throughput.
     pub beta: Columns<N>,
     /// The light so far.
@@ -76,7 +78,8 @@ impl Paths {
         self.wavelengths.grow(rows);
         [&mut self.origin, &mut self.direction].into_iter().for_each(|columns| columns.grow(rows));
         self.vertex.iter_mut().for_each(|columns| columns.grow(rows));
-        fill(&mut self.differentials, if with_differentials { rows } else { 0 }, None);
+        fill(&mut self.are_differentials, if with_differentials { rows } else { 0 }, 0);
+        self.differentials.grow(self.are_differentials.len());
         self.beta.fill(rows, 1.0);
         self.l.fill(rows, 0.0);
         fill(&mut self.eta_scale, rows, 1.0);
@@ -88,7 +91,7 @@ impl Paths {
     /// Whether a path has ray differentials.
     #[inline]
     pub fn has_differentials(&self, row: u32) -> bool {
-        self.differentials.get(row as usize).is_some_and(Option::is_some)
+        self.are_differentials.get(row as usize).is_some_and(|&is| is == 1)
     }
 
     /// The ray of a path.
@@ -157,7 +160,8 @@ impl Paths {
 
     /// A path between two vertices.
     pub fn state(&self, row: usize) -> PathState {
-        let differentials = self.differentials.get(row).copied().flatten();
+        let has_differentials = self.has_differentials(row as u32);
+        let differentials = has_differentials.then(|| differentials_of(self.differentials.row(row)));
         let [p, error, n, ns] = [0, 1, 2, 3].map(|i: usize| Vec3::from_array(self.vertex[i].row(row)));
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[row] };
         let pdf = self.pdf[row];
@@ -174,8 +178,11 @@ impl Paths {
     pub fn set_state(&mut self, row: usize, state: &PathState) {
         let RayDifferential { ray, differentials } = state.ray;
         self.set_ray(row, &ray);
-        if let Some(kept) = self.differentials.get_mut(row) {
-            *kept = differentials;
+        if let Some(is) = self.are_differentials.get_mut(row) {
+            *is = differentials.is_some().into();
+        }
+        if let Some(differentials) = &differentials {
+            self.differentials.set_row(row, numbers_of(differentials));
         }
         self.beta.set_row(row, state.beta.0);
         self.depth[row] = state.depth;
@@ -186,5 +193,24 @@ impl Paths {
             let vectors = [context.p.p, context.p.error, context.n, context.ns];
             self.vertex.iter_mut().zip(vectors).for_each(|(columns, v)| columns.set_row(row, v.to_array()));
         }
+    }
+}
+
+/// The numbers of differentials.
+#[inline(always)]
+pub(super) fn numbers_of<R: Real>(differentials: &Differentials<R>) -> [R; 12] {
+    let Differentials { rx_origin: a, rx_direction: b, ry_origin: c, ry_direction: d } = differentials;
+    [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z]
+}
+
+/// The differentials of these numbers.
+#[inline(always)]
+pub(super) fn differentials_of<R: Real>(numbers: [R; 12]) -> Differentials<R> {
+    let [ax, ay, az, bx, by, bz, cx, cy, cz, dx, dy, dz] = numbers;
+    Differentials {
+        rx_origin: Vec3::new(ax, ay, az),
+        rx_direction: Vec3::new(bx, by, bz),
+        ry_origin: Vec3::new(cx, cy, cz),
+        ry_direction: Vec3::new(dx, dy, dz),
     }
 }

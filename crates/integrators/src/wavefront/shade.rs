@@ -2,7 +2,7 @@
 //! next-event estimation, a sample of the BSDF and Russian roulette.
 
 use geometry::{PatchPoints, PointColumns};
-use lanes::{Each, Int, Kernel, MAX_LANES, Mask, Real};
+use lanes::{Int, Kernel, Mask, Real};
 use math::{Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
 use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
@@ -16,7 +16,7 @@ use super::columns::Rows;
 use super::lights::{self, LightLanes, Samples};
 use super::numbers::{VertexNumbers, draw_1d};
 use super::pass::Pass;
-use super::paths::Paths;
+use super::paths::{Paths, differentials_of};
 use super::queues::{Queues, Shadow};
 use crate::Path;
 use crate::transport::direct::power_heuristic;
@@ -137,22 +137,15 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
     #[inline(always)]
     fn footprint<R: Real>(&self, vertices: &Vertices<R>) -> Footprint<R> {
         let PatchPoints { p, n, dpdu, dpdv, .. } = vertices.surface;
-        let [p, n] = [p.p, n].each(|v| v.to_array().each(R::to_array));
-        let time = vertices.time.to_array();
-        let mut across = [[[0.0; MAX_LANES]; 3]; 2];
-        vertices.rows.each_of(vertices.active, |lane, row| {
-            let differentials = self.paths.differentials[row].as_ref();
-            let [p, n] = [&p, &n].map(|v| Vec3::new(v[0][lane], v[1][lane], v[2][lane]));
-            let view = self.pass.pixels.view;
-            let lane_across = view.pixel_on_plane(differentials, p, n, time[lane]);
-            for (across, v) in across.iter_mut().zip(lane_across) {
-                for (across, value) in across.iter_mut().zip(v.to_array()) {
-                    across[lane] = value;
-                }
-            }
-        });
-        let [dpdx, dpdy] = across;
-        Footprint::new([load(&dpdx), load(&dpdy)], [dpdu, dpdv])
+        let (view, rows) = (self.pass.pixels.view, vertices.rows);
+        let is = R::Int::gather(&self.paths.are_differentials, rows.indices).eq(R::Int::splat(1));
+        let across = if is.any() {
+            let differentials = differentials_of(self.paths.differentials.get(rows));
+            view.pixel_on_plane(Some((&differentials, is)), p.p, n, vertices.time)
+        } else {
+            view.pixel_on_plane(None, p.p, n, vertices.time)
+        };
+        Footprint::new(across, [dpdu, dpdv])
     }
 
     /// Stores wavelengths whose densities the material has changed.
@@ -268,16 +261,11 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         if self.algorithm.settings.regularize {
             rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
         }
-        if !paths.differentials.is_empty() {
-            rows.each_of(survives, |_, row| paths.differentials[row] = None);
+        if !paths.are_differentials.is_empty() {
+            R::Int::splat(0).scatter(survives, &mut paths.are_differentials, rows.indices);
         }
         rows.indices.append(survives, &mut self.queues.next);
     }
-}
-
-#[inline(always)]
-fn load<R: Real>(v: &[[f32; MAX_LANES]; 3]) -> Vector3<R> {
-    Vec3::new(R::load(&v[0]), R::load(&v[1]), R::load(&v[2]))
 }
 
 /// The contexts of light sampling: as in `transport/direct.rs`, a point that scatters to one side

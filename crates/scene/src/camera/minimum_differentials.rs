@@ -12,6 +12,7 @@
 //! ```
 
 use super::projection::Projection;
+use lanes::Real;
 use math::{Frame, Normal3, Vec2, Vec3, Vector3};
 
 /// The factor on ray differentials of one pixel: 1/√n for n samples per pixel, but at least 1/8, as
@@ -60,15 +61,21 @@ impl MinimumDifferentials {
 
     /// ∂p/∂x and ∂p/∂y in camera space, on the plane with normal `n` that the ray along the unit
     /// direction `d` hits at `distance`; zero where that plane is seen edge-on.
-    pub fn dp_dxy(&self, d: Vector3, distance: f32, n: Normal3) -> [Vector3; 2] {
+    #[inline(always)]
+    pub fn dp_dxy<R: Real>(&self, d: Vector3<R>, distance: R, n: Normal3<R>) -> [Vector3<R>; 2] {
         let frame = Frame::from_z(d);
         let n = frame.to_local(n);
-        let p = Vec3::new(0.0, 0.0, distance);
-        std::array::from_fn(|axis| {
-            let (o, d) = (self.origin[axis], Vec3::Z + self.direction[axis]);
-            let t = n.dot(p - o) / n.dot(d);
-            let dp = o + d * t - p;
-            if dp.is_finite() { frame.from_local(dp) } else { Vec3::ZERO }
-        })
+        let p = Vec3::new(R::zero(), R::zero(), distance);
+        [self.dp(0, &frame, p, n), self.dp(1, &frame, p, n)]
+    }
+
+    /// ∂p along an axis of the film.
+    #[inline(always)]
+    fn dp<R: Real>(&self, axis: usize, frame: &Frame<R>, p: Vector3<R>, n: Normal3<R>) -> Vector3<R> {
+        let (o, d) = (self.origin[axis], Vec3::Z + self.direction[axis]);
+        let (o, d) = (Vec3::broadcast(o), Vec3::broadcast(d));
+        let t = n.dot(p - o) / n.dot(d);
+        let dp = o + d * t - p;
+        Vec3::select(dp.are_finite(), frame.from_local(dp), Vec3::splat(R::zero()))
     }
 }

@@ -27,8 +27,10 @@ mod spherical;
 mod tests;
 mod transform;
 
-use lanes::Real;
-use math::{Normal3, Point2, Point3, Ray, RayDifferential, Vec2, Vector3, lerp};
+use lanes::{Each, MAX_LANES, Real};
+use math::{
+    Differentials, Normal3, Point2, Point3, Ray, RayDifferential, Transform, Vec2, Vec3, Vector3, lerp,
+};
 use minimum_differentials::MinimumDifferentials;
 
 pub use compile::compile;
@@ -151,30 +153,70 @@ impl Camera {
     /// The ray of a sample with the rays one pixel to the right and one pixel down, all of whose
     /// radiance reaches the film.
     pub fn ray_differential(&self, sample: &CameraSample) -> RayDifferential {
+        let (ray, differentials) = self.ray_and_neighbours(sample);
+        RayDifferential { ray, differentials: Some(differentials) }
+    }
+
+    /// [`ray_differential`](Self::ray_differential) for each lane.
+    #[inline(always)]
+    pub fn ray_and_neighbours<R: Real>(&self, sample: &CameraSample<R>) -> (Ray<R>, Differentials<R>) {
         let time = self.sample_time(sample.time);
-        let (o, d, differentials) = self.projection.ray_differential(sample.film, sample.lens);
-        let ray = RayDifferential { ray: Ray::new(o, d, time), differentials: Some(differentials) };
-        let mut ray = self.transform.render_from_camera(time).ray_differential(&ray);
+        let (o, d, near) = self.projection.ray_differential(sample.film, sample.lens);
+        let ray = self.transform.ray(&Ray::new(o, d, time));
+        let rx = self.transform.ray(&Ray::new(near.rx_origin, near.rx_direction, time));
+        let ry = self.transform.ray(&Ray::new(near.ry_origin, near.ry_direction, time));
         // A transform that scales changes the length of directions. All three are divided by the
         // same factor, to keep their differences.
-        let factor = 1.0 / ray.ray.d.length();
-        ray.ray.d *= factor;
-        if let Some(d) = &mut ray.differentials {
-            d.rx_direction *= factor;
-            d.ry_direction *= factor;
-        }
-        ray
+        let factor = R::one() / ray.d.length();
+        let differentials = Differentials {
+            rx_origin: rx.o,
+            rx_direction: rx.d * factor,
+            ry_origin: ry.o,
+            ry_direction: ry.d * factor,
+        };
+        (Ray { d: ray.d * factor, ..ray }, differentials)
     }
 
     /// The approximate footprint of a pixel on the tangent plane of a surface at `p` with normal
     /// `n` (render space), as if the camera saw it directly: ∂p/∂x and ∂p/∂y, each times `scale`
     /// (see [`differential_scale`]). For surfaces that a path reaches without ray differentials.
     #[doc(alias = "Approximate_dp_dxy")]
-    pub fn approximate_dp_dxy(&self, p: Point3, n: Normal3, time: f32, scale: f32) -> [Vector3; 2] {
-        let render_from_camera = self.transform.render_from_camera(time);
+    #[inline(always)]
+    pub fn approximate_dp_dxy<R: Real>(
+        &self,
+        p: Point3<R>,
+        n: Normal3<R>,
+        time: R,
+        scale: f32,
+    ) -> [Vector3<R>; 2] {
+        let render_from_camera = self.transform.animated();
+        if !render_from_camera.is_moving() {
+            return self.dp_dxy(p, n, render_from_camera.start(), scale);
+        }
+        let [p, n] = [p, n].each(|v| v.to_array().each(R::to_array));
+        let time = time.to_array();
+        let mut across = [[[0.0; MAX_LANES]; 3]; 2];
+        for lane in 0..R::LANES {
+            let [p, n] = [&p, &n].each(|v| Vec3::new(v[0][lane], v[1][lane], v[2][lane]));
+            let found = self.dp_dxy(p, n, &render_from_camera.at(time[lane]), scale);
+            for (columns, v) in across.iter_mut().zip(found) {
+                (columns[0][lane], columns[1][lane], columns[2][lane]) = (v.x, v.y, v.z);
+            }
+        }
+        across.each(|v| Vec3::from_array(v.each(|column| R::load(&column))))
+    }
+
+    #[inline(always)]
+    fn dp_dxy<R: Real>(
+        &self,
+        p: Point3<R>,
+        n: Normal3<R>,
+        render_from_camera: &Transform,
+        scale: f32,
+    ) -> [Vector3<R>; 2] {
         let camera_from_render = render_from_camera.inverse();
-        let (d, distance) = self.projection.way_to(camera_from_render.point(p));
-        let n = camera_from_render.normal(n);
-        self.minimum_differentials.dp_dxy(d, distance, n).map(|dp| render_from_camera.vector(dp * scale))
+        let (d, distance) = self.projection.way_to(camera_from_render.affine_point(p));
+        let across = self.minimum_differentials.dp_dxy(d, distance, camera_from_render.normal(n));
+        across.each(|dp| render_from_camera.vector_lanes(dp * R::splat(scale)))
     }
 }

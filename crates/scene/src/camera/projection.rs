@@ -71,10 +71,15 @@ impl Projection {
 
     /// Unit direction and distance from the camera, at the centre of its lens, to `p` in camera
     /// space.
-    pub(super) fn way_to(&self, p: Point3) -> (Vector3, f32) {
+    #[inline(always)]
+    pub(super) fn way_to<R: Real>(&self, p: Point3<R>) -> (Vector3<R>, R) {
+        let forward = Vec3::broadcast(Vec3::Z);
         match self {
-            Self::Orthographic(o) if o.is_parallel() => (Vec3::Z, p.z),
-            _ => (p.try_normalize().unwrap_or(Vec3::Z), p.length()),
+            Self::Orthographic(o) if o.is_parallel() => (forward, p.z),
+            _ => {
+                let (d, is_apart) = p.normalize_masked();
+                (Vec3::select(is_apart, d, forward), p.length())
+            }
         }
     }
 
@@ -89,16 +94,33 @@ impl Projection {
     }
 
     /// The ray of [`Self::ray`] and its differentials, in camera space.
-    pub(super) fn ray_differential(&self, film: Point2, lens: Vec2) -> (Point3, Vector3, Differentials) {
+    #[inline(always)]
+    pub(super) fn ray_differential<R: Real>(
+        &self,
+        film: Point2<R>,
+        lens: Vec2<R>,
+    ) -> (Point3<R>, Vector3<R>, Differentials<R>) {
+        let step = R::splat(self.differential_step());
+        let ray = self.ray(film, lens);
+        let (rx_origin, rx_direction) = self.neighbour(ray, Vec2::new(film.x + step, film.y), lens);
+        let (ry_origin, ry_direction) = self.neighbour(ray, Vec2::new(film.x, film.y + step), lens);
+        (ray.0, ray.1, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
+    }
+
+    /// The ray one pixel from a ray, computed from that of a film position one step from it.
+    #[inline(always)]
+    fn neighbour<R: Real>(
+        &self,
+        (o, d): (Point3<R>, Vector3<R>),
+        near: Point2<R>,
+        lens: Vec2<R>,
+    ) -> (Point3<R>, Vector3<R>) {
+        let (near_o, near_d) = self.ray(near, lens);
         let step = self.differential_step();
-        let (o, d) = self.ray(film, lens);
-        let neighbour = |offset| {
-            let (near_o, near_d) = self.ray(film + offset * step, lens);
-            if step == 1.0 { (near_o, near_d) } else { (o + (near_o - o) / step, d + (near_d - d) / step) }
-        };
-        let (rx_origin, rx_direction) = neighbour(Vec2::X);
-        let (ry_origin, ry_direction) = neighbour(Vec2::Y);
-        (o, d, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
+        if step == 1.0 {
+            return (near_o, near_d);
+        }
+        (o + (near_o - o) / R::splat(step), d + (near_d - d) / R::splat(step))
     }
 }
 

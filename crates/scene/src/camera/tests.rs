@@ -329,7 +329,13 @@ impl LaneFunction for Rays<'_> {
         let film = Vec2::new(u[0] * R::splat(200.0), u[1] * R::splat(150.0));
         let sample = CameraSample { film, lens: Vec2::new(u[2], u[3]), time: u[4], filter_weight: R::one() };
         let ray = self.0.ray(&sample);
-        vec![ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, ray.time]
+        let mut results = vec![ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, ray.time];
+        let (ray, mut near) = self.0.ray_and_neighbours(&sample);
+        near.scale(&ray, R::splat(0.25));
+        let across = self.0.approximate_dp_dxy(ray.at(R::splat(3.0)), -ray.d, ray.time, 0.5);
+        let rays = [ray.o, ray.d, near.rx_origin, near.rx_direction, near.ry_origin, near.ry_direction];
+        results.extend(rays.iter().chain(&across).flat_map(|v| v.to_array()));
+        results
     }
 }
 

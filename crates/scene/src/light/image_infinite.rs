@@ -245,3 +245,42 @@ impl LightModel for ImageInfiniteLight {
         (self.scene.pdf_facing_disk(ray), self.pdf_one(ray.d, ray.time, false))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use math::DMat4;
+    use testkit::{LaneFunction, lanes_agree};
+
+    struct Sky(ImageInfiniteLight);
+
+    impl LaneFunction for Sky {
+        #[inline(always)]
+        fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+            let lambda = SampledWavelengths::sample_visible(u[2]);
+            let (l, wi, pdf, is_chosen) = self.0.sample_at_rest(Point2::new(u[0], u[1]), &lambda, true);
+            let valid = |x| R::select(is_chosen, x, R::zero());
+            let mut results: Vec<R> = l.0.into_iter().chain(wi.to_array()).chain([pdf]).map(valid).collect();
+            let w = Vec3::new(u[0] - R::splat(0.5), u[1] - R::splat(0.5), u[2] - R::splat(0.5));
+            results.extend([self.0.pdf_at_rest(w, true), self.0.pdf_at_rest(w, false)]);
+            results.extend(self.0.le_at_rest(w, &lambda).0);
+            results
+        }
+    }
+
+    #[test]
+    fn lanes_have_the_light_of_single_rays() {
+        for (width, height) in [(8, 8), (16, 8)] {
+            let image = Image::from_fn(width, height, ["R", "G", "B"], |x, y| {
+                [(x * y % 7) as f32, (x % 3) as f32 * 0.3, -0.1]
+            });
+            let projection = Projection::of_size(width, height).unwrap();
+            let rotation = DMat4::from_rotation_x(0.3) * DMat4::from_rotation_y(-1.0);
+            let transform = Transform::from_f64(rotation).unwrap();
+            let scene = SceneSphere { center: Vec3::ZERO, radius: 1.0 };
+            let image = (Arc::new(image.to_f16()), projection);
+            let light = ImageInfiniteLight::new(transform.into(), image, RgbColorSpace::srgb(), 2.0, scene);
+            lanes_agree(&Sky(light), 3, 200);
+        }
+    }
+}

@@ -83,6 +83,15 @@ impl Material {
         }
     }
 
+    /// Whether the BxDF may be specular somewhere.
+    pub fn may_be_specular(&self, textures: &Textures) -> bool {
+        match self {
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) => false,
+            Self::Conductor(m) => m.roughness.may_be_smooth(textures),
+            Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Mix(_) | Self::Interface => true,
+        }
+    }
+
     /// Whether a path that does not scatter ends there with its wavelengths as they are: no ray
     /// passes through the material, and it is not dispersive.
     pub fn stops(&self) -> bool {

@@ -1,5 +1,6 @@
 //! Textures: single ones, and compiled from a scene.
 
+mod lanes;
 mod programs;
 
 use super::*;

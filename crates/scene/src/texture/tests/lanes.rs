@@ -1,0 +1,75 @@
+//! Programs in lanes.
+
+use super::*;
+use crate::footprint::Footprint;
+use ::lanes::Real;
+use testkit::{LaneFunction, lanes_agree};
+
+/// All textures of a scene.
+struct All<'a>(&'a Compiled);
+
+impl LaneFunction for All<'_> {
+    #[inline(always)]
+    fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
+        let [half, four] = [0.5, 4.0].map(R::splat);
+        let size = u[4] * u[4] * u[4];
+        let along = |i: usize| Vec3::new(u[i] - half, u[(i + 1) % 4] - half, u[(i + 2) % 4]);
+        let footprint = Footprint {
+            dpdx: along(1) * size,
+            dpdy: along(2) * size,
+            dudx: (u[0] - half) * size,
+            dudy: u[1] * size,
+            dvdx: u[2] * size,
+            dvdy: (u[3] - half) * size,
+        };
+        let uv = Vec2::new((u[0] - half) * four, (u[1] - half) * four);
+        let ctx = TextureContext::new(along(0) * four, along(3), uv, &footprint);
+        let lambda = SampledWavelengths::sample_visible(u[5]);
+        let mut results = Vec::new();
+        for &id in &self.0.floats {
+            results.push(self.0.textures.float(id, &ctx));
+        }
+        for &id in self.0.spectra.as_flattened() {
+            results.extend(self.0.textures.spectrum(id, &ctx, &lambda).0);
+        }
+        results
+    }
+}
+
+#[test]
+fn textures_do_not_depend_on_the_number_of_lanes() {
+    let mut scene = SceneDesc::default();
+    let image = Image::from_fn(16, 8, ["R", "G", "B"], |x, y| {
+        [x as f32 / 15.0, y as f32 / 7.0, (x * y % 5) as f32 / 4.0]
+    });
+    let image = push_image(&mut scene, image.to_u8(ColorEncoding::Srgb));
+    let mappings = [MappingDesc::default(), MappingDesc::Spherical];
+    for (filter, mapping) in FILTERS.into_iter().flat_map(|f| mappings.clone().map(|m| (f, m))) {
+        let mut desc = ImageTextureDesc::new(image);
+        (desc.filter, desc.mapping, desc.scale) = (filter, mapping, 0.9);
+        desc.invert = filter == TextureFilter::Bilinear;
+        scene.float_textures.push(FloatTextureDesc::new(TextureKind::Image(desc.clone())));
+        scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Image(desc)));
+    }
+    let number: Parameter<f32> = Handle::new(2).into();
+    let image: Parameter<SpectrumDesc> = Handle::new(4).into();
+    let [red, grey] = [SpectrumDesc::rgb(0.9, 0.1, 0.1), SpectrumDesc::Constant(0.3)];
+    let [first, second]: [Parameter<SpectrumDesc>; 2] = [red.clone().into(), grey.clone().into()];
+    for kind in [
+        TextureKind::Constant(grey.clone()),
+        TextureKind::Scale { texture: image.clone(), scale: number.clone() },
+        TextureKind::Mix { textures: [image, first.clone()], amount: number },
+        TextureKind::Checkerboard {
+            textures: [first.clone(), second.clone()],
+            mapping: Some(MappingDesc::default()),
+        },
+        TextureKind::Checkerboard { textures: [first, second], mapping: None },
+        TextureKind::Bilerp {
+            corners: [red.clone(), grey.clone(), grey, red],
+            mapping: MappingDesc::default(),
+        },
+    ] {
+        scene.spectrum_textures.push(SpectrumTextureDesc::new(kind));
+    }
+    lanes_agree(&All(&sound(&scene)), 6, 100);
+}
