@@ -294,11 +294,12 @@ impl Pyramid {
             }
         }
         // Every ellipse holds a texel's centre unless the numbers have overflowed.
-        if !(weight_sum > 0.0) {
-            return image.bilinear(st, channels, self.wrap);
+        if weight_sum > 0.0 {
+            let inverse = 1.0 / weight_sum;
+            sum.map(|sum| inverse * sum)
+        } else {
+            image.bilinear(st, channels, self.wrap)
         }
-        let inverse = 1.0 / weight_sum;
-        sum.map(|sum| inverse * sum)
     }
 }
 

@@ -216,7 +216,8 @@ impl Camera {
     ) -> [Vector3<R>; 2] {
         let camera_from_render = render_from_camera.inverse();
         let (d, distance) = self.projection.way_to(camera_from_render.affine_point(p));
-        let across = self.minimum_differentials.dp_dxy(d, distance, camera_from_render.normal(n));
-        across.each(|dp| render_from_camera.vector_lanes(dp * R::splat(scale)))
+        let [x, y] = self.minimum_differentials.dp_dxy(d, distance, camera_from_render.normal(n));
+        let scale = R::splat(scale);
+        [render_from_camera.vector_lanes(x * scale), render_from_camera.vector_lanes(y * scale)]
     }
 }

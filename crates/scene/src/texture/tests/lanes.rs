@@ -44,7 +44,7 @@ fn textures_do_not_depend_on_the_number_of_lanes() {
     });
     let image = push_image(&mut scene, image.to_u8(ColorEncoding::Srgb));
     let mappings = [MappingDesc::default(), MappingDesc::Spherical];
-    for (filter, mapping) in FILTERS.into_iter().flat_map(|f| mappings.clone().map(|m| (f, m))) {
+    for (filter, mapping) in FILTERS.into_iter().flat_map(|f| mappings.map(|m| (f, m))) {
         let mut desc = ImageTextureDesc::new(image);
         (desc.filter, desc.mapping, desc.scale) = (filter, mapping, 0.9);
         desc.invert = filter == TextureFilter::Bilinear;
