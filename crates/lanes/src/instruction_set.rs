@@ -2,7 +2,8 @@
 
 #[cfg(target_arch = "aarch64")]
 use crate::neon;
-use crate::simd::{Kernel, Task, Widest};
+use crate::real::Kernel;
+use crate::simd::{Task, Widest};
 #[cfg(target_arch = "x86_64")]
 use crate::{avx2, avx512, sse2};
 use crate::{portable, scalar};

@@ -5,7 +5,6 @@
 //! operation combines lanes, except for the explicit tests of a [`Mask`], and all have the same
 //! bits on every instruction set, so that the number of lanes never changes a result.
 
-use crate::Kernel;
 use std::fmt::Debug;
 use std::ops::{
     Add, AddAssign, BitAnd, BitOr, BitXor, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign,
@@ -393,6 +392,16 @@ pub(crate) fn gather_bytes(table: &[u8], indices: &[u32]) -> [u32; MAX_LANES] {
         *value = u32::from_le_bytes(bytes);
     }
     values
+}
+
+/// A computation that is written for any number of lanes. This and everything it calls must be
+/// `#[inline(always)]`, as for a [`Task`](crate::Task).
+pub trait Kernel {
+    /// The result.
+    type Output;
+
+    /// Computes it with as many lanes as `R` has.
+    fn run<R: Real>(self) -> Self::Output;
 }
 
 /// The most lanes of any vector.

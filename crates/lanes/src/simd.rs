@@ -1,6 +1,6 @@
 //! What every instruction set offers, and what is computed with it.
 
-use crate::Real;
+use crate::real::{Kernel, Real};
 
 /// `N` floats, one in each lane.
 pub trait Vector<const N: usize>: Copy {
@@ -98,16 +98,6 @@ pub trait Task {
     /// # Safety
     /// The processor must have the instruction set `S`.
     unsafe fn run<S: Simd>(self) -> Self::Output;
-}
-
-/// A computation that is written for any number of lanes. This and everything it calls must be
-/// `#[inline(always)]`, as for a [`Task`].
-pub trait Kernel {
-    /// The result.
-    type Output;
-
-    /// Computes it with as many lanes as `R` has.
-    fn run<R: Real>(self) -> Self::Output;
 }
 
 /// Runs a kernel with the widest vectors of an instruction set.

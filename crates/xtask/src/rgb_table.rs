@@ -13,7 +13,7 @@ use std::path::Path;
 use std::{fs, io, thread};
 
 use spectrum::uplift::{NODES, RATIOS, RgbToSpectrumTable, VALUES, node_index, node_ratio, node_value};
-use spectrum::{CIE_Y_INTEGRAL, LAMBDA_MIN, Matrix3, Rgb, RgbColorSpace, cie};
+use spectrum::{CIE_Y_INTEGRAL, LAMBDA_MIN, Matrix3, RgbColorSpace, cie};
 
 /// Coefficients of t², t and 1.
 type Coefficients = [f64; 3];
