@@ -1,14 +1,24 @@
 //! The hits of path tracing: emission, light samples, BSDF samples and Russian roulette.
 
-use geometry::Hit;
-use scattering::{Bsdf, each_bxdf};
+use geometry::{Hit, PatchPoints};
+use lanes::{Int, Mask, Real};
+use math::{Vec2, offset_ray_origin};
+use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode, each_bxdf};
 use scene::Interfaces;
+use scene::light::LightSampleContext;
+use scene::material::MaterialModel;
+use spectrum::SampledSpectrum;
 
 use super::WaveIntegrator;
 use super::batch::{Batch, Vertex};
+use super::lights::{self, LightLanes};
+use super::numbers::{VertexNumbers, draw_1d};
+use super::queues::Shadow;
+use super::shade::{AtVertices, Shade, Vertices};
 use crate::Path;
-use crate::transport::direct::{Connection, light_context};
+use crate::transport::direct::{Connection, light_context, power_heuristic};
 use crate::transport::path_state::Scattered;
+use crate::transport::roulette::CERTAIN;
 
 impl WaveIntegrator for Path {
     fn shade(&self, batch: &mut Batch) {
@@ -50,5 +60,113 @@ impl Path {
             paths.set_state(row, &state);
             queues.next.push(path);
         }
+    }
+}
+
+impl AtVertices for Path {
+    #[inline(always)]
+    fn regularizes(&self) -> bool {
+        self.settings.regularize
+    }
+
+    #[inline(always)]
+    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
+        shade: &mut Shade<M, Self>,
+        mut vertices: Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+    ) {
+        let samples_light = bsdf.flags().is_non_specular();
+        let numbers = VertexNumbers::draw(&shade.pass, &mut vertices.address, samples_light);
+        shade.connect(&vertices, bsdf, contexts, numbers.light, samples_light);
+        shade.scatter(&vertices, bsdf, contexts, numbers.bsdf);
+    }
+}
+
+impl<M: MaterialModel> Shade<'_, '_, M, Path> {
+    /// Next-event estimation of the lanes that are not specular.
+    #[inline(always)]
+    fn connect<R: Real, B: Scatter<R>>(
+        &mut self,
+        vertices: &Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+        u: (R, Vec2<R>),
+        is_non_specular: R::Mask,
+    ) {
+        let samples = vertices.active & is_non_specular;
+        if !samples.any() {
+            return;
+        }
+        let sampling = (&self.pass, &self.algorithm.direct, &mut *self.light_samples);
+        let light = lights::sample(sampling, None, contexts, u, &vertices.lambda, samples);
+        let LightLanes { valid, l, wi, pdf, .. } = light;
+        let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
+        let f = bsdf.f(wo, wi, TransportMode::Radiance);
+        let scattered = f * l * wi.dot(ns).abs();
+        let p_b = bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
+        let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
+        let l = vertices.beta * (scattered * (weight / pdf));
+        let lit = valid & !scattered.is_black();
+        let (ray, t_max) = light.shadow_rays(p, n, time);
+        let shadow = Shadow { l, ray, t_max };
+        let [stopped, passing] = &mut self.queues.shadows;
+        stopped.append(vertices.rows, lit & !light.passes, &shadow);
+        passing.append(vertices.rows, lit & light.passes, &shadow);
+    }
+
+    /// Continues the paths along a direction of the BSDF, unless Russian roulette ends them.
+    #[inline(always)]
+    fn scatter<R: Real, B: Scatter<R>>(
+        &mut self,
+        vertices: &Vertices<R>,
+        bsdf: &Bsdf<B, R>,
+        contexts: &LightSampleContext<R>,
+        (uc, u): (R, Vec2<R>),
+    ) {
+        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
+        let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
+        let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
+        let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
+        let eta_scale = R::gather(&self.paths.eta_scale, rows.indices);
+        let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
+        let valid = valid & vertices.active;
+
+        // The first scattering event is never the last by roulette.
+        let depth = R::Int::gather(&self.paths.depth, rows.indices);
+        let is_first = depth.eq(R::Int::splat(0));
+        let probability = (beta * eta_scale).max_component();
+        let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
+        let draws = plays & probability.gt(R::zero());
+        let mut survives = valid & !plays;
+        if draws.any() {
+            let u = draw_1d::<R>(&self.pass, &mut { vertices.address });
+            survives = survives | (draws & u.lt(probability));
+        }
+        let beta = SampledSpectrum::select(plays, beta / probability, beta);
+
+        let paths = &mut *self.paths;
+        paths.beta.set(rows, survives, beta.0);
+        paths.origin.set(rows, survives, offset_ray_origin(p, n, wi).to_array());
+        paths.direction.set(rows, survives, wi.to_array());
+        let vectors = [contexts.p.p, contexts.p.error, contexts.n, contexts.ns];
+        for (columns, v) in paths.vertex.iter_mut().zip(vectors) {
+            columns.set(rows, survives, v.to_array());
+        }
+        let is_specular = flags.is_specular();
+        R::select(is_specular, R::zero(), pdf).scatter(survives, &mut paths.pdf, rows.indices);
+        eta_scale.scatter(survives, &mut paths.eta_scale, rows.indices);
+        let one = R::Int::splat(1);
+        depth.wrapping_add(one).scatter(survives, &mut paths.depth, rows.indices);
+        let dimension = vertices.address.dimension;
+        let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
+        dimension.scatter(survives, &mut paths.dimension, rows.indices);
+        if self.algorithm.settings.regularize {
+            rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
+        }
+        if !paths.are_differentials.is_empty() {
+            R::Int::splat(0).scatter(survives, &mut paths.are_differentials, rows.indices);
+        }
+        rows.indices.append(survives, &mut self.queues.next);
     }
 }

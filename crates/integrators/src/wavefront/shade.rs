@@ -1,11 +1,10 @@
-//! Shading in lanes: the vertices of hits and their BSDFs, and what path tracing does there:
-//! next-event estimation, a sample of the BSDF and Russian roulette.
+//! Shading in lanes: the vertices of hits and their BSDFs, where algorithms go on.
 
 use geometry::{PatchPoints, PointColumns};
 use lanes::{Int, Kernel, Mask, Real};
-use math::{Normal3, Point3Error, Vec2, Vec3, Vector3, offset_ray_origin};
+use math::{Normal3, Point3Error, Vec3, Vector3, offset_ray_origin};
 use sampling::sampler::Address;
-use scattering::{Bsdf, BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
+use scattering::{Bsdf, BxdfFlags, Scatter};
 use scene::Footprint;
 use scene::light::LightSampleContext;
 use scene::material::MaterialModel;
@@ -13,14 +12,10 @@ use scene::texture::TextureContext;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::columns::Rows;
-use super::lights::{self, LightLanes, Samples};
-use super::numbers::{VertexNumbers, draw_1d};
+use super::lights::Samples;
 use super::pass::Pass;
 use super::paths::{Paths, differentials_of};
-use super::queues::{Queues, Shadow};
-use crate::Path;
-use crate::transport::direct::power_heuristic;
-use crate::transport::roulette::CERTAIN;
+use super::queues::Queues;
 
 /// What an algorithm does at vertices.
 pub(super) trait AtVertices: Sized {
@@ -114,8 +109,6 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
             self.queues.scalar.push((row as u32, self.turns[first + lane]));
         });
         let paths = &*self.paths;
-        let [a, b, c, d, pdf @ ..] = paths.wavelengths.get(rows);
-        let [x, y] = &paths.pixel;
         Vertices {
             rows,
             active: rows.active & found,
@@ -123,13 +116,9 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
             surface,
             wo: -paths.direction.vector(rows).normalize(),
             time: R::gather(&paths.time, rows.indices),
-            lambda: SampledWavelengths::new([a, b, c, d], pdf),
+            lambda: paths.lambda_lanes(rows),
             beta: paths.beta.spectrum(rows),
-            address: Address {
-                pixel: [R::Int::gather(x, rows.indices), R::Int::gather(y, rows.indices)],
-                index: self.pass.pixels.index,
-                dimension: R::Int::gather(&paths.dimension, rows.indices),
-            },
+            address: paths.address(rows, self.pass.pixels.index),
         }
     }
 
@@ -157,114 +146,6 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
                 self.paths.set_lambda(row, &vertices.lambda.lane(lane));
             });
         }
-    }
-}
-
-impl AtVertices for Path {
-    #[inline(always)]
-    fn regularizes(&self) -> bool {
-        self.settings.regularize
-    }
-
-    #[inline(always)]
-    fn go_on<R: Real, M: MaterialModel, B: Scatter<R>>(
-        shade: &mut Shade<M, Self>,
-        mut vertices: Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-    ) {
-        let samples_light = bsdf.flags().is_non_specular();
-        let numbers = VertexNumbers::draw(&shade.pass, &mut vertices.address, samples_light);
-        shade.connect(&vertices, bsdf, contexts, numbers.light, samples_light);
-        shade.scatter(&vertices, bsdf, contexts, numbers.bsdf);
-    }
-}
-
-impl<M: MaterialModel> Shade<'_, '_, M, Path> {
-    /// Next-event estimation of the lanes that are not specular.
-    #[inline(always)]
-    fn connect<R: Real, B: Scatter<R>>(
-        &mut self,
-        vertices: &Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-        u: (R, Vec2<R>),
-        is_non_specular: R::Mask,
-    ) {
-        let samples = vertices.active & is_non_specular;
-        if !samples.any() {
-            return;
-        }
-        let sampling = (&self.pass, &self.algorithm.direct, &mut *self.light_samples);
-        let light = lights::sample(sampling, None, contexts, u, &vertices.lambda, samples);
-        let LightLanes { valid, l, wi, pdf, .. } = light;
-        let Vertices { surface: PatchPoints { p, n, ns, .. }, wo, time, .. } = *vertices;
-        let f = bsdf.f(wo, wi, TransportMode::Radiance);
-        let scattered = f * l * wi.dot(ns).abs();
-        let p_b = bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
-        let weight = R::select(light.is_delta, R::one(), power_heuristic(pdf, p_b));
-        let l = vertices.beta * (scattered * (weight / pdf));
-        let lit = valid & !scattered.is_black();
-        let (ray, t_max) = light.shadow_rays(p, n, time);
-        let shadow = Shadow { l, ray, t_max };
-        let [stopped, passing] = &mut self.queues.shadows;
-        stopped.append(vertices.rows, lit & !light.passes, &shadow);
-        passing.append(vertices.rows, lit & light.passes, &shadow);
-    }
-
-    /// Continues the paths along a direction of the BSDF, unless Russian roulette ends them.
-    #[inline(always)]
-    fn scatter<R: Real, B: Scatter<R>>(
-        &mut self,
-        vertices: &Vertices<R>,
-        bsdf: &Bsdf<B, R>,
-        contexts: &LightSampleContext<R>,
-        (uc, u): (R, Vec2<R>),
-    ) {
-        let Vertices { rows, surface: PatchPoints { p, n, ns, .. }, wo, .. } = *vertices;
-        let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
-        let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
-        let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
-        let eta_scale = R::gather(&self.paths.eta_scale, rows.indices);
-        let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
-        let valid = valid & vertices.active;
-
-        // The first scattering event is never the last by roulette.
-        let depth = R::Int::gather(&self.paths.depth, rows.indices);
-        let is_first = depth.eq(R::Int::splat(0));
-        let probability = (beta * eta_scale).max_component();
-        let plays = !is_first & probability.lt(R::splat(CERTAIN)) & valid;
-        let draws = plays & probability.gt(R::zero());
-        let mut survives = valid & !plays;
-        if draws.any() {
-            let u = draw_1d::<R>(&self.pass, &mut { vertices.address });
-            survives = survives | (draws & u.lt(probability));
-        }
-        let beta = SampledSpectrum::select(plays, beta / probability, beta);
-
-        let paths = &mut *self.paths;
-        paths.beta.set(rows, survives, beta.0);
-        paths.origin.set(rows, survives, offset_ray_origin(p, n, wi).to_array());
-        paths.direction.set(rows, survives, wi.to_array());
-        let vectors = [contexts.p.p, contexts.p.error, contexts.n, contexts.ns];
-        for (columns, v) in paths.vertex.iter_mut().zip(vectors) {
-            columns.set(rows, survives, v.to_array());
-        }
-        let is_specular = flags.is_specular();
-        R::select(is_specular, R::zero(), pdf).scatter(survives, &mut paths.pdf, rows.indices);
-        eta_scale.scatter(survives, &mut paths.eta_scale, rows.indices);
-        let one = R::Int::splat(1);
-        depth.wrapping_add(one).scatter(survives, &mut paths.depth, rows.indices);
-        let dimension = vertices.address.dimension;
-        let dimension = R::Int::select(draws, dimension.wrapping_add(one), dimension);
-        dimension.scatter(survives, &mut paths.dimension, rows.indices);
-        if self.algorithm.settings.regularize {
-            rows.each_of(survives & !is_specular, |_, row| paths.rough_before[row] = true);
-        }
-        if !paths.are_differentials.is_empty() {
-            R::Int::splat(0).scatter(survives, &mut paths.are_differentials, rows.indices);
-        }
-        rows.indices.append(survives, &mut self.queues.next);
     }
 }
 
