@@ -180,8 +180,11 @@ impl<V: Vector<WIDTH>> PacketSlabs<V> {
                 let [rays, least, greatest] = [RaySlabs::everywhere(); 3];
                 return Self { rays, least, greatest };
             }
-            let [mut rays, least, greatest] = [greatest, least, greatest]
-                .map(|size| RaySlabs::along(&rays[0].0.d, size.copysign(rays[0].0.d), o, margin));
+            // Without `map`, which would be called, and call each intrinsic.
+            let d = rays[0].0.d;
+            let least = RaySlabs::along(&d, least.copysign(d), o, margin);
+            let greatest = RaySlabs::along(&d, greatest.copysign(d), o, margin);
+            let mut rays = greatest;
             for axis in 0..3 {
                 let shift = margin.copysign(lanes[axis][0]);
                 rays.inverse[axis] = V::load(&lanes[axis]);
