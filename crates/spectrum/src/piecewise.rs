@@ -188,8 +188,8 @@ impl PiecewiseLinear {
         R::select(inside | lambda.eq(l0), value, R::zero())
     }
 
-    /// The last of the given wavelengths that is at most `lambda`, or the first, with the same steps
-    /// in all lanes.
+    /// The index of the last wavelength that is at most `lambda`, or else 0, with the same steps in
+    /// all lanes.
     #[inline(always)]
     fn interval<R: Real>(&self, lambda: R) -> R::Int {
         match &self.guide {
