@@ -50,9 +50,8 @@ pub trait Real:
     /// Writes the lanes to the start of a slice, which must have a place for each.
     fn store(self, to: &mut [f32]);
 
-    /// Runs a kernel with these lanes as a function of its own, which is not compiled into each
-    /// caller.
-    fn call<K: Kernel>(kernel: K) -> K::Output;
+    /// Calls a function of these lanes, which is not compiled into each caller.
+    fn call<F: Function<Self>>(function: F) -> F::Output;
 
     /// The numbers of a table at these indices.
     ///
@@ -402,6 +401,25 @@ pub trait Kernel {
 
     /// Computes it with as many lanes as `R` has.
     fn run<R: Real>(self) -> Self::Output;
+}
+
+/// A function of numbers with lanes, with its arguments. This and everything it calls must be
+/// `#[inline(always)]`; [`Real::call`] then makes one function of it.
+pub trait Function<R: Real> {
+    /// The result.
+    type Output;
+
+    /// Computes it.
+    fn run(self) -> Self::Output;
+}
+
+impl<R: Real, K: Kernel> Function<R> for K {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn run(self) -> K::Output {
+        Kernel::run::<R>(self)
+    }
 }
 
 /// The most lanes of any vector.

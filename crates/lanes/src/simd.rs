@@ -1,6 +1,7 @@
 //! What every instruction set offers, and what is computed with it.
 
-use crate::real::{Kernel, Real};
+use crate::real::{Function, Kernel, Real};
+use std::marker::PhantomData;
 
 /// `N` floats, one in each lane.
 pub trait Vector<const N: usize>: Copy {
@@ -109,5 +110,27 @@ impl<K: Kernel> Task for Widest<K> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> K::Output {
         self.0.run::<S::Real>()
+    }
+}
+
+/// Runs a function of an instruction set's own floats.
+pub(crate) struct Applied<F, R> {
+    function: F,
+    real: PhantomData<R>,
+}
+
+impl<F, R> Applied<F, R> {
+    #[inline(always)]
+    pub fn new(function: F) -> Self {
+        Self { function, real: PhantomData }
+    }
+}
+
+impl<R: Real, F: Function<R>> Task for Applied<F, R> {
+    type Output = F::Output;
+
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) -> F::Output {
+        self.function.run()
     }
 }

@@ -1,6 +1,6 @@
 //! One lane: `f32`, `u32` and `bool` themselves.
 
-use crate::{Int, Kernel, Mask, Real};
+use crate::{Function, Int, Mask, Real};
 
 impl Real for f32 {
     const LANES: usize = 1;
@@ -23,9 +23,9 @@ impl Real for f32 {
         to[0] = self;
     }
 
-    #[inline(always)]
-    fn call<K: Kernel>(kernel: K) -> K::Output {
-        kernel.run::<f32>()
+    #[inline]
+    fn call<F: Function<Self>>(function: F) -> F::Output {
+        function.run()
     }
 
     #[inline(always)]

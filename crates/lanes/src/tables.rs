@@ -148,14 +148,14 @@ macro_rules! real {
             }
 
             #[inline(always)]
-            fn call<K: $crate::Kernel>(kernel: K) -> K::Output {
+            fn call<F: $crate::Function<Self>>(function: F) -> F::Output {
                 // A set without features of its own would be compiled into the caller.
                 #[inline(never)]
-                fn apart<K: $crate::Kernel>(kernel: K) -> K::Output {
+                fn apart<F: $crate::Function<$real>>(function: F) -> F::Output {
                     // The function `run` of the table's instruction set.
-                    unsafe { run($crate::simd::Widest(kernel)) }
+                    unsafe { run($crate::simd::Applied::new(function)) }
                 }
-                apart(kernel)
+                apart(function)
             }
 
             #[inline(always)]

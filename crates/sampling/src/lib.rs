@@ -8,6 +8,7 @@
 mod alias_table;
 mod discrete;
 mod hash;
+mod hash_sequence;
 pub mod low_discrepancy;
 mod piecewise_constant;
 mod reservoir;
@@ -18,6 +19,7 @@ pub mod warp;
 pub use alias_table::AliasTable;
 pub use discrete::{DiscreteSample, sample_discrete};
 pub use hash::{hash, hash_float, mix_bits, mix_quadruple, mix_word, permutation_element};
+pub use hash_sequence::HashSequence;
 pub use piecewise_constant::{PiecewiseConstant1d, PiecewiseConstant2d};
 pub use reservoir::WeightedReservoir;
 pub use rng::Rng;

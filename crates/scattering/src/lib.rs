@@ -1,4 +1,4 @@
-//! Scattering at surfaces: BxDFs, Fresnel equations, microfacets.
+//! Scattering: BxDFs, Fresnel equations, microfacets, phase functions.
 //!
 //! A material at a point becomes a [`Bxdf`], by value; with the shading frame of the point it is a
 //! [`Bsdf`], for directions in render space.
@@ -14,11 +14,14 @@ mod bxdf;
 mod flags;
 mod fresnel;
 mod microfacet;
+mod phase;
 
 pub use bsdf::Bsdf;
 pub use bxdf::{
-    BsdfSample, Bxdf, Conductor, Dielectric, Diffuse, DiffuseTransmission, Scatter, ThinDielectric,
+    BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Scatter,
+    ThinDielectric,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};
 pub use microfacet::TrowbridgeReitz;
+pub use phase::HenyeyGreenstein;

@@ -104,6 +104,14 @@ impl<R: Real> TrowbridgeReitz<R> {
         self.d_visible(w, wm)
     }
 
+    /// The distribution whose α² are larger by `scale` times those of `by`.
+    #[inline(always)]
+    pub(crate) fn widened(&self, by: &Self, scale: R) -> Self {
+        let alpha_x = (sqr(self.alpha_x) + scale * sqr(by.alpha_x)).sqrt();
+        let alpha_y = (sqr(self.alpha_y) + scale * sqr(by.alpha_y)).sqrt();
+        Self::new(alpha_x, alpha_y)
+    }
+
     /// Roughens nearly smooth surfaces where the mask is true, so that paths with small probability
     /// are found: α below 0.3 is doubled, clamped to [0.1, 0.3].
     #[inline(always)]

@@ -170,6 +170,10 @@ impl<'a> Batch<'a> {
                 Material::Conductor(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::Dielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
                 Material::ThinDielectric(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::CoatedDiffuse(material) => self.dispatch(algorithm, (id, material), turns, rows),
+                Material::CoatedConductor(material) => {
+                    self.dispatch(algorithm, (id, material), turns, rows);
+                }
                 Material::Mix(_) | Material::Interface => {
                     unreachable!("invariant: mixes and interfaces are not shaded in lanes")
                 }

@@ -35,7 +35,9 @@ impl LaneMaterials {
                 Material::DiffuseTransmission(_)
                 | Material::Conductor(_)
                 | Material::Dielectric(_)
-                | Material::ThinDielectric(_) => (true, false),
+                | Material::ThinDielectric(_)
+                | Material::CoatedDiffuse(_)
+                | Material::CoatedConductor(_) => (true, false),
                 Material::Mix(_) | Material::Interface => (false, false),
             };
             let may_be_specular = entry.material.may_be_specular(textures);

@@ -128,6 +128,11 @@ impl<M: MaterialModel> Shade<'_, '_, M, Path> {
         let sample = bsdf.sample_lanes(wo, uc, u, TransportMode::Radiance, Directions::All);
         let BsdfSample { f, wi, pdf, flags, eta, valid, .. } = sample;
         let beta = vertices.beta * (f * (wi.dot(ns).abs() / pdf));
+        let pdf = if sample.pdf_is_proportional {
+            bsdf.pdf(wo, wi, TransportMode::Radiance, Directions::All)
+        } else {
+            pdf
+        };
         let eta_scale = R::gather(&self.paths.eta_scale, rows.indices);
         let eta_scale = R::select(flags.is_transmissive(), eta_scale * (eta * eta), eta_scale);
         let valid = valid & vertices.active;

@@ -7,12 +7,14 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod layered;
 mod thin_dielectric;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
+pub use layered::{CoatedBase, Layered};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};
@@ -165,6 +167,10 @@ pub enum Bxdf {
     Dielectric(Dielectric),
     /// A smooth pane of glass without volume.
     ThinDielectric(ThinDielectric),
+    /// A diffuse surface under a coat.
+    CoatedDiffuse(Layered<Diffuse>),
+    /// Metal under a coat.
+    CoatedConductor(Layered<Conductor>),
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
@@ -185,6 +191,8 @@ macro_rules! each_bxdf {
             $crate::Bxdf::Conductor($member) => $body,
             $crate::Bxdf::Dielectric($member) => $body,
             $crate::Bxdf::ThinDielectric($member) => $body,
+            $crate::Bxdf::CoatedDiffuse($member) => $body,
+            $crate::Bxdf::CoatedConductor($member) => $body,
         }
     };
 }
@@ -225,14 +233,22 @@ impl Scatter for Bxdf {
 
 /// Makes each member a [`Bxdf`].
 macro_rules! into_bxdf {
-    ($($member:ident)*) => {$(
+    ($($variant:ident($member:ty))*) => {$(
         impl From<$member> for Bxdf {
             #[inline]
             fn from(bxdf: $member) -> Self {
-                Self::$member(bxdf)
+                Self::$variant(bxdf)
             }
         }
     )*};
 }
 
-into_bxdf!(Diffuse DiffuseTransmission Conductor Dielectric ThinDielectric);
+into_bxdf! {
+    Diffuse(Diffuse)
+    DiffuseTransmission(DiffuseTransmission)
+    Conductor(Conductor)
+    Dielectric(Dielectric)
+    ThinDielectric(ThinDielectric)
+    CoatedDiffuse(Layered<Diffuse>)
+    CoatedConductor(Layered<Conductor>)
+}

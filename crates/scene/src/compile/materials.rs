@@ -2,14 +2,15 @@
 
 use super::Compiler;
 use crate::material::{
-    ConductorIndex, ConductorMaterial, DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial,
-    Material, MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+    Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
+    DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, Material, MaterialEntry, MaterialId,
+    MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
 use description::{
-    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, MaterialDesc, MaterialKind,
-    Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+    ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc,
+    MaterialKind, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
 };
 use spectrum::Spectrum;
 
@@ -107,7 +108,7 @@ impl Compiler<'_> {
                     scale: *scale,
                 })
             }
-            MaterialKind::Conductor(conductor) => self.conductor(conductor, "", origin),
+            MaterialKind::Conductor(conductor) => Material::Conductor(self.conductor(conductor, "", origin)),
             MaterialKind::Dielectric { eta, roughness } => Material::Dielectric(DielectricMaterial {
                 eta: self.index_of_refraction(eta, "eta", origin),
                 roughness: self.roughness(roughness, "", origin),
@@ -121,16 +122,16 @@ impl Compiler<'_> {
             }),
             MaterialKind::Interface => Material::Interface,
             MaterialKind::CoatedDiffuse(coated) => {
-                self.not_drawn(kind.name(), "`diffuse`, without its coat", origin);
-                self.index_of_refraction(&coated.eta, "eta", origin);
-                self.roughness(&coated.roughness, "", origin);
-                self.diffuse(&coated.reflectance, origin)
+                let base =
+                    DiffuseMaterial { reflectance: self.albedo(&coated.reflectance, "reflectance", origin) };
+                let coat = self.coat((&coated.eta, &coated.roughness, &coated.layers), "", origin);
+                Material::CoatedDiffuse(CoatedDiffuseMaterial { base, coat })
             }
             MaterialKind::CoatedConductor(coated) => {
-                self.not_drawn(kind.name(), "`conductor`, without its coat", origin);
-                self.index_of_refraction(&coated.eta, "interface.eta", origin);
-                self.roughness(&coated.roughness, "interface.", origin);
-                self.conductor(&coated.conductor, "conductor.", origin)
+                let base = self.conductor(&coated.conductor, "conductor.", origin);
+                let layers = (&coated.eta, &coated.roughness, &coated.layers);
+                let coat = self.coat(layers, "interface.", origin);
+                Material::CoatedConductor(CoatedConductorMaterial { base, coat })
             }
             MaterialKind::Hair { color, .. } => {
                 self.not_drawn(kind.name(), "diffuse", origin);
@@ -192,7 +193,7 @@ impl Compiler<'_> {
     }
 
     /// A metal whose parameters have `prefix` before their names.
-    fn conductor(&mut self, desc: &ConductorDesc, prefix: &str, origin: &Origin) -> Material {
+    fn conductor(&mut self, desc: &ConductorDesc, prefix: &str, origin: &Origin) -> ConductorMaterial {
         let span = |name: &str| origin.parameter(&format!("{prefix}{name}"));
         let index = match &desc.reflectance {
             ConductorReflectance::Index { eta, k } => ConductorIndex::Complex {
@@ -203,10 +204,35 @@ impl Compiler<'_> {
                 ConductorIndex::Reflectance(self.albedo(reflectance, "reflectance", origin))
             }
         };
-        Material::Conductor(ConductorMaterial {
-            index,
-            roughness: self.roughness(&desc.roughness, prefix, origin),
-        })
+        ConductorMaterial { index, roughness: self.roughness(&desc.roughness, prefix, origin) }
+    }
+
+    /// A coat, of whose surface the parameters have `prefix` before their names.
+    fn coat(
+        &mut self,
+        (eta, roughness, layers): (&SpectrumDesc, &RoughnessDesc, &LayersDesc),
+        prefix: &str,
+        origin: &Origin,
+    ) -> Coat {
+        let thickness = self.float_texture(&layers.thickness, origin.parameter("thickness"));
+        if let Some(value) = self.textures.textures().constant(thickness).filter(|&value| value < 0.0) {
+            let message = format!("a thickness cannot be negative, as {value} is");
+            self.error("invalid-value", message, origin.parameter("thickness"));
+        }
+        let g = self.float_texture(&layers.g, origin.parameter("g"));
+        if let Some(value) = self.textures.textures().constant(g).filter(|g| !(-1.0..=1.0).contains(g)) {
+            let message = format!("an asymmetry lies between −1 and 1, as {value} does not");
+            self.error("invalid-value", message, origin.parameter("g"));
+        }
+        Coat {
+            eta: self.index_of_refraction(eta, &format!("{prefix}eta"), origin),
+            roughness: self.roughness(roughness, prefix, origin),
+            thickness,
+            albedo: self.albedo(&layers.albedo, "albedo", origin),
+            g,
+            max_depth: layers.max_depth.max(1) as u32,
+            samples: layers.samples.max(1) as u32,
+        }
     }
 
     /// The roughness given by the parameters `roughness`, `uroughness` and `vroughness` with

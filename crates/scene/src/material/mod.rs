@@ -4,6 +4,9 @@
 //! chooses one of two materials at each point by a hash, and is resolved before that; `Interface`
 //! has no BxDF: rays pass through it.
 
+mod coat;
+mod coated_conductor;
+mod coated_diffuse;
 mod conductor;
 mod dielectric;
 mod diffuse;
@@ -14,6 +17,9 @@ mod roughness;
 mod thin_dielectric;
 
 pub use crate::id::MaterialId;
+pub use coat::Coat;
+pub use coated_conductor::CoatedConductorMaterial;
+pub use coated_diffuse::CoatedDiffuseMaterial;
 pub use conductor::{ConductorIndex, ConductorMaterial};
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
@@ -57,6 +63,10 @@ pub enum Material {
     Dielectric(DielectricMaterial),
     /// See [`ThinDielectricMaterial`].
     ThinDielectric(ThinDielectricMaterial),
+    /// See [`CoatedDiffuseMaterial`].
+    CoatedDiffuse(CoatedDiffuseMaterial),
+    /// See [`CoatedConductorMaterial`].
+    CoatedConductor(CoatedConductorMaterial),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
     /// Rays pass through; only the medium changes.
@@ -79,6 +89,8 @@ impl Material {
             Self::Conductor(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Dielectric(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::ThinDielectric(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::CoatedDiffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::CoatedConductor(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Mix(_) | Self::Interface => None,
         }
     }
@@ -88,6 +100,8 @@ impl Material {
         match self {
             Self::Diffuse(_) | Self::DiffuseTransmission(_) => false,
             Self::Conductor(m) => m.roughness.may_be_smooth(textures),
+            Self::CoatedDiffuse(m) => m.coat.roughness.may_be_smooth(textures),
+            Self::CoatedConductor(m) => m.coat.roughness.may_be_smooth(textures),
             Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Mix(_) | Self::Interface => true,
         }
     }
@@ -99,6 +113,8 @@ impl Material {
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Conductor(_) => true,
             Self::Dielectric(m) => !is_dispersive(&m.eta),
             Self::ThinDielectric(m) => !is_dispersive(&m.eta),
+            Self::CoatedDiffuse(m) => !m.coat.is_dispersive(),
+            Self::CoatedConductor(m) => !m.coat.is_dispersive(),
             Self::Mix(_) | Self::Interface => false,
         }
     }

@@ -1,0 +1,65 @@
+//! The coat of coated materials, a dielectric layer: varnish, lacquer, glaze.
+//!
+//! Parameters: index of refraction over wavelength, default 1.5 (one that varies disperses);
+//! roughness of the outer surface, default 0; of the medium inside, its optical thickness, default
+//! 0.01, its single-scattering albedo, default 0, and its asymmetry g in [−1, 1], default 0; the
+//! number of events inside, default 10; the number of random walks per value, default 1.
+
+use super::{Roughness, dispersed_index, is_dispersive};
+use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
+use lanes::Real;
+use sampling::HashSequence;
+use scattering::{Dielectric, HenyeyGreenstein, Layered};
+use spectrum::{SampledWavelengths, Spectrum};
+
+/// A dielectric layer.
+#[derive(Clone, Debug)]
+pub struct Coat {
+    /// Index of refraction inside over that outside.
+    pub eta: Spectrum,
+    /// Roughness of the outer surface.
+    pub roughness: Roughness,
+    /// Optical thickness.
+    pub thickness: FloatTextureId,
+    /// Single-scattering albedo of the medium.
+    pub albedo: SpectrumTextureId,
+    /// Asymmetry of its phase function.
+    pub g: FloatTextureId,
+    /// The number of events inside, at most.
+    pub max_depth: u32,
+    /// Random walks per value.
+    pub samples: u32,
+}
+
+impl Coat {
+    /// Whether the index of refraction varies with the wavelength.
+    pub(super) fn is_dispersive(&self) -> bool {
+        is_dispersive(&self.eta)
+    }
+
+    /// The coat at a point, over the base that `base` gives for the index of refraction.
+    #[inline(always)]
+    pub(super) fn over<B, R: Real>(
+        &self,
+        textures: &Textures,
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+        base: impl FnOnce(R) -> B,
+    ) -> Layered<B, R> {
+        let eta = dispersed_index(&self.eta, lambda);
+        let [x, y, z] = context.p.to_array();
+        // The wavelength differs from sample to sample where the point does not.
+        let words = [x.to_bits(), y.to_bits(), z.to_bits(), lambda.lambda()[0].to_bits()];
+        let limit = R::splat(0.999);
+        Layered {
+            base: base(eta),
+            interface: Dielectric { eta, distribution: self.roughness.distribution(textures, context) },
+            thickness: textures.float(self.thickness, context).max(R::zero()),
+            albedo: textures.spectrum(self.albedo, context, lambda).clamp(R::zero(), R::one()),
+            phase: HenyeyGreenstein { g: textures.float(self.g, context).clamp(-limit, limit) },
+            max_depth: self.max_depth,
+            samples: self.samples,
+            seed: HashSequence::new(words).word(),
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Metals under a coat: varnished brass, car paint without flakes.
+//!
+//! Parameters: those of the [metal](ConductorMaterial) and of its [`Coat`].
+
+use super::{Coat, ConductorMaterial, MaterialModel};
+use crate::texture::{TextureContext, Textures};
+use lanes::Real;
+use scattering::{Conductor, Layered};
+use spectrum::SampledWavelengths;
+
+/// A metal under a coat.
+#[derive(Clone, Debug)]
+pub struct CoatedConductorMaterial {
+    /// The metal, with indices of refraction relative to air.
+    pub base: ConductorMaterial,
+    /// The coat.
+    pub coat: Coat,
+}
+
+impl MaterialModel for CoatedConductorMaterial {
+    type Bxdf<R: Real> = Layered<Conductor<R>, R>;
+
+    #[inline(always)]
+    fn bxdf<R: Real>(
+        &self,
+        textures: &Textures,
+        context: &TextureContext<R>,
+        lambda: &mut SampledWavelengths<R>,
+    ) -> Self::Bxdf<R> {
+        let base = self.base.bxdf(textures, context, lambda);
+        self.coat.over(textures, context, lambda, |index| {
+            // Seen from within the coat.
+            Conductor { eta: base.eta / index, k: base.k / index, ..base }
+        })
+    }
+}
