@@ -14,7 +14,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
-pub use layered::{CoatedBase, Layered};
+pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};
@@ -62,7 +62,7 @@ impl<R: Real> BsdfSample<R> {
         Self { valid: R::Mask::splat(false), ..Self::new(black, wi, R::zero(), lobe) }
     }
 
-    /// `a` where the mask is true, else `b`; neither may have a proportional density.
+    /// `a` where the mask is true, else `b`. Does not say whether a density is proportional.
     #[inline(always)]
     pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
         Self {

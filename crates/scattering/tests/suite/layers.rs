@@ -2,7 +2,7 @@
 
 use alhazen_scattering::{
     BsdfSample, Bxdf, Conductor, Dielectric, Diffuse, Directions, HenyeyGreenstein, Layered, Scatter,
-    TransportMode, TrowbridgeReitz, fr_dielectric,
+    TransportMode, TrowbridgeReitz, inner_reflectance,
 };
 use lanes::Real;
 use math::{Vec2, Vec3, Vector3, spherical_direction};
@@ -21,6 +21,7 @@ fn coated<B>(base: B, alpha: f32, thickness: f32, albedo: f32) -> Layered<B> {
         thickness,
         albedo: SampledSpectrum::splat(albedo),
         phase: HenyeyGreenstein { g: 0.4 },
+        inner: -1.0,
         max_depth: 60,
         samples: 1,
         seed: 0,
@@ -53,6 +54,11 @@ pub fn members() -> Vec<Bxdf> {
         coated(metal(0.4), 0.2, 0.0, 0.0).into(),
         coated(metal(0.2), 0.4, 0.7, 0.9).into(),
     ]
+}
+
+/// Members of known values and densities.
+pub fn exact_members() -> [Bxdf; 2] {
+    [closed(coated(diffuse(0.8), 0.0, 0.0, 0.0)), closed(coated(diffuse(0.6), 0.0, 0.3, 0.0))]
 }
 
 fn with_seed(mut bxdf: Bxdf, seed: u32) -> Bxdf {
@@ -162,27 +168,29 @@ fn values_are_reciprocal_in_the_mean() {
     }
 }
 
-/// The sum over reflections between a diffuse base and a smooth coat.
+/// A smooth clear coat over a diffuse base with the closed form of its reflections.
+fn closed(layers: Layered<Diffuse>) -> Bxdf {
+    Layered { inner: inner_reflectance(layers.interface.eta, layers.thickness), ..layers }.into()
+}
+
+/// Random walks estimate the closed form, for all indices, thicknesses and numbers of events.
 #[test]
-fn a_smooth_clear_coat_over_a_diffuse_base_has_a_closed_form() {
-    const ETA: f32 = 1.5;
-    const STEPS: usize = 20_000;
-    let mean_inside: f32 = (0..STEPS)
-        .map(|i| (i as f32 + 0.5) / STEPS as f32)
-        .map(|cosine| 2.0 * cosine * fr_dielectric(-cosine, ETA) / STEPS as f32)
-        .sum();
+fn walks_have_the_mean_of_the_closed_form() {
     let mut random = Random::new(4);
-    for reflectance in [0.2, 0.9] {
-        let bxdf = Bxdf::from(coated(diffuse(reflectance), 0.0, 0.0, 0.0));
-        for _ in 0..4 {
+    for (reflectance, eta, thickness, max_depth) in
+        [(0.2, 1.5, 0.0, 60), (0.9, 1.5, 0.1, 5), (0.8, 2.0, 0.5, 4), (0.95, 1.0 / 1.3, 0.05, 60)]
+    {
+        let smooth = Dielectric { eta, distribution: TrowbridgeReitz::new(0.0, 0.0) };
+        let layers = coated(diffuse(reflectance), 0.0, thickness, 0.0);
+        let layers = Layered { interface: smooth, max_depth, ..layers };
+        for _ in 0..6 {
             let (wo, wi) = (cosine(Vec3::Z, &mut random), cosine(Vec3::Z, &mut random));
-            let transmitted = (1.0 - fr_dielectric(wo.z, ETA)) * (1.0 - fr_dielectric(wi.z, ETA));
-            let below = reflectance / (PI * (1.0 - reflectance * mean_inside));
-            let expected = (transmitted * below / (ETA * ETA)) as f64;
-            let f: Moments =
-                (0..20_000).map(|seed| with_seed(bxdf, seed).f(wo, wi, Radiance)[0] as f64).collect();
-            let tolerance = 5.0 * f.variance_of_mean().sqrt() + 1e-4 * expected;
-            assert!((f.mean - expected).abs() < tolerance, "{reflectance}: {f:?} for {expected}");
+            let expected = closed(layers).f(wo, wi, Radiance)[0] as f64;
+            let walks: Moments = (0..20_000)
+                .map(|seed| with_seed(layers.into(), seed).f(wo, wi, Radiance)[0] as f64)
+                .collect();
+            let tolerance = 5.0 * walks.variance_of_mean().sqrt() + 2e-4 * expected;
+            assert!((walks.mean - expected).abs() <= tolerance, "{eta}: {walks:?} for {expected}");
         }
     }
 }
@@ -192,9 +200,10 @@ fn a_smooth_clear_coat_over_a_diffuse_base_has_a_closed_form() {
 fn lossless_layers_keep_all_light() {
     let mut random = Random::new(5);
     let white = Layered { max_depth: 2000, ..coated(diffuse(1.0), 0.0, 0.0, 0.0) };
+    let varnished = closed(white);
     let cloudy = Layered { thickness: 1.0, albedo: SampledSpectrum::ONE, ..white };
     let mirror = Conductor { eta: SampledSpectrum::ZERO, ..metal(0.0) };
-    for bxdf in [white.into(), cloudy.into(), coated(mirror, 0.0, 0.0, 0.0).into()] {
+    for bxdf in [white.into(), varnished, cloudy.into(), coated(mirror, 0.0, 0.0, 0.0).into()] {
         for wo in views() {
             let kept: Moments = (0..20_000)
                 .map(|_| sample(&bxdf, wo, &mut random, Importance).map_or(0.0, |sample| weight(&sample)))
@@ -229,6 +238,7 @@ impl LaneFunction for Lanes {
             thickness: u[7],
             albedo,
             phase: HenyeyGreenstein { g: u[6] * R::splat(0.9) },
+            inner: u[3] - R::splat(0.5),
             max_depth: 8,
             samples: 2,
             seed: u[0].to_bits(),
@@ -243,6 +253,7 @@ impl LaneFunction for Lanes {
             thickness: bxdf.thickness,
             albedo,
             phase: bxdf.phase,
+            inner: bxdf.inner,
             max_depth: 8,
             samples: 1,
             seed: bxdf.seed,

@@ -12,6 +12,7 @@ use description::{
     ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc,
     MaterialKind, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
 };
+use scattering::inner_reflectance;
 use spectrum::Spectrum;
 
 impl Compiler<'_> {
@@ -224,8 +225,14 @@ impl Compiler<'_> {
             let message = format!("an asymmetry lies between −1 and 1, as {value} does not");
             self.error("invalid-value", message, origin.parameter("g"));
         }
+        let eta = self.index_of_refraction(eta, &format!("{prefix}eta"), origin);
+        let inner = match (&eta, self.textures.textures().constant(thickness)) {
+            (&Spectrum::Constant(eta), Some(thickness)) => Some(inner_reflectance(eta, thickness.max(0.0))),
+            _ => None,
+        };
         Coat {
-            eta: self.index_of_refraction(eta, &format!("{prefix}eta"), origin),
+            eta,
+            inner,
             roughness: self.roughness(roughness, prefix, origin),
             thickness,
             albedo: self.albedo(&layers.albedo, "albedo", origin),

@@ -25,6 +25,8 @@ pub struct Coat {
     pub albedo: SpectrumTextureId,
     /// Asymmetry of its phase function.
     pub g: FloatTextureId,
+    /// The mean inner reflectance of the coat, if index and thickness are the same everywhere.
+    pub inner: Option<f32>,
     /// The number of events inside, at most.
     pub max_depth: u32,
     /// Random walks per value.
@@ -57,6 +59,7 @@ impl Coat {
             thickness: textures.float(self.thickness, context).max(R::zero()),
             albedo: textures.spectrum(self.albedo, context, lambda).clamp(R::zero(), R::one()),
             phase: HenyeyGreenstein { g: textures.float(self.g, context).clamp(-limit, limit) },
+            inner: R::splat(self.inner.unwrap_or(-1.0)),
             max_depth: self.max_depth,
             samples: self.samples,
             seed: HashSequence::new(words).word(),

@@ -7,11 +7,11 @@
 //! f = f_coat + T B T + T B R B T + T B R B R B T + …
 //! ```
 //!
-//! where each product is an integral over the directions between two layers. [Random walks](walk)
-//! estimate the sum. The medium has the extinction coefficient 1, so that `thickness` is an optical
+//! where each product is an integral over the directions between two layers. Random walks estimate
+//! the sum, but for a smooth clear coat over a diffuse base, where it has a closed form. The medium has the extinction coefficient 1, so that `thickness` is an optical
 //! one, and a Henyey–Greenstein phase function. Without scattering (`albedo` 0) it only absorbs.
 //!
-//! `f` is an estimate, the same for the same directions and `seed`. Samples are walks of their own
+//! An estimated `f` is the same for the same directions and `seed`. Samples are walks of their own
 //! whose densities are unknown: [`BsdfSample::pdf_is_proportional`]. `pdf` approximates their
 //! density by a closed form: reflection by the coat; one reflection by the base, in a lobe that is
 //! widened by the refractions; and a tenth of everything that enters spread evenly over the
@@ -21,6 +21,7 @@
 //! A walk has `max_depth` events between entrance and exit at most. Both sides of the surface are
 //! coated. Sources: [Guo 2018], [Pharr 2023 §14.3].
 
+mod closed;
 mod walk;
 
 use super::{BsdfSample, Conductor, Dielectric, Diffuse, Scatter};
@@ -32,6 +33,8 @@ use sampling::HashSequence;
 use sampling::warp::cosine_hemisphere_pdf;
 use spectrum::SampledSpectrum;
 use walk::{Estimate, SampleWalk};
+
+pub use closed::inner_reflectance;
 
 /// A dielectric coat over an opaque base.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +49,9 @@ pub struct Layered<B, R: Real = f32> {
     pub albedo: SampledSpectrum<R>,
     /// Its phase function.
     pub phase: HenyeyGreenstein<R>,
+    /// The [`inner_reflectance`] of the coat if it is smooth. Below zero where that is not known;
+    /// there is no closed form then.
+    pub inner: R,
     /// The number of events inside of the coat, at most.
     pub max_depth: u32,
     /// Walks per value of `f`; ≥ 1.
@@ -56,12 +62,20 @@ pub struct Layered<B, R: Real = f32> {
 
 /// What lies below a coat.
 pub trait CoatedBase<R: Real>: Scatter<R> + Copy {
+    /// The albedo of a base that scatters light evenly, whatever its direction. `None` for others.
+    fn even_albedo(&self) -> Option<SampledSpectrum<R>>;
+
     /// The density outside of the coat of light from `wo` that is refracted inwards, reflected by
     /// the base once and refracted outwards, given that it enters. Both directions are above.
     fn pdf_through(&self, interface: &Dielectric<R>, wo: Vector3<R>, wi: Vector3<R>) -> R;
 }
 
 impl<R: Real> CoatedBase<R> for Diffuse<R> {
+    #[inline(always)]
+    fn even_albedo(&self) -> Option<SampledSpectrum<R>> {
+        Some(self.reflectance)
+    }
+
     /// Uniform radiance below the coat leaves it as T(cos θ), by the reciprocity of T.
     #[inline(always)]
     fn pdf_through(&self, interface: &Dielectric<R>, _: Vector3<R>, wi: Vector3<R>) -> R {
@@ -71,6 +85,11 @@ impl<R: Real> CoatedBase<R> for Diffuse<R> {
 }
 
 impl<R: Real> CoatedBase<R> for Conductor<R> {
+    #[inline(always)]
+    fn even_albedo(&self) -> Option<SampledSpectrum<R>> {
+        None
+    }
+
     /// A reflection off microfacets of slope s turns light by 2s, a refraction by (1 − 1/η)s.
     #[inline(always)]
     fn pdf_through(&self, interface: &Dielectric<R>, wo: Vector3<R>, wi: Vector3<R>) -> R {
@@ -128,11 +147,20 @@ impl<R: Real, B: CoatedBase<R>> Scatter<R> for Layered<B, R> {
         if !valid.any() {
             return SampledSpectrum::zero();
         }
-        let mut sum = SampledSpectrum::zero();
-        for index in 0..self.samples {
-            sum += R::call(Estimate { layers: self, wo, wi, mode, random: self.random(index, wo, wi) });
+        let mut f = SampledSpectrum::zero();
+        let mut estimated = valid;
+        if let Some((albedo, closed)) = self.closed_form() {
+            f = self.f_closed(albedo, wo, wi);
+            estimated = estimated & !closed;
         }
-        let f = self.interface.f(wo, wi, mode) + sum / R::splat(self.samples as f32);
+        if estimated.any() {
+            let mut sum = SampledSpectrum::zero();
+            for index in 0..self.samples {
+                sum += R::call(Estimate { layers: self, wo, wi, mode, random: self.random(index, wo, wi) });
+            }
+            let estimate = self.interface.f(wo, wi, mode) + sum / R::splat(self.samples as f32);
+            f = SampledSpectrum::select(estimated, estimate, f);
+        }
         SampledSpectrum::select(valid, f, SampledSpectrum::zero())
     }
 
@@ -149,8 +177,22 @@ impl<R: Real, B: CoatedBase<R>> Scatter<R> for Layered<B, R> {
             return BsdfSample::invalid();
         }
         let below = wo.z.lt(R::zero());
-        let sample = R::call(SampleWalk { layers: self, wo: flip::<R>(below, wo), uc, u, mode });
-        BsdfSample { wi: flip::<R>(below, sample.wi), ..sample }
+        let wo = flip::<R>(below, wo);
+        let sample = match self.closed_form() {
+            Some((albedo, closed)) if closed.any() => {
+                let exact = self.sample_closed(albedo, wo, (uc, u), mode);
+                if closed.all() {
+                    exact
+                } else {
+                    let walk = R::call(SampleWalk { layers: self, wo, uc, u, mode });
+                    let sample = BsdfSample::select(closed, exact, walk);
+                    BsdfSample { pdf_is_proportional: true, ..sample }
+                }
+            }
+            _ => R::call(SampleWalk { layers: self, wo, uc, u, mode }),
+        };
+        let valid = sample.valid & wo.z.ne(R::zero());
+        BsdfSample { wi: flip::<R>(below, sample.wi), valid, ..sample }
     }
 
     #[inline(always)]
@@ -168,7 +210,10 @@ impl<R: Real, B: CoatedBase<R>> Scatter<R> for Layered<B, R> {
         let in_medium = R::select(self.has_medium(), in_medium, R::zero());
         let even = R::splat(0.1) + R::splat(0.9) * in_medium;
         let through = self.base.pdf_through(&self.interface, wo, wi);
-        let pdf = reflected + entering * lerp(even, through, cosine_hemisphere_pdf(wi.z));
+        let mut pdf = reflected + entering * lerp(even, through, cosine_hemisphere_pdf(wi.z));
+        if let Some((_, closed)) = self.closed_form() {
+            pdf = R::select(closed, self.pdf_closed(wo, wi), pdf);
+        }
         R::select(valid, pdf, R::zero())
     }
 

@@ -308,7 +308,6 @@ impl<R: Real, B: CoatedBase<R>> Function<R> for SampleWalk<'_, B, R> {
         let rough = BxdfFlags::choose(diffuse, BxdfFlags::DIFFUSE_REFLECTION, BxdfFlags::GLOSSY_REFLECTION);
         let lobe = BxdfFlags::select(specular, BxdfFlags::splat(BxdfFlags::SPECULAR_REFLECTION), rough);
         let lobe = BxdfFlags::select(reflected, entrance.flags, lobe);
-        let valid = (reflected | left) & wo.z.ne(R::zero());
-        BsdfSample { valid, pdf_is_proportional: true, ..BsdfSample::new(f, wi, pdf, lobe) }
+        BsdfSample { valid: reflected | left, pdf_is_proportional: true, ..BsdfSample::new(f, wi, pdf, lobe) }
     }
 }
