@@ -18,8 +18,8 @@ mod phase;
 
 pub use bsdf::Bsdf;
 pub use bxdf::{
-    BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Layered, Scatter,
-    ThinDielectric, inner_reflectance,
+    BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
+    Scatter, ThinDielectric, inner_reflectance,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};

@@ -174,8 +174,8 @@ impl<'a> Batch<'a> {
                 Material::CoatedConductor(material) => {
                     self.dispatch(algorithm, (id, material), turns, rows);
                 }
-                Material::Mix(_) | Material::Interface => {
-                    unreachable!("invariant: mixes and interfaces are not shaded in lanes")
+                Material::Hair(_) | Material::Mix(_) | Material::Interface => {
+                    unreachable!("invariant: hair, mixes and interfaces are not shaded in lanes")
                 }
             }
         }

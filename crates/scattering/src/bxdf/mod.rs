@@ -7,6 +7,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod hair;
 mod layered;
 mod thin_dielectric;
 
@@ -14,6 +15,7 @@ pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
+pub use hair::Hair;
 pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use thin_dielectric::ThinDielectric;
 
@@ -171,6 +173,8 @@ pub enum Bxdf {
     CoatedDiffuse(Layered<Diffuse>),
     /// Metal under a coat.
     CoatedConductor(Layered<Conductor>),
+    /// A fibre.
+    Hair(Hair),
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
@@ -193,6 +197,7 @@ macro_rules! each_bxdf {
             $crate::Bxdf::ThinDielectric($member) => $body,
             $crate::Bxdf::CoatedDiffuse($member) => $body,
             $crate::Bxdf::CoatedConductor($member) => $body,
+            $crate::Bxdf::Hair($member) => $body,
         }
     };
 }
@@ -251,4 +256,5 @@ into_bxdf! {
     ThinDielectric(ThinDielectric)
     CoatedDiffuse(Layered<Diffuse>)
     CoatedConductor(Layered<Conductor>)
+    Hair(Hair)
 }

@@ -1,5 +1,6 @@
 //! The contracts of BxDFs and microfacet distributions.
 
 mod all_bxdfs;
+mod hair;
 mod layers;
 mod microfacets;

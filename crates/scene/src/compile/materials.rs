@@ -134,14 +134,28 @@ impl Compiler<'_> {
                 let coat = self.coat(layers, "interface.", origin);
                 Material::CoatedConductor(CoatedConductorMaterial { base, coat })
             }
-            MaterialKind::Hair { color, .. } => {
-                self.not_drawn(kind.name(), "diffuse", origin);
-                match color {
-                    HairColor::Reflectance(reflectance) => self.diffuse(reflectance, origin),
-                    HairColor::SigmaA(_) | HairColor::Melanin { .. } => {
-                        self.diffuse(&SpectrumDesc::rgb(0.25, 0.15, 0.1).into(), origin)
+            MaterialKind::Hair { color, eta, beta_m, beta_n, alpha } => {
+                let absorption = match color {
+                    HairColor::SigmaA(sigma_a) => HairAbsorption::Coefficient(self.spectrum_texture(
+                        sigma_a,
+                        SpectrumType::Unbounded,
+                        origin.parameter("sigma_a"),
+                    )),
+                    HairColor::Reflectance(color) => {
+                        HairAbsorption::Color(self.albedo(color, "reflectance", origin))
                     }
-                }
+                    HairColor::Melanin { eumelanin, pheomelanin } => HairAbsorption::Pigments {
+                        eumelanin: self.float_texture(eumelanin, origin.parameter("eumelanin")),
+                        pheomelanin: self.float_texture(pheomelanin, origin.parameter("pheomelanin")),
+                    },
+                };
+                Material::Hair(HairMaterial {
+                    absorption,
+                    eta: self.float_texture(eta, origin.parameter("eta")),
+                    beta_m: self.float_texture(beta_m, origin.parameter("beta_m")),
+                    beta_n: self.float_texture(beta_n, origin.parameter("beta_n")),
+                    alpha: self.float_texture(alpha, origin.parameter("alpha")),
+                })
             }
             MaterialKind::Subsurface { scattering, .. } => {
                 self.not_drawn(kind.name(), "diffuse", origin);

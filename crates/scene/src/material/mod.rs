@@ -11,6 +11,7 @@ mod conductor;
 mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
+mod hair;
 mod mix;
 mod normal_map;
 mod roughness;
@@ -24,6 +25,7 @@ pub use conductor::{ConductorIndex, ConductorMaterial};
 pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
 pub use diffuse_transmission::DiffuseTransmissionMaterial;
+pub use hair::{HairAbsorption, HairMaterial};
 pub use mix::MixMaterial;
 pub use normal_map::NormalMap;
 pub use roughness::Roughness;
@@ -67,6 +69,8 @@ pub enum Material {
     CoatedDiffuse(CoatedDiffuseMaterial),
     /// See [`CoatedConductorMaterial`].
     CoatedConductor(CoatedConductorMaterial),
+    /// See [`HairMaterial`].
+    Hair(HairMaterial),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
     /// Rays pass through; only the medium changes.
@@ -91,6 +95,7 @@ impl Material {
             Self::ThinDielectric(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::CoatedDiffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::CoatedConductor(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::Hair(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Mix(_) | Self::Interface => None,
         }
     }
@@ -98,7 +103,7 @@ impl Material {
     /// Whether the BxDF may be specular somewhere.
     pub fn may_be_specular(&self, textures: &Textures) -> bool {
         match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) => false,
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Hair(_) => false,
             Self::Conductor(m) => m.roughness.may_be_smooth(textures),
             Self::CoatedDiffuse(m) => m.coat.roughness.may_be_smooth(textures),
             Self::CoatedConductor(m) => m.coat.roughness.may_be_smooth(textures),
@@ -110,7 +115,7 @@ impl Material {
     /// passes through the material, and it is not dispersive.
     pub fn stops(&self) -> bool {
         match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Conductor(_) => true,
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Conductor(_) | Self::Hair(_) => true,
             Self::Dielectric(m) => !is_dispersive(&m.eta),
             Self::ThinDielectric(m) => !is_dispersive(&m.eta),
             Self::CoatedDiffuse(m) => !m.coat.is_dispersive(),

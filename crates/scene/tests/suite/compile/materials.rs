@@ -5,8 +5,8 @@ use crate::common::*;
 use alhazen_scene::material::{Material, MaterialId};
 use alhazen_scene::{Scene, compile};
 use description::{
-    AreaLightDesc, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, HairColor, MaterialDesc,
-    MaterialKind, RoughnessDesc, Severity, ShapeDesc, SpectrumDesc, SubsurfaceScattering,
+    AreaLightDesc, ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, Severity, ShapeDesc,
+    SpectrumDesc, SubsurfaceScattering,
 };
 
 #[test]
@@ -97,19 +97,6 @@ fn an_interface_does_not_emit() {
 
 #[test]
 fn unsupported_materials_are_replaced_with_a_warning() {
-    let coated = CoatedConductorDesc {
-        conductor: ConductorDesc::default(),
-        eta: 1.5.into(),
-        roughness: RoughnessDesc::default(),
-        layers: Default::default(),
-    };
-    let hair = MaterialKind::Hair {
-        color: HairColor::Melanin { eumelanin: 1.3.into(), pheomelanin: 0.0.into() },
-        eta: 1.55.into(),
-        beta_m: 0.3.into(),
-        beta_n: 0.3.into(),
-        alpha: 2.0.into(),
-    };
     let skin = MaterialKind::Subsurface {
         scattering: SubsurfaceScattering::Named("Skin1".into()),
         scale: 1.0,
@@ -118,15 +105,6 @@ fn unsupported_materials_are_replaced_with_a_warning() {
         roughness: RoughnessDesc::default(),
     };
     let cases = [
-        (
-            MaterialKind::CoatedDiffuse(CoatedDiffuseDesc::default()),
-            "`coateddiffuse` is not drawn yet; drawn as `diffuse`, without its coat",
-        ),
-        (
-            MaterialKind::CoatedConductor(coated),
-            "`coatedconductor` is not drawn yet; drawn as `conductor`, without its coat",
-        ),
-        (hair, "`hair` is not drawn yet; drawn as diffuse"),
         (skin, "`subsurface` is not drawn yet; drawn as diffuse"),
         (
             MaterialKind::Measured { filename: "a.bsdf".into() },
