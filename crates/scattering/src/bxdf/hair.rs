@@ -264,15 +264,15 @@ impl<R: Real> Scatter<R> for Hair<R> {
         let (mut sin_o, mut cos_o) = self.tilted(&o, 0);
         let (mut v, mut center, mut left) = (self.v[0], o.center(0), uc / probabilities[0]);
         let (mut below, mut is_last) = (probabilities[0], R::Mask::splat(false));
-        for p in 1..=P_MAX {
+        for (p, &probability) in probabilities.iter().enumerate().skip(1) {
             let here = uc.ge(below);
             let (sin, cos) = self.tilted(&o, p);
             sin_o = R::select(here, sin, sin_o);
             cos_o = R::select(here, cos, cos_o);
             v = R::select(here, self.v[p], v);
             center = R::select(here, o.center(p), center);
-            left = R::select(here, (uc - below) / probabilities[p], left);
-            below += probabilities[p];
+            left = R::select(here, (uc - below) / probability, left);
+            below += probability;
             is_last = here;
         }
         let left = left.clamp(R::zero(), R::splat(math::ONE_MINUS_EPSILON));
@@ -300,8 +300,8 @@ impl<R: Real> Scatter<R> for Hair<R> {
         let phi = atan2(wi.z, wi.y) - o.phi;
         let probabilities = o.probabilities();
         let mut pdf = R::zero();
-        for p in 0..=P_MAX {
-            pdf += probabilities[p] * self.lobe(&o, p, wi, phi);
+        for (p, &probability) in probabilities.iter().enumerate() {
+            pdf += probability * self.lobe(&o, p, wi, phi);
         }
         R::select(directions.meet(lobe), pdf, R::zero())
     }

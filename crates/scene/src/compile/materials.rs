@@ -3,8 +3,8 @@
 use super::Compiler;
 use crate::material::{
     Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
-    DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, Material, MaterialEntry, MaterialId,
-    MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+    DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
+    MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
