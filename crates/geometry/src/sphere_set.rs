@@ -143,11 +143,11 @@ impl SphereSet {
         Sphere::ball(placement, self.flips, self.radius(sphere))
     }
 
-    /// The first hit on a sphere at 0 < t < `t_max`.
+    /// The first hit on a sphere between two distances, the first ≥ 0.
     #[inline]
-    pub(crate) fn intersect(center: Point3, radius: f32, ray: &Ray, t_max: f32) -> Option<f32> {
+    pub(crate) fn intersect(center: Point3, radius: f32, ray: &Ray, range: [f32; 2]) -> Option<f32> {
         let o = ray.o.as_dvec3() - center.as_dvec3();
-        first_root(o, ray.d.as_dvec3(), f64::from(radius), t_max)
+        first_root(o, ray.d.as_dvec3(), f64::from(radius), range)
     }
 
     /// Bytes of memory of the arrays.

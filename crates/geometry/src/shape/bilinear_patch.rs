@@ -149,9 +149,9 @@ impl BilinearPatch {
         Some(Bounds3::around(self.p))
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    pub(super) fn intersect(&self, ray: &Ray, [after, t_max]: [f32; 2]) -> Option<ShapeHit> {
         if let Some(flat) = &self.flat {
-            return flat.intersect(ray, t_max);
+            return flat.intersect(ray, t_max).filter(|hit| hit.t > after);
         }
         let (o, d) = (ray.o.as_dvec3(), ray.d.as_dvec3());
         let [p00, p10, p01, p11] = self.p.map(|p| p.as_dvec3() - o);
@@ -168,7 +168,7 @@ impl BilinearPatch {
             let v = start.dot(d.cross(across)) / scale;
             let nearest = best.map_or(t_max, |hit| hit.t);
             // NaN, where ray and line are parallel, fails.
-            if t > 0.0 && (t as f32) < nearest && (0.0..=1.0).contains(&v) {
+            if (t as f32) > after && (t as f32) < nearest && (0.0..=1.0).contains(&v) {
                 best = Some(ShapeHit { t: t as f32, uv: Vec2::new(u as f32, v as f32) });
             }
         }
@@ -486,7 +486,7 @@ mod tests {
                     let o = m.point(Vec3::splat(0.5) + random() * 0.499);
                     let target = m.point(corner(a).lerp(corner(b), random().x.abs()));
                     let ray = Ray::new(o, target - o, 0.0);
-                    let hit = sides.iter().find_map(|side| side.intersect(&ray, f32::INFINITY));
+                    let hit = sides.iter().find_map(|side| side.intersect(&ray, [0.0, f32::INFINITY]));
                     // A ray that grazes a side may meet it a little beyond the edge.
                     assert!(hit.is_some_and(|hit| (hit.t - 1.0).abs() < 2e-3), "{ray:?} {hit:?}");
                 }

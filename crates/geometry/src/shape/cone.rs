@@ -45,9 +45,9 @@ impl Cone {
         Some(self.quadric.bounds(DVec3::new(-r, -r, 0.0), DVec3::new(r, r, self.height)))
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    pub(super) fn intersect(&self, ray: &Ray, range: [f32; 2]) -> Option<ShapeHit> {
         let (o, d) = self.quadric.placement.ray_inward(ray);
-        first_hit(self.roots(o, d)?, t_max, |t| {
+        first_hit(self.roots(o, d)?, range, |t| {
             let p = o + d * t;
             let inside = p.z >= 0.0 && p.z <= self.height && phi(p) <= self.phi_max;
             inside.then(|| self.parameters(p))

@@ -66,9 +66,9 @@ impl Hyperboloid {
         Some(self.quadric.bounds(DVec3::Z * low - corner, DVec3::Z * high + corner))
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    pub(super) fn intersect(&self, ray: &Ray, range: [f32; 2]) -> Option<ShapeHit> {
         let (o, d) = self.quadric.placement.ray_inward(ray);
-        first_hit(self.roots(o, d)?, t_max, |t| {
+        first_hit(self.roots(o, d)?, range, |t| {
             let (v, phi) = self.parameters(o + d * t);
             let inside = (0.0..=1.0).contains(&v) && phi <= self.phi_max;
             inside.then(|| self.uv(v, phi))

@@ -117,7 +117,29 @@ impl Shape {
     /// The nearest hit at 0 < t < `t_max`.
     #[inline]
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
-        each_shape!(self, shape => shape.intersect(ray, t_max))
+        self.intersect_beyond(ray, 0.0, t_max)
+    }
+
+    /// The nearest hit at `after` < t < `t_max`, where `after` is 0 or the distance of another hit.
+    #[inline]
+    pub fn intersect_beyond(&self, ray: &Ray, after: f32, t_max: f32) -> Option<ShapeHit> {
+        let range = [after, t_max];
+        let hit = match self {
+            Self::Sphere(shape) => return shape.intersect(ray, range),
+            Self::Cylinder(shape) => return shape.intersect(ray, range),
+            Self::Cone(shape) => return shape.intersect(ray, range),
+            Self::Paraboloid(shape) => return shape.intersect(ray, range),
+            Self::Hyperboloid(shape) => return shape.intersect(ray, range),
+            Self::Implicit(shape) => return shape.intersect(ray, range),
+            Self::Solid(shape) => return shape.intersect(ray, range),
+            Self::BilinearPatch(shape) => return shape.intersect(ray, range),
+            // Those that are hit once.
+            Self::Disk(shape) => shape.intersect(ray, t_max),
+            Self::Plane(shape) => shape.intersect(ray, t_max),
+            Self::Triangle(shape) => shape.intersect(ray, t_max),
+            Self::MovingTriangle(shape) => shape.intersect(ray, t_max),
+        };
+        hit.filter(|hit| hit.t > after)
     }
 
     /// The surface at a hit of `ray`.

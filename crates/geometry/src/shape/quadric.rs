@@ -181,8 +181,8 @@ pub(super) fn revolved_roots(q: [f64; 3], o: DVec3, d: DVec3, near: DVec3) -> Op
 
 /// The first of these roots at 0 < t < `t_max`.
 #[inline]
-pub(crate) fn first_root(o: DVec3, d: DVec3, radius: f64, t_max: f32) -> Option<f32> {
-    roots(o, d, radius)?.into_iter().filter(|&t| t > 0.0).map(|t| t as f32).find(|&t| t < t_max)
+pub(crate) fn first_root(o: DVec3, d: DVec3, radius: f64, [after, t_max]: [f32; 2]) -> Option<f32> {
+    roots(o, d, radius)?.map(|t| t as f32).into_iter().find(|&t| t > after && t < t_max)
 }
 
 /// The root that a hit at `t` was rounded from.
@@ -207,13 +207,13 @@ pub(super) fn swept(degrees: f32) -> f64 {
     (degrees.clamp(0.0, 360.0) as f64).to_radians()
 }
 
-/// The first of the ascending `roots` at 0 < t < `t_max` for which `parameters` are found.
+/// The first of the ascending `roots` between `after` and `t_max` for which `parameters` are found.
 pub(super) fn first_hit(
     roots: [f64; 2],
-    t_max: f32,
+    [after, t_max]: [f32; 2],
     parameters: impl Fn(f64) -> Option<Vec2>,
 ) -> Option<super::sample::ShapeHit> {
-    roots.into_iter().filter(|&t| t > 0.0 && (t as f32) < t_max).find_map(|t| {
+    roots.into_iter().filter(|&t| (t as f32) > after && (t as f32) < t_max).find_map(|t| {
         let uv = parameters(t)?;
         Some(super::sample::ShapeHit { t: t as f32, uv })
     })

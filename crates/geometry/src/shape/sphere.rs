@@ -73,9 +73,9 @@ impl Sphere {
         Some(self.quadric.bounds(DVec3::new(-r, -r, self.z[0]), DVec3::new(r, r, self.z[1])))
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    pub(super) fn intersect(&self, ray: &Ray, range: [f32; 2]) -> Option<ShapeHit> {
         let (o, d) = self.quadric.placement.ray_inward(ray);
-        first_hit(roots(o, d, self.radius)?, t_max, |t| {
+        first_hit(roots(o, d, self.radius)?, range, |t| {
             let p = o + d * t;
             let clipped =
                 self.ball.is_none() && (p.z < self.z[0] || p.z > self.z[1] || phi(p) > self.phi_max);

@@ -88,13 +88,19 @@ impl Trace<'_> {
         match item {
             Item::Shape(geometry, primitive) => {
                 self.stats.primitives += 1;
-                let hit = match self.tables.geometry(geometry) {
-                    Geometry::Shapes(shapes) => shapes[primitive as usize].intersect(self.ray, query.end()),
-                    Geometry::Curves(curves) => curves.intersect(primitive, self.ray, query.end()),
-                    Geometry::Mesh(_) | Geometry::Spheres(_) => None,
-                };
-                hit.is_some_and(|hit| {
-                    query.offer(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance: self.instance })
+                let instance = self.instance;
+                offer_all(query, |after, query| {
+                    let end = query.end();
+                    let hit = match self.tables.geometry(geometry) {
+                        Geometry::Shapes(shapes) => {
+                            shapes[primitive as usize].intersect_beyond(self.ray, after, end)
+                        }
+                        Geometry::Curves(curves) if after == 0.0 => {
+                            curves.intersect(primitive, self.ray, end)
+                        }
+                        Geometry::Curves(_) | Geometry::Mesh(_) | Geometry::Spheres(_) => None,
+                    }?;
+                    Some(Hit { t: hit.t, uv: hit.uv, geometry, primitive, instance })
                 })
             }
             Item::Instance(id) => {
@@ -118,6 +124,23 @@ impl Trace<'_> {
 #[inline(always)]
 pub(super) fn is_valid(ray: &Ray) -> bool {
     ray.o.is_finite() && ray.d.is_finite() && ray.d.abs().max_element().recip().is_finite()
+}
+
+/// Offers the hits of a primitive one after another, until one counts: a filter may reject the
+/// nearest one. `next` gives the first beyond a distance. Returns whether the query is finished.
+#[inline(always)]
+fn offer_all<Q: Query>(query: &mut Q, next: impl Fn(f32, &Q) -> Option<Hit>) -> bool {
+    let mut after = 0.0;
+    while let Some(hit) = next(after, query) {
+        after = hit.t;
+        if query.offer(hit) {
+            return true;
+        }
+        if query.t_max() <= after {
+            break;
+        }
+    }
+    false
 }
 
 /// Whether traversal in order of distance is faster.
@@ -325,12 +348,13 @@ impl<V: Vector<{ SphereBlock::WIDTH }>, Q: Query> Leaves for SphereLeaves<'_, '_
                 let lane = candidates.trailing_zeros() as usize % SphereBlock::WIDTH;
                 candidates &= candidates - 1;
                 let (center, radius) = block.sphere(lane);
-                let Some(t) = SphereSet::intersect(center, radius, self.trace.ray, self.query.end()) else {
-                    continue;
-                };
                 let (geometry, primitive) = block.id(lane);
                 let (geometry, instance) = (GeometryId(geometry), self.trace.instance);
-                if self.query.offer(Hit { t, uv: Vec2::ZERO, geometry, primitive, instance }) {
+                let finished = offer_all(self.query, |after, query| {
+                    let t = SphereSet::intersect(center, radius, self.trace.ray, [after, query.end()])?;
+                    Some(Hit { t, uv: Vec2::ZERO, geometry, primitive, instance })
+                });
+                if finished {
                     return true;
                 }
             }

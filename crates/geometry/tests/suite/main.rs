@@ -6,6 +6,7 @@ mod common;
 mod curves;
 mod extents;
 mod facets;
+mod filters;
 mod flat_shapes;
 mod implicit;
 mod instances;

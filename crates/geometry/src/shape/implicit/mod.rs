@@ -52,12 +52,13 @@ impl Implicit {
         Some(self.quadric.bounds(self.body.extent.min, self.body.extent.max))
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    pub(super) fn intersect(&self, ray: &Ray, [after, t_max]: [f32; 2]) -> Option<ShapeHit> {
         let (o, d) = self.quadric.placement.ray_inward(ray);
-        let ends = [0.0, t_max.into()].map(|t| Crossing { t, face: 0 });
+        let ends = [after.into(), t_max.into()].map(|t| Crossing { t, face: 0 });
         let range = self.body.extent.clip(o, d, ends, 0)?.map(|crossing| crossing.t);
         // A root that is not certainly ahead is the point where the ray starts.
-        let root = self.body.find(o, d, range, |root| root.t - root.error > 0.0)?;
+        let is_ahead = |root: &Root| root.t - root.error > 0.0 && root.t as f32 > after;
+        let root = self.body.find(o, d, range, is_ahead)?;
         let t = root.t as f32;
         (t > 0.0 && t < t_max).then(|| ShapeHit { t, uv: self.body.level(o + d * root.t, d).parameters() })
     }

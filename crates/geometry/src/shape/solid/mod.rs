@@ -131,13 +131,14 @@ impl Solid {
         self.tree.bounds(&self.parts)
     }
 
-    pub(super) fn intersect(&self, ray: &Ray, t_max: f32) -> Option<ShapeHit> {
+    pub(super) fn intersect(&self, ray: &Ray, [after, t_max]: [f32; 2]) -> Option<ShapeHit> {
         // The ends of the range are no faces.
         let range = [0.0, t_max.into()].map(|t| Crossing { t, face: u32::MAX });
         let crossings = self.tree.spans(&self.parts, ray, range).into_iter().flatten();
-        let first = crossings.into_iter().find(|crossing| crossing.face != u32::MAX && crossing.t > 0.0)?;
+        let is_ahead = |crossing: &Crossing| crossing.face != u32::MAX && crossing.t as f32 > after;
+        let first = crossings.into_iter().find(is_ahead)?;
         let t = first.t as f32;
-        (t > 0.0 && t < t_max).then(|| ShapeHit { t, uv: Vec2::new(first.face as f32, 0.0) })
+        (t < t_max).then(|| ShapeHit { t, uv: Vec2::new(first.face as f32, 0.0) })
     }
 
     pub(super) fn surface(&self, ray: &Ray, hit: &ShapeHit) -> SurfacePoint {
