@@ -11,8 +11,8 @@ mod node;
 mod traverse;
 
 use math::Bounds3;
-pub(crate) use node::WIDTH;
 use node::WideNode;
+pub(crate) use node::{RaySlabs, WIDTH};
 
 pub use build::BuildQuality;
 pub(crate) use build::{Extent, Primitives, Reference};

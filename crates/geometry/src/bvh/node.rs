@@ -79,7 +79,7 @@ pub(crate) struct WideNode {
     len: u32,
 }
 
-/// A ray prepared for slab tests, the same in every lane.
+/// A ray prepared for slab tests: numbers, or the same in every lane.
 #[derive(Clone, Copy)]
 pub(crate) struct RaySlabs<V> {
     /// The offsets in bytes of the planes that are crossed first and last along each axis.
@@ -92,50 +92,44 @@ pub(crate) struct RaySlabs<V> {
     far: [V; 3],
 }
 
-impl<V: Vector<WIDTH>> RaySlabs<V> {
-    /// # Safety
-    /// The processor must have the instruction set of `V`.
+impl RaySlabs<f32> {
+    /// `bounds` are those of the tree.
     #[inline(always)]
-    pub unsafe fn new(ray: &Ray, bounds: &Bounds3) -> Self {
+    pub fn new(ray: &Ray, bounds: &Bounds3) -> Self {
         let size = size(ray.o, bounds);
         let largest = ray.d.abs().max_element();
-        // SAFETY: as the caller promises.
-        unsafe {
-            if is_moderate(size, largest) {
-                Self::along(&ray.d, inverse(ray.d, largest), ray.o, size * MARGIN)
-            } else {
-                Self::everywhere()
-            }
+        if is_moderate(size, largest) {
+            Self::along(&ray.d, inverse(ray.d, largest), ray.o, size * MARGIN)
+        } else {
+            Self::everywhere()
         }
     }
 
     /// A ray that meets every box.
+    #[inline(always)]
+    fn everywhere() -> Self {
+        let [first, last] = planes_along(&Vec3::ONE);
+        Self { first, last, inverse: [f32::MIN_POSITIVE; 3], near: [1e30; 3], far: [-1e30; 3] }
+    }
+
+    #[inline(always)]
+    fn along(d: &Vec3, inverse: Vec3, o: Vec3, margin: f32) -> Self {
+        let shift = Vec3::splat(margin).copysign(inverse);
+        let [first, last] = planes_along(d);
+        let (near, far) = ((o + shift) * inverse, (o - shift) * inverse);
+        Self { first, last, inverse: inverse.into(), near: near.into(), far: far.into() }
+    }
+
+    /// The same in every lane.
     ///
     /// # Safety
     /// The processor must have the instruction set of `V`.
     #[inline(always)]
-    unsafe fn everywhere() -> Self {
+    pub unsafe fn lanes<V: Vector<WIDTH>>(&self) -> RaySlabs<V> {
+        let Self { first, last, inverse, near, far } = *self;
         // SAFETY: as the caller promises.
-        let splat = |x| unsafe { [V::splat(x); 3] };
-        let [first, last] = planes_along(&Vec3::ONE);
-        Self { first, last, inverse: splat(f32::MIN_POSITIVE), near: splat(1e30), far: splat(-1e30) }
-    }
-
-    /// # Safety
-    /// The processor must have the instruction set of `V`.
-    #[inline(always)]
-    unsafe fn along(d: &Vec3, inverse: Vec3, o: Vec3, margin: f32) -> Self {
-        let shift = Vec3::splat(margin).copysign(inverse);
-        // SAFETY: as the caller promises.
-        let splat = |v: Vec3| v.to_array().map(|x| unsafe { V::splat(x) });
-        let [first, last] = planes_along(d);
-        Self {
-            first,
-            last,
-            inverse: splat(inverse),
-            near: splat((o + shift) * inverse),
-            far: splat((o - shift) * inverse),
-        }
+        let splat = |v: [f32; 3]| unsafe { [V::splat(v[0]), V::splat(v[1]), V::splat(v[2])] };
+        RaySlabs { first, last, inverse: splat(inverse), near: splat(near), far: splat(far) }
     }
 }
 
@@ -177,14 +171,14 @@ impl<V: Vector<WIDTH>> PacketSlabs<V> {
         // SAFETY: as the caller promises.
         unsafe {
             if !all_moderate {
-                let [rays, least, greatest] = [RaySlabs::everywhere(); 3];
+                let [rays, least, greatest] = [RaySlabs::everywhere().lanes(); 3];
                 return Self { rays, least, greatest };
             }
             // Without `map`, which would be called, and call each intrinsic.
             let d = rays[0].0.d;
-            let least = RaySlabs::along(&d, least.copysign(d), o, margin);
-            let greatest = RaySlabs::along(&d, greatest.copysign(d), o, margin);
-            let mut rays = greatest;
+            let least = RaySlabs::along(&d, least.copysign(d), o, margin).lanes();
+            let greatest = RaySlabs::along(&d, greatest.copysign(d), o, margin).lanes();
+            let mut rays: RaySlabs<V> = greatest;
             for axis in 0..3 {
                 let shift = margin.copysign(lanes[axis][0]);
                 rays.inverse[axis] = V::load(&lanes[axis]);

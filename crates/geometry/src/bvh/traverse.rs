@@ -94,6 +94,12 @@ impl PacketEntry {
 }
 
 impl Bvh {
+    /// Prepares a ray for traversal.
+    #[inline(always)]
+    pub fn prepare(&self, ray: &Ray) -> RaySlabs<f32> {
+        RaySlabs::new(ray, &self.bounds)
+    }
+
     /// Passes `leaves` the blocks that the ray may meet before `t_max`, the nearest first, or with
     /// `ANY` in the order of the builder. Returns the number of boxes tested, and whether `leaves`
     /// stopped. The ray must be finite.
@@ -103,7 +109,7 @@ impl Bvh {
     #[inline(always)]
     pub unsafe fn traverse<S: Simd, const ANY: bool>(
         &self,
-        ray: &Ray,
+        ray: &RaySlabs<f32>,
         t_max: &mut f32,
         leaves: &mut impl Leaves,
     ) -> (u64, bool) {
@@ -115,7 +121,7 @@ impl Bvh {
         // SAFETY: the caller promises the instruction set. Children are valid nodes and ranges of
         // blocks, and the tree is not deeper than the stack allows: `Bvh::build` ensures both.
         unsafe {
-            let slabs = RaySlabs::<S::F32x16>::new(ray, &self.bounds);
+            let slabs = ray.lanes::<S::F32x16>();
             let nodes = self.nodes.as_ptr();
             let mut stack = [const { MaybeUninit::<StackEntry>::uninit() }; STACK];
             let mut top = stack.as_mut_ptr().cast::<StackEntry>();

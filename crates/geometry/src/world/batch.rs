@@ -1,8 +1,9 @@
 //! Batches of rays.
 //!
-//! Few facets are tested without a tree. Otherwise coherent rays are traced as packets, and other
-//! rays one by one: many rays with scattered origins in an order in which consecutive rays visit
-//! the same nodes and triangles, so that these are in the cache; few rays in the order given.
+//! Few facets are tested without a tree. Otherwise sixteen rays at a time are read from their
+//! columns: coherent ones are traced as packets, others one by one. Many rays with scattered
+//! origins are taken in an order in which consecutive rays visit the same nodes and triangles, so
+//! that these are in the cache; few rays in the order given.
 //!
 //! Each ray finds the same hit as on its own.
 
@@ -17,15 +18,11 @@ use super::hit::Hit;
 use super::instance::InstancePath;
 use super::query::{Any, Nearest, Query};
 use super::ray_order::coherent_order;
-use super::ray_packet::{RayPacket, coherent_packet};
+use super::ray_packet::{TracePacket, are_coherent};
 use super::stats::RayStats;
-use super::trace::{Trace, is_valid};
+use super::trace::{Trace, TraceEach, is_valid};
 use crate::bvh::WIDTH;
-use lanes::{Simd, Task};
-use math::Ray;
-
-/// How many rays ahead rays are prefetched.
-const PREFETCH_DISTANCE: usize = 16;
+use math::{Ray, Vec3};
 
 impl World {
     /// [`World::intersect`] for each ray. Batches of camera rays are best rows or tiles of sixteen
@@ -80,22 +77,50 @@ impl World {
         FacetRays { geometries: &self.tables.geometries, facets, rays, filter }
     }
 
-    fn trace_batch(&self, rays: RayColumns, mut queries: impl Queries, stats: &mut RayStats) {
+    fn trace_batch<Q: Queries>(&self, rays: RayColumns, mut queries: Q, stats: &mut RayStats) {
         if !self.tables.extents {
             for place in 0..rays.len() {
-                self.trace_alone(&rays, place, &mut queries, stats);
+                let ray = rays.ray(place);
+                let answer = self.trace(&ray, queries.of(&ray, rays.t_max(place)), stats);
+                queries.answer(place, answer);
             }
             return;
         }
-        // SAFETY: the processor has the instruction set of a world.
-        unsafe { self.tables.instruction_set.run(Batch { world: self, rays, queries, stats }) }
-    }
-
-    #[inline(always)]
-    fn trace_alone(&self, rays: &RayColumns, place: usize, queries: &mut impl Queries, stats: &mut RayStats) {
-        let ray = rays.ray(place);
-        let answer = self.trace(&ray, queries.of(&ray, rays.t_max(place)), stats);
-        queries.answer(place, answer);
+        let (group, set) = (self.tables.top(), self.tables.instruction_set);
+        let order = coherent_order(&rays);
+        let place = |turn: usize| order.as_ref().map_or(turn, |order| order[turn]);
+        for first in (0..rays.len()).step_by(WIDTH) {
+            let turns = first..(first + WIDTH).min(rays.len());
+            if let Some(order) = &order {
+                for &ahead in order[turns.end..].iter().take(WIDTH) {
+                    rays.prefetch(ahead);
+                    queries.prefetch(ahead);
+                }
+            }
+            // Rays without a direction fill the last ones up.
+            let mut few = [(Ray::new(Vec3::ZERO, Vec3::ZERO, 0.0), 0.0); WIDTH];
+            for (ray, turn) in few.iter_mut().zip(turns.clone()) {
+                *ray = (rays.ray(place(turn)), rays.t_max(place(turn)));
+            }
+            let mut asked: [Q::Of<'_>; WIDTH] = std::array::from_fn(|i| queries.of(&few[i].0, few[i].1));
+            stats.rays += turns.len() as u64;
+            // SAFETY: the processor has the instruction set of a world.
+            unsafe {
+                if are_coherent(&few) {
+                    set.run(TracePacket { group, rays: &few, queries: &mut asked, stats });
+                } else {
+                    set.run(TraceEach { group, rays: &few, queries: &mut asked, stats });
+                }
+            }
+            for ((query, (ray, _)), turn) in asked.iter_mut().zip(&few).zip(turns) {
+                if !group.has_only_triangles() && !query.is_answered() && is_valid(ray) {
+                    let tables = &self.tables;
+                    let mut trace = Trace { tables, ray, instance: InstancePath::TOP, stats };
+                    trace.all_but_triangles(group, query);
+                }
+                queries.answer(place(turn), query.answer());
+            }
+        }
     }
 }
 
@@ -181,67 +206,4 @@ impl<F: Filter> Queries for AnyHit<'_, F> {
     fn prefetch(&self, place: usize) {
         lanes::prefetch(&raw const self.occluded[place]);
     }
-}
-
-/// Traces a batch through trees.
-struct Batch<'a, 'b, Q> {
-    world: &'b World,
-    rays: RayColumns<'a>,
-    queries: Q,
-    stats: &'b mut RayStats,
-}
-
-impl<Q: Queries> Task for Batch<'_, '_, Q> {
-    type Output = ();
-
-    #[inline(always)]
-    unsafe fn run<S: Simd>(self) {
-        let Self { world, rays, mut queries, stats } = self;
-        if let Some(order) = coherent_order(&rays) {
-            for (turn, &place) in order.iter().enumerate() {
-                if let Some(&ahead) = order.get(turn + PREFETCH_DISTANCE) {
-                    rays.prefetch(ahead);
-                    queries.prefetch(ahead);
-                }
-                world.trace_alone(&rays, place, &mut queries, stats);
-            }
-            return;
-        }
-        let mut first = 0;
-        while first < rays.len() {
-            let end = (first + WIDTH).min(rays.len());
-            let whole = end - first == WIDTH;
-            match whole.then(|| coherent_packet(&rays, first)).flatten() {
-                Some(packet) => {
-                    stats.rays += WIDTH as u64;
-                    let mut asked: [Q::Of<'_>; WIDTH] =
-                        std::array::from_fn(|i| queries.of(&packet[i].0, packet[i].1));
-                    // SAFETY: the caller promises the instruction set.
-                    unsafe {
-                        RayPacket::new(&packet).trace::<S, _>(world.tables.top(), &mut asked, stats);
-                    }
-                    for (i, (query, (ray, _))) in asked.into_iter().zip(&packet).enumerate() {
-                        queries.answer(first + i, finish(world, ray, query, stats));
-                    }
-                }
-                None => {
-                    for place in first..end {
-                        world.trace_alone(&rays, place, &mut queries, stats);
-                    }
-                }
-            }
-            first = end;
-        }
-    }
-}
-
-/// Offers the remaining hits, those not on triangles, and returns the answer.
-#[inline(always)]
-fn finish<Q: Query>(world: &World, ray: &Ray, mut query: Q, stats: &mut RayStats) -> Q::Answer {
-    if !query.is_answered() && is_valid(ray) {
-        let tables = &world.tables;
-        let mut trace = Trace { tables, ray, instance: InstancePath::TOP, stats };
-        trace.all_but_triangles(tables.top(), &mut query);
-    }
-    query.answer()
 }

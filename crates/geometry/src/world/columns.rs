@@ -215,6 +215,7 @@ impl HitColumns {
         self.instance.clear();
     }
 
+    #[inline(always)]
     pub(super) fn set(&mut self, place: usize, hit: Option<Hit>) {
         let Some(Hit { t, uv, geometry, primitive, instance }) = hit else {
             self.geometry[place] = Self::NONE;

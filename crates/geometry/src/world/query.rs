@@ -19,7 +19,7 @@ pub(super) trait Query {
     type Answer;
 
     /// The answer, once all hits were offered.
-    fn answer(self) -> Self::Answer;
+    fn answer(&self) -> Self::Answer;
 
     /// Hits beyond this distance are ignored.
     fn t_max(&self) -> f32;
@@ -54,7 +54,8 @@ impl<F: Filter> Query for Nearest<'_, F> {
         false
     }
 
-    fn answer(self) -> Option<Hit> {
+    #[inline(always)]
+    fn answer(&self) -> Option<Hit> {
         self.hit
     }
 
@@ -110,7 +111,8 @@ impl<F: Filter> Query for Any<'_, F> {
         self.found
     }
 
-    fn answer(self) -> bool {
+    #[inline(always)]
+    fn answer(&self) -> bool {
         self.found
     }
 

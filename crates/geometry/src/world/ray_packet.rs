@@ -6,7 +6,6 @@
 
 #![allow(unsafe_code)]
 
-use super::columns::RayColumns;
 use super::group::Group;
 use super::instance::InstancePath;
 use super::query::Query;
@@ -15,23 +14,21 @@ use super::trace::{TriangleLeaves, is_valid};
 use super::triangle_block::TriangleBlock;
 use crate::bvh::{Leaves, WIDTH};
 use crate::watertight::{LaneHits, Sheared, ShearedLanes, main_axis};
-use lanes::{Simd, Vector};
+use lanes::{Simd, Task, Vector};
 use math::Ray;
 use std::ops::Range;
 
 /// The largest difference between directions of a packet, relative to their length.
 const SPREAD: f32 = 0.1;
 
-/// The rays of a batch from a place on, if they are worth tracing as a packet: they have one
-/// origin, and similar directions with the same signs and the same main axis.
+/// Whether rays are worth tracing as a packet: they have one origin, and similar directions with
+/// the same signs and the same main axis.
 #[inline(always)]
-pub(super) fn coherent_packet(rays: &RayColumns, first: usize) -> Option<[(Ray, f32); WIDTH]> {
-    let lead = rays.ray(first);
+pub(super) fn are_coherent(rays: &[(Ray, f32); WIDTH]) -> bool {
+    let lead = rays[0].0;
     let axis = main_axis(lead.d);
     let spread = lead.d.length_squared() * (SPREAD * SPREAD);
-    let mut packet = [(lead, 0.0); WIDTH];
-    for (i, (ray, t_max)) in packet.iter_mut().enumerate() {
-        (*ray, *t_max) = (rays.ray(first + i), rays.t_max(first + i));
+    for (ray, t_max) in rays {
         let is_coherent = ray.o == lead.o
             && is_valid(ray)
             && *t_max >= 0.0
@@ -39,45 +36,38 @@ pub(super) fn coherent_packet(rays: &RayColumns, first: usize) -> Option<[(Ray, 
             && ray.d.is_negative_bitmask() == lead.d.is_negative_bitmask()
             && main_axis(ray.d) == axis;
         if !is_coherent {
-            return None;
+            return false;
         }
     }
-    Some(packet)
+    true
 }
 
-/// Coherent rays.
-pub(super) struct RayPacket<'a> {
-    rays: &'a [(Ray, f32); WIDTH],
-    sheared: [Sheared<'a>; WIDTH],
+/// Coherent rays that traverse the triangles of the top group together.
+pub(super) struct TracePacket<'a, Q> {
+    pub group: &'a Group,
+    pub rays: &'a [(Ray, f32); WIDTH],
+    /// A query for each ray.
+    pub queries: &'a mut [Q; WIDTH],
+    pub stats: &'a mut RayStats,
 }
 
-impl<'a> RayPacket<'a> {
-    /// Up to this many rays are tested against triangles individually.
-    const FEW: u32 = 4;
+/// Up to this many rays of a packet are tested against triangles individually.
+const FEW: u32 = 4;
+
+impl<Q: Query> Task for TracePacket<'_, Q> {
+    type Output = ();
 
     #[inline(always)]
-    pub fn new(rays: &'a [(Ray, f32); WIDTH]) -> Self {
-        Self { rays, sheared: std::array::from_fn(|i| Sheared::new(&rays[i].0)) }
-    }
-
-    /// Offers all hits on triangles of a group to the queries.
-    ///
-    /// # Safety
-    /// The processor must have the instruction set.
-    #[inline(always)]
-    pub unsafe fn trace<S: Simd, Q: Query>(
-        &self,
-        group: &Group,
-        queries: &mut [Q; WIDTH],
-        stats: &mut RayStats,
-    ) {
-        let mut t_max = std::array::from_fn(|i| self.rays[i].1);
+    unsafe fn run<S: Simd>(self) {
+        let Self { group, rays, queries, stats } = self;
+        let sheared: [Sheared; WIDTH] = std::array::from_fn(|i| Sheared::new(&rays[i].0));
+        let mut t_max = std::array::from_fn(|i| rays[i].1);
         let mut primitives = 0;
         // SAFETY: the caller promises the instruction set.
         unsafe {
-            let lanes: ShearedLanes<S::F32x16> = Sheared::each(&self.sheared);
+            let lanes: ShearedLanes<S::F32x16> = Sheared::each(&sheared);
             let test = |blocks: Range<usize>, entering: u32, t_max: &mut [f32; WIDTH]| {
-                if entering.count_ones() <= Self::FEW {
+                if entering.count_ones() <= FEW {
                     let mut entering = entering;
                     while entering != 0 {
                         let i = entering.trailing_zeros() as usize;
@@ -88,8 +78,8 @@ impl<'a> RayPacket<'a> {
                         let mut leaves = TriangleLeaves::<S, Q> {
                             group,
                             instance: InstancePath::TOP,
-                            sheared: &self.sheared[i],
-                            lanes: &self.sheared[i].lanes::<{ TriangleBlock::VERTICES }, S::F32x8>(),
+                            sheared: &sheared[i],
+                            lanes: &sheared[i].lanes::<{ TriangleBlock::VERTICES }, S::F32x8>(),
                             query: &mut queries[i],
                             primitives: 0,
                         };
@@ -105,39 +95,39 @@ impl<'a> RayPacket<'a> {
                         primitives += WIDTH as u64;
                         let found = block.intersect_rays(lane, &lanes, S::F32x16::load(t_max));
                         if let Some(found) = found {
-                            self.offer(group, block, lane, &found, queries, t_max);
+                            offer(&sheared, group, block, lane, &found, queries, t_max);
                         }
                     }
                 }
             };
             let triangles = &group.triangles;
             stats.extents +=
-                triangles.tree.traverse_packet::<S, _>(&triangles.blocks, self.rays, &mut t_max, test);
+                triangles.tree.traverse_packet::<S, _>(&triangles.blocks, rays, &mut t_max, test);
         }
         stats.primitives += primitives;
     }
+}
 
-    #[inline(always)]
-    fn offer<V: Vector<WIDTH>, Q: Query>(
-        &self,
-        group: &Group,
-        block: &TriangleBlock,
-        lane: usize,
-        found: &LaneHits<V>,
-        queries: &mut [Q; WIDTH],
-        t_max: &mut [f32; WIDTH],
-    ) {
-        let mut hits = found.hits;
-        while hits != 0 {
-            let i = hits.trailing_zeros() as usize % WIDTH;
-            hits &= hits - 1;
-            if t_max[i] < 0.0 {
-                continue;
-            }
-            let (sheared, numbering) = (&self.sheared[i], &group.triangles.numbering);
-            let hit = block.hit(lane, found, i, sheared, numbering, InstancePath::TOP);
-            let Some(hit) = hit else { continue };
-            t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
+#[inline(always)]
+fn offer<V: Vector<WIDTH>, Q: Query>(
+    sheared: &[Sheared; WIDTH],
+    group: &Group,
+    block: &TriangleBlock,
+    lane: usize,
+    found: &LaneHits<V>,
+    queries: &mut [Q; WIDTH],
+    t_max: &mut [f32; WIDTH],
+) {
+    let mut hits = found.hits;
+    while hits != 0 {
+        let i = hits.trailing_zeros() as usize % WIDTH;
+        hits &= hits - 1;
+        if t_max[i] < 0.0 {
+            continue;
         }
+        let (sheared, numbering) = (&sheared[i], &group.triangles.numbering);
+        let hit = block.hit(lane, found, i, sheared, numbering, InstancePath::TOP);
+        let Some(hit) = hit else { continue };
+        t_max[i] = if queries[i].offer(hit) { -1.0 } else { queries[i].t_max() };
     }
 }

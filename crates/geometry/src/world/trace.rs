@@ -12,7 +12,7 @@ use super::spheres::{SphereBlock, Spheres, UnitRay};
 use super::stats::RayStats;
 use super::tables::Tables;
 use super::triangle_block::TriangleBlock;
-use crate::bvh::{Bvh, Leaves};
+use crate::bvh::{Bvh, Leaves, RaySlabs, WIDTH};
 use crate::sphere_set::SphereSet;
 use crate::watertight::{Sheared, ShearedLanes};
 use lanes::{Simd, Task, Vector};
@@ -158,7 +158,7 @@ fn in_order<Q: Query>(t_max: f32) -> bool {
 unsafe fn traverse<S: Simd, Q: Query>(
     tree: &Bvh,
     all: Option<Range<usize>>,
-    ray: &Ray,
+    ray: &RaySlabs<f32>,
     t_max: &mut f32,
     leaves: &mut impl Leaves,
 ) -> (u64, bool) {
@@ -185,22 +185,79 @@ impl<Q: Query> Task for TraceTriangles<'_, '_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> Self::Output {
         let Self { group, trace, query } = self;
-        let sheared = Sheared::new(trace.ray);
+        let (ray, all) = (PreparedRay::new(trace.ray, group), trace.all(group.triangles.blocks.len()));
         // SAFETY: the caller promises the instruction set.
+        unsafe { ray.trace::<S, Q>(group, trace.instance, all, query) }
+    }
+}
+
+/// Rays that traverse the triangles of the top group one after another.
+pub(super) struct TraceEach<'a, Q> {
+    pub group: &'a Group,
+    /// Those that are not valid are left out.
+    pub rays: &'a [(Ray, f32); WIDTH],
+    /// A query for each ray.
+    pub queries: &'a mut [Q; WIDTH],
+    pub stats: &'a mut RayStats,
+}
+
+impl<Q: Query> Task for TraceEach<'_, Q> {
+    type Output = ();
+
+    /// All rays are prepared before the first is traced: their divisions overlap, and what is
+    /// written number by number has reached the cache when vectors of it are read.
+    #[inline(always)]
+    unsafe fn run<S: Simd>(self) {
+        let Self { group, rays, queries, stats } = self;
+        let prepared: [_; WIDTH] = std::array::from_fn(|i| PreparedRay::new(&rays[i].0, group));
+        let (mut extents, mut primitives) = (0, 0);
+        for ((prepared, (ray, _)), query) in prepared.iter().zip(rays).zip(queries) {
+            if is_valid(ray) {
+                // SAFETY: the caller promises the instruction set.
+                let tested = unsafe { prepared.trace::<S, Q>(group, InstancePath::TOP, None, query) };
+                extents += tested.0;
+                primitives += tested.1;
+            }
+        }
+        stats.extents += extents;
+        stats.primitives += primitives;
+    }
+}
+
+/// A ray prepared for the triangles of a group.
+struct PreparedRay<'a> {
+    sheared: Sheared<'a>,
+    slabs: RaySlabs<f32>,
+}
+
+impl<'a> PreparedRay<'a> {
+    #[inline(always)]
+    fn new(ray: &'a Ray, group: &Group) -> Self {
+        Self { sheared: Sheared::new(ray), slabs: group.triangles.tree.prepare(ray) }
+    }
+
+    /// Offers the hits on triangles of the group to the query, or those on `all` blocks without
+    /// traversal. Returns the number of boxes and of triangles tested, and whether the query is
+    /// finished. The ray must be valid.
+    ///
+    /// # Safety
+    /// The processor must have the instruction set.
+    #[inline(always)]
+    unsafe fn trace<S: Simd, Q: Query>(
+        &self,
+        group: &Group,
+        instance: InstancePath,
+        all: Option<Range<usize>>,
+        query: &mut Q,
+    ) -> (u64, u64, bool) {
+        // SAFETY: as the caller promises.
         unsafe {
-            let lanes = sheared.lanes::<{ TriangleBlock::VERTICES }, S::F32x8>();
-            let mut t_max = query.t_max();
-            let mut leaves = TriangleLeaves::<S, Q> {
-                group,
-                instance: trace.instance,
-                sheared: &sheared,
-                lanes: &lanes,
-                query,
-                primitives: 0,
-            };
-            let all = trace.all(group.triangles.blocks.len());
+            let lanes = self.sheared.lanes::<{ TriangleBlock::VERTICES }, S::F32x8>();
+            let (sheared, mut t_max) = (&self.sheared, query.t_max());
+            let mut leaves =
+                TriangleLeaves::<S, Q> { group, instance, sheared, lanes: &lanes, query, primitives: 0 };
             let tree = &group.triangles.tree;
-            let (extents, stop) = traverse::<S, Q>(tree, all, trace.ray, &mut t_max, &mut leaves);
+            let (extents, stop) = traverse::<S, Q>(tree, all, &self.slabs, &mut t_max, &mut leaves);
             (extents, leaves.primitives, stop)
         }
     }
@@ -265,7 +322,10 @@ impl<Q: Query> Task for TraceItems<'_, '_, Q> {
         let mut t_max = query.t_max();
         let mut leaves = ItemLeaves { items: &group.items, trace, query };
         // SAFETY: the caller promises the instruction set.
-        unsafe { traverse::<S, Q>(&group.item_tree, all, ray, &mut t_max, &mut leaves) }
+        unsafe {
+            let slabs = group.item_tree.prepare(ray);
+            traverse::<S, Q>(&group.item_tree, all, &slabs, &mut t_max, &mut leaves)
+        }
     }
 }
 
@@ -315,7 +375,8 @@ impl<Q: Query> Task for TraceSpheres<'_, '_, Q> {
             let lanes = UnitRay::<S::F32x8>::new(trace.ray);
             let mut leaves = SphereLeaves { blocks: &spheres.blocks, trace, lanes, query, primitives: 0 };
             let all = trace.all(spheres.blocks.len());
-            let (extents, stop) = traverse::<S, Q>(&spheres.tree, all, trace.ray, &mut t_max, &mut leaves);
+            let slabs = spheres.tree.prepare(trace.ray);
+            let (extents, stop) = traverse::<S, Q>(&spheres.tree, all, &slabs, &mut t_max, &mut leaves);
             (extents, leaves.primitives, stop)
         }
     }
