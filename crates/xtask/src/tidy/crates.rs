@@ -51,7 +51,7 @@ const EDGES: [(&str, &[&str]); 17] = [
         ],
     ),
     ("cli", &["alhazen"]),
-    ("bench", &["math", "geometry"]),
+    ("bench", &["lanes", "math", "sampling", "spectrum", "geometry", "scattering"]),
     ("xtask", &["spectrum"]),
 ];
 
