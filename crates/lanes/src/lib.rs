@@ -47,7 +47,7 @@ pub use function::{
     acos, asin, atan, atan2, cbrt, cos, exp, exp_m1, hypot, ln, ln_1p, log2, pow, powi, sin, sin_cos,
 };
 pub use instruction_set::InstructionSet;
-pub use real::{Function, Int, Kernel, MAX_LANES, Mask, Real};
+pub use real::{Callee, Int, Kernel, MAX_LANES, Mask, Real};
 pub use scalar::F32x1;
 pub use simd::{Simd, Task, Vector};
 pub use wide::Wide;

@@ -51,7 +51,7 @@ pub trait Real:
     fn store(self, to: &mut [f32]);
 
     /// Calls a function of these lanes, which is not compiled into each caller.
-    fn call<F: Function<Self>>(function: F) -> F::Output;
+    fn call<C: Callee<Self>>(callee: C) -> C::Output;
 
     /// The numbers of a table at these indices.
     ///
@@ -403,9 +403,9 @@ pub trait Kernel {
     fn run<R: Real>(self) -> Self::Output;
 }
 
-/// A function of numbers with lanes, with its arguments. This and everything it calls must be
+/// The arguments of a function of numbers with lanes. This and everything it calls must be
 /// `#[inline(always)]`; [`Real::call`] then makes one function of it.
-pub trait Function<R: Real> {
+pub trait Callee<R: Real> {
     /// The result.
     type Output;
 
@@ -413,7 +413,7 @@ pub trait Function<R: Real> {
     fn run(self) -> Self::Output;
 }
 
-impl<R: Real, K: Kernel> Function<R> for K {
+impl<R: Real, K: Kernel> Callee<R> for K {
     type Output = K::Output;
 
     #[inline(always)]

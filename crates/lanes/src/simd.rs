@@ -1,6 +1,6 @@
 //! What every instruction set offers, and what is computed with it.
 
-use crate::real::{Function, Kernel, Real};
+use crate::real::{Callee, Kernel, Real};
 use std::marker::PhantomData;
 
 /// `N` floats, one in each lane.
@@ -113,24 +113,24 @@ impl<K: Kernel> Task for Widest<K> {
     }
 }
 
-/// Runs a function of an instruction set's own floats.
-pub(crate) struct Applied<F, R> {
-    function: F,
+/// Runs a callee of an instruction set's own floats.
+pub(crate) struct Applied<C, R> {
+    callee: C,
     real: PhantomData<R>,
 }
 
-impl<F, R> Applied<F, R> {
+impl<C, R> Applied<C, R> {
     #[inline(always)]
-    pub fn new(function: F) -> Self {
-        Self { function, real: PhantomData }
+    pub fn new(callee: C) -> Self {
+        Self { callee, real: PhantomData }
     }
 }
 
-impl<R: Real, F: Function<R>> Task for Applied<F, R> {
-    type Output = F::Output;
+impl<R: Real, C: Callee<R>> Task for Applied<C, R> {
+    type Output = C::Output;
 
     #[inline(always)]
-    unsafe fn run<S: Simd>(self) -> F::Output {
-        self.function.run()
+    unsafe fn run<S: Simd>(self) -> C::Output {
+        self.callee.run()
     }
 }

@@ -1,6 +1,6 @@
 //! One lane: `f32`, `u32` and `bool` themselves.
 
-use crate::{Function, Int, Mask, Real};
+use crate::{Callee, Int, Mask, Real};
 
 impl Real for f32 {
     const LANES: usize = 1;
@@ -24,8 +24,8 @@ impl Real for f32 {
     }
 
     #[inline]
-    fn call<F: Function<Self>>(function: F) -> F::Output {
-        function.run()
+    fn call<C: Callee<Self>>(callee: C) -> C::Output {
+        callee.run()
     }
 
     #[inline(always)]

@@ -148,14 +148,14 @@ macro_rules! real {
             }
 
             #[inline(always)]
-            fn call<F: $crate::Function<Self>>(function: F) -> F::Output {
+            fn call<C: $crate::Callee<Self>>(callee: C) -> C::Output {
                 // A set without features of its own would be compiled into the caller.
                 #[inline(never)]
-                fn apart<F: $crate::Function<$real>>(function: F) -> F::Output {
+                fn apart<C: $crate::Callee<$real>>(callee: C) -> C::Output {
                     // The function `run` of the table's instruction set.
-                    unsafe { run($crate::simd::Applied::new(function)) }
+                    unsafe { run($crate::simd::Applied::new(callee)) }
                 }
-                apart(function)
+                apart(callee)
             }
 
             #[inline(always)]

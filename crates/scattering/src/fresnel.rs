@@ -59,9 +59,9 @@ pub fn fr_dielectric<R: Real>(cos_theta_i: R, eta: R) -> R {
     R::select(sin2_t.ge(R::one()), R::one(), reflectance)
 }
 
-/// The share of uniform light that an interface between dielectrics of relative index `eta` reflects:
-/// the mean of [`fr_dielectric`] over the directions of a hemisphere by their cosine. A fit, to 0.01,
-/// of [Kulla 2017].
+/// The share of uniform light that an interface between dielectrics of relative index `eta`
+/// reflects: the mean of [`fr_dielectric`] over the directions of a hemisphere by their cosine. A
+/// fit, to 0.01, of [Kulla 2017].
 #[inline(always)]
 pub(crate) fn mean_fresnel<R: Real>(eta: R) -> R {
     let [one, a, b] = [1.0, 4.085_67, 1.000_71].each(R::splat);

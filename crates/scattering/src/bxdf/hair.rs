@@ -11,10 +11,11 @@
 //! N_p = the logistic distribution of scale s(β_n) around Φ = 2 p γt − 2 γo + p π, within ±π
 //! ```
 //!
-//! The last lobe is the sum over all p ≥ 3 and uniform around the fibre. γo is the angle of incidence
-//! across the fibre, by the offset h in [−1, 1] from its middle, γt that of the refraction. The
-//! scales turn θo by multiples of their angle α. The albedo is at most 1, and 1 without absorption. As
-//! only θo is turned, the model is not reciprocal: importance is scattered by its adjoint.
+//! The last lobe is the sum over all p ≥ 3 and uniform around the fibre. γo is the angle of
+//! incidence across the fibre, by the offset h in [−1, 1] from its middle, γt that of the
+//! refraction. The scales turn θo by multiples of their angle α. The albedo is at most 1, and 1
+//! without absorption. As only θo is turned, the model is not reciprocal: importance is scattered
+//! by its adjoint.
 //!
 //! A lobe is sampled by its share A_p, then the angles, all exactly. Sources: [Chiang 2016],
 //! [Marschner 2003], [dEon 2011], [Pharr 2023 §9.9].
@@ -29,7 +30,8 @@ use std::f32::consts::{PI, TAU};
 /// The lobes before the last one.
 const P_MAX: usize = 3;
 
-/// √(π/8): the scale of the logistic distribution with the maximum of a normal one, over its deviation.
+/// √(π/8): the scale of the logistic distribution with the maximum of a normal one, over its
+/// deviation.
 const SQRT_PI_OVER_8: f32 = 0.626_657_07;
 
 /// Scattering by a fibre.
@@ -50,9 +52,9 @@ pub struct Hair<R = f32> {
 }
 
 impl<R: Real> Hair<R> {
-    /// A fibre at the offset `h` in [−1, 1] from its middle, of index `eta` and absorption `sigma_a`
-    /// per radius. Its longitudinal and azimuthal roughness `beta_m` and `beta_n` lie in (0, 1]; its
-    /// scales have the angle `alpha` in degrees.
+    /// A fibre at the offset `h` in [−1, 1] from its middle, of index `eta` and absorption
+    /// `sigma_a` per radius. Its longitudinal and azimuthal roughness `beta_m` and `beta_n` lie in
+    /// (0, 1]; its scales have the angle `alpha` in degrees.
     #[inline(always)]
     pub fn new(h: R, eta: R, sigma_a: SampledSpectrum<R>, [beta_m, beta_n]: [R; 2], alpha: R) -> Self {
         let c = R::splat;
@@ -67,8 +69,8 @@ impl<R: Real> Hair<R> {
         Self { h, eta, sigma_a, v: [v, c(0.25) * v, wide, wide], s: c(SQRT_PI_OVER_8) * s, tilts }
     }
 
-    /// The absorption that gives a volume of hair of azimuthal roughness `beta_n` about the `color`,
-    /// in (0, 1]: a fit of [Chiang 2016 §4.2].
+    /// The absorption that gives a volume of hair of azimuthal roughness `beta_n` about the
+    /// `color`, in (0, 1]: a fit of [Chiang 2016 §4.2].
     #[inline(always)]
     pub fn sigma_a_from_reflectance(color: SampledSpectrum<R>, beta_n: R) -> SampledSpectrum<R> {
         let c = R::splat;

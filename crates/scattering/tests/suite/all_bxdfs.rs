@@ -350,7 +350,8 @@ fn slightly_rough_lossless_surfaces_lose_little_energy() {
     }
 }
 
-/// The albedo of lobes that are not specular, by sampling and by quadrature of f over all directions.
+/// The albedo of lobes that are not specular, by sampling and by quadrature of f over all
+/// directions.
 #[test]
 fn samples_integrate_f() {
     let mut random = Random::new(8);

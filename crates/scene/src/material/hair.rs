@@ -1,8 +1,9 @@
 //! Hair and fur, on curves whose v goes across the fibre.
 //!
-//! Parameters: the absorption, by its coefficient per radius of the fibre, by the colour of a volume
-//! of hair, or by concentrations of pigments; index of refraction, default 1.55; longitudinal and
-//! azimuthal roughness in (0, 1], default 0.3; angle of the scales in degrees, default 2.
+//! Parameters: the absorption, by its coefficient per radius of the fibre, by the colour of a
+//! volume of hair, or by concentrations of pigments; index of refraction, default 1.55;
+//! longitudinal and azimuthal roughness in (0, 1], default 0.3; angle of the scales in degrees,
+//! default 2.
 
 use super::MaterialModel;
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureContext, Textures};

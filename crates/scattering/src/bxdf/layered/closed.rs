@@ -10,8 +10,8 @@
 //! ```
 //!
 //! where θ' are refracted angles and walks of at most n reflections by the base are counted.
-//! Directions are sampled by their cosine, which takes the place of T τ. The sum over reflections is
-//! that of [Saunderson 1942].
+//! Directions are sampled by their cosine, which takes the place of T τ. The sum over reflections
+//! is that of [Saunderson 1942].
 
 use super::{CoatedBase, Layered};
 use crate::{BsdfSample, BxdfFlags, Directions, Scatter, TransportMode, fr_dielectric};
@@ -21,8 +21,8 @@ use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 use std::f32::consts::PI;
 
-/// R̄: the share of uniform light from below that a smooth coat sends back, after it has crossed the
-/// absorbing medium twice. `eta` > 0, `thickness` ≥ 0.
+/// R̄: the share of uniform light from below that a smooth coat sends back, after it has crossed
+/// the absorbing medium twice. `eta` > 0, `thickness` ≥ 0.
 pub fn inner_reflectance(eta: f32, thickness: f32) -> f32 {
     const STEPS: usize = 512;
     let step = |i: usize| {

@@ -8,8 +8,9 @@
 //! ```
 //!
 //! where each product is an integral over the directions between two layers. Random walks estimate
-//! the sum, but for a smooth clear coat over a diffuse base, where it has a closed form. The medium has the extinction coefficient 1, so that `thickness` is an optical
-//! one, and a Henyey–Greenstein phase function. Without scattering (`albedo` 0) it only absorbs.
+//! the sum, but for a smooth clear coat over a diffuse base, where it has a closed form. The medium
+//! has the extinction coefficient 1, so that `thickness` is an optical one, and a Henyey–Greenstein
+//! phase function. Without scattering (`albedo` 0) it only absorbs.
 //!
 //! An estimated `f` is the same for the same directions and `seed`. Samples are walks of their own
 //! whose densities are unknown: [`BsdfSample::pdf_is_proportional`]. `pdf` approximates their

@@ -8,7 +8,7 @@
 
 use super::{CoatedBase, Layered};
 use crate::{BsdfSample, BxdfFlags, Dielectric, Directions, HenyeyGreenstein, Scatter, TransportMode};
-use lanes::{Function, Mask, Real, exp, ln};
+use lanes::{Callee, Mask, Real, exp, ln};
 use math::{Vec2, Vec3, Vector3, sqr};
 use sampling::HashSequence;
 use spectrum::SampledSpectrum;
@@ -146,7 +146,7 @@ struct SampleInterface<'a, R: Real> {
     directions: Directions,
 }
 
-impl<R: Real> Function<R> for SampleInterface<'_, R> {
+impl<R: Real> Callee<R> for SampleInterface<'_, R> {
     type Output = BsdfSample<R>;
 
     #[inline(always)]
@@ -164,7 +164,7 @@ pub(super) struct Estimate<'a, B, R: Real> {
     pub random: HashSequence<R::Int>,
 }
 
-impl<R: Real, B: CoatedBase<R>> Function<R> for Estimate<'_, B, R> {
+impl<R: Real, B: CoatedBase<R>> Callee<R> for Estimate<'_, B, R> {
     type Output = SampledSpectrum<R>;
 
     #[inline(always)]
@@ -258,7 +258,7 @@ pub(super) struct SampleWalk<'a, B, R: Real> {
     pub mode: TransportMode,
 }
 
-impl<R: Real, B: CoatedBase<R>> Function<R> for SampleWalk<'_, B, R> {
+impl<R: Real, B: CoatedBase<R>> Callee<R> for SampleWalk<'_, B, R> {
     type Output = BsdfSample<R>;
 
     #[inline(always)]
