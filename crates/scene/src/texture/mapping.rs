@@ -87,8 +87,8 @@ impl Mapping2d {
             let [scale, delta] = [scale, delta].each(|v| Vec2::broadcast(*v));
             return TexCoord2d {
                 st: scale * ctx.uv + delta,
-                dstdx: scale * Vec2::new(ctx.dudx, ctx.dvdx),
-                dstdy: scale * Vec2::new(ctx.dudy, ctx.dvdy),
+                dstdx: scale * Vec2::new(ctx.footprint.dudx, ctx.footprint.dvdx),
+                dstdy: scale * Vec2::new(ctx.footprint.dudy, ctx.footprint.dvdy),
             };
         }
         if R::LANES == 1 {
@@ -147,7 +147,11 @@ impl Mapping3d {
     /// The texture coordinates of a point.
     pub fn map(&self, ctx: &TextureContext) -> TexCoord3d {
         let t = &self.texture_from_render;
-        TexCoord3d { p: t.point(ctx.p), dpdx: t.vector(ctx.dpdx), dpdy: t.vector(ctx.dpdy) }
+        TexCoord3d {
+            p: t.point(ctx.p),
+            dpdx: t.vector(ctx.footprint.dpdx),
+            dpdy: t.vector(ctx.footprint.dpdy),
+        }
     }
 
     /// [`map`](Self::map) for each lane, one by one.

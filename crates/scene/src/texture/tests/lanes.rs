@@ -1,7 +1,6 @@
 //! Programs in lanes.
 
 use super::*;
-use crate::footprint::Footprint;
 use ::lanes::Real;
 use testkit::{LaneFunction, lanes_agree};
 
@@ -23,7 +22,7 @@ impl LaneFunction for All<'_> {
             dvdy: (u[3] - half) * size,
         };
         let uv = Vec2::new((u[0] - half) * four, (u[1] - half) * four);
-        let ctx = TextureContext::new(along(0) * four, along(3), uv, &footprint);
+        let ctx = TextureContext { p: along(0) * four, n: along(3), uv, footprint };
         let lambda = SampledWavelengths::sample_visible(u[5]);
         let mut results = Vec::new();
         for &id in &self.0.floats {
