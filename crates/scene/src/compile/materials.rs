@@ -2,8 +2,9 @@
 
 use super::Compiler;
 use crate::material::{
-    ConductorIndex, ConductorMaterial, DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial,
-    Material, MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+    BumpMap, ConductorIndex, ConductorMaterial, DielectricMaterial, DiffuseMaterial,
+    DiffuseTransmissionMaterial, Material, MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness,
+    ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
@@ -77,10 +78,6 @@ impl Compiler<'_> {
 
     fn material(&mut self, desc: &MaterialDesc, origin: &Origin) -> MaterialEntry {
         let material = self.material_kind(&desc.kind, origin);
-        if desc.displacement.is_some() {
-            let message = "displacement is not drawn yet; the surface stays as it is";
-            self.warn("not-drawn", message, origin.parameter("displacement"));
-        }
         let normal_map = desc.normal_map.and_then(|handle| {
             let image = self.desc.images[handle].image.clone();
             if !image.is_color() {
@@ -90,7 +87,11 @@ impl Compiler<'_> {
             }
             Some(NormalMap { image })
         });
-        MaterialEntry { material, normal_map }
+        let displacement = desc.displacement.as_ref().filter(|_| desc.normal_map.is_none());
+        let bump_map = displacement.map(|displacement| BumpMap {
+            displacement: self.float_texture(displacement, origin.parameter("displacement")),
+        });
+        MaterialEntry { material, normal_map, bump_map }
     }
 
     fn material_kind(&mut self, kind: &MaterialKind, origin: &Origin) -> Material {
