@@ -308,7 +308,8 @@ impl GraphBuilder<'_> {
                 let outside = self.operand(outside, usage, "outside", desc);
                 let code = Code::Dots(self.mapping(mapping, desc));
                 let amount = self.graph.node(code, &[]);
-                self.graph.mix([outside, inside], amount)
+                // Exchanged, as in pbrt-v4.
+                self.graph.mix([inside, outside], amount)
             }
             TextureKind::Fbm { octaves, roughness } => {
                 let code = Code::Fbm(self.fractal(*octaves, *roughness, desc));

@@ -5,6 +5,9 @@
 //! square by 0.15 times another value of the noise, so that it stays within the square. Edges are
 //! sharp, whatever the footprint.
 //!
+//! pbrt-v4 exchanges the textures `inside` and `outside`, so that the former is seen between the
+//! dots. Pictures of the format depend on it, hence so does alhazen.
+//!
 //! Source: [Pharr 2016 §10.6.2].
 
 use super::noise::noise;

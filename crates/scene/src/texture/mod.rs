@@ -11,7 +11,7 @@
 //! checkerboard   t₀ and t₁ in alternation, averaged over the footprint of the pixel
 //! image          pixels, averaged over the footprint of the pixel
 //! directionmix   a·t₀ + (1 − a)·t₁, where a = |cosine of the normal and a direction|
-//! dots           t₀ in dots, t₁ elsewhere
+//! dots           t₁ in dots, t₀ elsewhere
 //! fbm            noise at many frequencies; numbers only
 //! wrinkled       magnitudes of noise at many frequencies; numbers only
 //! windy          noise of varying strength; numbers only

@@ -207,7 +207,7 @@ fn marble_runs_through_its_colours() {
 
 #[test]
 fn dots_are_disks_in_squares_of_positive_noise() {
-    let kind = TextureKind::Dots { inside: 0.75.into(), outside: 0.25.into(), mapping: Default::default() };
+    let kind = TextureKind::Dots { inside: 0.25.into(), outside: 0.75.into(), mapping: Default::default() };
     let (t, mut dots, cells, n) = (float_texture(kind), 0, 40, 24);
     for cell in 0..cells * cells {
         let center = Vec2::new((cell % cells) as f32 - 20.0, (cell / cells) as f32 - 20.0);
