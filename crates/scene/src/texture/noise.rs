@@ -17,8 +17,8 @@
 //!
 //! The hash is a permutation π of 0 to 255: h = π(π(π(x) + y) + z), of whose value the low four
 //! bits choose the gradient. Of the sixteen choices four occur twice. π is the published one, but
-//! for the last three gradients the choices of [Pharr 2016] differ from those of [Perlin 2002]; as
-//! pictures of the format depend on them, they are those of the former.
+//! choices 13 and 14 of [Pharr 2016] differ from those of [Perlin 2002]; as pictures of the format
+//! depend on them, they are those of the former.
 //!
 //! Sources: [Perlin 2002]; [Pharr 2016 §10.6.1].
 
