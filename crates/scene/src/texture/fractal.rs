@@ -4,15 +4,15 @@
 //! its amplitude. (At twice the frequency exactly, all octaves would be zero at the same points.)
 //!
 //! ```text
-//! fbm         Σ ωⁱ·noise(λⁱp)                              clouds, ridges
-//! turbulence  Σ ωⁱ·|noise(λⁱp)|                            creases, where the noise is zero
-//! windy       |fbm(p/10; ω ½, 3 octaves)|·fbm(p; ω ½, 6 octaves)      waves, stronger here than there
+//! fbm         Σ ωⁱ·noise(λⁱp)                                clouds, ridges
+//! turbulence  Σ ωⁱ·|noise(λⁱp)|                              creases, where the noise is zero
+//! windy       |fbm(p/10; ω ½, 3 octaves)|·fbm(p; ω ½, 6 octaves)      waves of varying strength
 //! ```
 //!
 //! A pixel cannot show frequencies above one cycle in two pixels. With a footprint of length ℓ in
 //! texture space, those are the octaves from n = log₂(1/2ℓ) on. An octave i fades out where n − i
-//! falls from 0.7 to 0.3, and is replaced by its mean: 0 in fbm; about 0.2 in turbulence, which would
-//! grow darker with distance else. A point, ℓ = 0, has all octaves that are asked for.
+//! falls from 0.7 to 0.3, and is replaced by its mean: 0 in fbm; about 0.2 in turbulence, which
+//! would grow darker with distance else. A point, ℓ = 0, has all octaves that are asked for.
 //!
 //! Turbulence counts the mean of octave ⌊n⌋ a second time, as pbrt-v4 does: the replacement is
 //! 0.2·ω^⌊n⌋ too bright, by the same amount at all points that show all octaves.
