@@ -12,7 +12,8 @@ pub struct MaterialDesc {
     pub kind: MaterialKind,
     /// A tangent-space normal map.
     pub normal_map: Option<Handle<ImageDesc>>,
-    /// Displacement: a bump map, or geometry on finely tessellated meshes.
+    /// A bump map: a displacement along the normal that only shading sees. It has no effect beside
+    /// a normal map.
     pub displacement: Option<FloatParameter>,
 }
 

@@ -120,9 +120,9 @@ pub enum TextureKind<V> {
     },
     /// Random dots.
     Dots {
-        /// In a dot.
+        /// Between the dots: pbrt-v4 exchanges the two.
         inside: Parameter<V>,
-        /// Elsewhere.
+        /// In a dot.
         outside: Parameter<V>,
         /// Texture coordinates of a point.
         mapping: MappingDesc,

@@ -11,7 +11,7 @@ use lanes::{Mask, Real};
 use math::{Differentials, Normal3, Point3, Vec3, Vector3, difference_of_products};
 
 /// Derivatives of the surface point by film position, in pixels, for each lane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Footprint<R = f32> {
     /// ∂p/∂x.
     pub dpdx: Vector3<R>,

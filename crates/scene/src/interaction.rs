@@ -46,7 +46,8 @@ impl SurfaceInteraction {
     /// The context of texture evaluation.
     #[inline]
     pub fn texture_context(&self) -> TextureContext {
-        TextureContext::new(self.surface.p.p, self.surface.n, self.surface.uv, &self.footprint)
+        let s = &self.surface;
+        TextureContext { p: s.p.p, n: s.n, uv: s.uv, footprint: self.footprint }
     }
 
     /// Computes the footprint of the pixel of `ray`.

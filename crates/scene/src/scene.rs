@@ -72,7 +72,7 @@ pub struct Scene {
     pub(crate) textures: Textures,
     pub(crate) instances: Vec<InstanceEntry>,
     pub(crate) lights: LightTable,
-    pub(crate) has_filtered_textures: bool,
+    pub(crate) uses_footprints: bool,
     pub(crate) names: Names,
     pub(crate) traits: SceneTraits,
 }
@@ -87,7 +87,7 @@ impl Scene {
     /// differentials are needed.
     #[inline]
     pub fn needs_footprints(&self, view: &View) -> bool {
-        self.has_filtered_textures && !view.options.disable_texture_filtering
+        self.uses_footprints && !view.options.disable_texture_filtering
     }
 
     /// The entries of the geometries of the world, by [`GeometryId`].
@@ -347,7 +347,7 @@ impl Scene {
     }
 
     /// The BSDF at a point that `ray` of a view has hit. Also computes the footprint and applies
-    /// the normal map. `None` for an interface between media, which the ray passes.
+    /// the normal or bump map. `None` for an interface between media, which the ray passes.
     pub fn bsdf(
         &self,
         view: &View,
@@ -365,6 +365,8 @@ impl Scene {
         }
         if let Some(map) = &entry.normal_map {
             interaction.surface.shading = map.perturb(&interaction.surface);
+        } else if let Some(map) = &entry.bump_map {
+            interaction.surface.shading = map.perturb(interaction, &self.textures);
         }
         let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
         let s = &interaction.surface;

@@ -29,7 +29,8 @@ impl LaneMaterials {
     pub fn new(scene: &Scene, view: &View) -> Self {
         let (with_footprints, textures) = (scene.needs_footprints(view), scene.textures());
         let row = |entry: &MaterialEntry| {
-            let is_plain = entry.normal_map.is_none() && !view.options.force_diffuse;
+            let is_plain =
+                entry.normal_map.is_none() && entry.bump_map.is_none() && !view.options.force_diffuse;
             let (is_in_lanes, is_constant) = match &entry.material {
                 Material::Diffuse(diffuse) => (true, textures.is_constant(diffuse.reflectance)),
                 Material::DiffuseTransmission(_)

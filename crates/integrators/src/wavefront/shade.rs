@@ -83,7 +83,7 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
         let mut vertices = self.vertices::<R>(first, queue);
         let PatchPoints { p, n, ns, uv, dpdu, .. } = vertices.surface;
         let footprint = if self.with_footprint { self.footprint(&vertices) } else { Footprint::point() };
-        let context = TextureContext::new(p.p, n, uv, &footprint);
+        let context = TextureContext { p: p.p, n, uv, footprint };
         let before = vertices.lambda;
         let textures = self.pass.pixels.scene.textures();
         let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);

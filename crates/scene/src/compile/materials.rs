@@ -2,7 +2,7 @@
 
 use super::Compiler;
 use crate::material::{
-    Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
+    BumpMap, Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
     DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
     MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
@@ -79,10 +79,6 @@ impl Compiler<'_> {
 
     fn material(&mut self, desc: &MaterialDesc, origin: &Origin) -> MaterialEntry {
         let material = self.material_kind(&desc.kind, origin);
-        if desc.displacement.is_some() {
-            let message = "displacement is not drawn yet; the surface stays as it is";
-            self.warn("not-drawn", message, origin.parameter("displacement"));
-        }
         let normal_map = desc.normal_map.and_then(|handle| {
             let image = self.desc.images[handle].image.clone();
             if !image.is_color() {
@@ -92,7 +88,11 @@ impl Compiler<'_> {
             }
             Some(NormalMap { image })
         });
-        MaterialEntry { material, normal_map }
+        let displacement = desc.displacement.as_ref().filter(|_| desc.normal_map.is_none());
+        let bump_map = displacement.map(|displacement| BumpMap {
+            displacement: self.float_texture(displacement, origin.parameter("displacement")),
+        });
+        MaterialEntry { material, normal_map, bump_map }
     }
 
     fn material_kind(&mut self, kind: &MaterialKind, origin: &Origin) -> Material {

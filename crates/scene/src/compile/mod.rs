@@ -93,7 +93,8 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         return Err(diagnostics);
     }
     let textures = textures.finish();
-    let has_filtered_textures = textures.are_filtered();
+    let has_bump_maps = materials.iter().any(|entry| entry.bump_map.is_some());
+    let uses_footprints = textures.are_filtered() || has_bump_maps;
     let scene = Scene {
         world_from_render,
         world,
@@ -103,7 +104,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         materials,
         textures,
         lights,
-        has_filtered_textures,
+        uses_footprints,
         names,
         traits,
     };

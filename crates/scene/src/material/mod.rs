@@ -4,6 +4,7 @@
 //! chooses one of two materials at each point by a hash, and is resolved before that; `Interface`
 //! has no BxDF: rays pass through it.
 
+mod bump_map;
 mod coat;
 mod coated_conductor;
 mod coated_diffuse;
@@ -18,6 +19,7 @@ mod roughness;
 mod thin_dielectric;
 
 pub use crate::id::MaterialId;
+pub use bump_map::BumpMap;
 pub use coat::Coat;
 pub use coated_conductor::CoatedConductorMaterial;
 pub use coated_diffuse::CoatedDiffuseMaterial;
@@ -125,7 +127,7 @@ impl Material {
     }
 }
 
-/// A material with its normal map: a row of the scene's [table of
+/// A material with what changes the normals of its surfaces: a row of the scene's [table of
 /// materials](crate::Scene::materials).
 #[derive(Clone, Debug)]
 pub struct MaterialEntry {
@@ -133,6 +135,8 @@ pub struct MaterialEntry {
     pub material: Material,
     /// Its normal map, if it has one.
     pub normal_map: Option<NormalMap>,
+    /// Its bump map, if it has one, and no normal map.
+    pub bump_map: Option<BumpMap>,
 }
 
 /// The material at a point, after the choices of mixes.

@@ -9,15 +9,15 @@
 use super::graph::{Graph, Index, MAX_OPERATIONS, MAX_TOTAL_OPERATIONS, NodeId, ProgramError};
 use super::program::{Code, MAX_SLOTS};
 use super::{
-    FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage, SpectrumTextureId, SpectrumType,
-    TextureContext, Textures, compile_spectrum, pyramids::Pyramids,
+    FloatTextureId, Fractal, ImageLookup, Mapping2d, Mapping3d, Marble, SpectrumImage, SpectrumTextureId,
+    SpectrumType, TextureContext, Textures, compile_spectrum, pyramids::Pyramids,
 };
 use description::{
-    Arena, Diagnostic, FloatParameter, Handle, ImageDesc, ImageTextureDesc, MappingDesc, Origin, Parameter,
+    Arena, Diagnostic, FloatParameter, Handle, ImageDesc, ImageTextureDesc, MappingDesc, Parameter,
     SceneDesc, Span, SpectrumDesc, SpectrumParameter, Stated, TextureDesc, TextureKind,
 };
 use image::TextureFilter;
-use math::{DMat4, Transform, Vec2, Vec3};
+use math::{DMat4, DVec3, Transform, Vec2, Vec3, Vector3};
 use spectrum::RgbColorSpace;
 
 /// The textures of a scene while it is compiled.
@@ -45,6 +45,9 @@ impl TextureCompiler {
             pyramids: Pyramids::new(&desc.images),
             mappings: Index::default(),
             solid_mappings: Index::default(),
+            directions: Index::default(),
+            fractals: Index::default(),
+            marbles: Index::default(),
             float_images: Index::default(),
             spectrum_images: Index::default(),
             images: &desc.images,
@@ -235,6 +238,9 @@ struct GraphBuilder<'a> {
     pyramids: Pyramids<'a>,
     mappings: Index,
     solid_mappings: Index,
+    directions: Index,
+    fractals: Index,
+    marbles: Index,
     float_images: Index,
     spectrum_images: Index,
     images: &'a Arena<ImageDesc>,
@@ -291,18 +297,47 @@ impl GraphBuilder<'_> {
                 let code = Code::Bilerp(self.mapping(mapping, desc));
                 self.graph.node(code, &corners)
             }
-            TextureKind::DirectionMix { textures, .. } => {
-                self.even_mix("directionmix", textures, ["tex1", "tex2"], usage, desc)
+            TextureKind::DirectionMix { textures, direction } => {
+                let [first, second] = self.pair(textures, ["tex1", "tex2"], usage, desc);
+                let code = Code::Facing(self.direction(*direction, desc));
+                let amount = self.graph.node(code, &[]);
+                self.graph.mix([second, first], amount)
             }
-            TextureKind::Dots { inside, outside, .. } => {
-                let textures = [inside.clone(), outside.clone()];
-                self.even_mix("dots", &textures, ["inside", "outside"], usage, desc)
+            TextureKind::Dots { inside, outside, mapping } => {
+                let inside = self.operand(inside, usage, "inside", desc);
+                let outside = self.operand(outside, usage, "outside", desc);
+                let code = Code::Dots(self.mapping(mapping, desc));
+                let amount = self.graph.node(code, &[]);
+                // Exchanged, as in pbrt-v4.
+                self.graph.mix([inside, outside], amount)
             }
-            TextureKind::Fbm { .. } => self.constant_half("fbm", origin),
-            TextureKind::Wrinkled { .. } => self.constant_half("wrinkled", origin),
-            TextureKind::Windy => self.constant_half("windy", origin),
-            TextureKind::Marble { .. } => self.constant_half("marble", origin),
-            TextureKind::Ptex { .. } => self.constant_half("ptex", origin),
+            TextureKind::Fbm { octaves, roughness } => {
+                let code = Code::Fbm(self.fractal(*octaves, *roughness, desc));
+                self.graph.node(code, &[])
+            }
+            TextureKind::Wrinkled { octaves, roughness } => {
+                let code = Code::Wrinkled(self.fractal(*octaves, *roughness, desc));
+                self.graph.node(code, &[])
+            }
+            TextureKind::Windy => {
+                let code = Code::Windy(self.solid_mapping(desc));
+                self.graph.node(code, &[])
+            }
+            TextureKind::Marble { octaves, roughness, scale, variation } => {
+                let index = self.fractal(*octaves, *roughness, desc);
+                let (scale, variation) =
+                    (self.finite(*scale, "scale", desc), self.finite(*variation, "variation", desc));
+                let textures = &mut self.graph.textures;
+                let marble = Marble { fractal: textures.fractals[index as usize], scale, variation };
+                let hash = [index as f32, scale, variation, 0.0];
+                let code = Code::Marble(self.marbles.intern(&mut textures.marbles, marble, hash));
+                self.graph.node(code, &[])
+            }
+            TextureKind::Ptex { .. } => {
+                let message = "texture `ptex` is not drawn yet; drawn as the constant 0.5";
+                self.diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
+                self.graph.number(0.5)
+            }
         }
     }
 
@@ -337,32 +372,6 @@ impl GraphBuilder<'_> {
         user: &Stated<TextureDesc<V>>,
     ) -> [NodeId; 2] {
         [self.operand(first, usage, names[0], user), self.operand(second, usage, names[1], user)]
-    }
-
-    /// Replaces an unsupported combination of two textures.
-    fn even_mix<V: Value>(
-        &mut self,
-        kind: &str,
-        textures: &[Parameter<V>; 2],
-        names: [&str; 2],
-        usage: V::Use,
-        user: &Stated<TextureDesc<V>>,
-    ) -> NodeId {
-        self.not_drawn(kind, "an even mix of its values", &user.origin);
-        let textures = self.pair(textures, names, usage, user);
-        let amount = self.graph.number(0.5);
-        self.graph.mix(textures, amount)
-    }
-
-    /// Replaces an unsupported procedural texture.
-    fn constant_half(&mut self, kind: &str, origin: &Origin) -> NodeId {
-        self.not_drawn(kind, "the constant 0.5", origin);
-        self.graph.number(0.5)
-    }
-
-    fn not_drawn(&mut self, kind: &str, instead: &str, origin: &Origin) {
-        let message = format!("texture `{kind}` is not drawn yet; drawn as {instead}");
-        self.diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
     }
 
     /// `None`, with an error, if the image is not valid as a texture.
@@ -430,6 +439,43 @@ impl GraphBuilder<'_> {
         self.solid_mappings.intern(mappings, mapping, [at.x, at.y, at.z, 0.0])
     }
 
+    /// Index of a sum of noise.
+    fn fractal<V>(&mut self, octaves: i32, roughness: f32, texture: &Stated<TextureDesc<V>>) -> u32 {
+        if !(0..=MAX_OCTAVES).contains(&octaves) {
+            let message =
+                format!("the number of octaves must lie between 0 and {MAX_OCTAVES}, not {octaves}");
+            self.error("invalid-value", message, texture.origin.parameter("octaves"));
+        }
+        let octaves = octaves.clamp(0, MAX_OCTAVES) as u32;
+        let roughness = self.finite(roughness, "roughness", texture);
+        let mapping = self.solid_mapping(texture);
+        let hash = [mapping as f32, octaves as f32, roughness, 0.0];
+        let fractal = Fractal { mapping, octaves, roughness };
+        self.fractals.intern(&mut self.graph.textures.fractals, fractal, hash)
+    }
+
+    /// The value of the parameter `name`, which must be finite.
+    fn finite<V>(&mut self, value: f32, name: &str, texture: &Stated<TextureDesc<V>>) -> f32 {
+        if value.is_finite() {
+            return value;
+        }
+        self.error("invalid-value", format!("`{name}` cannot be {value}"), texture.origin.parameter(name));
+        0.0
+    }
+
+    /// Index of a direction of texture space.
+    fn direction<V>(&mut self, direction: Vector3, texture: &Stated<TextureDesc<V>>) -> u32 {
+        let render_from_texture = *self.render_from_world * texture.world_from_texture;
+        let direction = render_from_texture.transform_vector3(direction.as_dvec3()).normalize_or_zero();
+        if direction == DVec3::ZERO {
+            let message = "the direction must not be zero or infinite";
+            self.error("invalid-value", message, texture.origin.parameter("dir"));
+        }
+        let direction = Vec3::from(direction.as_vec3());
+        let hash = [direction.x, direction.y, direction.z, 0.0];
+        self.directions.intern(&mut self.graph.textures.directions, direction, hash)
+    }
+
     fn texture_from_render<V>(&mut self, texture: &Stated<TextureDesc<V>>) -> Transform {
         let render_from_texture = *self.render_from_world * texture.world_from_texture;
         Transform::from_f64(render_from_texture).map(|t| t.inverse()).unwrap_or_else(|| {
@@ -439,6 +485,9 @@ impl GraphBuilder<'_> {
         })
     }
 }
+
+/// The largest number of octaves of a sum of noise.
+const MAX_OCTAVES: i32 = 64;
 
 /// A point at which different mappings usually have different coordinates, from which they are
 /// hashed.

@@ -132,6 +132,12 @@ impl Graph {
             | Code::SpectrumImage(index)
             | Code::Squares(index)
             | Code::Cubes(index)
+            | Code::Dots(index)
+            | Code::Facing(index)
+            | Code::Fbm(index)
+            | Code::Wrinkled(index)
+            | Code::Windy(index)
+            | Code::Marble(index)
             | Code::Bilerp(index) => index,
             Code::Scale | Code::Mix => 0,
         };

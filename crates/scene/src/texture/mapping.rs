@@ -87,8 +87,8 @@ impl Mapping2d {
             let [scale, delta] = [scale, delta].each(|v| Vec2::broadcast(*v));
             return TexCoord2d {
                 st: scale * ctx.uv + delta,
-                dstdx: scale * Vec2::new(ctx.dudx, ctx.dvdx),
-                dstdy: scale * Vec2::new(ctx.dudy, ctx.dvdy),
+                dstdx: scale * Vec2::new(ctx.footprint.dudx, ctx.footprint.dvdx),
+                dstdy: scale * Vec2::new(ctx.footprint.dudy, ctx.footprint.dvdy),
             };
         }
         if R::LANES == 1 {
@@ -145,29 +145,19 @@ pub struct Mapping3d {
 
 impl Mapping3d {
     /// The texture coordinates of a point.
-    pub fn map(&self, ctx: &TextureContext) -> TexCoord3d {
-        let t = &self.texture_from_render;
-        TexCoord3d { p: t.point(ctx.p), dpdx: t.vector(ctx.dpdx), dpdy: t.vector(ctx.dpdy) }
-    }
-
-    /// [`map`](Self::map) for each lane, one by one.
     #[inline(always)]
-    pub(super) fn map_lanes<R: Real>(&self, ctx: &TextureContext<R>) -> TexCoord3d<R> {
-        if R::LANES == 1 {
-            let TexCoord3d { p, dpdx, dpdy } = self.map(&ctx.lane(0));
-            let [p, dpdx, dpdy] = [p, dpdx, dpdy].each(Vec3::broadcast);
-            return TexCoord3d { p, dpdx, dpdy };
-        }
-        let contexts = ContextArrays::new(ctx);
-        let mut numbers = [[[0.0; MAX_LANES]; 3]; 3];
-        for lane in 0..R::LANES {
-            let TexCoord3d { p, dpdx, dpdy } = self.map(&contexts.lane(lane));
-            for (triple, v) in numbers.iter_mut().zip([p, dpdx, dpdy]) {
-                (triple[0][lane], triple[1][lane], triple[2][lane]) = (v.x, v.y, v.z);
-            }
-        }
-        let [p, dpdx, dpdy] = numbers.each(|v| Vec3::from_array(v.each(|numbers| R::load(&numbers))));
-        TexCoord3d { p, dpdx, dpdy }
+    pub fn map<R: Real>(&self, ctx: &TextureContext<R>) -> TexCoord3d<R> {
+        let t = &self.texture_from_render;
+        let [dpdx, dpdy] = [ctx.footprint.dpdx, ctx.footprint.dpdy].each(|v| t.vector_lanes(v));
+        TexCoord3d { p: t.point_lanes(ctx.p), dpdx, dpdy }
+    }
+}
+
+impl<R: Real> TexCoord3d<R> {
+    /// The same point in a texture space that is scaled by `factor`.
+    #[inline(always)]
+    pub(super) fn scaled(&self, factor: R) -> Self {
+        Self { p: self.p * factor, dpdx: self.dpdx * factor, dpdy: self.dpdy * factor }
     }
 }
 

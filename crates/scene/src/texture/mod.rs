@@ -10,6 +10,12 @@
 //! bilerp         four corner values, interpolated over the unit square
 //! checkerboard   t₀ and t₁ in alternation, averaged over the footprint of the pixel
 //! image          pixels, averaged over the footprint of the pixel
+//! directionmix   a·t₀ + (1 − a)·t₁, where a = |cosine of the normal and a direction|
+//! dots           t₁ in dots, t₀ elsewhere
+//! fbm            noise at many frequencies; numbers only
+//! wrinkled       magnitudes of noise at many frequencies; numbers only
+//! windy          noise of varying strength; numbers only
+//! marble         colours across veins that noise displaces; spectra only
 //! ```
 //!
 //! A scene's textures form a graph. It is compiled to flat programs, one for each texture in use,
@@ -25,9 +31,14 @@ mod bilerp;
 mod checkerboard;
 mod compile;
 mod context;
+mod dots;
+mod fractal;
 mod graph;
 mod imagemap;
 mod mapping;
+mod marble;
+mod noise;
+mod pattern;
 mod program;
 mod pyramids;
 mod spectrum_type;
@@ -36,9 +47,11 @@ mod tests;
 
 pub use compile::TextureCompiler;
 pub use context::TextureContext;
+pub use fractal::Fractal;
 pub use graph::{MAX_OPERATIONS, MAX_TOTAL_OPERATIONS};
 pub use imagemap::{ImageLookup, SpectrumImage};
 pub use mapping::{Mapping2d, Mapping3d, TexCoord2d, TexCoord3d};
+pub use marble::Marble;
 pub use program::{Code, MAX_SLOTS, Operation, Program, Textures};
 pub use spectrum_type::{SpectrumType, color_space, compile_spectrum};
 

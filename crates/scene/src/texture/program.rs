@@ -11,11 +11,12 @@
 
 use super::context::ContextArrays;
 use super::{
-    FloatTextureId, ImageLookup, Mapping2d, Mapping3d, SpectrumImage, SpectrumTextureId, TextureContext,
-    bilerp, checkerboard,
+    FloatTextureId, Fractal, ImageLookup, Mapping2d, Mapping3d, Marble, SpectrumImage, SpectrumTextureId,
+    TextureContext, bilerp, checkerboard, marble,
 };
 use image::Pyramid;
 use lanes::{Each, Kernel, MAX_LANES, Real};
+use math::{Vec3, Vector3};
 use spectrum::{N, SampledSpectrum, SampledWavelengths, Spectrum};
 use std::ops::{Add, Mul};
 use std::sync::Arc;
@@ -40,6 +41,18 @@ pub enum Code {
     /// The share of the second texture of a checkerboard of cubes, mapped by an entry of
     /// [`Textures::solid_mappings`].
     Cubes(u32),
+    /// 1 in the dots and 0 elsewhere, mapped by an entry of [`Textures::mappings`].
+    Dots(u32),
+    /// The magnitude of the cosine between the normal and an entry of [`Textures::directions`].
+    Facing(u32),
+    /// The fractional Brownian motion of an entry of [`Textures::fractals`].
+    Fbm(u32),
+    /// The turbulence of an entry of [`Textures::fractals`].
+    Wrinkled(u32),
+    /// Waves, mapped by an entry of [`Textures::solid_mappings`].
+    Windy(u32),
+    /// The reflectance of an entry of [`Textures::marbles`].
+    Marble(u32),
     /// The product of operands 0 and 1, of which 1 is a number.
     Scale,
     /// (1 − a)·operand 0 + a·operand 1, where the number a is operand 2. For a = 0 and a = 1 the
@@ -59,7 +72,13 @@ impl Code {
             | Self::FloatImage(_)
             | Self::SpectrumImage(_)
             | Self::Squares(_)
-            | Self::Cubes(_) => 0,
+            | Self::Cubes(_)
+            | Self::Dots(_)
+            | Self::Facing(_)
+            | Self::Fbm(_)
+            | Self::Wrinkled(_)
+            | Self::Windy(_)
+            | Self::Marble(_) => 0,
             Self::Scale => 2,
             Self::Mix => 3,
             Self::Bilerp(_) => 4,
@@ -68,7 +87,23 @@ impl Code {
 
     /// Whether the value is averaged over the footprint of a pixel.
     pub fn is_filtered(self) -> bool {
-        matches!(self, Self::FloatImage(_) | Self::SpectrumImage(_) | Self::Squares(_) | Self::Cubes(_))
+        match self {
+            Self::FloatImage(_)
+            | Self::SpectrumImage(_)
+            | Self::Squares(_)
+            | Self::Cubes(_)
+            | Self::Fbm(_)
+            | Self::Wrinkled(_)
+            | Self::Windy(_)
+            | Self::Marble(_) => true,
+            Self::Number(_)
+            | Self::Spectrum(_)
+            | Self::Dots(_)
+            | Self::Facing(_)
+            | Self::Scale
+            | Self::Mix
+            | Self::Bilerp(_) => false,
+        }
     }
 }
 
@@ -100,6 +135,9 @@ pub struct Textures {
     pub(super) spectra: Vec<Spectrum>,
     pub(super) mappings: Vec<Mapping2d>,
     pub(super) solid_mappings: Vec<Mapping3d>,
+    pub(super) directions: Vec<Vector3>,
+    pub(super) fractals: Vec<Fractal>,
+    pub(super) marbles: Vec<Marble>,
     pub(super) float_images: Vec<ImageLookup>,
     pub(super) spectrum_images: Vec<SpectrumImage>,
     pub(super) pyramids: Vec<Arc<Pyramid>>,
@@ -129,6 +167,21 @@ impl Textures {
     /// Maps to texture space.
     pub fn solid_mappings(&self) -> &[Mapping3d] {
         &self.solid_mappings
+    }
+
+    /// Unit directions in render space.
+    pub fn directions(&self) -> &[Vector3] {
+        &self.directions
+    }
+
+    /// Sums of noise.
+    pub fn fractals(&self) -> &[Fractal] {
+        &self.fractals
+    }
+
+    /// Marbles.
+    pub fn marbles(&self) -> &[Marble] {
+        &self.marbles
     }
 
     /// Lookups of numbers in images: in the first channel of their pyramid.
@@ -252,10 +305,16 @@ impl Textures {
                 Code::Squares(index) => {
                     V::splat(checkerboard::squares(&self.mappings[index as usize].map(ctx)))
                 }
-                Code::Cubes(index) => {
-                    V::splat(checkerboard::cubes(&self.solid_mappings[index as usize].map_lanes(ctx)))
+                Code::Cubes(index) => V::splat(checkerboard::cubes(&self.in_space(index, ctx))),
+                Code::Facing(index) => {
+                    V::splat(ctx.n.dot(Vec3::broadcast(self.directions[index as usize])).abs())
                 }
-                Code::Spectrum(_) | Code::SpectrumImage(_) => V::spectral(self, operation.code, ctx, lambda),
+                Code::Dots(_) | Code::Fbm(_) | Code::Wrinkled(_) | Code::Windy(_) => {
+                    V::splat(self.pattern(operation.code, ctx))
+                }
+                Code::Spectrum(_) | Code::SpectrumImage(_) | Code::Marble(_) => {
+                    V::spectral(self, operation.code, ctx, lambda)
+                }
                 Code::Scale => slots[a] * slots[b].number(),
                 Code::Mix => mix([slots[a], slots[b]], slots[c].number()),
                 Code::Bilerp(index) => {
@@ -347,6 +406,7 @@ impl<R: Real> Value<R> for SampledSpectrum<R> {
                 image.evaluate(mapping, pyramid, ctx, lambda)
             }
             Code::Spectrum(index) => textures.spectra[index as usize].sample(lambda),
+            Code::Marble(_) => marble::reflectance(textures.pattern(code, ctx), lambda),
             _ => SampledSpectrum::splat(R::zero()),
         }
     }

@@ -1,13 +1,15 @@
 //! Textures: single ones, and compiled from a scene.
 
 mod lanes;
+mod noise;
 mod programs;
 
 use super::*;
+use crate::footprint::Footprint;
 use ::image::{ColorEncoding, Image};
 use description::{
     ColorSpaceDesc, Diagnostic, EncodingDesc, FloatTextureDesc, Handle, ImageChannel, ImageDesc,
-    ImageTextureDesc, MappingDesc, Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc,
+    ImageTextureDesc, MappingDesc, Parameter, SceneDesc, Span, SpectrumDesc, SpectrumTextureDesc, Stated,
     TextureFilter, TextureKind, WrapMode,
 };
 use math::{DMat4, DVec3, Transform, Vec2, Vec3};
@@ -19,6 +21,11 @@ const FILTERS: [TextureFilter; 4] =
 
 fn at(u: f32, v: f32) -> TextureContext {
     TextureContext { uv: Vec2::new(u, v), ..TextureContext::default() }
+}
+
+/// The point under a footprint of ∂u/∂x, ∂u/∂y, ∂v/∂x and ∂v/∂y.
+fn seen(at: TextureContext, [dudx, dudy, dvdx, dvdy]: [f32; 4]) -> TextureContext {
+    TextureContext { footprint: Footprint { dudx, dudy, dvdx, dvdy, ..Footprint::default() }, ..at }
 }
 
 fn lambda() -> SampledWavelengths {
@@ -183,7 +190,7 @@ fn a_filtered_checkerboard_is_the_average_under_a_triangle() {
                 })
                 .sum();
             // v is far from an edge, so that only u is averaged.
-            let ctx = TextureContext { dudx: r / 1.5, dudy: -0.1 * r, ..at(x, 0.5) };
+            let ctx = seen(at(x, 0.5), [r / 1.5, -0.1 * r, 0.0, 0.0]);
             let found = f64::from(squares.float(&ctx));
             assert!((found - (0.5 - 0.5 * average)).abs() < 2e-4, "x {x} r {r}: {found} {average}");
         }
@@ -194,11 +201,10 @@ fn a_filtered_checkerboard_is_the_average_under_a_triangle() {
 fn a_checkerboard_under_a_wide_footprint_is_grey() {
     let squares = checkerboard(Some(MappingDesc::default()));
     for wide in [1e3, 1e30, f32::INFINITY] {
-        let amount = squares.float(&TextureContext { dudx: wide, dvdy: wide, ..at(0.3, 0.4) });
+        let amount = squares.float(&seen(at(0.3, 0.4), [wide, 0.0, 0.0, wide]));
         assert!((amount - 0.5).abs() < 1e-3, "{wide}: {amount}");
     }
-    let lost = TextureContext { dudx: f32::NAN, ..at(f32::NAN, 0.4) };
-    squares.float(&lost);
+    squares.float(&seen(at(f32::NAN, 0.4), [f32::NAN, 0.0, 0.0, 0.0]));
 }
 
 fn mappings() -> Vec<Mapping2d> {
@@ -220,20 +226,22 @@ fn mappings() -> Vec<Mapping2d> {
 fn derivatives_of_mappings_are_finite_differences() {
     let ctx = TextureContext {
         p: Vec3::new(1.2, -0.8, 0.6),
-        dpdx: Vec3::new(0.5, 0.2, -0.3),
-        dpdy: Vec3::new(-0.1, 0.7, 0.4),
         n: Vec3::Z,
         uv: Vec2::new(0.3, 0.8),
-        dudx: 0.2,
-        dudy: -0.3,
-        dvdx: 0.7,
-        dvdy: 0.1,
-        face_index: 0,
+        footprint: Footprint {
+            dpdx: Vec3::new(0.5, 0.2, -0.3),
+            dpdy: Vec3::new(-0.1, 0.7, 0.4),
+            dudx: 0.2,
+            dudy: -0.3,
+            dvdx: 0.7,
+            dvdy: 0.1,
+        },
     };
+    let Footprint { dpdx, dpdy, dudx, dudy, dvdx, dvdy } = ctx.footprint;
     let h = 2e-3;
     let moved = |x: f32, y: f32| TextureContext {
-        p: ctx.p + ctx.dpdx * x + ctx.dpdy * y,
-        uv: ctx.uv + Vec2::new(ctx.dudx * x + ctx.dudy * y, ctx.dvdx * x + ctx.dvdy * y),
+        p: ctx.p + dpdx * x + dpdy * y,
+        uv: ctx.uv + Vec2::new(dudx * x + dudy * y, dvdx * x + dvdy * y),
         ..ctx
     };
     for mapping in mappings() {
@@ -315,12 +323,14 @@ fn images_are_scaled_and_then_inverted() {
 fn filters_of_constant_images_are_constant() {
     let wide = TextureContext {
         p: Vec3::new(1.2, -0.8, 0.6),
-        dpdx: Vec3::new(0.05, 0.02, -0.03),
-        dpdy: Vec3::new(-0.01, 0.07, 0.04),
-        dudx: 0.11,
-        dudy: -0.02,
-        dvdx: 0.03,
-        dvdy: 0.2,
+        footprint: Footprint {
+            dpdx: Vec3::new(0.05, 0.02, -0.03),
+            dpdy: Vec3::new(-0.01, 0.07, 0.04),
+            dudx: 0.11,
+            dudy: -0.02,
+            dvdx: 0.03,
+            dvdy: 0.2,
+        },
         ..at(0.3, 0.9)
     };
     let axes = [Vec3::X, Vec3::new(0.2, 1.0, 0.0)];
@@ -446,31 +456,15 @@ fn bilerp_interpolates_its_corners() {
 }
 
 #[test]
-fn unsupported_textures_are_replaced_with_one_warning() {
-    let (octaves, roughness) = (8, 0.5);
-    let mapping = MappingDesc::default();
-    fn colour(value: f32) -> Parameter<SpectrumDesc> {
-        Parameter::Value(SpectrumDesc::Constant(value))
-    }
-    for (kind, value) in [
-        (TextureKind::DirectionMix { textures: [colour(0.2), colour(0.4)], direction: Vec3::Y }, 0.3),
-        (TextureKind::Dots { inside: colour(0.2), outside: colour(0.4), mapping }, 0.3),
-        (TextureKind::Marble { octaves, roughness, scale: 1.0, variation: 0.2 }, 0.5),
-        (TextureKind::Fbm { octaves, roughness }, 0.5),
-        (TextureKind::Wrinkled { octaves, roughness }, 0.5),
-        (TextureKind::Windy, 0.5),
-        (TextureKind::Ptex { filename: "a.ptx".into(), encoding: EncodingDesc::Linear, scale: 1.0 }, 0.5),
-    ] {
-        let mut scene = SceneDesc::default();
-        scene.spectrum_textures.push(SpectrumTextureDesc::new(kind));
-        let t = compiled(&scene);
-        assert_eq!(
-            t.diagnostics.iter().map(|d| (d.code, d.is_error())).collect::<Vec<_>>(),
-            [("not-drawn", false)]
-        );
-        for found in t.spectra(&at(0.1, 0.1)) {
-            assert_spectrum(found, SampledSpectrum::splat(value), 1e-6);
-        }
+fn an_unsupported_texture_is_replaced_with_one_warning() {
+    let kind = TextureKind::Ptex { filename: "a.ptx".into(), encoding: EncodingDesc::Linear, scale: 1.0 };
+    let mut scene = SceneDesc::default();
+    scene.spectrum_textures.push(SpectrumTextureDesc::new(kind));
+    let t = compiled(&scene);
+    let found: Vec<_> = t.diagnostics.iter().map(|d| (d.code, d.is_error())).collect();
+    assert_eq!(found, [("not-drawn", false)]);
+    for found in t.spectra(&at(0.1, 0.1)) {
+        assert_spectrum(found, SampledSpectrum::splat(0.5), 1e-6);
     }
 }
 

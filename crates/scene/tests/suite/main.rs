@@ -1,6 +1,7 @@
 //! Compiled scenes: lights, materials, motion and views.
 
 mod all_lights;
+mod bump_maps;
 mod common;
 mod compile;
 mod emission;

@@ -202,7 +202,7 @@ fn kind<V: TextureValue>(reader: &mut Reader) -> Option<TextureKind<V>> {
 }
 
 fn octaves(reader: &mut Reader) -> (i32, f32) {
-    (reader.integer("octaves", 8, 1..=64), reader.float("roughness", 0.5))
+    (reader.integer("octaves", 8, 0..=64), reader.float("roughness", 0.5))
 }
 
 fn image<V: TextureValue>(reader: &mut Reader) -> Option<ImageTextureDesc> {

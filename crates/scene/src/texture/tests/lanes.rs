@@ -1,7 +1,6 @@
 //! Programs in lanes.
 
 use super::*;
-use crate::footprint::Footprint;
 use ::lanes::Real;
 use testkit::{LaneFunction, lanes_agree};
 
@@ -23,7 +22,7 @@ impl LaneFunction for All<'_> {
             dvdy: (u[3] - half) * size,
         };
         let uv = Vec2::new((u[0] - half) * four, (u[1] - half) * four);
-        let ctx = TextureContext::new(along(0) * four, along(3), uv, &footprint);
+        let ctx = TextureContext { p: along(0) * four, n: along(3), uv, footprint };
         let lambda = SampledWavelengths::sample_visible(u[5]);
         let mut results = Vec::new();
         for &id in &self.0.floats {
@@ -51,6 +50,16 @@ fn textures_do_not_depend_on_the_number_of_lanes() {
         scene.float_textures.push(FloatTextureDesc::new(TextureKind::Image(desc.clone())));
         scene.spectrum_textures.push(SpectrumTextureDesc::new(TextureKind::Image(desc)));
     }
+    let (octaves, roughness) = (6, 0.7);
+    for kind in [
+        TextureKind::Fbm { octaves, roughness },
+        TextureKind::Wrinkled { octaves, roughness },
+        TextureKind::Windy,
+    ] {
+        let mut desc = FloatTextureDesc::new(kind);
+        desc.world_from_texture = DMat4::from_rotation_x(0.4) * DMat4::from_scale(DVec3::new(0.3, 0.7, 0.2));
+        scene.float_textures.push(desc);
+    }
     let number: Parameter<f32> = Handle::new(2).into();
     let image: Parameter<SpectrumDesc> = Handle::new(4).into();
     let [red, grey] = [SpectrumDesc::rgb(0.9, 0.1, 0.1), SpectrumDesc::Constant(0.3)];
@@ -63,7 +72,13 @@ fn textures_do_not_depend_on_the_number_of_lanes() {
             textures: [first.clone(), second.clone()],
             mapping: Some(MappingDesc::default()),
         },
-        TextureKind::Checkerboard { textures: [first, second], mapping: None },
+        TextureKind::Checkerboard { textures: [first.clone(), second.clone()], mapping: None },
+        TextureKind::DirectionMix {
+            textures: [first.clone(), second.clone()],
+            direction: Vec3::new(1.0, 2.0, -0.5),
+        },
+        TextureKind::Dots { inside: first, outside: second, mapping: MappingDesc::Spherical },
+        TextureKind::Marble { octaves, roughness, scale: 3.0, variation: 0.8 },
         TextureKind::Bilerp {
             corners: [red.clone(), grey.clone(), grey, red],
             mapping: MappingDesc::default(),

@@ -114,7 +114,7 @@ fn unsupported_materials_are_replaced_with_a_warning() {
     for (kind, message) in cases {
         warns(&with(|desc| desc.materials.push_stated(stated(kind.into(), 4))), message, 4);
     }
-    let displaced = MaterialDesc { displacement: Some(0.1.into()), ..MaterialDesc::default() };
-    let desc = with(|desc| desc.materials.push_stated(with_parameter(displaced, "displacement", 6)));
-    warns(&desc, "displacement is not drawn yet; the surface stays as it is", 6);
+    let bumpy = MaterialDesc { displacement: Some(f32::NAN.into()), ..MaterialDesc::default() };
+    let desc = with(|desc| desc.materials.push_stated(with_parameter(bumpy, "displacement", 6)));
+    check(&desc, Severity::Error, "invalid-value", "NaN is not a valid value for a texture", 6);
 }
