@@ -12,6 +12,7 @@ use image::{Image, Projection};
 use math::Vec2;
 use spectrum::RgbColorSpace;
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 impl Compiler<'_> {
     /// Reports invalid brightness factors by name.
@@ -53,18 +54,24 @@ impl Compiler<'_> {
         scale: f32,
         span: Span,
     ) -> Option<(EmissionImage, f32)> {
-        let image = self.desc.images[handle].image.clone();
+        let image = self.finite_image(handle, span)?;
         if !image.is_color() {
             self.error("image-channels", "the image of a light needs red, green and blue", span);
-            return None;
-        }
-        if image.values().any(|value| !value.is_finite()) {
-            self.error("image-values", "the image of a light has infinite or NaN values", span);
             return None;
         }
         let color_space = image_color_space(&image);
         let photometric = color_space.illuminant().to_photometric();
         Some((EmissionImage { image, color_space }, scale / photometric))
+    }
+
+    /// A light's image, whose values must be finite.
+    pub(super) fn finite_image(&mut self, handle: Handle<ImageDesc>, span: Span) -> Option<Arc<Image>> {
+        let image = self.desc.images[handle].image.clone();
+        if image.values().any(|value| !value.is_finite()) {
+            self.error("image-values", "the image of a light has infinite or NaN values", span);
+            return None;
+        }
+        Some(image)
     }
 }
 

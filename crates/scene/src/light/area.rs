@@ -17,7 +17,7 @@ use geometry::{GeometryId, InstancePath, ShapeSample, World};
 use image::WrapMode;
 use math::{DirectionCone, Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
 use sampling::{hash_float, warp};
-use spectrum::{Rgb, SampledSpectrum, SampledWavelengths, Spectrum};
+use spectrum::{Rgb, SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 
 /// The primitives of an emitting geometry.
@@ -94,7 +94,7 @@ impl LightModel for AreaLight {
             Some(image) => {
                 let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
                 for rgb in image.pixels() {
-                    sum += Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda);
+                    sum += image.sample(rgb, lambda);
                     count += 1;
                 }
                 sum * (scale / count.max(1) as f32)
@@ -120,8 +120,7 @@ impl LightModel for AreaLight {
             None => emission.radiance.spectrum.sample(lambda),
             Some(image) => {
                 let st = Vec2::new(uv.x, 1.0 - uv.y);
-                let rgb = Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)).clamp_zero();
-                Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda)
+                image.sample(Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)), lambda)
             }
         };
         spectrum * self.scale(part)

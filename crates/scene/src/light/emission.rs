@@ -57,10 +57,20 @@ impl EmissionImage {
         (0..width * height).map(move |i| Rgb::from(self.image.rgb(i % width, i / width)).clamp_zero())
     }
 
+    /// The spectrum of a colour, its negative components set to zero, at the wavelengths.
+    pub(super) fn sample(&self, rgb: Rgb, lambda: &SampledWavelengths) -> SampledSpectrum {
+        Spectrum::rgb_illuminant(self.color_space, rgb.clamp_zero()).sample(lambda)
+    }
+
+    /// The luminance of a colour.
+    pub fn luminance(&self, p: Rgb) -> f32 {
+        let y = self.color_space.luminance_weights();
+        p.r * y.r + p.g * y.g + p.b * y.b
+    }
+
     /// Mean luminance in the image's colour space.
     pub fn mean_luminance(&self) -> f32 {
-        let y = self.color_space.luminance_weights();
-        let sum: f64 = self.pixels().map(|p| (p.r * y.r + p.g * y.g + p.b * y.b) as f64).sum();
+        let sum: f64 = self.pixels().map(|p| self.luminance(p) as f64).sum();
         (sum / (self.image.width() * self.image.height()) as f64) as f32
     }
 }

@@ -161,6 +161,11 @@ impl<'a> LightRef<'a> {
         each_light!(self.light, light => light.is_distant())
     }
 
+    /// See [`LightModel::emits_within_scene`].
+    pub fn emits_within_scene(&self) -> bool {
+        each_light!(self.light, light => light.emits_within_scene())
+    }
+
     /// See [`LightModel::phi`].
     pub fn phi(&self, lambda: &SampledWavelengths) -> SampledSpectrum {
         each_light!(self.light, light => light.phi(&self.part, lambda))
