@@ -138,8 +138,8 @@ impl Compiler<'_> {
                 self.allow(bytes * ProjectionLight::BYTES_PER_PIXEL, origin)?;
                 let slide = Slide::new(image, *fov);
                 if let Some(power) = power {
-                    let luminance = slide.image.luminance(slide.mean());
-                    scale *= power / self.nonzero(luminance * slide.area(), origin)?;
+                    let luminance = slide.image.luminance(slide.total());
+                    scale *= power / self.nonzero(luminance, origin)?;
                 }
                 Light::Projection(Box::new(ProjectionLight::new(render_from_light, slide, scale)))
             }
@@ -157,7 +157,8 @@ impl Compiler<'_> {
             let message = "the light behind a portal does not move; drawn as at the start of motion";
             self.warn("not-drawn", message, origin.span);
         }
-        let to_render = |p: Point3| Vec3::from(self.render_from_world.transform_point3(p.as_dvec3()).as_vec3());
+        let to_render =
+            |p: Point3| Vec3::from(self.render_from_world.transform_point3(p.as_dvec3()).as_vec3());
         let portal = Portal::new(corners.map(to_render));
         if portal.is_none() {
             let message = "the four points of `portal` must be the corners of a rectangle, in their order";

@@ -10,9 +10,7 @@ use super::emitter::solid_angle_factor;
 use super::point::{reach, sample_point};
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
 use image::Projection;
-use math::{
-    AnimatedTransform, Bounds2, Normal3, Point2, Point3, Point3Error, Ray, Transform, Vec3, Vector3,
-};
+use math::{AnimatedTransform, Bounds2, Normal3, Point2, Point3, Point3Error, Ray, Transform, Vec3, Vector3};
 use sampling::PiecewiseConstant2d;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;

@@ -41,6 +41,7 @@ mod point;
 mod portal_infinite;
 mod projection;
 mod scene_sphere;
+mod screen;
 mod spot;
 mod table;
 mod uniform_infinite;

@@ -10,13 +10,14 @@
 //! ```
 //!
 //! An environment is resampled to this *rectified* square. The part of it that a point sees through
-//! the portal is a window, within which a direction is chosen by brightness per area, with no
+//! the portal is a window, within which a direction is chosen by brightness and solid angle, with no
 //! sample lost beside the portal. Points beyond the portal or in its plane receive no light.
 //!
 //! Power: what passes the portal of area A, Φ = A·∫ L·cos θ dω. Emitted rays start uniformly on the
 //! portal, with the density 1/(A·|cos θ|) per area that faces them. Sources: [Bitterli 2015];
 //! [Pharr 2023 §12.5.3].
 
+use super::screen::Screen;
 use super::{
     Emission, EmissionImage, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext,
 };
@@ -32,7 +33,7 @@ use std::f32::consts::PI;
 pub struct PortalInfiniteLight {
     portal: Portal,
     radiance: PortalRadiance,
-    /// Brightness per area of the rectified square.
+    /// By brightness and solid angle, over the rectified square.
     distribution: WindowedPiecewiseConstant2d,
 }
 
@@ -152,18 +153,18 @@ impl PortalRadiance {
     /// Cells per axis of the density for a constant radiance.
     const CONSTANT_RESOLUTION: u32 = 64;
 
-    /// The resolution of the density, and the brightness of its cells per area.
+    /// The resolution of the density, and brightness times solid angle of its cells.
     fn brightness(&self) -> (u32, Vec<f32>) {
         let resolution = match self {
             Self::Constant(_) => Self::CONSTANT_RESOLUTION,
             Self::Image(image) => image.resolution,
         };
-        let cells = cells(resolution).map(|st| {
+        let cells = cells(resolution).map(|(st, screen)| {
             let brightness = match self {
                 Self::Constant(_) => 1.0,
                 Self::Image(image) => image.lookup(st).average(),
             };
-            brightness * Portal::local_direction(st).1
+            brightness * screen.solid_angle() as f32
         });
         (resolution, cells.collect())
     }
@@ -179,10 +180,15 @@ impl PortalRadiance {
     }
 }
 
-/// The centres of the cells of the rectified square.
-fn cells(resolution: u32) -> impl Iterator<Item = Point2> {
+/// The cells of the rectified square: their centres, and the rectangles that they are at z = 1.
+fn cells(resolution: u32) -> impl Iterator<Item = (Point2, Screen)> {
     let center = move |i: u32| (i as f32 + 0.5) / resolution as f32;
-    (0..resolution * resolution).map(move |i| Vec2::new(center(i % resolution), center(i / resolution)))
+    let angle = move |i: u32| (f64::from(i) / f64::from(resolution) - 0.5) * std::f64::consts::PI;
+    let cell = move |x: u32, y: u32| {
+        let screen = Screen::between_angles([x, y].map(angle), [x + 1, y + 1].map(angle));
+        (Vec2::new(center(x), center(y)), screen)
+    };
+    (0..resolution).flat_map(move |y| (0..resolution).map(move |x| cell(x, y)))
 }
 
 impl PortalInfiniteLight {
@@ -216,11 +222,10 @@ impl LightModel for PortalInfiniteLight {
         match &self.radiance {
             PortalRadiance::Constant(emission) => emission.sample(lambda) * (PI * self.portal.area()),
             PortalRadiance::Image(image) => {
-                let sum = cells(image.resolution).fold(SampledSpectrum::ZERO, |sum, st| {
-                    let (w, solid_angle) = Portal::local_direction(st);
-                    sum + self.radiance.sample(st, lambda) * (w.z * solid_angle)
+                let sum = cells(image.resolution).fold(SampledSpectrum::ZERO, |sum, (st, screen)| {
+                    sum + self.radiance.sample(st, lambda) * screen.projected_solid_angle() as f32
                 });
-                sum * (self.portal.area() / image.pixels.len() as f32)
+                sum * self.portal.area()
             }
         }
     }

@@ -3,17 +3,16 @@
 //! The image fills a screen at z = 1 of height (or width, if that is less) 2·tan(fov/2), with its
 //! top towards +y; I is the radiance of the pixel that a direction passes, 0 beside the screen. A
 //! screen area dA is seen under the solid angle cos³θ·dA, so that the power is Φ = ∫ I·cos³θ dA.
-//! Rays leave through points of the screen that are chosen by brightness times cos³θ. Sources:
-//! [Pharr 2023 §12.2.2].
+//! Rays leave through a pixel that is chosen by brightness times solid angle, and through points of
+//! it with uniform density per area. Sources: [Pharr 2023 §12.2.2].
 
 use super::emitter::solid_angle_factor;
 use super::point::{reach, sample_point};
+use super::screen::Screen;
 use super::{
     EmissionImage, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext,
 };
-use math::{
-    AnimatedTransform, Bounds2, Normal3, Point2, Point3, Point3Error, Ray, Vec2, Vec3, Vector3,
-};
+use math::{AnimatedTransform, Bounds2, Normal3, Point2, Point3, Point3Error, Ray, Vec2, Vec3, Vector3};
 use sampling::PiecewiseConstant2d;
 use spectrum::{Rgb, SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
@@ -48,30 +47,27 @@ impl Slide {
         Self { image, screen: Bounds2::new(-corner, corner) }
     }
 
-    /// The mean over the screen of its colours, without negative components, times cos³θ.
-    pub fn mean(&self) -> Rgb {
-        let (mut sum, mut count) = ([0f64; 3], 0u32);
-        for (rgb, weight) in self.pixels() {
-            for (sum, c) in sum.iter_mut().zip([rgb.r, rgb.g, rgb.b]) {
-                *sum += f64::from(c * weight);
+    /// The integral over solid angle of its colours, without negative components.
+    pub fn total(&self) -> Rgb {
+        let mut total = [0f64; 3];
+        for (rgb, solid_angle) in self.pixels() {
+            for (sum, c) in total.iter_mut().zip([rgb.r, rgb.g, rgb.b]) {
+                *sum += f64::from(c * solid_angle);
             }
-            count += 1;
         }
-        Rgb::from(sum.map(|sum| (sum / f64::from(count)) as f32))
+        Rgb::from(total.map(|sum| sum as f32))
     }
 
-    /// The area of the screen.
-    pub fn area(&self) -> f32 {
-        self.screen.area()
-    }
-
-    /// The colours of the pixels row by row from the top, each with cos³θ at its centre.
+    /// The colours of the pixels row by row from the top, each with its solid angle.
     fn pixels(&self) -> impl Iterator<Item = (Rgb, f32)> + '_ {
         let [width, height] = [self.image.image.width(), self.image.image.height()];
         self.image.pixels().zip(0..).map(move |(rgb, i)| {
-            let st = Vec2::new((i % width) as f32 + 0.5, (i / width) as f32 + 0.5)
-                / Vec2::new(width as f32, height as f32);
-            (rgb, cos_theta(self.direction(st)).powi(3))
+            let corner = |x: u32, y: u32| {
+                self.direction(Vec2::new(x as f32 / width as f32, y as f32 / height as f32)).truncate()
+            };
+            let [x, y] = [i % width, i / width];
+            let pixel = Screen::new(Bounds2::new(corner(x, y), corner(x + 1, y + 1)));
+            (rgb, pixel.solid_angle() as f32)
         })
     }
 
@@ -100,7 +96,8 @@ impl ProjectionLight {
 
     /// The light that projects a slide, its colours times `scale`.
     pub fn new(render_from_light: AnimatedTransform, slide: Slide, scale: f32) -> Self {
-        let brightness: Vec<f32> = slide.pixels().map(|(rgb, weight)| rgb.average() * weight).collect();
+        let pixels = slide.pixels();
+        let brightness: Vec<f32> = pixels.map(|(rgb, solid_angle)| rgb.average() * solid_angle).collect();
         let width = slide.image.image.width() as usize;
         let distribution = PiecewiseConstant2d::new(&brightness, width, Bounds2::UNIT);
         Self { render_from_light, slide, scale, distribution }
@@ -123,7 +120,7 @@ impl ProjectionLight {
     /// Density per solid angle of the rays through a position of the image, in the light's space.
     fn pdf_local(&self, st: Point2) -> f32 {
         let cos_theta = cos_theta(self.slide.direction(st));
-        self.distribution.pdf(st) / (self.slide.area() * cos_theta.powi(3))
+        self.distribution.pdf(st) / (self.slide.screen.area() * cos_theta.powi(3))
     }
 }
 
@@ -133,12 +130,11 @@ impl LightModel for ProjectionLight {
     }
 
     fn phi(&self, _part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
-        for (rgb, weight) in self.slide.pixels() {
-            sum += self.slide.image.sample(rgb, lambda) * weight;
-            count += 1;
+        let mut sum = SampledSpectrum::ZERO;
+        for (rgb, solid_angle) in self.slide.pixels() {
+            sum += self.slide.image.sample(rgb, lambda) * solid_angle;
         }
-        sum * (self.scale * self.slide.area() / count as f32)
+        sum * self.scale
     }
 
     fn sample_li(
@@ -186,15 +182,16 @@ impl LightModel for ProjectionLight {
         (0.0, st.map_or(0.0, |st| self.pdf_local(st) * solid_angle_factor(&light_from_render, w)))
     }
 
-    /// A cone around the screen, with the mean intensity over its area.
+    /// A cone around the screen, with its mean intensity.
     fn bounds(&self, _part: &LightPart) -> Option<LightBounds> {
         let motion = &self.render_from_light;
         let corner = cos_theta(self.slide.screen.max.extend(1.0));
+        let mean = self.slide.total().average() / Screen::new(self.slide.screen).solid_angle() as f32;
         let illuminant = self.slide.image.color_space.illuminant().max_value();
         Some(LightBounds {
             bounds: reach(Vec3::ZERO, Some(motion)),
             w: motion.start().vector(Vec3::Z).normalize(),
-            phi: 4.0 * PI * self.slide.mean().average() * illuminant * self.scale,
+            phi: 4.0 * PI * mean * illuminant * self.scale,
             cos_theta_o: if motion.is_moving() { -1.0 } else { 1.0 },
             // A margin for rounding, so that points just inside of the corners keep some importance.
             cos_theta_e: (corner - 1e-3).max(-1.0),
