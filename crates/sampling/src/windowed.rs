@@ -176,7 +176,7 @@ mod tests {
             assert!(window.contains(p) && pdf > 0.0);
             let expected = density.pdf(p, window);
             // At the edge of a cell, rounding decides which one it is.
-            assert!(expected == pdf || (p * 4.0 - (p * 4.0).round()).abs().min_element() < 1e-4);
+            assert!(expected == pdf || (p * 4.0 - (p * 4.0).map(f32::round)).abs().min_element() < 1e-4);
             let outside = window.max + Vec2::splat(0.01);
             assert_eq!(density.pdf(outside, window), 0.0);
         }

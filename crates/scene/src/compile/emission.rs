@@ -61,7 +61,7 @@ impl Compiler<'_> {
         }
         let color_space = image_color_space(&image);
         let photometric = color_space.illuminant().to_photometric();
-        Some((EmissionImage { image, color_space }, scale / photometric))
+        Some((EmissionImage::new(image, color_space), scale / photometric))
     }
 
     /// A light's image, whose values must be finite.
