@@ -122,7 +122,7 @@ fn invert(u: f32, range: [f64; 2], cells: usize, mass: impl Fn(f64) -> f64) -> O
     let [low, high] = [edge(first), edge(first + 1)];
     let [below, above] = [low, high].map(mass);
     let within = ((target - below) / (above - below)).clamp(0.0, 1.0);
-    (above > below).then(|| (low + (high - low) * within, first))
+    (above > below).then_some((low + (high - low) * within, first))
 }
 
 #[cfg(test)]
