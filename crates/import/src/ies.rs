@@ -359,8 +359,8 @@ mod tests {
             ("1 -1 1 2 1 1", "1 -1 1 2 1 2", "line 4: the photometry is not of type C"),
             ("1 -1 1 2 1 1", "1 -1 1 2.5 1 1", "line 4: the number of vertical angles is 2.5"),
             ("1 -1 1 2 1 1", "1 -1 0 2 1 1", "multiply to 0"),
-            ("1 -1 1 2 1 1", "1 -1 1 3e9 1 1", "line 8"),
-            ("1 -1 1 2 1 1", "1 -1 1 2 3e9 1", "line 8"),
+            ("1 -1 1 2 1 1", "1 -1 1 3e9 1 1", "it ends before the vertical angles"),
+            ("1 -1 1 2 1 1", "1 -1 1 2 3e9 1", "it ends before the horizontal angles"),
         ] {
             let error = read(good.replacen(from, to, 1).as_bytes()).unwrap_err();
             assert!(error.contains(message), "{error}");

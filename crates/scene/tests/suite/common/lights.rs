@@ -166,7 +166,11 @@ pub fn place(light: LightRef) -> (Vec3, Vec3) {
         Light::Point(light) => (light.p, Vec3::Z),
         Light::Spot(light) => (light.p, light.axis),
         Light::Goniometric(light) => (light.position(TIME), Vec3::Z),
-        Light::Projection(light) => light.placement(TIME),
+        Light::Projection(light) => {
+            let (p, axis) = light.placement(TIME);
+            // Off the axis, which is an edge of pixels.
+            (p, (axis + Vec3::new(0.03, 0.05, 0.02)).normalize())
+        }
         _ => panic!("not a light at a point"),
     }
 }
