@@ -3,10 +3,10 @@
 //!
 //! A file is lines of text up to `TILT=`, then numbers: ten of the luminaire, three of its power
 //! supply, the vertical and horizontal angles in degrees, and the intensities, all vertical angles
-//! of one horizontal angle after the other. Photometry of type C is read: vertical angles go up from
-//! straight down, horizontal ones around the vertical axis, counterclockwise as seen from above. The
-//! range of the horizontal angles tells the symmetry. Directions beyond the vertical angles have no
-//! light.
+//! of one horizontal angle after the other. Photometry of type C is read: vertical angles go up
+//! from straight down, horizontal ones around the vertical axis, counterclockwise as seen from
+//! above. The range of the horizontal angles tells the symmetry. Directions beyond the vertical
+//! angles have no light.
 //!
 //! Intensities are multiplied by the candela multiplier and the ballast factor, and before 2002 by
 //! the ballast–lamp factor, whose place has other uses since. Factors for tilted lamps

@@ -324,8 +324,8 @@ impl Scene {
     }
 
     /// [`LightRef::sample_le`] of one of this scene's lights. Rays of distant lights start on the
-    /// bounding sphere of all bounded shapes, or in a portal. Unbounded shapes, or shapes beyond the
-    /// portal, may occlude them before: `None` if one does.
+    /// bounding sphere of all bounded shapes, or in a portal. Unbounded shapes, or shapes beyond
+    /// the portal, may occlude them before: `None` if one does.
     pub fn sample_emission(
         &self,
         light: LightId,

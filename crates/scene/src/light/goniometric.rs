@@ -2,9 +2,10 @@
 //! L = I·m(ω) / r², with m given by an image over the sphere of directions.
 //!
 //! The image is in the equal-area [`Projection`], each pixel constant over its solid angle; the
-//! light's +y is in the middle of it, and +z where the projection has +y. With the mean m̄ of the pixels the power is Φ = 4π·I·m̄, and p the density m/m̄ of the square. Rays
-//! leave with the density p/(4π) per solid angle, in proportion to the intensity, so that each
-//! carries all of Φ. Only p is stored: m = m̄·p. Sources: [Pharr 2023 §12.2.3].
+//! light's +y is in the middle of it, and +z where the projection has +y. With the mean m̄ of the
+//! pixels the power is Φ = 4π·I·m̄, and p the density m/m̄ of the square. Rays leave with the
+//! density p/(4π) per solid angle, in proportion to the intensity, so that each carries all of Φ.
+//! Only p is stored: m = m̄·p. Sources: [Pharr 2023 §12.2.3].
 
 use super::emitter::solid_angle_factor;
 use super::point::{reach, sample_point};

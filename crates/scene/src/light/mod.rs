@@ -7,9 +7,9 @@
 //!
 //! For light paths, [`LightRef::sample_le`] samples a ray with two densities. That of its position
 //! is per area of the surface; for lights infinitely far away, which have none, it is per area that
-//! faces the ray: on a disk of the scene's radius R it is 1/(πR²). That of its direction is per solid
-//! angle. Where one of the two is fixed, its delta has the coefficient 1. The ray's throughput β
-//! has the light's power as its mean,
+//! faces the ray: on a disk of the scene's radius R it is 1/(πR²). That of its direction is per
+//! solid angle. Where one of the two is fixed, its delta has the coefficient 1. The ray's
+//! throughput β has the light's power as its mean,
 //!
 //! ```text
 //! β = L·|cos θ| / (p_position·p_direction)        E[β] = Φ
@@ -125,8 +125,8 @@ pub trait LightModel {
         self.is_infinite()
     }
 
-    /// Whether emitted rays of a light infinitely far away start within the scene, so that what lies
-    /// behind their origins occludes them, too.
+    /// Whether emitted rays of a light infinitely far away start within the scene, so that what
+    /// lies behind their origins occludes them, too.
     fn emits_within_scene(&self) -> bool {
         false
     }

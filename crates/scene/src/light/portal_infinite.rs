@@ -10,8 +10,8 @@
 //! ```
 //!
 //! An environment is resampled to this *rectified* square. The part of it that a point sees through
-//! the portal is a window, within which a direction is chosen by brightness and solid angle, with no
-//! sample lost beside the portal. Points beyond the portal or in its plane receive no light.
+//! the portal is a window, within which a direction is chosen by brightness and solid angle, with
+//! no sample lost beside the portal. Points beyond the portal or in its plane receive no light.
 //!
 //! Power: what passes the portal of area A, Φ = A·∫ L·cos θ dω. Emitted rays start uniformly on the
 //! portal, with the density 1/(A·|cos θ|) per area that faces them. Sources: [Bitterli 2015];

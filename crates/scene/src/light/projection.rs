@@ -193,7 +193,8 @@ impl LightModel for ProjectionLight {
             w: motion.start().vector(Vec3::Z).normalize(),
             phi: 4.0 * PI * mean * illuminant * self.scale,
             cos_theta_o: if motion.is_moving() { -1.0 } else { 1.0 },
-            // A margin for rounding, so that points just inside of the corners keep some importance.
+            // A margin for rounding, so that points just inside of the corners keep some
+            // importance.
             cos_theta_e: (corner - 1e-3).max(-1.0),
             two_sided: false,
         })
