@@ -1,4 +1,4 @@
-//! Images named by scenes, decoded by the `image` crate.
+//! Images named by scenes, decoded by the `image` crate; photometric files become images, too.
 
 use std::path::Path;
 
@@ -6,6 +6,7 @@ use description::EncodingDesc;
 use image::{ColorEncoding, Image, Pixels, ReadOptions};
 
 use crate::assets::AssetSource;
+use crate::ies;
 
 /// Reads and decodes an image file; on failure, the reason.
 pub(crate) fn decode(
@@ -13,12 +14,15 @@ pub(crate) fn decode(
     path: &Path,
     encoding: Option<EncodingDesc>,
 ) -> Result<Image, String> {
+    let bytes = assets.read(path).map_err(|error| error.to_string())?;
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ies")) {
+        return ies::read(&bytes);
+    }
     let encoding = encoding.map(|encoding| match encoding {
         EncodingDesc::Linear => ColorEncoding::Linear,
         EncodingDesc::Srgb => ColorEncoding::Srgb,
         EncodingDesc::Gamma(exponent) => ColorEncoding::Gamma(exponent),
     });
-    let bytes = assets.read(path).map_err(|error| error.to_string())?;
     let options = ReadOptions { encoding, ..ReadOptions::default() };
     image::read(&bytes, &path.to_string_lossy(), &options).map_err(|error| error.to_string())
 }

@@ -6,6 +6,7 @@
 
 mod assets;
 mod foreign;
+mod ies;
 mod images;
 mod imported;
 mod mesh;

@@ -15,6 +15,7 @@ mod reservoir;
 mod rng;
 pub mod sampler;
 pub mod warp;
+mod windowed;
 
 pub use alias_table::AliasTable;
 pub use discrete::{DiscreteSample, sample_discrete};
@@ -24,3 +25,4 @@ pub use piecewise_constant::{PiecewiseConstant1d, PiecewiseConstant2d};
 pub use reservoir::WeightedReservoir;
 pub use rng::Rng;
 pub use sampler::{Randomize, Sampler};
+pub use windowed::WindowedPiecewiseConstant2d;

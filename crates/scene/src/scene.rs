@@ -324,8 +324,8 @@ impl Scene {
     }
 
     /// [`LightRef::sample_le`] of one of this scene's lights. Rays of distant lights start on the
-    /// bounding sphere of all bounded shapes. Unbounded shapes may occlude them before they reach
-    /// it: `None` if one does.
+    /// bounding sphere of all bounded shapes, or in a portal. Unbounded shapes, or shapes beyond
+    /// the portal, may occlude them before: `None` if one does.
     pub fn sample_emission(
         &self,
         light: LightId,
@@ -337,7 +337,7 @@ impl Scene {
     ) -> Option<LightLeSample> {
         let light = self.light(light);
         let sample = light.sample_le(u_position, u_direction, time, lambda)?;
-        if sample.p.is_none() && self.world.is_unbounded() {
+        if sample.p.is_none() && (self.world.is_unbounded() || light.emits_within_scene()) {
             let way_back = Ray { d: -sample.ray.d, ..sample.ray };
             if self.occluded(&way_back, f32::INFINITY, Interfaces::before(light), stats) {
                 return None;

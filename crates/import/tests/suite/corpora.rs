@@ -6,7 +6,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use alhazen_import::{Files, Imported, import, read_obj, read_ply};
+use alhazen_import::{Files, Imported, MemoryAssets, import, read_obj, read_ply};
 
 fn data(folder: &str) -> Option<PathBuf> {
     let root = std::env::var_os("ALHAZEN_DATA")
@@ -50,6 +50,32 @@ fn shown(imported: &Imported) -> String {
         );
     }
     text
+}
+
+/// The light of luminaires, integrated over the angles of their files by the trapezoidal rule.
+const LUMENS: [(&str, f32); 6] = [
+    ("007cfb11e343e2f42e3b476be4ab684e", 321.25),
+    ("01dac7d6c646814dcda6780e7b7b4566", 941.10),
+    ("0646706b3d2d9658994fc4ad80681dec", 1219.08),
+    ("108b32f07d6d38a7a6528a6d307440df", 40.01),
+    ("1aec5958092c236d005093ca27ebe378", 2342.05),
+    ("ASA_15M_R2", 9560.83),
+];
+
+#[test]
+fn photometric_files_have_their_light() {
+    let Some(folder) = data("measured/ies") else { return };
+    let scene = "WorldBegin LightSource \"goniometric\" \"string filename\" \"lamp.ies\"";
+    for (name, expected) in LUMENS {
+        let lamp = std::fs::read(folder.join(name).with_extension("ies")).expect("the file is there");
+        let assets = MemoryAssets::default().with("a.pbrt", scene).with("lamp.ies", lamp);
+        let imported = import("a.pbrt", &assets);
+        assert!(!imported.has_errors(), "{}", shown(&imported));
+        let (_, desc) = imported.desc.images.iter().next().expect("an image");
+        let pixels = (desc.image.width() * desc.image.height()) as f32;
+        let lumens = desc.image.values().sum::<f32>() / pixels * 4.0 * std::f32::consts::PI;
+        assert!((lumens / expected - 1.0).abs() < 0.01, "{name}: {lumens} lm, not {expected}");
+    }
 }
 
 #[test]

@@ -35,6 +35,15 @@ const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\npr
 
 const OBJ: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\nf -1 -2 -3 -4\n";
 
+const IES: &str = "IESNA:LM-63-1995\n[TEST] made up\nTILT=INCLUDE\n1\n2\n0 90\n1 0.9\n\
+    1 1000 1 3 2 1 2 0 0 0\n1 1 60\n0 45 90\n0 90\n100 50 0\n90 40 1\n";
+
+/// Whether a photometric file is refused.
+fn refuses_lamp(bytes: Vec<u8>) -> bool {
+    let scene = "WorldBegin LightSource \"goniometric\" \"string filename\" \"lamp.IES\"";
+    import("a.pbrt", &MemoryAssets::default().with("a.pbrt", scene).with("lamp.IES", bytes)).has_errors()
+}
+
 /// A text with some bytes replaced, removed or doubled.
 fn mutated(text: &'static str) -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec((0..text.len(), any::<u8>(), 0..3_u8), 1..8).prop_map(move |changes| {
@@ -59,6 +68,15 @@ fn import_bytes(bytes: Vec<u8>) -> bool {
 fn the_unchanged_texts_are_read() {
     assert!(!import_bytes(SCENE.into()));
     assert!(read_ply(PLY.as_bytes()).is_ok() && read_obj(OBJ.as_bytes()).is_ok());
+    assert!(!refuses_lamp(IES.into()));
+}
+
+#[test]
+fn cut_off_lamps_are_refused() {
+    // Before its last number, and the end of the line.
+    for length in 0..IES.len() - 2 {
+        assert!(refuses_lamp(IES.as_bytes()[..length].into()), "{length}");
+    }
 }
 
 proptest! {
@@ -84,6 +102,11 @@ proptest! {
     #[test]
     fn damaged_meshes_do_not_panic(ply in mutated(PLY), obj in mutated(OBJ)) {
         let _ = (read_ply(&ply).is_ok(), read_obj(&obj).is_ok());
+    }
+
+    #[test]
+    fn damaged_lamps_do_not_panic(bytes in mutated(IES)) {
+        let _ = refuses_lamp(bytes);
     }
 
     #[test]

@@ -18,8 +18,14 @@ pub(crate) fn from_light(
     stats: &mut RayStats,
 ) -> [Bands; 2] {
     let strata = match scene.light(light).row() {
-        Light::Point(_) | Light::Spot(_) | Light::Distant(_) => 1,
-        Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) => LIGHT_STRATA,
+        Light::Point(_)
+        | Light::Spot(_)
+        | Light::Goniometric(_)
+        | Light::Projection(_)
+        | Light::Distant(_) => 1,
+        Light::Area(_) | Light::UniformInfinite(_) | Light::ImageInfinite(_) | Light::PortalInfinite(_) => {
+            LIGHT_STRATA
+        }
     };
     // A random shift for each point decorrelates their shadows.
     let place = context.p.p.to_array().map(f32::to_bits);

@@ -12,6 +12,7 @@ use image::{Image, Projection};
 use math::Vec2;
 use spectrum::RgbColorSpace;
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 impl Compiler<'_> {
     /// Reports invalid brightness factors by name.
@@ -31,14 +32,24 @@ impl Compiler<'_> {
     /// A light's spectrum, scaled to one unit of luminance times `scale`.
     pub(super) fn emission(&mut self, spectrum: &SpectrumDesc, scale: f32, span: Span) -> Emission {
         let before = self.diagnostics.len();
-        let spectrum = compile_spectrum(spectrum, SpectrumType::Illuminant, span, &mut self.diagnostics);
-        let photometric = spectrum.to_photometric();
+        let (spectrum, photometric) = match &self.last_spectrum {
+            Some((desc, last, photometric)) if desc == spectrum => (last.clone(), *photometric),
+            _ => {
+                let diagnostics = &mut self.diagnostics;
+                let compiled = compile_spectrum(spectrum, SpectrumType::Illuminant, span, diagnostics);
+                let (dense, photometric) = (compiled.to_dense(), compiled.to_photometric());
+                if diagnostics.len() == before {
+                    self.last_spectrum = Some((spectrum.clone(), dense.clone(), photometric));
+                }
+                (dense, photometric)
+            }
+        };
         // A spectrum with an error is replaced by a black one.
         if photometric == 0.0 && self.diagnostics.len() == before {
             self.warn("black-light", "the light is black; it emits nothing", span);
         }
         let scale = if photometric > 0.0 { scale / photometric } else { 0.0 };
-        let emission = Emission { spectrum: spectrum.to_dense(), scale };
+        let emission = Emission { spectrum, scale };
         if !photometric.is_finite() || !emission.max_value().is_finite() {
             self.error("invalid-value", "the light's spectrum is too bright for single precision", span);
         }
@@ -53,18 +64,24 @@ impl Compiler<'_> {
         scale: f32,
         span: Span,
     ) -> Option<(EmissionImage, f32)> {
-        let image = self.desc.images[handle].image.clone();
+        let image = self.finite_image(handle, span)?;
         if !image.is_color() {
             self.error("image-channels", "the image of a light needs red, green and blue", span);
             return None;
         }
+        let color_space = image_color_space(&image);
+        let photometric = color_space.illuminant().to_photometric();
+        Some((EmissionImage::new(image, color_space), scale / photometric))
+    }
+
+    /// A light's image, whose values must be finite.
+    pub(super) fn finite_image(&mut self, handle: Handle<ImageDesc>, span: Span) -> Option<Arc<Image>> {
+        let image = self.desc.images[handle].image.clone();
         if image.values().any(|value| !value.is_finite()) {
             self.error("image-values", "the image of a light has infinite or NaN values", span);
             return None;
         }
-        let color_space = image_color_space(&image);
-        let photometric = color_space.illuminant().to_photometric();
-        Some((EmissionImage { image, color_space }, scale / photometric))
+        Some(image)
     }
 }
 

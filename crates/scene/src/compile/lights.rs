@@ -3,13 +3,26 @@
 use super::Compiler;
 use super::emission::upward_illuminance;
 use crate::light::{
-    DistantLight, Emission, ImageInfiniteLight, Light, PointLight, SceneSphere, SpotLight,
+    DistantLight, Emission, EmissionImage, GoniometricLight, ImageInfiniteLight, Light, PointLight, Portal,
+    PortalInfiniteLight, PortalRadiance, ProjectionLight, RectifiedImage, SceneSphere, Slide, SpotLight,
     UniformInfiniteLight,
 };
 use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
 use image::{Projection, require_memory};
 use math::{AnimatedTransform, DMat4, Point3, Transform, Vec3, Vector3};
+use spectrum::Rgb;
 use std::f32::consts::PI;
+
+/// An image of the sphere, and the factor on its colours.
+struct Sky {
+    image: EmissionImage,
+    projection: Projection,
+    scale: f32,
+}
+
+fn seen_through(portal: Portal, radiance: PortalRadiance) -> Light {
+    Light::PortalInfinite(Box::new(PortalInfiniteLight::new(portal, radiance)))
+}
 
 impl Compiler<'_> {
     /// Compiles all lights without a surface. `scene` bounds all surfaces.
@@ -73,31 +86,136 @@ impl Compiler<'_> {
                 Light::Distant(DistantLight { w, motion, radiance, scene })
             }
             LightKind::Infinite { radiance, illuminance, portal } => {
-                if portal.is_some() {
-                    let message = "portals are not drawn yet; light comes from everywhere";
-                    self.warn("not-drawn", message, origin.parameter("portal"));
-                }
+                let portal = match portal {
+                    Some(corners) => Some(self.portal(*corners, &render_from_light, origin)?),
+                    None => None,
+                };
                 match radiance {
                     InfiniteRadiance::Constant(spectrum) => {
                         let mut radiance = self.emission(spectrum, desc.scale, origin.parameter("L"));
                         radiance.scale *= illuminance.map_or(1.0, |target| target / PI);
-                        Light::UniformInfinite(UniformInfiniteLight { radiance, scene })
+                        match portal {
+                            None => Light::UniformInfinite(UniformInfiniteLight { radiance, scene }),
+                            Some(portal) => seen_through(portal, PortalRadiance::Constant(radiance)),
+                        }
                     }
                     InfiniteRadiance::Image(handle) => {
-                        self.sky(*handle, desc.scale, *illuminance, render_from_light, scene, origin)?
+                        let sky = self.sky(*handle, desc.scale, *illuminance, origin)?;
+                        let bytes = sky.image.image.width() as usize * sky.image.image.height() as usize;
+                        let Sky { image, projection, scale } = sky;
+                        match portal {
+                            None => {
+                                self.allow(bytes * ImageInfiniteLight::BYTES_PER_PIXEL, origin)?;
+                                let (pixels, space) = ((image.image, projection), image.color_space);
+                                let light =
+                                    ImageInfiniteLight::new(render_from_light, pixels, space, scale, scene);
+                                Light::ImageInfinite(Box::new(light))
+                            }
+                            Some(portal) => {
+                                self.allow(bytes * RectifiedImage::BYTES_PER_PIXEL, origin)?;
+                                let light_from_render = render_from_light.start().inverse();
+                                let environment = (&image, projection);
+                                let image =
+                                    RectifiedImage::new(&portal, environment, &light_from_render, scale);
+                                seen_through(portal, PortalRadiance::Image(image))
+                            }
+                        }
                     }
                 }
             }
-            LightKind::Goniometric { intensity, power, .. } => {
-                self.warn("not-drawn", "light `goniometric` is not drawn yet; drawn as `point`", origin.span);
+            LightKind::Goniometric { intensity, power, image: None } => {
                 let intensity = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
                 Light::Point(PointLight { p: place(Vec3::ZERO), motion, intensity })
             }
-            LightKind::Projection { .. } => {
-                self.warn("not-drawn", "light `projection` is not drawn yet; left out", origin.span);
-                return None;
+            LightKind::Goniometric { intensity, power, image: Some(handle) } => {
+                let emission = self.intensity(intensity, desc.scale, *power, 4.0 * PI, origin);
+                self.goniometric(emission, power.is_some(), *handle, render_from_light, origin)?
+            }
+            LightKind::Projection { image, power, fov } => {
+                let span = origin.parameter("filename");
+                let (image, mut scale) = self.emission_image(*image, desc.scale, span)?;
+                let bytes = image.image.width() as usize * image.image.height() as usize;
+                self.allow(bytes * ProjectionLight::BYTES_PER_PIXEL, origin)?;
+                let slide = Slide::new(image, *fov);
+                if let Some(power) = power {
+                    let luminance = slide.image.luminance(slide.total());
+                    scale *= power / self.nonzero(luminance, origin)?;
+                }
+                Light::Projection(Box::new(ProjectionLight::new(render_from_light, slide, scale)))
             }
         })
+    }
+
+    /// The portal of these corners in world space.
+    fn portal(
+        &mut self,
+        corners: [Point3; 4],
+        render_from_light: &AnimatedTransform,
+        origin: &Origin,
+    ) -> Option<Portal> {
+        if render_from_light.is_moving() {
+            let message = "the light behind a portal does not move; drawn as at the start of motion";
+            self.warn("not-drawn", message, origin.span);
+        }
+        let to_render =
+            |p: Point3| Vec3::from(self.render_from_world.transform_point3(p.as_dvec3()).as_vec3());
+        let portal = Portal::new(corners.map(to_render));
+        if portal.is_none() {
+            let message = "the four points of `portal` must be the corners of a rectangle, in their order";
+            self.error("invalid-value", message, origin.parameter("portal"));
+        }
+        portal
+    }
+
+    /// The light of an intensity that is scaled by an image. With a power, the mean intensity is
+    /// given, else that of a pixel value of 1.
+    fn goniometric(
+        &mut self,
+        mut intensity: Emission,
+        has_power: bool,
+        handle: Handle<ImageDesc>,
+        render_from_light: AnimatedTransform,
+        origin: &Origin,
+    ) -> Option<Light> {
+        let span = origin.parameter("filename");
+        let image = self.finite_image(handle, span)?;
+        let (width, height) = (image.width(), image.height());
+        if width != height {
+            let message = format!(
+                "the image of a goniometric light is square (equal-area octahedral), not {width} × {height}"
+            );
+            self.error("image-shape", message, span);
+            return None;
+        }
+        self.allow(width as usize * width as usize * GoniometricLight::BYTES_PER_PIXEL, origin)?;
+        let value = |i: u32| Rgb::from(image.rgb(i % width, i / width)).average().max(0.0);
+        let pixels: Vec<f32> = (0..width * width).map(value).collect();
+        let mean = pixels.iter().map(|&v| f64::from(v)).sum::<f64>() / pixels.len() as f64;
+        if has_power {
+            self.nonzero(mean as f32, origin)?;
+        } else {
+            intensity.scale *= mean as f32;
+        }
+        let light = GoniometricLight::new(render_from_light, intensity, &pixels, width as usize);
+        Some(Light::Goniometric(Box::new(light)))
+    }
+
+    /// The brightness of an image that is scaled to a power; an error if it is black.
+    fn nonzero(&mut self, brightness: f32, origin: &Origin) -> Option<f32> {
+        if brightness <= 0.0 {
+            let message = "a black image cannot be scaled to a power";
+            self.error("image-values", message, origin.parameter("filename"));
+        }
+        (brightness > 0.0).then_some(brightness)
+    }
+
+    /// Reports a lack of memory for the tables of an image.
+    fn allow(&mut self, bytes: usize, origin: &Origin) -> Option<()> {
+        let result = require_memory(bytes);
+        if let Err(error) = &result {
+            self.error("image-file", error.to_string(), origin.parameter("filename"));
+        }
+        result.ok()
     }
 
     fn sky(
@@ -105,10 +223,8 @@ impl Compiler<'_> {
         handle: Handle<ImageDesc>,
         scale: f32,
         illuminance: Option<f32>,
-        render_from_light: AnimatedTransform,
-        scene: SceneSphere,
         origin: &Origin,
-    ) -> Option<Light> {
+    ) -> Option<Sky> {
         let span = origin.parameter("filename");
         let (image, mut scale) = self.emission_image(handle, scale, span)?;
         let (width, height) = (image.image.width(), image.image.height());
@@ -128,14 +244,7 @@ impl Compiler<'_> {
             }
             scale *= target / illuminance;
         }
-        let bytes = ImageInfiniteLight::BYTES_PER_PIXEL * width as usize * height as usize;
-        if let Err(error) = require_memory(bytes) {
-            self.error("image-file", error.to_string(), span);
-            return None;
-        }
-        let pixels = (image.image, projection);
-        let light = ImageInfiniteLight::new(render_from_light, pixels, image.color_space, scale, scene);
-        Some(Light::ImageInfinite(Box::new(light)))
+        Some(Sky { image, projection, scale })
     }
 
     /// Radiant intensity. `power`, if given, is emitted into `unit` steradians.

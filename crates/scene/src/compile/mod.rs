@@ -24,10 +24,11 @@ use crate::view::world_from_render;
 use area_lights::Emitters;
 use description::{
     AcceleratorDesc, Arena, BuildQualityDesc, Diagnostic, FloatParameter, IntegratorDesc, ObjectDesc,
-    SceneDesc, Span, SpectrumParameter,
+    SceneDesc, Span, SpectrumDesc, SpectrumParameter,
 };
 use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
+use spectrum::Spectrum;
 use std::mem::take;
 use std::sync::Arc;
 
@@ -72,6 +73,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         instances: Vec::new(),
         materials: Vec::new(),
         area_emissions: Vec::new(),
+        last_spectrum: None,
         emitters: vec![Emitters::default()],
         traits: SceneTraits::default(),
     };
@@ -127,6 +129,8 @@ struct Compiler<'a> {
     materials: Vec<MaterialEntry>,
     instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
+    /// The last light's spectrum, which lights of the same description share.
+    last_spectrum: Option<(SpectrumDesc, Spectrum, f32)>,
     /// Indexed by group of the world.
     emitters: Vec<Emitters>,
     traits: SceneTraits,

@@ -17,7 +17,7 @@ use geometry::{GeometryId, InstancePath, ShapeSample, World};
 use image::WrapMode;
 use math::{DirectionCone, Frame, Normal3, Point2, Point3, Ray, Vec2, Vector3};
 use sampling::{hash_float, warp};
-use spectrum::{Rgb, SampledSpectrum, SampledWavelengths, Spectrum};
+use spectrum::{Rgb, SampledSpectrum, SampledWavelengths};
 use std::f32::consts::PI;
 
 /// The primitives of an emitting geometry.
@@ -73,6 +73,28 @@ impl AreaLight {
         if self.is_moving(world) { 0.5 * (at(f32::MIN) + at(f32::MAX)) } else { at(0.0) }
     }
 
+    /// The mean radiance over (u, v) before the scale of a primitive: the same for all primitives.
+    pub(super) fn mean_radiance(&self, part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
+        let emission = part.emission(self.emission);
+        match &emission.image {
+            None => emission.radiance.spectrum.sample(lambda),
+            Some(image) => {
+                let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
+                for rgb in image.pixels() {
+                    sum += image.sample(rgb, lambda);
+                    count += 1;
+                }
+                sum * (1.0 / count.max(1) as f32)
+            }
+        }
+    }
+
+    /// The power of a primitive, given [`mean_radiance`](Self::mean_radiance).
+    pub(super) fn power(&self, part: &LightPart, mean_radiance: SampledSpectrum) -> SampledSpectrum {
+        let sides = if part.emission(self.emission).two_sided { 2.0 } else { 1.0 };
+        mean_radiance * self.scale(part) * (PI * sides * self.area(part.world(), part.primitive))
+    }
+
     /// The stochastic alpha test of a point, decided by a hash of it.
     fn passes_alpha_test(&self, part: &LightPart, s: &ShapeSample) -> bool {
         let Some(alpha) = self.alpha.filter(|_| !self.invisible) else { return true };
@@ -88,20 +110,7 @@ impl LightModel for AreaLight {
     }
 
     fn phi(&self, part: &LightPart, lambda: &SampledWavelengths) -> SampledSpectrum {
-        let (emission, scale) = (part.emission(self.emission), self.scale(part));
-        let radiance = match &emission.image {
-            None => emission.radiance.spectrum.sample(lambda) * scale,
-            Some(image) => {
-                let (mut sum, mut count) = (SampledSpectrum::ZERO, 0u32);
-                for rgb in image.pixels() {
-                    sum += Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda);
-                    count += 1;
-                }
-                sum * (scale / count.max(1) as f32)
-            }
-        };
-        let sides = if emission.two_sided { 2.0 } else { 1.0 };
-        radiance * (PI * sides * self.area(part.world(), part.primitive))
+        self.power(part, self.mean_radiance(part, lambda))
     }
 
     fn radiance(
@@ -120,8 +129,7 @@ impl LightModel for AreaLight {
             None => emission.radiance.spectrum.sample(lambda),
             Some(image) => {
                 let st = Vec2::new(uv.x, 1.0 - uv.y);
-                let rgb = Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)).clamp_zero();
-                Spectrum::rgb_illuminant(image.color_space, rgb).sample(lambda)
+                image.sample(Rgb::from(image.image.bilerp_rgb(st, WrapMode::Clamp)), lambda)
             }
         };
         spectrum * self.scale(part)
@@ -208,12 +216,7 @@ impl LightModel for AreaLight {
         let (emission, scale) = (part.emission(self.emission), self.scale(part));
         let peak = match &emission.image {
             None => emission.radiance.spectrum.max_value() * scale,
-            Some(image) => {
-                let (sum, count) = image
-                    .pixels()
-                    .fold((0f64, 0u32), |(s, n), p| (s + ((p.r + p.g + p.b) / 3.0) as f64, n + 1));
-                (sum / count.max(1) as f64) as f32 * scale
-            }
+            Some(image) => image.mean() * scale,
         };
         let normals = if self.is_moving(part.world()) {
             DirectionCone::ENTIRE_SPHERE

@@ -48,20 +48,49 @@ pub struct EmissionImage {
     pub image: Arc<Image>,
     /// The colour space of the pixels.
     pub color_space: &'static RgbColorSpace,
+    /// The mean luminance, and the mean of the components.
+    means: [f32; 2],
 }
 
 impl EmissionImage {
+    /// An image whose pixels have red, green and blue.
+    pub fn new(image: Arc<Image>, color_space: &'static RgbColorSpace) -> Self {
+        let mut image = Self { image, color_space, means: [0.0; 2] };
+        let mut sums = [0f64; 2];
+        for p in image.pixels() {
+            sums[0] += f64::from(image.luminance(p));
+            sums[1] += f64::from((p.r + p.g + p.b) / 3.0);
+        }
+        let count = f64::from(image.image.width() * image.image.height());
+        image.means = sums.map(|sum| (sum / count) as f32);
+        image
+    }
+
+    /// The mean of the components of all pixels.
+    pub(super) fn mean(&self) -> f32 {
+        self.means[1]
+    }
+
     /// Its colours, with negative components set to zero.
     pub(super) fn pixels(&self) -> impl Iterator<Item = Rgb> + '_ {
         let (width, height) = (self.image.width(), self.image.height());
         (0..width * height).map(move |i| Rgb::from(self.image.rgb(i % width, i / width)).clamp_zero())
     }
 
+    /// The spectrum of a colour, its negative components set to zero, at the wavelengths.
+    pub(super) fn sample(&self, rgb: Rgb, lambda: &SampledWavelengths) -> SampledSpectrum {
+        Spectrum::rgb_illuminant(self.color_space, rgb.clamp_zero()).sample(lambda)
+    }
+
+    /// The luminance of a colour.
+    pub fn luminance(&self, p: Rgb) -> f32 {
+        let y = self.color_space.luminance_weights();
+        p.r * y.r + p.g * y.g + p.b * y.b
+    }
+
     /// Mean luminance in the image's colour space.
     pub fn mean_luminance(&self) -> f32 {
-        let y = self.color_space.luminance_weights();
-        let sum: f64 = self.pixels().map(|p| (p.r * y.r + p.g * y.g + p.b * y.b) as f64).sum();
-        (sum / (self.image.width() * self.image.height()) as f64) as f32
+        self.means[0]
     }
 }
 

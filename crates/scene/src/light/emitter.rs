@@ -188,7 +188,7 @@ fn area_factor(transform: &Transform, n: Normal3) -> f32 {
 }
 
 /// |det M⁻¹|/|M⁻¹ω|³.
-fn solid_angle_factor(inverse: &Transform, w: Vector3) -> f32 {
+pub(super) fn solid_angle_factor(inverse: &Transform, w: Vector3) -> f32 {
     determinant(inverse).abs() / inverse.vector(w).length().powi(3)
 }
 

@@ -6,10 +6,10 @@
 //! one direction (delta lights) can only be sampled, never hit: their pdf is 0.
 //!
 //! For light paths, [`LightRef::sample_le`] samples a ray with two densities. That of its position
-//! is per area of the surface; for lights infinitely far away, which have none, it is per area of
-//! the disk of the scene's radius R that faces them, 1/(πR²). That of its direction is per solid
-//! angle. Where one of the two is fixed, its delta has the coefficient 1. The ray's throughput β
-//! has the light's power as its mean,
+//! is per area of the surface; for lights infinitely far away, which have none, it is per area that
+//! faces the ray: on a disk of the scene's radius R it is 1/(πR²). That of its direction is per
+//! solid angle. Where one of the two is fixed, its delta has the coefficient 1. The ray's
+//! throughput β has the light's power as its mean,
 //!
 //! ```text
 //! β = L·|cos θ| / (p_position·p_direction)        E[β] = Φ
@@ -35,9 +35,13 @@ mod bounds;
 mod distant;
 mod emission;
 mod emitter;
+mod goniometric;
 mod image_infinite;
 mod point;
+mod portal_infinite;
+mod projection;
 mod scene_sphere;
+mod screen;
 mod spot;
 mod table;
 mod uniform_infinite;
@@ -48,8 +52,11 @@ pub use bounds::LightBounds;
 pub use distant::DistantLight;
 pub use emission::{AreaEmission, Emission, EmissionImage};
 pub use geometry::ShapeSampleContext as LightSampleContext;
+pub use goniometric::GoniometricLight;
 pub use image_infinite::ImageInfiniteLight;
 pub use point::PointLight;
+pub use portal_infinite::{Portal, PortalInfiniteLight, PortalRadiance, RectifiedImage};
+pub use projection::{ProjectionLight, Slide};
 pub use scene_sphere::SceneSphere;
 pub use spot::SpotLight;
 pub(crate) use table::LightTable;
@@ -75,6 +82,12 @@ pub enum Light {
     UniformInfinite(UniformInfiniteLight),
     /// See [`ImageInfiniteLight`].
     ImageInfinite(Box<ImageInfiniteLight>),
+    /// See [`PortalInfiniteLight`].
+    PortalInfinite(Box<PortalInfiniteLight>),
+    /// See [`GoniometricLight`].
+    Goniometric(Box<GoniometricLight>),
+    /// See [`ProjectionLight`].
+    Projection(Box<ProjectionLight>),
 }
 
 /// Dispatches to the kind of light.
@@ -87,6 +100,9 @@ macro_rules! each_light {
             Light::Area($light) => $e,
             Light::UniformInfinite($light) => $e,
             Light::ImageInfinite($light) => $e,
+            Light::PortalInfinite($light) => $e,
+            Light::Goniometric($light) => $e,
+            Light::Projection($light) => $e,
         }
     };
 }
@@ -107,6 +123,12 @@ pub trait LightModel {
     /// Whether it is infinitely far away, so that its light has a direction but no origin.
     fn is_distant(&self) -> bool {
         self.is_infinite()
+    }
+
+    /// Whether emitted rays of a light infinitely far away start within the scene, so that what
+    /// lies behind their origins occludes them, too.
+    fn emits_within_scene(&self) -> bool {
+        false
     }
 
     /// Emitted power. If the size changes with time, the mean of the powers at the start and the
@@ -164,7 +186,7 @@ pub trait LightModel {
     /// Densities of position and direction with which [`sample_le`](Self::sample_le) of a light
     /// infinitely far away chooses the ray that arrives along `ray`, a ray of unit direction that
     /// leaves the scene towards the light. Both are 0 for other lights, and for rays that are never
-    /// chosen: those that miss the scene's sphere or start beyond the disk.
+    /// chosen: those that miss the scene's sphere or start beyond the disk, or miss the portal.
     #[doc(alias = "PDF_Le")]
     fn pdf_le_infinite(&self, _ray: &Ray) -> (f32, f32) {
         (0.0, 0.0)

@@ -33,6 +33,23 @@ pub(super) fn reach(p: Point3, motion: Option<&AnimatedTransform>) -> Bounds3 {
     motion.map_or(here, |motion| motion.motion_bounds(&here))
 }
 
+/// Light from the point `p` whose radiant intensity along a direction away from it is `intensity`;
+/// `None` if it is zero.
+pub(super) fn sample_point(
+    p: Point3,
+    context: &LightSampleContext,
+    intensity: impl FnOnce(Vector3) -> SampledSpectrum,
+) -> Option<LightLiSample> {
+    let to_light = p - context.p.p;
+    let distance2 = to_light.length_squared();
+    if distance2 == 0.0 {
+        return None;
+    }
+    let wi = to_light / distance2.sqrt();
+    let l = intensity(-wi) / distance2;
+    (!l.is_black()).then(|| LightLiSample { l, wi, pdf: 1.0, p: Some(Point3Error::exact(p)), n: Vec3::ZERO })
+}
+
 impl LightModel for PointLight {
     fn is_delta(&self) -> bool {
         true

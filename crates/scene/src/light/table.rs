@@ -88,6 +88,22 @@ impl<'a> Lights<'a> {
         LightRef { id, light: &rows[row], part: LightPart { primitive: id.0 - first[row], lights: self } }
     }
 
+    /// The powers of all lights in the order of their ids. The image of an emission is traversed
+    /// once for each row, not for each primitive.
+    pub fn powers(self, lambda: &SampledWavelengths) -> impl Iterator<Item = SampledSpectrum> {
+        let mut row = None;
+        self.iter().map(move |light| match light.row() {
+            Light::Area(area) => {
+                let mean_radiance = match row {
+                    Some(mean_radiance) if light.primitive() > 0 => mean_radiance,
+                    _ => *row.insert(area.mean_radiance(&light.part, lambda)),
+                };
+                area.power(&light.part, mean_radiance)
+            }
+            _ => light.phi(lambda),
+        })
+    }
+
     /// All lights in the order of their ids.
     pub fn iter(self) -> impl ExactSizeIterator<Item = LightRef<'a>> {
         (0..self.table.row.len() as u32).map(move |id| self.get(LightId(id)))
@@ -159,6 +175,11 @@ impl<'a> LightRef<'a> {
     #[inline]
     pub fn is_distant(&self) -> bool {
         each_light!(self.light, light => light.is_distant())
+    }
+
+    /// See [`LightModel::emits_within_scene`].
+    pub fn emits_within_scene(&self) -> bool {
+        each_light!(self.light, light => light.emits_within_scene())
     }
 
     /// See [`LightModel::phi`].

@@ -16,8 +16,9 @@ impl PowerLightSampler {
     /// Builds the distribution; uniform if no light has power.
     pub fn new(lights: Lights) -> Self {
         let lambda = SampledWavelengths::sample_visible(0.5);
+        let powers = lights.powers(&lambda);
         let mut powers: Vec<f32> =
-            lights.iter().map(|light| light.phi(&lambda).safe_div(lambda.pdf()).average().max(0.0)).collect();
+            powers.map(|power| power.safe_div(lambda.pdf()).average().max(0.0)).collect();
         if powers.iter().all(|&p| p == 0.0) {
             powers.fill(1.0);
         }

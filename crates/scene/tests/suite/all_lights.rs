@@ -11,54 +11,10 @@ use math::{Normal3, Transform, Vec2, Vec3};
 use std::f32::consts::PI;
 use testkit::{Chi2, Moments, Random, welch_test};
 
-/// Tests samples against a discontinuous density, integrated by the midpoint rule on cells of equal
-/// solid angle. Cells that are mostly dark are pooled with failed samples, as their integral is
-/// inaccurate.
-fn check_directions(
-    sample: impl Fn([f32; 2]) -> Option<[f32; 3]>,
-    density: impl Fn([f32; 3]) -> f64,
-    seed: u64,
-    tests: usize,
-) -> Result<(), String> {
-    let (rows, columns, fine, count) = (8, 16, 48, 5_000);
-    let mut cells = vec![(0.0, 0); rows * columns];
-    for i in 0..rows * fine {
-        for j in 0..columns * fine {
-            let z = 1.0 - 2.0 * (i as f32 + 0.5) / (rows * fine) as f32;
-            let phi = 2.0 * PI * (j as f32 + 0.5) / (columns * fine) as f32;
-            let pdf = density(math::spherical_direction((1.0 - z * z).sqrt(), z, phi).to_array());
-            let (sum, lit) = &mut cells[i / fine * columns + j / fine];
-            *sum += pdf;
-            *lit += usize::from(pdf > 0.0);
-        }
-    }
-    let weight = 4.0 * PI as f64 / (cells.len() * fine * fine) as f64;
-    let total: f64 = cells.iter().map(|(sum, _)| sum * weight).sum();
-    if total > 1.005 {
-        return Err(format!("the density integrates to {total}"));
-    }
-    let is_dark = |cell: usize| cells[cell].1 * 8 < fine * fine;
-    let cell_count = |(sum, _): &(f64, usize)| sum * weight * count as f64;
-    let mut expected: Vec<f64> = cells.iter().map(cell_count).collect();
-    (0..expected.len()).filter(|&cell| is_dark(cell)).for_each(|cell| expected[cell] = 0.0);
-    expected.push((count as f64 - expected.iter().sum::<f64>()).max(1e-3));
-    let mut observed = vec![0; expected.len()];
-    let mut random = Random::new(seed);
-    for _ in 0..count {
-        let cell = sample(random.get_2d()).map(|w| {
-            let row = ((1.0 - w[2]) / 2.0 * rows as f32) as usize;
-            let phi = w[1].atan2(w[0]).rem_euclid(2.0 * PI);
-            let column = (phi / (2.0 * PI) * columns as f32) as usize;
-            row.min(rows - 1) * columns + column.min(columns - 1)
-        });
-        observed[cell.filter(|&cell| !is_dark(cell)).unwrap_or(cells.len())] += 1;
-    }
-    Chi2 { tests, ..Chi2::default() }.counts(&observed, &expected)
-}
-
 #[test]
 fn samples_have_their_density() {
-    let (cases, references) = (area_lights(), references());
+    let (mut cases, references) = (area_lights(), references());
+    cases.extend(portal_lights());
     let tests = cases.len() * references.len();
     for case in &cases {
         let light = case.light();

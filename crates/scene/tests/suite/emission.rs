@@ -5,7 +5,8 @@ use crate::common::*;
 use alhazen_scene::light::{Light, LightId, LightLeSample};
 use alhazen_scene::light_sampler::PowerLightSampler;
 use alhazen_scene::{Interfaces, RayStats};
-use math::{Frame, Ray, Vec2, Vec3};
+use description::TransformDesc;
+use math::{DMat4, DVec3, Frame, Ray, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 use testkit::{Chi2, Moments, Random, t_test, welch_test};
 
@@ -94,6 +95,60 @@ fn emitted_directions_have_their_density() {
         let chi2 = Chi2 { samples: 50_000, tests: cases.len(), ..Chi2::default() };
         chi2.sphere(direction, |w| f64::from(light.pdf_le(Vec3::ZERO, Vec3::Z, w.into(), TIME).1))
             .unwrap_or_else(|e| panic!("{}: {e}", case.name));
+    }
+}
+
+#[test]
+fn directions_of_images_have_their_density() {
+    let stretch = DMat4::from_scale(DVec3::new(1.5, -0.7, 1.0)) * DMat4::from_rotation_y(0.4);
+    let mut stretched = [goniometric(None), projection(None)];
+    for (_, light) in stretched.iter_mut().flat_map(|desc| desc.lights.iter_mut()) {
+        light.world_from_light = TransformDesc::fixed(placement() * stretch);
+    }
+    let mut cases: Vec<Case> =
+        stretched.iter().map(|desc| Case { name: "stretched", scene: scene(desc) }).collect();
+    cases.extend(delta_lights().drain(4..));
+    cases.extend(portal_lights());
+    for (i, case) in cases.iter().enumerate() {
+        let light = case.light();
+        let sample = |u: [f32; 2]| {
+            let sample = light.sample_le(Vec2::splat(0.5), u.into(), TIME, &lambda())?;
+            Some((if light.is_distant() { -sample.ray.d } else { sample.ray.d }).to_array())
+        };
+        let density = |w: [f32; 3]| {
+            let w = Vec3::from(w).normalize();
+            let (_, pdf) = if light.is_distant() {
+                // Through the middle of the portal.
+                light.pdf_le_infinite(&Ray::new(Vec3::new(0.0, 0.25, 3.15) - 0.1 * w, w, TIME))
+            } else {
+                light.pdf_le(Vec3::ZERO, Vec3::ZERO, w, TIME)
+            };
+            f64::from(pdf)
+        };
+        check_directions(sample, density, i as u64, cases.len())
+            .unwrap_or_else(|e| panic!("{}: {e}", case.name));
+    }
+}
+
+#[test]
+fn light_enters_uniformly_through_a_portal() {
+    for (i, case) in portal_lights().iter().enumerate() {
+        let mut random = Random::new(i as u64);
+        let position = |u: [f32; 2]| {
+            let sample = case.light().sample_le(u.into(), random.get_2d().into(), TIME, &lambda())?;
+            let o = sample.ray.o - Vec3::new(-1.5, -1.0, 3.0);
+            assert!((o.z - 0.1 * o.x).abs() < 1e-5, "{o}");
+            Some([o.x / 3.0, o.y / 2.5])
+        };
+        Chi2 { samples: 50_000, tests: 3, ..Chi2::default() }
+            .rectangle([[0.0, 1.0]; 2], position, |_| 1.0)
+            .unwrap_or_else(|e| panic!("{}: {e}", case.name));
+        // No light passes beside the portal, or from beyond it.
+        for (o, w) in [(Vec3::X * 9.0, Vec3::Z), (Vec3::Z * 4.0, Vec3::Z), (Vec3::ZERO, -Vec3::Z)] {
+            let ray = Ray::new(o, w, TIME);
+            assert_eq!(case.light().pdf_le_infinite(&ray), (0.0, 0.0), "{}", case.name);
+            assert!(case.light().le(&ray, &lambda()).is_black(), "{}", case.name);
+        }
     }
 }
 
@@ -218,7 +273,10 @@ fn emitted_and_sampled_irradiance_agree() {
         let (light, sphere) = (case.light(), case.scene.sphere());
         let mut random = Random::new(100 + i as u64);
         let n = Vec3::new(-0.2, 0.1, -1.0).normalize();
-        let (center, radius, n) = if light.is_distant() {
+        let enters_portal = case.name.starts_with("portal");
+        let (center, radius, n) = if enters_portal {
+            (Vec3::new(0.3, 0.2, 2.0), 1.0, -n)
+        } else if light.is_distant() {
             (sphere.center + Vec3::new(0.2, -0.1, 0.3) * sphere.radius, 0.5 * sphere.radius, -n)
         } else {
             (Vec3::new(0.3, 0.2, 2.0), 1.0, n)

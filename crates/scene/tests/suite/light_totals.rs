@@ -3,7 +3,9 @@
 use crate::common::lights::*;
 use crate::common::*;
 use alhazen_scene::light::{Light, LightId};
-use description::{AreaLightDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc};
+use description::{
+    AreaLightDesc, InfiniteRadiance, LightKind, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
+};
 use geometry::GeometryId;
 use math::{Vec2, Vec3};
 use sampling::warp;
@@ -54,11 +56,7 @@ fn power_of_point_lights_is_the_flux_through_a_sphere() {
     let lambda = lambda();
     let mut random = Random::new(5);
     for case in delta_lights().iter().filter(|case| case.name != "distant") {
-        let p = match case.light().row() {
-            Light::Point(light) => light.p,
-            Light::Spot(light) => light.p,
-            _ => unreachable!(),
-        };
+        let (p, _) = place(case.light());
         let passing: Moments = (0..50_000)
             .map(|_| {
                 let from = context(p + 2.0 * uniform_direction(&mut random), Vec3::ZERO);
@@ -70,7 +68,7 @@ fn power_of_point_lights_is_the_flux_through_a_sphere() {
         if case.name == "point" {
             assert!((passing.mean / phi - 1.0).abs() < 1e-5);
         } else {
-            t_test(&passing, phi, 2).unwrap_or_else(|e| panic!("{}: {e}", case.name));
+            t_test(&passing, phi, 4).unwrap_or_else(|e| panic!("{}: {e}", case.name));
         }
     }
 }
@@ -121,12 +119,19 @@ fn irradiance_in_closed_form() {
         &[[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [1.5, 0.8, 0.0], [0.0, 0.8, 0.0]],
         &[[0, 1, 2], [0, 2, 3]],
     );
+    let [right, up] = [Vec3::X * 1.5, Vec3::Y * 0.8];
+    let aperture = LightKind::Infinite {
+        radiance: InfiniteRadiance::Constant(white()),
+        illuminance: None,
+        portal: Some([Vec3::ZERO, up, up + right, right].map(|p| p + Vec3::Z * 1.2)),
+    };
     let cases = [
         ("disk", above(disk(0.0, 0.7), 1.3), PI * 0.7f32.powi(2) / (0.7f32.powi(2) + 1.3f32.powi(2))),
         ("sphere", above(sphere(0.7), 1.3), PI * (0.7f32 / 1.3).powi(2)),
         ("rectangle", above(rectangle([0.0, 0.0], [1.5, 0.8]), 1.2), corner(1.5 / 1.2, 0.8 / 1.2)),
         ("triangles", above(two_triangles, 1.2), corner(1.5 / 1.2, 0.8 / 1.2)),
         ("sky", free(sky(None)), PI),
+        ("portal", free(aperture), corner(1.5 / 1.2, 0.8 / 1.2)),
     ];
     let from = context(Vec3::new(0.0, 0.0, 0.0), Vec3::Z);
     let from_space = context(Vec3::ZERO, Vec3::ZERO);
@@ -155,14 +160,52 @@ fn irradiance_in_closed_form() {
     }
 }
 
+/// Irradiance on a plane at a known distance and angle.
+#[test]
+fn irradiance_of_delta_lights_in_closed_form() {
+    let unit = 100.0 / spectrum::Spectrum::Constant(100.0).to_photometric();
+    let even = |value: f32| rgb_image(4, 4, move |_, _| [value; 3]);
+    let flat = free_with_image(even(3.0), |image| LightKind::Goniometric {
+        intensity: white(),
+        power: None,
+        image: Some(image),
+    });
+    let slide = |power| free_with_image(even(3.0), |image| LightKind::Projection { image, power, fov: 90.0 });
+    let illuminant = spectrum::RgbColorSpace::srgb();
+    let day = spectrum::Spectrum::rgb_illuminant(illuminant, spectrum::Rgb::new(3.0, 3.0, 3.0));
+    let day = day.sample(&lambda())[0] / day.to_photometric();
+    // A quarter of a square pyramid with the slope 1: a side of a cube.
+    let side_of_cube = 4.0 * PI / 6.0;
+    let watt = day / 3.0 * 60.0 / side_of_cube;
+    for (name, desc, intensity) in [
+        ("point", free(point(None)), unit),
+        ("point of a power", free(point(Some(60.0))), unit * 60.0 / (4.0 * PI)),
+        ("spot", free(spot(40.0, 15.0, None)), unit),
+        ("goniometric", flat, 3.0 * unit),
+        ("projection", slide(None), day),
+        ("projection of a power", slide(Some(60.0)), watt),
+    ] {
+        let scene = scene(&desc);
+        let light = scene.light(LightId(0));
+        let (p, axis) = place(light);
+        let n = (-axis + 0.3 * Vec3::X).normalize();
+        for distance in [0.5, 3.0] {
+            let from = context(p + axis * distance, n);
+            let sample = seen_sample(&scene, light, &from, [0.0; 2], false).unwrap();
+            let expected = intensity * n.dot(-axis) / (distance * distance);
+            let irradiance = sample.l[0] * n.dot(sample.wi);
+            assert!((irradiance / expected - 1.0).abs() < 2e-3, "{name}: {irradiance} {expected}");
+        }
+    }
+    let sun = scene(&free(distant(Some(500.0))));
+    let sample = seen_sample(&sun, sun.light(LightId(0)), &context(Vec3::ZERO, Vec3::Z), [0.0; 2], false);
+    assert!((sample.unwrap().l[0] / (500.0 * unit) - 1.0).abs() < 1e-4);
+}
+
 #[test]
 fn point_lights_fall_off_with_squared_distance() {
     for case in delta_lights().iter().filter(|case| case.name != "distant") {
-        let (p, axis) = match case.light().row() {
-            Light::Point(light) => (light.p, Vec3::Z),
-            Light::Spot(light) => (light.p, light.axis),
-            _ => unreachable!(),
-        };
+        let (p, axis) = place(case.light());
         let at = |distance: f32| {
             let from = context(p + axis * distance, Vec3::ZERO);
             seen_sample(&case.scene, case.light(), &from, [0.0; 2], false).unwrap().l[0] * distance * distance
@@ -241,6 +284,7 @@ fn requested_power_and_illuminance_are_met() {
     let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 2e-3, "{a} {b}");
     near(power(&free(point(Some(60.0)))), 60.0);
     near(power(&free(spot(50.0, 20.0, Some(60.0)))), 60.0);
+    near(power(&goniometric(Some(60.0))), 60.0);
     let powerful = |light: &mut AreaLightDesc, _: &mut ShapeDesc| light.power = Some(60.0);
     near(power(&area(sphere(0.7), powerful)), 60.0);
     let both = area(disk(0.0, 0.7), |light, shape| {
@@ -253,7 +297,9 @@ fn requested_power_and_illuminance_are_met() {
         light.power = Some(60.0);
     }
     // Spectra from colours keep their luminance only approximately.
-    assert!((power(&image) / 60.0 - 1.0).abs() < 1e-2, "{}", power(&image));
+    for desc in [image, projection(Some(60.0))] {
+        assert!((power(&desc) / 60.0 - 1.0).abs() < 1e-2, "{}", power(&desc));
+    }
 
     let facing = |desc: &SceneDesc| {
         let scene = scene(desc);

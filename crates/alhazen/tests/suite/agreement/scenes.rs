@@ -63,7 +63,7 @@ macro_rules! floor {
     };
 }
 
-pub const SCENES: [Scene; 17] = [
+pub const SCENES: [Scene; 19] = [
     Scene {
         name: "a diffuse box",
         max_depth: 4,
@@ -150,6 +150,42 @@ pub const SCENES: [Scene; 17] = [
             LightSource "distant" "point3 from" [1 -1 2] "point3 to" [0 0 0] "rgb L" [1 0.9 0.7]
             Material "diffuse" "rgb reflectance" [0.8 0.3 0.3]
             Translate 0 0 0.5 Shape "sphere" "float radius" 0.5"#
+        ),
+    },
+    Scene {
+        name: "light through a portal",
+        max_depth: 3,
+        path_samples: 32,
+        is_hidden_from_light: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "infinite" "rgb L" [6 7 9]
+            "point3 portal" [-0.5 -0.4 1.8  -0.5 0.6 1.8  0.7 0.6 1.8  0.7 -0.4 1.8]
+            Material "diffuse" "rgb reflectance" [0.8 0.3 0.3]
+            AttributeBegin Translate 0.3 0 0.5 Shape "sphere" "float radius" 0.5 AttributeEnd
+            # Beyond the portal, half before it.
+            Translate -0.4 0.1 2.2 Shape "sphere" "float radius" 0.3"#
+        ),
+    },
+    Scene {
+        name: "a luminaire and a slide",
+        max_depth: 3,
+        path_samples: 32,
+        is_hidden_from_light: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"AttributeBegin Translate 0 0 2 Rotate 90 1 0 0
+            LightSource "goniometric" "float scale" 0.004 "string filename" ""#,
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/assets/petals.ies"),
+            r#"" AttributeEnd
+            AttributeBegin Translate 0.3 -0.2 2.5 Rotate 170 1 0.3 0
+            LightSource "projection" "float fov" 50 "float scale" 12 "string filename" ""#,
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/assets/leaf.png"),
+            r#"" AttributeEnd
+            Material "diffuse" "rgb reflectance" [0.8 0.3 0.3]
+            Translate 0.3 0 0.5 Shape "sphere" "float radius" 0.5"#
         ),
     },
     Scene {

@@ -2,10 +2,10 @@
 
 use super::*;
 use alhazen_scene::Scene;
-use alhazen_scene::light::{LightId, LightRef, LightSampleContext};
+use alhazen_scene::light::{Light, LightId, LightRef, LightSampleContext};
 use description::{
-    AreaLightDesc, InfiniteRadiance, InstanceDesc, LightDesc, LightKind, MeshKey, ObjectDesc, SceneDesc,
-    ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
+    AreaLightDesc, Handle, ImageDesc, InfiniteRadiance, InstanceDesc, LightDesc, LightKind, MeshKey,
+    ObjectDesc, SceneDesc, ShapeDesc, ShapeKind, SpectrumDesc, TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -119,12 +119,70 @@ pub fn image_sky_of(
     desc
 }
 
+/// [`free`] of a kind that refers to an image.
+pub fn free_with_image(image: ImageDesc, kind: impl FnOnce(Handle<ImageDesc>) -> LightKind) -> SceneDesc {
+    let mut images = SceneDesc::default().images;
+    let handle = images.push(image);
+    SceneDesc { images, ..free(kind(handle)) }
+}
+
+pub fn goniometric(power: Option<f32>) -> SceneDesc {
+    free_with_image(rgb_image(8, 8, colours), |image| LightKind::Goniometric {
+        intensity: white(),
+        power,
+        image: Some(image),
+    })
+}
+
+pub fn projection(power: Option<f32>) -> SceneDesc {
+    let pixel = |x, y| if (x, y) == (2, 1) { [0.0; 3] } else { colours(x, y) };
+    free_with_image(rgb_image(6, 4, pixel), |image| LightKind::Projection { image, power, fov: 70.0 })
+}
+
+/// A tilted portal above the reference points.
+pub fn portal(radiance: InfiniteRadiance) -> LightKind {
+    let (corner, right, up) =
+        (Vec3::new(-1.5, -1.0, 3.0), Vec3::new(3.0, 0.0, 0.3), Vec3::new(0.0, 2.5, 0.0));
+    let corners = [corner, corner + up, corner + up + right, corner + right];
+    LightKind::Infinite { radiance, illuminance: None, portal: Some(corners) }
+}
+
+pub fn portal_lights() -> Vec<Case> {
+    let seen_through = |width, height| {
+        let image = rgb_image(width, height, |x, y| if (x, y) == (4, 4) { [40.0; 3] } else { colours(x, y) });
+        free_with_image(image, |image| portal(InfiniteRadiance::Image(image)))
+    };
+    let cases = [
+        ("portal", free(portal(InfiniteRadiance::Constant(white())))),
+        ("portal, image", seen_through(8, 8)),
+        ("portal, panorama", seen_through(16, 8)),
+    ];
+    cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
+}
+
+/// The place of a light at a point, and a direction in which it emits.
+pub fn place(light: LightRef) -> (Vec3, Vec3) {
+    match light.row() {
+        Light::Point(light) => (light.p, Vec3::Z),
+        Light::Spot(light) => (light.p, light.axis),
+        Light::Goniometric(light) => (light.position(TIME), Vec3::Z),
+        Light::Projection(light) => {
+            let (p, axis) = light.placement(TIME);
+            // Off the axis, which is an edge of pixels.
+            (p, (axis + Vec3::new(0.03, 0.05, 0.02)).normalize())
+        }
+        _ => panic!("not a light at a point"),
+    }
+}
+
 pub fn delta_lights() -> Vec<Case> {
     let cases = [
         ("point", free(point(None))),
         ("spot", free(spot(40.0, 15.0, None))),
         ("spot, hard edge", free(spot(60.0, 0.0, None))),
         ("distant", free(distant(None))),
+        ("goniometric", goniometric(None)),
+        ("projection", projection(None)),
     ];
     cases.map(|(name, desc)| Case { name, scene: scene(&desc) }).into()
 }
@@ -220,6 +278,7 @@ pub fn infinite_lights() -> Vec<Case> {
 pub fn hittable_lights() -> Vec<Case> {
     let mut lights = area_lights();
     lights.extend(infinite_lights());
+    lights.extend(portal_lights());
     lights
 }
 

@@ -401,20 +401,61 @@ fn moving() -> TransformDesc {
 }
 
 #[test]
-fn unsupported_lights_are_replaced_with_a_warning() {
-    let light = |light: LightDesc| with(|desc| desc.lights.push_stated(stated(light, 4)));
-    let image = |desc: &mut SceneDesc| desc.images.push(rgb_image(2, 2, |_, _| [1.0; 3]));
-    let goniometric = LightKind::Goniometric { intensity: 1.0.into(), power: None, image: None };
-    warns(&light(goniometric.into()), "light `goniometric` is not drawn yet; drawn as `point`", 4);
-    let projection = with(|desc| {
-        let kind = LightKind::Projection { image: image(desc), power: None, fov: 90.0 };
-        desc.lights.push_stated(stated(kind.into(), 4));
-    });
-    warns(&projection, "light `projection` is not drawn yet; left out", 4);
-    let radiance = InfiniteRadiance::Constant(1.0.into());
-    let portal = LightKind::Infinite { radiance, illuminance: None, portal: Some([Vec3::ZERO; 4]) };
-    let desc = with(|desc| desc.lights.push_stated(with_parameter(portal.into(), "portal", 7)));
-    warns(&desc, "portals are not drawn yet; light comes from everywhere", 7);
+fn portals_are_rectangles() {
+    let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z];
+    let light = |corners| {
+        let radiance = InfiniteRadiance::Constant(1.0.into());
+        let portal = LightKind::Infinite { radiance, illuminance: None, portal: Some(corners) };
+        with(|desc| desc.lights.push_stated(with_parameter(portal.into(), "portal", 7)))
+    };
+    let message = "the four points of `portal` must be the corners of a rectangle, in their order";
+    for corners in [
+        [Vec3::ZERO; 4],
+        [Vec3::ZERO, x, y, x + y],
+        [Vec3::ZERO, x, x + y + 0.1 * z, y],
+        [Vec3::ZERO, x, x + y, y + 0.1 * x],
+        [Vec3::ZERO, x, 2.0 * x + y, x + y],
+    ] {
+        check(&light(corners), Severity::Error, "invalid-value", message, 7);
+    }
+    let mut moving = light([Vec3::ZERO, 3.0 * x, 3.0 * x + y, y]);
+    assert!(compile(moving.clone()).is_ok());
+    for (_, light) in moving.lights.iter_mut() {
+        light.world_from_light.end = DMat4::from_rotation_x(1.0);
+    }
+    let message = "the light behind a portal does not move; drawn as at the start of motion";
+    warns(&moving, message, 1000);
+}
+
+#[test]
+fn images_of_lights_are_checked() {
+    let image = |width, height, value| rgb_image(width, height, move |_, _| [value; 3]);
+    let goniometric = |image, power| {
+        with(|desc| {
+            let image = Some(desc.images.push(image));
+            let kind = LightKind::Goniometric { intensity: 1.0.into(), power, image };
+            desc.lights.push_stated(with_parameter(kind.into(), "filename", 4));
+        })
+    };
+    let projection = |image, power| {
+        with(|desc| {
+            let image = desc.images.push(image);
+            let kind = LightKind::Projection { image, power, fov: 60.0 };
+            desc.lights.push_stated(with_parameter(kind.into(), "filename", 4));
+        })
+    };
+    let square = "the image of a goniometric light is square (equal-area octahedral), not 2 × 3";
+    let fails = |desc: &SceneDesc, code: &str, message: &str| check(desc, Severity::Error, code, message, 4);
+    fails(&goniometric(image(2, 3, 1.0), None), "image-shape", square);
+    let finite = "the image of a light has infinite or NaN values";
+    fails(&goniometric(image(2, 2, f32::NAN), None), "image-values", finite);
+    fails(&projection(image(2, 3, f32::INFINITY), None), "image-values", finite);
+    let black = "a black image cannot be scaled to a power";
+    fails(&goniometric(image(2, 2, 0.0), Some(1.0)), "image-values", black);
+    fails(&projection(image(2, 3, 0.0), Some(1.0)), "image-values", black);
+    let channels = "the image of a light needs red, green and blue";
+    fails(&projection(gray_image(), None), "image-channels", channels);
+    assert!(compile(goniometric(gray_image(), None)).is_ok());
 }
 
 #[test]
