@@ -28,7 +28,7 @@ mod walk;
 use super::{BsdfSample, Conductor, Dielectric, Diffuse, Scatter};
 use crate::fresnel::mean_fresnel;
 use crate::{BxdfFlags, Directions, HenyeyGreenstein, TransportMode, fr_dielectric, refract};
-use lanes::{Int, Mask, Real, exp};
+use lanes::{Callee, Int, Mask, Real, exp};
 use math::{Vec2, Vec3, Vector3, lerp, sqr};
 use sampling::HashSequence;
 use sampling::warp::cosine_hemisphere_pdf;
@@ -143,26 +143,7 @@ impl<R: Real, B: CoatedBase<R>> Scatter<R> for Layered<B, R> {
     #[inline(always)]
     fn f(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode) -> SampledSpectrum<R> {
         let below = wo.z.lt(R::zero());
-        let (wo, wi) = (flip::<R>(below, wo), flip::<R>(below, wi));
-        let valid = wo.z.gt(R::zero()) & wi.z.gt(R::zero()) & self.flags().is_non_specular();
-        if !valid.any() {
-            return SampledSpectrum::zero();
-        }
-        let mut f = SampledSpectrum::zero();
-        let mut estimated = valid;
-        if let Some((albedo, closed)) = self.closed_form() {
-            f = self.f_closed(albedo, wo, wi);
-            estimated = estimated & !closed;
-        }
-        if estimated.any() {
-            let mut sum = SampledSpectrum::zero();
-            for index in 0..self.samples {
-                sum += R::call(Estimate { layers: self, wo, wi, mode, random: self.random(index, wo, wi) });
-            }
-            let estimate = self.interface.f(wo, wi, mode) + sum / R::splat(self.samples as f32);
-            f = SampledSpectrum::select(estimated, estimate, f);
-        }
-        SampledSpectrum::select(valid, f, SampledSpectrum::zero())
+        R::call(Value { layers: self, wo: flip::<R>(below, wo), wi: flip::<R>(below, wi), mode })
     }
 
     #[inline(always)]
@@ -178,49 +159,124 @@ impl<R: Real, B: CoatedBase<R>> Scatter<R> for Layered<B, R> {
             return BsdfSample::invalid();
         }
         let below = wo.z.lt(R::zero());
-        let wo = flip::<R>(below, wo);
-        let sample = match self.closed_form() {
-            Some((albedo, closed)) if closed.any() => {
-                let exact = self.sample_closed(albedo, wo, (uc, u), mode);
-                if closed.all() {
-                    exact
-                } else {
-                    let walk = R::call(SampleWalk { layers: self, wo, uc, u, mode });
-                    let sample = BsdfSample::select(closed, exact, walk);
-                    BsdfSample { pdf_is_proportional: true, ..sample }
-                }
-            }
-            _ => R::call(SampleWalk { layers: self, wo, uc, u, mode }),
-        };
+        let sample = R::call(Sample { layers: self, wo: flip::<R>(below, wo), uc, u, mode });
         let valid = sample.valid & wo.z.ne(R::zero());
         BsdfSample { wi: flip::<R>(below, sample.wi), valid, ..sample }
     }
 
     #[inline(always)]
     fn pdf(&self, wo: Vector3<R>, wi: Vector3<R>, mode: TransportMode, directions: Directions) -> R {
-        let below = wo.z.lt(R::zero());
-        let (wo, wi) = (flip::<R>(below, wo), flip::<R>(below, wi));
-        let valid = wo.z.gt(R::zero()) & wi.z.gt(R::zero()) & self.flags().is_non_specular();
-        if !directions.reflection() || !valid.any() {
+        if !directions.reflection() {
             return R::zero();
         }
-        let reflected = self.interface.pdf(wo, wi, mode, Directions::All);
-        let entering = R::one() - fr_dielectric(wo.z, self.interface.eta);
-        // Of the light that goes down and up again, the share that the medium scatters.
-        let in_medium = R::one() - exp(self.thickness * R::splat(-2.0));
-        let in_medium = R::select(self.has_medium(), in_medium, R::zero());
-        let even = R::splat(0.1) + R::splat(0.9) * in_medium;
-        let through = self.base.pdf_through(&self.interface, wo, wi);
-        let mut pdf = reflected + entering * lerp(even, through, cosine_hemisphere_pdf(wi.z));
-        if let Some((_, closed)) = self.closed_form() {
-            pdf = R::select(closed, self.pdf_closed(wo, wi), pdf);
-        }
-        R::select(valid, pdf, R::zero())
+        let below = wo.z.lt(R::zero());
+        R::call(Density { layers: self, wo: flip::<R>(below, wo), wi: flip::<R>(below, wi), mode })
     }
 
     #[inline(always)]
     fn regularize(&mut self, mask: R::Mask) {
         self.interface.regularize(mask);
         self.base.regularize(mask);
+    }
+}
+
+/// The value for `wo` above. Like samples and densities it is called, because kernels of several
+/// algorithms have it.
+struct Value<'a, B, R: Real> {
+    layers: &'a Layered<B, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+    mode: TransportMode,
+}
+
+impl<R: Real, B: CoatedBase<R>> Callee<R> for Value<'_, B, R> {
+    type Output = SampledSpectrum<R>;
+
+    #[inline(always)]
+    fn run(self) -> SampledSpectrum<R> {
+        let Self { layers, wo, wi, mode } = self;
+        let valid = wo.z.gt(R::zero()) & wi.z.gt(R::zero()) & layers.flags().is_non_specular();
+        if !valid.any() {
+            return SampledSpectrum::zero();
+        }
+        let mut f = SampledSpectrum::zero();
+        let mut estimated = valid;
+        if let Some((albedo, closed)) = layers.closed_form() {
+            f = layers.f_closed(albedo, wo, wi);
+            estimated = estimated & !closed;
+        }
+        if estimated.any() {
+            let mut sum = SampledSpectrum::zero();
+            for index in 0..layers.samples {
+                sum += R::call(Estimate { layers, wo, wi, mode, random: layers.random(index, wo, wi) });
+            }
+            let estimate = layers.interface.f(wo, wi, mode) + sum / R::splat(layers.samples as f32);
+            f = SampledSpectrum::select(estimated, estimate, f);
+        }
+        SampledSpectrum::select(valid, f, SampledSpectrum::zero())
+    }
+}
+
+/// A sample for `wo` above.
+struct Sample<'a, B, R: Real> {
+    layers: &'a Layered<B, R>,
+    wo: Vector3<R>,
+    uc: R,
+    u: Vec2<R>,
+    mode: TransportMode,
+}
+
+impl<R: Real, B: CoatedBase<R>> Callee<R> for Sample<'_, B, R> {
+    type Output = BsdfSample<R>;
+
+    #[inline(always)]
+    fn run(self) -> BsdfSample<R> {
+        let Self { layers, wo, uc, u, mode } = self;
+        let Some((albedo, closed)) = layers.closed_form() else {
+            return R::call(SampleWalk { layers, wo, uc, u, mode });
+        };
+        if !closed.any() {
+            return R::call(SampleWalk { layers, wo, uc, u, mode });
+        }
+        let exact = layers.sample_closed(albedo, wo, (uc, u), mode);
+        if closed.all() {
+            return exact;
+        }
+        let walk = R::call(SampleWalk { layers, wo, uc, u, mode });
+        BsdfSample { pdf_is_proportional: true, ..BsdfSample::select(closed, exact, walk) }
+    }
+}
+
+/// The density for `wo` above.
+struct Density<'a, B, R: Real> {
+    layers: &'a Layered<B, R>,
+    wo: Vector3<R>,
+    wi: Vector3<R>,
+    mode: TransportMode,
+}
+
+impl<R: Real, B: CoatedBase<R>> Callee<R> for Density<'_, B, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn run(self) -> R {
+        let Self { layers, wo, wi, mode } = self;
+        let valid = wo.z.gt(R::zero()) & wi.z.gt(R::zero()) & layers.flags().is_non_specular();
+        if !valid.any() {
+            return R::zero();
+        }
+        let interface = &layers.interface;
+        let reflected = interface.pdf(wo, wi, mode, Directions::All);
+        let entering = R::one() - fr_dielectric(wo.z, interface.eta);
+        // Of the light that goes down and up again, the share that the medium scatters.
+        let in_medium = R::one() - exp(layers.thickness * R::splat(-2.0));
+        let in_medium = R::select(layers.has_medium(), in_medium, R::zero());
+        let even = R::splat(0.1) + R::splat(0.9) * in_medium;
+        let through = layers.base.pdf_through(interface, wo, wi);
+        let mut pdf = reflected + entering * lerp(even, through, cosine_hemisphere_pdf(wi.z));
+        if let Some((_, closed)) = layers.closed_form() {
+            pdf = R::select(closed, layers.pdf_closed(wo, wi), pdf);
+        }
+        R::select(valid, pdf, R::zero())
     }
 }
