@@ -13,7 +13,7 @@ use crate::{portable, scalar};
 pub enum InstructionSet {
     /// One float at a time: every processor.
     Scalar,
-    /// Arrays of eight floats, of which the compiler makes vectors where it can: every processor.
+    /// Arrays of four floats, of which the compiler makes vectors where it can: every processor.
     Portable,
     /// Four floats at once: every x86-64 processor.
     Sse2,

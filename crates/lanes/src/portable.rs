@@ -1,21 +1,20 @@
-//! Eight floats as an array: for processors whose instructions no other set knows. The compiler
+//! Four floats as an array: for processors whose instructions no other set knows. The compiler
 //! makes vectors of it where it can.
 
 use crate::pair::Pair;
-use crate::scalar::F32x4;
 
 instruction_set! {
     Portable, is_detected [];
-    F32x4, F32x8, Pair<F32x8>;
-    F32x8;
+    F32x4, Pair<F32x4>, Pair<Pair<F32x4>>;
+    F32x4;
 }
 
 vector! {
-    /// Eight floats.
-    F32x8([f32; 8]): Vector<8>;
-    splat(x) = [x; 8];
-    load(from) = from.cast::<[f32; 8]>().read();
-    store(to, a) = to.cast::<[f32; 8]>().write(a);
+    /// Four floats.
+    F32x4([f32; 4]): Vector<4>;
+    splat(x) = [x; 4];
+    load(from) = from.cast::<[f32; 4]>().read();
+    store(to, a) = to.cast::<[f32; 4]>().write(a);
     lane(a, lane) = a[lane];
     add(a, b) = each(|i| a[i] + b[i]);
     sub(a, b) = each(|i| a[i] - b[i]);
@@ -33,12 +32,12 @@ vector! {
     mul_sub(a, b, c) = each(|i| a[i].mul_add(b[i], -c[i]));
     relaxed_mul_sub(a, b, c) = each(|i| a[i] * b[i] - c[i]);
     -> u32:
-    le(a, b) = (0..8).map(|i| u32::from(a[i] <= b[i]) << i).sum();
-    lt(a, b) = (0..8).map(|i| u32::from(a[i] < b[i]) << i).sum();
+    le(a, b) = (0..4).map(|i| u32::from(a[i] <= b[i]) << i).sum();
+    lt(a, b) = (0..4).map(|i| u32::from(a[i] < b[i]) << i).sum();
 }
 
 real! {
-    F32x8, U32x8, Mask8: 8;
+    F32x4, U32x4, Mask4: 4;
     select(mask, a, b) = each(|i| if mask[i] { a[i] } else { b[i] });
     from_bits(bits) = each(|i| f32::from_bits(bits[i]));
     sqrt(a) = each(|i| a[i].sqrt());
@@ -53,11 +52,11 @@ real! {
 }
 
 int! {
-    /// Eight integers.
-    U32x8([u32; 8]), F32x8, Mask8: 8;
-    splat(x) = [x; 8];
-    load(from) = from.cast::<[u32; 8]>().read();
-    store(to, a) = to.cast::<[u32; 8]>().write(a);
+    /// Four integers.
+    U32x4([u32; 4]), F32x4, Mask4: 4;
+    splat(x) = [x; 4];
+    load(from) = from.cast::<[u32; 4]>().read();
+    store(to, a) = to.cast::<[u32; 4]>().write(a);
     select(mask, a, b) = each(|i| if mask[i] { a[i] } else { b[i] });
     mul_wide(a, b) = (each(|i| a[i].mul_wide(b[i]).0), each(|i| a[i].mul_wide(b[i]).1));
     shl(a, bits) = each(|i| a[i] << bits);
@@ -76,11 +75,11 @@ int! {
 }
 
 mask! {
-    /// Eight bools.
-    Mask8([bool; 8]): 8;
-    splat(x) = [x; 8];
+    /// Four bools.
+    Mask4([bool; 4]): 4;
+    splat(x) = [x; 4];
     from_bits(bits) = bools(bits);
-    bits(a) = (0..8).map(|i| u32::from(a[i]) << i).sum();
+    bits(a) = (0..4).map(|i| u32::from(a[i]) << i).sum();
     -> Self, as operators:
     BitAnd::bitand(a, b) = each(|i| a[i] & b[i]);
     BitOr::bitor(a, b) = each(|i| a[i] | b[i]);
@@ -89,10 +88,10 @@ mask! {
 
 /// What a function gives for each lane.
 #[inline(always)]
-fn each<T>(lane: impl Fn(usize) -> T) -> [T; 8] {
+fn each<T>(lane: impl Fn(usize) -> T) -> [T; 4] {
     std::array::from_fn(lane)
 }
 
-fn bools(bits: u32) -> [bool; 8] {
+fn bools(bits: u32) -> [bool; 4] {
     each(|i| bits >> i & 1 == 1)
 }
