@@ -215,8 +215,8 @@ impl<V> LaneHits<V> {
         let unsure = !clear | is_tiny;
         // A bound of the error of the sum, at least that of `distance_error`: one magnitude for x
         // and y, and the sum of the edge functions instead of the largest.
-        let largest = |axis: usize| a[axis].abs().max(b[axis].abs()).max(c[axis].abs());
-        let (xy, z) = (largest(0).max(largest(1)), largest(2));
+        let largest = |axis: usize| a[axis].abs().max_int(b[axis].abs()).max_int(c[axis].abs());
+        let (xy, z) = (largest(0).max_int(largest(1)), largest(2));
         // SAFETY: vectors are the proof of the instruction set.
         let splat = |x: f32| unsafe { V::splat(x) };
         let (g3, g5, two, three) = (splat(6.0 * gamma(3)), splat(6.0 * gamma(5)), splat(2.0), splat(3.0));

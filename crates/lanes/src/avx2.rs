@@ -12,6 +12,13 @@ instruction_set! {
     fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {
         permute::<BYTE>(from, indices)
     }
+
+    #[inline(always)]
+    fn permute_both<const BYTE: usize>(from: [F32x8; 2], indices: [&[u32; 4]; 2]) -> F32x8 {
+        let half = |i: usize| permute::<BYTE>(from[i], indices[i]);
+        // SAFETY: `from` is the proof of the instruction set.
+        unsafe { F32x8(_mm256_insertf128_ps::<1>(_mm256_castps128_ps256(half(0).0), half(1).0)) }
+    }
 }
 
 /// See [`crate::Simd::permute`].

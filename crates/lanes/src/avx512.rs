@@ -15,6 +15,20 @@ instruction_set! {
     fn permute<const BYTE: usize>(from: F32x8, indices: &[u32; 4]) -> F32x4 {
         avx2::permute::<BYTE>(from, indices)
     }
+
+    #[inline(always)]
+    fn permute_both<const BYTE: usize>(from: [F32x8; 2], indices: [&[u32; 4]; 2]) -> F32x8 {
+        // SAFETY: `from` is the proof of the instruction set; arrays have as many indices as are
+        // read.
+        unsafe {
+            let [low, high] = indices.map(|indices| _mm_loadu_si128(indices.as_ptr().cast()));
+            // One permutation of both vectors, where the bit of 8 tells which.
+            let high = _mm_or_si128(high, _mm_set1_epi32(0x0808_0808));
+            let both = _mm256_inserti128_si256::<1>(_mm256_castsi128_si256(low), high);
+            let both = _mm256_srl_epi32(both, _mm_cvtsi32_si128(8 * BYTE as i32));
+            F32x8(_mm256_permutex2var_ps(from[0].0, both, from[1].0))
+        }
+    }
 }
 
 vector! {

@@ -78,13 +78,22 @@ pub trait Simd: Copy {
     /// As many floats as a register holds.
     type Real: Real;
 
-    /// The four lanes of `from` whose indices are in byte `BYTE` of each element of `indices`. Only
-    /// the low three bits of an index count.
+    /// The four lanes of `from` whose indices are in byte `BYTE` of each element of `indices`. All
+    /// bytes are below 8.
     #[inline(always)]
     fn permute<const BYTE: usize>(from: Self::F32x8, indices: &[u32; 4]) -> Self::F32x4 {
         let from = from.store();
         // SAFETY: `from` is the proof of the instruction set.
         unsafe { Self::F32x4::load(&indices.map(|index| from[(index >> (8 * BYTE)) as usize & 7])) }
+    }
+
+    /// The same of two vectors: that of the first in the low half.
+    #[inline(always)]
+    fn permute_both<const BYTE: usize>(from: [Self::F32x8; 2], indices: [&[u32; 4]; 2]) -> Self::F32x8 {
+        let half = |i: usize| Self::permute::<BYTE>(from[i], indices[i]).store();
+        let halves = [half(0), half(1)];
+        // SAFETY: `from` is the proof of the instruction set.
+        unsafe { Self::F32x8::load(&std::array::from_fn(|i| halves[i / 4][i % 4])) }
     }
 }
 

@@ -18,7 +18,7 @@ macro_rules! vector {
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy)]
-        pub struct $name($register);
+        pub struct $name(pub(crate) $register);
 
         // SAFETY, for every block: the caller of the constructor promised the instruction set, and
         // a vector is the proof of it. Arrays have as many floats as are read or written.

@@ -14,9 +14,10 @@ use super::tables::Tables;
 use super::triangle_block::TriangleBlock;
 use crate::bvh::{Bvh, Leaves, RaySlabs, WIDTH};
 use crate::sphere_set::SphereSet;
-use crate::watertight::{Sheared, ShearedLanes};
-use lanes::{Simd, Task, Vector};
+use crate::watertight::{LaneHits, Sheared, ShearedLanes};
+use lanes::{Real, Simd, Task, Vector};
 use math::{Ray, Vec2};
+use std::mem::MaybeUninit;
 use std::ops::Range;
 
 /// A ray that traverses a group.
@@ -209,12 +210,17 @@ impl<Q: Query> Task for TraceEach<'_, Q> {
     #[inline(always)]
     unsafe fn run<S: Simd>(self) {
         let Self { group, rays, queries, stats } = self;
-        let prepared: [_; WIDTH] = std::array::from_fn(|i| PreparedRay::new(&rays[i].0, group));
+        let mut prepared = [const { MaybeUninit::uninit() }; WIDTH];
+        for (prepared, (ray, _)) in prepared.iter_mut().zip(rays) {
+            prepared.write(PreparedRay::new(ray, group));
+        }
         let (mut extents, mut primitives) = (0, 0);
         for ((prepared, (ray, _)), query) in prepared.iter().zip(rays).zip(queries) {
             if is_valid(ray) {
-                // SAFETY: the caller promises the instruction set.
-                let tested = unsafe { prepared.trace::<S, Q>(group, InstancePath::TOP, None, query) };
+                // SAFETY: all were written; the caller promises the instruction set.
+                let tested = unsafe {
+                    prepared.assume_init_ref().trace::<S, Q>(group, InstancePath::TOP, None, query)
+                };
                 extents += tested.0;
                 primitives += tested.1;
             }
@@ -285,21 +291,53 @@ impl<S: Simd, Q: Query> Leaves for TriangleLeaves<'_, S, Q> {
     #[inline(always)]
     unsafe fn test(&mut self, blocks: Range<usize>, t_max: &mut f32) -> bool {
         // SAFETY: the tree was built over these blocks.
-        for block in unsafe { self.group.triangles.blocks.get_unchecked(blocks) } {
-            self.primitives += TriangleBlock::WIDTH as u64;
-            let Some(found) = block.intersect::<S>(self.lanes, *t_max) else { continue };
-            let mut hits = found.hits;
-            while hits != 0 {
-                let lane = hits.trailing_zeros() as usize % TriangleBlock::WIDTH;
-                hits &= hits - 1;
-                let (numbering, instance) = (&self.group.triangles.numbering, self.instance);
-                let hit = block.hit(lane, &found, lane, self.sheared, numbering, instance);
-                let Some(hit) = hit else { continue };
-                if self.query.offer(hit) {
+        let blocks = unsafe { self.group.triangles.blocks.get_unchecked(blocks) };
+        if <S::Real as Real>::LANES < 2 * TriangleBlock::WIDTH {
+            for block in blocks {
+                self.primitives += TriangleBlock::WIDTH as u64;
+                let found = block.intersect::<S>(self.lanes, *t_max);
+                let Some(found) = found else { continue };
+                if self.offer([block; 2], &found, found.hits) {
                     return true;
                 }
+                *t_max = self.query.t_max();
+            }
+            return false;
+        }
+        for pair in blocks.chunks(2) {
+            // A single block is tested twice, and its hits are taken once.
+            let both = [&pair[0], &pair[pair.len() - 1]];
+            self.primitives += (pair.len() * TriangleBlock::WIDTH) as u64;
+            let found = TriangleBlock::intersect_both::<S>(both, self.lanes, *t_max);
+            let Some(found) = found else { continue };
+            let hits = found.hits & ((1 << (pair.len() * TriangleBlock::WIDTH)) - 1);
+            if self.offer(both, &found, hits) {
+                return true;
             }
             *t_max = self.query.t_max();
+        }
+        false
+    }
+}
+
+impl<S: Simd, Q: Query> TriangleLeaves<'_, S, Q> {
+    /// Offers hits of two blocks to the query; returns whether it is finished.
+    #[inline(always)]
+    fn offer<const N: usize, V: Vector<N>>(
+        &mut self,
+        blocks: [&TriangleBlock; 2],
+        found: &LaneHits<V>,
+        mut hits: u32,
+    ) -> bool {
+        while hits != 0 {
+            let of = hits.trailing_zeros() as usize % N;
+            hits &= hits - 1;
+            let (lane, block) = (of % TriangleBlock::WIDTH, blocks[of / TriangleBlock::WIDTH]);
+            let (numbering, instance) = (&self.group.triangles.numbering, self.instance);
+            let hit = block.hit(lane, found, of, self.sheared, numbering, instance);
+            if hit.is_some_and(|hit| self.query.offer(hit)) {
+                return true;
+            }
         }
         false
     }

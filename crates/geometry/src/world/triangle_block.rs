@@ -1,4 +1,4 @@
-//! Blocks of four triangles, which are tested at once.
+//! Blocks of four triangles, which are tested at once, or those of two blocks.
 //!
 //! Neighbouring triangles share vertices; each vertex is stored, translated and sheared only once.
 //! Four triangles with more than eight vertices are put into two blocks.
@@ -132,17 +132,40 @@ impl TriangleBlock {
     /// Tests the ray against all triangles up to `t_max`.
     #[inline(always)]
     pub fn intersect<S: Simd>(&self, ray: &ShearedLanes<S::F32x8>, t_max: f32) -> Option<LaneHits<S::F32x4>> {
-        // SAFETY: axes are below 3; `ray` is the proof of the instruction set.
-        let (vertices, t_max) = unsafe {
-            let coordinate = |axis: usize| S::F32x8::load(self.vertices.get_unchecked(axis));
-            (ray.shear(coordinate), S::F32x4::splat(t_max))
-        };
+        let vertices = self.sheared(ray);
         let corners = [
             vertices.map(|v| S::permute::<0>(v, &self.corners)),
             vertices.map(|v| S::permute::<1>(v, &self.corners)),
             vertices.map(|v| S::permute::<2>(v, &self.corners)),
         ];
-        LaneHits::of(corners, t_max)
+        // SAFETY: `ray` is the proof of the instruction set.
+        LaneHits::of(corners, unsafe { S::F32x4::splat(t_max) })
+    }
+
+    /// The same for two blocks at once: the triangles of the first are in the low half of the lanes.
+    #[inline(always)]
+    pub fn intersect_both<S: Simd>(
+        blocks: [&Self; 2],
+        ray: &ShearedLanes<S::F32x8>,
+        t_max: f32,
+    ) -> Option<LaneHits<S::F32x8>> {
+        let [a, b] = blocks.map(|block| block.sheared(ray));
+        let (vertices, corners) =
+            ([0, 1, 2].map(|axis| [a[axis], b[axis]]), blocks.map(|block| &block.corners));
+        let corners = [
+            vertices.map(|v| S::permute_both::<0>(v, corners)),
+            vertices.map(|v| S::permute_both::<1>(v, corners)),
+            vertices.map(|v| S::permute_both::<2>(v, corners)),
+        ];
+        // SAFETY: `ray` is the proof of the instruction set.
+        LaneHits::of(corners, unsafe { S::F32x8::splat(t_max) })
+    }
+
+    /// The vertices, translated and sheared.
+    #[inline(always)]
+    fn sheared<V: Vector<{ TriangleBlock::VERTICES }>>(&self, ray: &ShearedLanes<V>) -> [V; 3] {
+        // SAFETY: axes are below 3; `ray` is the proof of the instruction set.
+        ray.shear(|axis| unsafe { V::load(self.vertices.get_unchecked(axis)) })
     }
 
     /// Tests several rays against the triangle in a lane, each up to its `t_max`.

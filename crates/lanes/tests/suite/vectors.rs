@@ -90,17 +90,17 @@ impl Task for Check<'_> {
     }
 }
 
-struct Permute(u32);
+struct Permute([[u32; 4]; 2]);
 
 impl Task for Permute {
-    type Output = [[f32; 4]; 2];
+    type Output = [[f32; 8]; 2];
 
     #[inline(always)]
     unsafe fn run<S: Simd>(self) -> Self::Output {
         // SAFETY: the caller promises the instruction set.
-        let from = unsafe { S::F32x8::load(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]) };
-        let indices = [0, 1, 2, 3].map(|i| self.0 >> i);
-        [S::permute::<0>(from, &indices).store(), S::permute::<2>(from, &indices).store()]
+        let load = |first: f32| unsafe { S::F32x8::load(&std::array::from_fn(|i| first + i as f32)) };
+        let (from, indices) = ([load(0.0), load(8.0)], self.0.each_ref());
+        [S::permute_both::<0>(from, indices).store(), S::permute_both::<2>(from, indices).store()]
     }
 }
 
@@ -116,12 +116,16 @@ fn operations_give_the_bits_of_single_floats() {
 }
 
 #[test]
-fn permutations_take_three_bits_of_a_byte() {
+fn permutations_take_the_indices_of_a_byte_in_each_half() {
     for bits in (0..1000).map(hash) {
-        let lanes = |byte: u32| [0, 1, 2, 3].map(|i| (bits >> i >> (8 * byte) & 7) as f32);
+        let indices = [0, 4].map(|first| [0, 1, 2, 3].map(|i| bits >> (first + i) & 0x0707_0707));
+        let lanes = |byte: u32| {
+            let lane = |i: usize| 8 * (i / 4) as u32 + (indices[i / 4][i % 4] >> (8 * byte) & 7);
+            std::array::from_fn(|i| lane(i) as f32)
+        };
         for set in available() {
             // SAFETY: the set is available.
-            let found = unsafe { set.run(Permute(bits)) };
+            let found = unsafe { set.run(Permute(indices)) };
             assert_eq!(found, [lanes(0), lanes(2)], "{set:?} {bits:x}");
         }
     }
