@@ -3,7 +3,8 @@
 use crate::{BsdfSample, Bxdf, BxdfFlags, Directions, Scatter, TransportMode};
 use lanes::{Mask, Real};
 use math::{Frame, Normal3, Vec2, Vector3};
-use spectrum::SampledSpectrum;
+use sampling::HashSequence;
+use spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// All scattering at a point of a surface.
 ///
@@ -97,6 +98,16 @@ impl<R: Real, B: Scatter<R>> Bsdf<B, R> {
     #[inline(always)]
     pub fn regularize(&mut self, mask: R::Mask) {
         self.bxdf.regularize(mask);
+    }
+}
+
+impl<R: Real, B: Scatter<R>> Bsdf<B, R> {
+    /// [`Scatter::seed`] for the vertex at a dimension of a path's random numbers: a path has its
+    /// own first wavelength, and each of its vertices a dimension.
+    #[inline(always)]
+    pub fn seed(&mut self, lambda: &SampledWavelengths<R>, dimension: R::Int) {
+        let mut sequence = HashSequence::new([lambda.lambda()[0].to_bits(), dimension]);
+        self.bxdf.seed(sequence.word());
     }
 }
 

@@ -370,7 +370,8 @@ impl Scene {
         }
         let bxdf = entry.material.bxdf(&self.textures, &interaction.texture_context(), lambda)?;
         let s = &interaction.surface;
-        let bsdf = Bsdf::new(s.shading.n, s.shading.dpdu, bxdf);
+        let mut bsdf = Bsdf::new(s.shading.n, s.shading.dpdu, bxdf);
+        bsdf.seed(lambda, sampler.dimension());
         if !view.options.force_diffuse {
             return Some(bsdf);
         }

@@ -89,6 +89,7 @@ impl<M: MaterialModel, A: AtVertices> Shade<'_, '_, M, A> {
         let bxdf = self.material.bxdf(textures, &context, &mut vertices.lambda);
         self.keep_wavelengths(&vertices, &before);
         let mut bsdf = Bsdf::new(ns, dpdu, bxdf);
+        bsdf.seed(&vertices.lambda, vertices.address.dimension);
         if self.algorithm.regularizes() {
             let rough: u32 = queue.iter().enumerate().map(|(lane, &row)| self.rough(row) << lane).sum();
             bsdf.regularize(R::Mask::from_bits(rough));

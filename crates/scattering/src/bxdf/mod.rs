@@ -103,6 +103,11 @@ impl Scatter for Bxdf {
     fn regularize(&mut self, mask: bool) {
         each_bxdf!(self, bxdf => bxdf.regularize(mask))
     }
+
+    #[inline]
+    fn seed(&mut self, seed: u32) {
+        each_bxdf!(self, bxdf => Scatter::<f32>::seed(bxdf, seed))
+    }
 }
 
 /// Makes each member a [`Bxdf`].

@@ -98,6 +98,10 @@ pub trait Scatter<R: Real = f32> {
     #[inline(always)]
     fn regularize(&mut self, _: R::Mask) {}
 
+    /// Chooses the random numbers of values that are estimates.
+    #[inline(always)]
+    fn seed(&mut self, _: R::Int) {}
+
     /// The hemispherical-directional reflectance: the share of uniform incident light that
     /// is scattered to `wo`, estimated by one term for each (uc, u).
     #[inline(always)]

@@ -7,8 +7,7 @@
 
 use super::{Roughness, dispersed_index, is_dispersive};
 use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
-use lanes::Real;
-use sampling::HashSequence;
+use lanes::{Int, Real};
 use scattering::{Dielectric, HenyeyGreenstein, Layered};
 use spectrum::{SampledWavelengths, Spectrum};
 
@@ -49,9 +48,6 @@ impl Coat {
         base: impl FnOnce(R) -> B,
     ) -> Layered<B, R> {
         let eta = dispersed_index(&self.eta, lambda);
-        let [x, y, z] = context.p.to_array();
-        // The wavelength differs from sample to sample where the point does not.
-        let words = [x.to_bits(), y.to_bits(), z.to_bits(), lambda.lambda()[0].to_bits()];
         let limit = R::splat(0.999);
         Layered {
             base: base(eta),
@@ -62,7 +58,7 @@ impl Coat {
             inner: R::splat(self.inner.unwrap_or(-1.0)),
             max_depth: self.max_depth,
             samples: self.samples,
-            seed: HashSequence::new(words).word(),
+            seed: R::Int::splat(0),
         }
     }
 }

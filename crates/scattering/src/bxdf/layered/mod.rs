@@ -12,7 +12,8 @@
 //! has the extinction coefficient 1, so that `thickness` is an optical one, and a Henyey–Greenstein
 //! phase function. Without scattering (`albedo` 0) it only absorbs.
 //!
-//! An estimated `f` is the same for the same directions and `seed`. Samples are walks of their own
+//! An estimated `f` is the same for the same directions and `seed`, and a steady function of the
+//! directions but for choices within the walk. Samples are walks of their own
 //! whose densities are unknown: [`BsdfSample::pdf_is_proportional`]. `pdf` approximates their
 //! density by a closed form: reflection by the coat; one reflection by the base, in a lobe that is
 //! widened by the refractions; and a tenth of everything that enters spread evenly over the
@@ -57,7 +58,7 @@ pub struct Layered<B, R: Real = f32> {
     pub max_depth: u32,
     /// Walks per value of `f`; ≥ 1.
     pub samples: u32,
-    /// Chooses the walks.
+    /// Chooses the walks of values, see [`Scatter::seed`].
     pub seed: R::Int,
 }
 
@@ -113,12 +114,10 @@ impl<R: Real, B: CoatedBase<R>> Layered<B, R> {
         !self.albedo.is_black()
     }
 
-    /// The random numbers of walk `index` among those that depend on two triples.
+    /// The random numbers of walk `index` of a value.
     #[inline(always)]
-    fn random(&self, index: u32, a: Vector3<R>, b: Vector3<R>) -> HashSequence<R::Int> {
-        let (index, [ax, ay, az], [bx, by, bz]) = (R::Int::splat(index), a.to_array(), b.to_array());
-        let [ax, ay, az] = [ax.to_bits(), ay.to_bits(), az.to_bits()];
-        HashSequence::new([self.seed, index, ax, ay, az, bx.to_bits(), by.to_bits(), bz.to_bits()])
+    fn random(&self, index: u32) -> HashSequence<R::Int> {
+        HashSequence::new([self.seed, R::Int::splat(index)])
     }
 }
 
@@ -178,6 +177,11 @@ impl<R: Real, B: CoatedBase<R>> Scatter<R> for Layered<B, R> {
         self.interface.regularize(mask);
         self.base.regularize(mask);
     }
+
+    #[inline(always)]
+    fn seed(&mut self, seed: R::Int) {
+        self.seed = seed;
+    }
 }
 
 /// The value for `wo` above. Like samples and densities it is called, because kernels of several
@@ -208,7 +212,7 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for Value<'_, B, R> {
         if estimated.any() {
             let mut sum = SampledSpectrum::zero();
             for index in 0..layers.samples {
-                sum += R::call(Estimate { layers, wo, wi, mode, random: layers.random(index, wo, wi) });
+                sum += R::call(Estimate { layers, wo, wi, mode, random: layers.random(index) });
             }
             let estimate = layers.interface.f(wo, wi, mode) + sum / R::splat(layers.samples as f32);
             f = SampledSpectrum::select(estimated, estimate, f);

@@ -267,7 +267,7 @@ impl<R: Real, B: CoatedBase<R>> Callee<R> for SampleWalk<'_, B, R> {
         let &Layered { base, interface, thickness, albedo, phase, .. } = layers;
         let entrance = interface.sample_f(wo, uc, u, mode, Directions::All);
         let reflected = entrance.valid & entrance.flags.is_reflective();
-        let mut random = layers.random(0, wo, Vec3::new(uc, u.x, u.y));
+        let mut random = HashSequence::new([uc.to_bits(), u.x.to_bits(), u.y.to_bits()]);
         let mut walk = Walk::enter(&entrance, thickness);
         walk.alive = walk.alive & !reflected;
         let mut specular = entrance.flags.is_specular();
