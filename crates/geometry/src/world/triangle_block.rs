@@ -142,7 +142,8 @@ impl TriangleBlock {
         LaneHits::of(corners, unsafe { S::F32x4::splat(t_max) })
     }
 
-    /// The same for two blocks at once: the triangles of the first are in the low half of the lanes.
+    /// The same for two blocks at once: the triangles of the first are in the low half of the
+    /// lanes.
     #[inline(always)]
     pub fn intersect_both<S: Simd>(
         blocks: [&Self; 2],
