@@ -2,7 +2,7 @@
 
 use description::schema::Settings;
 use description::{
-    BdptDesc, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc, PathDesc,
+    BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc, PathDesc,
     Randomization, SamplerKind, SceneDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
@@ -35,6 +35,7 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     }
     let sampler = builder.sampler();
     let integrator = builder.integrator(sampler);
+    builder.connections_to_lens();
     let diagnostics = builder.diagnostics;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
@@ -135,6 +136,30 @@ impl Builder<'_> {
             IntegratorDesc::Sppm(desc) => Box::new(Sppm::new(desc, sampler, self.photon_seed(desc.seed))),
             IntegratorDesc::Radiosity(desc) => Box::new(Radiosity::new(desc, sampler, color_space)),
             IntegratorDesc::Function(_) => self.instead(PathDesc::default().max_depth, sampler),
+        }
+    }
+
+    /// Checks connections of light paths to the camera, which a system of lenses does not have: an
+    /// error where the picture consists of them, a warning where others remain.
+    fn connections_to_lens(&mut self) {
+        if !matches!(self.desc.camera.kind, CameraKind::Realistic(_)) {
+            return;
+        }
+        let (name, span) = (self.desc.integrator.name(), self.desc.integrator.origin.span);
+        match self.desc.integrator.value {
+            IntegratorDesc::LightTracing(_) => {
+                let message = format!("`{name}` cannot see through a `realistic` camera");
+                let help = "light paths cannot be connected to its lens; use `path` or `bdpt`";
+                self.diagnostics
+                    .push(Diagnostic::error("invalid-integrator", message, span).with_help(help));
+            }
+            IntegratorDesc::Bdpt(_) | IntegratorDesc::Mlt(_) | IntegratorDesc::Vcm(_) => {
+                let message = format!(
+                    "`{name}` cannot connect light paths to a `realistic` camera; its other strategies find all light"
+                );
+                self.diagnostics.push(Diagnostic::warning("camera-connections", message, span));
+            }
+            _ => {}
         }
     }
 

@@ -48,7 +48,8 @@ impl View {
     /// [`world_from_render`]. Returns all errors and warnings if there is an error.
     pub fn compile(desc: &SceneDesc, world_from_render: DMat4) -> Result<CompiledView, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
-        let camera = camera::compile(&desc.camera, &desc.film, world_from_render, &mut diagnostics);
+        let camera =
+            camera::compile(&desc.camera, &desc.film, &desc.images, world_from_render, &mut diagnostics);
         let Some(camera) = camera else { return Err(diagnostics) };
         let options = ViewOptions {
             disable_pixel_jitter: desc.options.disable_pixel_jitter,

@@ -68,7 +68,14 @@ impl<'a> Walk<'a> {
         let camera = &paths.view.camera;
         let (pdf_position, pdf_direction) = camera.pdf_we(&camera_ray.ray.ray);
         let parallel = camera.is_parallel();
-        let pdf = if parallel { pdf_position } else { pdf_direction };
+        // A camera that light paths cannot be connected to leaves the strategy t = 1 without weight.
+        let pdf = if camera.is_unseen() {
+            f32::INFINITY
+        } else if parallel {
+            pdf_position
+        } else {
+            pdf_direction
+        };
         let beta = SampledSpectrum::splat(camera_ray.weight);
         let origin = if parallel { Origin::Direction } else { Origin::Point };
         let partial = paths.balance.at_camera(pdf);

@@ -79,11 +79,16 @@ impl<'a> Batch<'a> {
     /// Starts a path for each pixel, whose camera ray may have differentials.
     pub(super) fn begin(&mut self, tiles: &[FilmTile], with_differentials: bool) {
         let instruction_set = self.pass.instruction_set;
-        self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials);
+        let with_weights = !self.pass.pixels.view.camera.is_unweighted();
+        self.paths.start(tiles.iter().map(FilmTile::bounds), with_differentials, with_weights);
         instruction_set.dispatch(Begin { pass: self.pass, paths: &mut self.paths, with_differentials });
         self.queues.waiting.clear();
         self.active.clear();
         self.active.extend(0..self.paths.len() as u32);
+        if with_weights {
+            // Rays that the camera's lens blocks are not traced.
+            self.active.retain(|&row| self.paths.camera_weight[row as usize] > 0.0);
+        }
     }
 
     /// Finds the nearest hit of each path's ray.
@@ -278,6 +283,7 @@ impl<'a> Batch<'a> {
 
     /// Adds the radiance of all paths to the film.
     pub(super) fn finish(&mut self, tiles: &mut [FilmTile]) -> Result<(), Cancelled> {
+        self.paths.weigh();
         let mut first = 0;
         for tile in tiles {
             let (pixels, with_first_hits) = (tile.bounds().area(), tile.wants_first_hit());

@@ -45,15 +45,18 @@ impl Begin<'_, '_> {
         let ([a, b, c, d], [p, q, r, s]) = (*lambda.lambda(), lambda.pdf().0);
         paths.wavelengths.store(first, [a, b, c, d, p, q, r, s]);
         let camera = &pixels.view.camera;
-        let ray = if self.with_differentials {
-            let (ray, mut differentials) = camera.ray_and_neighbours(&sample);
+        let (ray, weight) = if self.with_differentials {
+            let (ray, mut differentials, weight) = camera.ray_and_neighbours(&sample);
             differentials.scale(&ray, R::splat(differential_scale(pixels.view.samples_per_pixel)));
             paths.differentials.store(first, numbers_of(&differentials));
             R::Int::splat(1).store(&mut paths.are_differentials[first..]);
-            ray
+            (ray, weight)
         } else {
             camera.ray(&sample)
         };
+        if !paths.camera_weight.is_empty() {
+            weight.store(&mut paths.camera_weight[first..]);
+        }
         ray.time.store(&mut paths.time[first..]);
         paths.origin.store(first, ray.o.to_array());
         paths.direction.store(first, ray.d.to_array());

@@ -20,6 +20,9 @@ pub(super) struct Paths {
     pub pixel: [Vec<u32>; 2],
     /// Weight of the sample in the pixel.
     pub filter_weight: Column,
+    /// The share of the light along its camera ray that reaches the film; empty where all of it
+    /// does.
+    pub camera_weight: Column,
     /// The sampler's next dimension.
     pub dimension: Vec<u32>,
     /// Wavelengths, and their densities.
@@ -58,7 +61,12 @@ impl Paths {
 
     /// Replaces all paths by one for each pixel of the rectangles, row by row, which have no
     /// wavelengths, weights and rays yet.
-    pub fn start(&mut self, pixels: impl Iterator<Item = Bounds2i>, with_differentials: bool) {
+    pub fn start(
+        &mut self,
+        pixels: impl Iterator<Item = Bounds2i>,
+        with_differentials: bool,
+        with_weights: bool,
+    ) {
         let [x, y] = &mut self.pixel;
         x.clear();
         y.clear();
@@ -74,6 +82,7 @@ impl Paths {
         x.resize(rows, 0);
         y.resize(rows, 0);
         [&mut self.filter_weight, &mut self.time].into_iter().for_each(|column| grow(column, rows));
+        fill(&mut self.camera_weight, if with_weights { rows } else { 0 }, 0.0);
         self.dimension.resize(rows, 0);
         self.wavelengths.grow(rows);
         [&mut self.origin, &mut self.direction].into_iter().for_each(|columns| columns.grow(rows));
@@ -156,6 +165,14 @@ impl Paths {
     pub fn add_light(&mut self, row: usize, l: SampledSpectrum) {
         let sum = SampledSpectrum(self.l.row(row)) + l;
         self.l.set_row(row, sum.0);
+    }
+
+    /// Multiplies the light of the paths by the share of it that reaches the film.
+    pub fn weigh(&mut self) {
+        for (row, &weight) in self.camera_weight.iter().enumerate().take(self.count) {
+            let l = SampledSpectrum(self.l.row(row)) * weight;
+            self.l.set_row(row, l.0);
+        }
     }
 
     /// A path between two vertices.

@@ -1,15 +1,21 @@
 //! Compiles the description of a camera.
 
-use super::{Camera, CameraTransform, Orthographic, Perspective, Projection, Screen, Spherical};
+use super::aperture::ApertureMask;
+use super::lens::{FocusError, LensSystem};
+use super::{Camera, CameraTransform, Orthographic, Perspective, Projection, Realistic, Screen, Spherical};
 use description::schema::Settings;
-use description::{CameraDesc, CameraKind, Diagnostic, FilmDesc, LensDesc, Origin, ScreenDesc, Stated};
+use description::{
+    ApertureDesc, Arena, CameraDesc, CameraKind, Diagnostic, FilmDesc, ImageDesc, LensElement, Origin,
+    RealisticCameraDesc, ScreenDesc, Stated,
+};
 use math::{Bounds2, DMat4};
 
-/// Places the described camera in the render space given by `world_from_render`. Errors and
-/// warnings are added to `diagnostics`; `None` if there was an error.
+/// Places the described camera in the render space given by `world_from_render`; `images` are those
+/// of the description. Errors and warnings are added to `diagnostics`; `None` if there was an error.
 pub fn compile(
     camera: &Stated<CameraDesc>,
     film: &Stated<FilmDesc>,
+    images: &Arena<ImageDesc>,
     world_from_render: DMat4,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<Camera> {
@@ -17,7 +23,24 @@ pub fn compile(
     let before = diagnostics.len();
     diagnostics.extend(camera.check(origin));
     let resolution = resolution(film, diagnostics);
-    let projection = projection(&camera.kind, origin, resolution, diagnostics);
+    let projection = match &camera.kind {
+        // A lens with settings out of range would be reported twice.
+        CameraKind::Realistic(_) if diagnostics[before..].iter().any(Diagnostic::is_error) => None,
+        CameraKind::Realistic(desc) => {
+            realistic(desc, origin, (film.diagonal, resolution), images, diagnostics)
+        }
+        CameraKind::Perspective { fov, screen, lens } => {
+            let window = window(screen, origin, resolution, diagnostics);
+            Some(Projection::Perspective(Perspective::new(*fov, window, (*lens).into(), resolution)))
+        }
+        CameraKind::Orthographic { screen, lens } => {
+            let window = window(screen, origin, resolution, diagnostics);
+            Some(Projection::Orthographic(Orthographic::new(window, (*lens).into(), resolution)))
+        }
+        CameraKind::Spherical { mapping } => {
+            Some(Projection::Spherical(Spherical::new(*mapping, resolution)))
+        }
+    };
     let transform = CameraTransform::new(&camera.camera_from_world, world_from_render);
     if transform.is_none() {
         let message = "the transform of the camera has no inverse";
@@ -36,7 +59,7 @@ pub fn compile(
     if diagnostics[before..].iter().any(Diagnostic::is_error) {
         return None;
     }
-    Some(Camera::new(projection, transform?, shutter, resolution))
+    Some(Camera::new(projection?, transform?, shutter, resolution))
 }
 
 fn resolution(film: &Stated<FilmDesc>, diagnostics: &mut Vec<Diagnostic>) -> [u32; 2] {
@@ -51,30 +74,88 @@ fn resolution(film: &Stated<FilmDesc>, diagnostics: &mut Vec<Diagnostic>) -> [u3
     [side(film.resolution[0], "xresolution"), side(film.resolution[1], "yresolution")]
 }
 
-fn projection(
-    kind: &CameraKind,
+/// A focused system of lenses in front of a film of the given diagonal, in millimetres.
+fn realistic(
+    desc: &RealisticCameraDesc,
     origin: &Origin,
-    resolution: [u32; 2],
+    (diagonal, resolution): (f32, [u32; 2]),
+    images: &Arena<ImageDesc>,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Projection {
-    match kind {
-        CameraKind::Perspective { fov, screen, lens } => {
-            let window = window(screen, origin, resolution, diagnostics);
-            Projection::Perspective(Perspective::new(*fov, window, (*lens).into(), resolution))
+) -> Option<Projection> {
+    if let Err(message) = check_lens(&desc.lenses) {
+        diagnostics.push(invalid(message, origin, "lensfile"));
+        return None;
+    }
+    let stops = desc.lenses.iter().filter(|element| element.curvature_radius == 0.0);
+    if let Some(widest) = stops.map(|stop| stop.aperture_diameter).reduce(f32::min)
+        && desc.aperture_diameter > widest
+    {
+        let message = format!(
+            "an aperture of {} mm is wider than the stop of the lens; {widest} mm used",
+            desc.aperture_diameter
+        );
+        diagnostics.push(Diagnostic::warning("aperture", message, origin.parameter("aperturediameter")));
+    }
+    let mask = match &desc.aperture {
+        ApertureDesc::Circular => None,
+        ApertureDesc::Gaussian => Some(ApertureMask::gaussian()),
+        ApertureDesc::Square => Some(ApertureMask::square()),
+        ApertureDesc::Pentagon => Some(ApertureMask::pentagon()),
+        ApertureDesc::Star => Some(ApertureMask::star()),
+        ApertureDesc::Image(image) => {
+            let mask = ApertureMask::picture(&images[*image].image);
+            if mask.is_none() {
+                diagnostics.push(invalid("the image of the aperture is black", origin, "aperture"));
+                return None;
+            }
+            mask
         }
-        CameraKind::Orthographic { screen, lens } => {
-            let window = window(screen, origin, resolution, diagnostics);
-            Projection::Orthographic(Orthographic::new(window, (*lens).into(), resolution))
+    };
+    let mut lens = LensSystem::new(&desc.lenses, desc.aperture_diameter, mask);
+    let diagonal = diagonal * 1e-3;
+    if let Err(error) = lens.focus(f64::from(desc.focus_distance), f64::from(diagonal) * 1e-3) {
+        let (message, parameter) = match error {
+            FocusError::NotConverging => {
+                ("parallel light does not converge behind the lens".to_owned(), "lensfile")
+            }
+            FocusError::TooNear(least) => {
+                (format!("the lens cannot be focused nearer than {least:.3} m"), "focusdistance")
+            }
+            FocusError::InsideLens => {
+                let message = "at this distance of focus the film would be inside the lens";
+                (message.to_owned(), "focusdistance")
+            }
+        };
+        diagnostics.push(invalid(message, origin, parameter));
+        return None;
+    }
+    let projection = Realistic::new(lens, diagonal, resolution);
+    if projection.is_none() {
+        let help = "its elements' diameters, radii of curvature or distances do not fit each other";
+        diagnostics.push(invalid("no light passes the lens", origin, "lensfile").with_help(help));
+    }
+    projection.map(Projection::Realistic)
+}
+
+/// Says what is wrong with the elements of a lens file, if anything is.
+fn check_lens(elements: &[LensElement]) -> Result<(), String> {
+    for (i, element) in elements.iter().enumerate() {
+        let LensElement { curvature_radius, thickness, eta, aperture_diameter } = *element;
+        let number = i + 1;
+        if !(curvature_radius.is_finite() && thickness.is_finite()) {
+            return Err(format!("lens element {number} has no finite radius of curvature and thickness"));
         }
-        CameraKind::Spherical { mapping } => Projection::Spherical(Spherical::new(*mapping, resolution)),
-        CameraKind::Realistic(_) => {
-            let message =
-                "camera `realistic` is not drawn yet; drawn as a `perspective` pinhole of 90 degrees";
-            diagnostics.push(Diagnostic::warning("not-drawn", message, origin.span));
-            let window = Screen::window(&ScreenDesc::default(), resolution);
-            Projection::Perspective(Perspective::new(90.0, window, LensDesc::default().into(), resolution))
+        if !(eta >= 0.0 && eta.is_finite()) {
+            return Err(format!("lens element {number} has the index of refraction {eta}"));
+        }
+        if !(aperture_diameter > 0.0 && aperture_diameter.is_finite()) {
+            return Err(format!("lens element {number} has the diameter {aperture_diameter} mm"));
         }
     }
+    if elements.iter().all(|element| element.curvature_radius == 0.0) {
+        return Err("the lens has no interface that refracts light".to_owned());
+    }
+    Ok(())
 }
 
 fn window(

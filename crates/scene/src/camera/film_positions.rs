@@ -39,7 +39,7 @@ impl Camera {
     /// All film positions of the ray of `film`.
     pub fn film_positions(&self, film: Point2) -> FilmPositions {
         let around = match &self.projection {
-            Projection::Perspective(_) | Projection::Orthographic(_) => None,
+            Projection::Perspective(_) | Projection::Orthographic(_) | Projection::Realistic(_) => None,
             Projection::Spherical(s) => Some(Around { mapping: s.mapping(), resolution: s.resolution() }),
         };
         FilmPositions { first: film, around }

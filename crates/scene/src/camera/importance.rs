@@ -29,6 +29,11 @@
 //! shears. Every point in front of the camera has a film position, perhaps beside the film, as
 //! filters reach over its border. The film of a spherical camera repeats beyond its border: the
 //! film position returned is the one on the film, and [`Camera::film_positions`] lists the others.
+//!
+//! A camera with a system of lenses is not seen from the scene ([`Camera::is_unseen`]): the ray
+//! from a point to a film position is not known in closed form. It has no importance here, so that
+//! strategies that connect light paths to the camera find nothing.
+//!
 //! Sources: [Pharr 2016 §16.1.1]; [Veach 1997 ch. 8].
 
 use super::Camera;
@@ -74,6 +79,12 @@ impl Camera {
     #[inline]
     pub fn is_parallel(&self) -> bool {
         matches!(self.projection.aperture(), Aperture::Film)
+    }
+
+    /// Whether light paths cannot be connected to it: it has no importance that could be computed.
+    #[inline]
+    pub fn is_unseen(&self) -> bool {
+        matches!(self.projection.aperture(), Aperture::Unseen)
     }
 
     /// The importance of a ray that starts on the lens, at its time, and its film position, in
@@ -135,6 +146,7 @@ impl Camera {
             Aperture::Point | Aperture::Pinhole => (1.0, density / solid_angle),
             Aperture::Lens(lens_area) => (1.0 / (lens_area * area), density / solid_angle),
             Aperture::Film => (density / area, 1.0),
+            Aperture::Unseen => return None,
         };
         let (n, cos_theta) = match self.projection {
             Projection::Spherical(_) => (Vec3::ZERO, 1.0),

@@ -42,8 +42,11 @@ impl MinimumDifferentials {
         };
         let mut least = Self { origin: [Vec3::INFINITY; 2], direction: [Vec3::INFINITY; 2] };
         for i in 0..STEPS {
-            let (o, d, near) =
+            let (o, d, weight, near) =
                 projection.ray_differential(film * (i as f32 / (STEPS - 1) as f32), Vec2::splat(0.5));
+            if weight == 0.0 {
+                continue;
+            }
             let frame = Frame::from_z(d);
             keep_shorter(&mut least.origin[0], frame.to_local(near.rx_origin - o));
             keep_shorter(&mut least.origin[1], frame.to_local(near.ry_origin - o));

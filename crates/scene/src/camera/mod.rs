@@ -12,15 +12,21 @@
 //! film in pixels. Differentials are one pixel wide; [`differential_scale`] is the factor on them
 //! for many samples per pixel.
 
+mod aperture;
 mod compile;
+mod exit_pupil;
 mod film_positions;
 mod importance;
 #[cfg(test)]
 mod importance_tests;
+mod lens;
 mod minimum_differentials;
 mod orthographic;
 mod perspective;
 mod projection;
+mod realistic;
+#[cfg(test)]
+mod realistic_tests;
 mod screen;
 mod spherical;
 #[cfg(test)]
@@ -40,6 +46,7 @@ pub use minimum_differentials::differential_scale;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use projection::Projection;
+pub use realistic::Realistic;
 pub use screen::{Screen, ThinLens};
 pub use spherical::Spherical;
 pub use transform::{CameraTransform, world_from_render};
@@ -129,39 +136,42 @@ impl Camera {
         lerp(u, R::splat(self.shutter[0]), R::splat(self.shutter[1]))
     }
 
-    /// The ray of a sample, all of whose radiance reaches the film.
+    /// Whether all of the radiance along each ray reaches the film.
+    pub fn is_unweighted(&self) -> bool {
+        self.projection.is_unweighted()
+    }
+
+    /// The ray of a sample, and the share of the radiance along it that reaches the film: 0 for a
+    /// ray that is blocked.
     #[inline(always)]
-    pub fn ray<R: Real>(&self, sample: &CameraSample<R>) -> Ray<R> {
-        let (o, d) = self.projection.ray(sample.film, sample.lens);
+    pub fn ray<R: Real>(&self, sample: &CameraSample<R>) -> (Ray<R>, R) {
+        let (o, d, weight) = self.projection.ray(sample.film, sample.lens);
         let ray = self.transform.ray(&Ray::new(o, d, self.sample_time(sample.time)));
-        Ray { d: ray.d.normalize(), ..ray }
+        (Ray { d: ray.d.normalize(), ..ray }, weight)
     }
 
     /// The ray of a sample; `None` where no light reaches that point of the film.
     #[doc(alias = "GenerateRay")]
     pub fn generate_ray(&self, sample: &CameraSample) -> Option<CameraRay> {
-        Some(CameraRay { ray: self.ray(sample), weight: 1.0 })
+        let (ray, weight) = self.ray(sample);
+        (weight > 0.0).then_some(CameraRay { ray, weight })
     }
 
     /// The ray of a sample with the rays one pixel to the right and one pixel down, through the
     /// same point of the lens at the same time.
     #[doc(alias = "GenerateRayDifferential")]
     pub fn generate_ray_differential(&self, sample: &CameraSample) -> Option<CameraRayDifferential> {
-        Some(CameraRayDifferential { ray: self.ray_differential(sample), weight: 1.0 })
+        let (ray, differentials, weight) = self.ray_and_neighbours(sample);
+        let ray = RayDifferential { ray, differentials: Some(differentials) };
+        (weight > 0.0).then_some(CameraRayDifferential { ray, weight })
     }
 
-    /// The ray of a sample with the rays one pixel to the right and one pixel down, all of whose
-    /// radiance reaches the film.
-    pub fn ray_differential(&self, sample: &CameraSample) -> RayDifferential {
-        let (ray, differentials) = self.ray_and_neighbours(sample);
-        RayDifferential { ray, differentials: Some(differentials) }
-    }
-
-    /// [`ray_differential`](Self::ray_differential) for each lane.
+    /// The ray of a sample with those of the pixels to the right and down, and its weight, for each
+    /// lane: [`generate_ray_differential`](Self::generate_ray_differential).
     #[inline(always)]
-    pub fn ray_and_neighbours<R: Real>(&self, sample: &CameraSample<R>) -> (Ray<R>, Differentials<R>) {
+    pub fn ray_and_neighbours<R: Real>(&self, sample: &CameraSample<R>) -> (Ray<R>, Differentials<R>, R) {
         let time = self.sample_time(sample.time);
-        let (o, d, near) = self.projection.ray_differential(sample.film, sample.lens);
+        let (o, d, weight, near) = self.projection.ray_differential(sample.film, sample.lens);
         let ray = self.transform.ray(&Ray::new(o, d, time));
         let rx = self.transform.ray(&Ray::new(near.rx_origin, near.rx_direction, time));
         let ry = self.transform.ray(&Ray::new(near.ry_origin, near.ry_direction, time));
@@ -174,7 +184,7 @@ impl Camera {
             ry_origin: ry.o,
             ry_direction: ry.d * factor,
         };
-        (Ray { d: ray.d * factor, ..ray }, differentials)
+        (Ray { d: ray.d * factor, ..ray }, differentials, weight)
     }
 
     /// The approximate footprint of a pixel on the tangent plane of a surface at `p` with normal

@@ -5,6 +5,7 @@ use math::{Differentials, Point2, Point3, Vec2, Vec3, Vector3};
 
 use super::orthographic::Orthographic;
 use super::perspective::Perspective;
+use super::realistic::Realistic;
 use super::spherical::Spherical;
 
 /// How film positions map to rays of camera space.
@@ -16,27 +17,42 @@ pub enum Projection {
     Orthographic(Orthographic),
     /// In all directions.
     Spherical(Spherical),
+    /// Through a system of lenses.
+    Realistic(Realistic),
 }
 
 impl Projection {
-    /// Origin and unit direction, in camera space, of the ray of a film position and a lens sample.
+    /// Origin and unit direction, in camera space, and weight of the ray of a film position and a
+    /// lens sample; weight 0 if it is blocked.
     #[inline(always)]
-    pub(super) fn ray<R: Real>(&self, film: Point2<R>, lens: Vec2<R>) -> (Point3<R>, Vector3<R>) {
-        match self {
+    pub(super) fn ray<R: Real>(&self, film: Point2<R>, lens: Vec2<R>) -> (Point3<R>, Vector3<R>, R) {
+        let (o, d) = match self {
             Self::Perspective(p) => p.ray(film, lens),
             Self::Orthographic(p) => p.ray(film, lens),
             Self::Spherical(p) => p.ray_lanes(film),
+            Self::Realistic(p) => return p.ray(film, lens),
+        };
+        (o, d, R::one())
+    }
+
+    /// Whether all rays have weight 1.
+    pub(super) fn is_unweighted(&self) -> bool {
+        match self {
+            Self::Perspective(_) | Self::Orthographic(_) | Self::Spherical(_) => true,
+            Self::Realistic(_) => false,
         }
     }
 
     /// The film position of the ray from `o` on the lens along the unit direction `d`, both in
     /// camera space, and the film area in square pixels per solid angle, or for parallel rays per
-    /// area of the film's plane. `None` for rays that do not leave the front.
+    /// area of the film's plane. `None` for rays that do not leave the front, and for a system of
+    /// lenses, whose rays cannot be followed backwards to a given point of it.
     pub(super) fn film(&self, o: Point3, d: Vector3) -> Option<(Point2, f32)> {
         match self {
             Self::Perspective(p) => p.film(o, d),
             Self::Orthographic(p) => p.film(o, d),
             Self::Spherical(p) => p.film(d),
+            Self::Realistic(_) => None,
         }
     }
 
@@ -46,6 +62,7 @@ impl Projection {
             Self::Perspective(p) => Self::Perspective(p.coarser(n)),
             Self::Orthographic(p) => Self::Orthographic(p.coarser(n)),
             Self::Spherical(p) => Self::Spherical(p.coarser(n)),
+            Self::Realistic(p) => Self::Realistic(p.coarser(n)),
         }
     }
 
@@ -55,6 +72,7 @@ impl Projection {
             Self::Perspective(p) => p.lens().area().map_or(Aperture::Pinhole, Aperture::Lens),
             Self::Orthographic(p) => p.lens().area().map_or(Aperture::Film, Aperture::Lens),
             Self::Spherical(_) => Aperture::Point,
+            Self::Realistic(_) => Aperture::Unseen,
         }
     }
 
@@ -65,7 +83,7 @@ impl Projection {
             Self::Orthographic(o) if o.is_parallel() => Vec3::new(p.x, p.y, 0.0),
             Self::Perspective(o) => o.lens().at(u),
             Self::Orthographic(o) => o.lens().at(u),
-            Self::Spherical(_) => Vec3::ZERO,
+            Self::Spherical(_) | Self::Realistic(_) => Vec3::ZERO,
         }
     }
 
@@ -83,28 +101,36 @@ impl Projection {
         }
     }
 
-    /// The step, in pixels, of the finite differences from which differentials are computed: a
-    /// whole pixel on a flat film, which is exact; less on the sphere, where a pixel may span a
-    /// large angle.
-    fn differential_step(&self) -> f32 {
-        match self {
-            Self::Perspective(_) | Self::Orthographic(_) => 1.0,
-            Self::Spherical(_) => 0.05,
-        }
-    }
-
-    /// The ray of [`Self::ray`] and its differentials, in camera space.
+    /// The ray of [`Self::ray`] and its differentials, in camera space. They are finite differences
+    /// over a whole pixel on a flat film, which is exact; over less on the sphere, where a pixel may
+    /// span a large angle.
     #[inline(always)]
     pub(super) fn ray_differential<R: Real>(
         &self,
         film: Point2<R>,
         lens: Vec2<R>,
-    ) -> (Point3<R>, Vector3<R>, Differentials<R>) {
-        let step = R::splat(self.differential_step());
-        let ray = self.ray(film, lens);
-        let (rx_origin, rx_direction) = self.neighbour(ray, Vec2::new(film.x + step, film.y), lens);
-        let (ry_origin, ry_direction) = self.neighbour(ray, Vec2::new(film.x, film.y + step), lens);
-        (ray.0, ray.1, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
+    ) -> (Point3<R>, Vector3<R>, R, Differentials<R>) {
+        match self {
+            Self::Perspective(_) | Self::Orthographic(_) => self.difference(film, lens, 1.0),
+            Self::Spherical(_) => self.difference(film, lens, 0.05),
+            Self::Realistic(p) => p.ray_differential(film, lens),
+        }
+    }
+
+    /// The same, from rays of film positions `step` pixels apart.
+    #[inline(always)]
+    fn difference<R: Real>(
+        &self,
+        film: Point2<R>,
+        lens: Vec2<R>,
+        step: f32,
+    ) -> (Point3<R>, Vector3<R>, R, Differentials<R>) {
+        let (o, d, weight) = self.ray(film, lens);
+        let apart = R::splat(step);
+        let [rx, ry] = [Vec2::new(film.x + apart, film.y), Vec2::new(film.x, film.y + apart)];
+        let (rx_origin, rx_direction) = self.neighbour((o, d), rx, lens, step);
+        let (ry_origin, ry_direction) = self.neighbour((o, d), ry, lens, step);
+        (o, d, weight, Differentials { rx_origin, rx_direction, ry_origin, ry_direction })
     }
 
     /// The ray one pixel from a ray, computed from that of a film position one step from it.
@@ -114,9 +140,9 @@ impl Projection {
         (o, d): (Point3<R>, Vector3<R>),
         near: Point2<R>,
         lens: Vec2<R>,
+        step: f32,
     ) -> (Point3<R>, Vector3<R>) {
-        let (near_o, near_d) = self.ray(near, lens);
-        let step = self.differential_step();
+        let (near_o, near_d, _) = self.ray(near, lens);
         if step == 1.0 {
             return (near_o, near_d);
         }
@@ -134,4 +160,6 @@ pub(super) enum Aperture {
     Lens(f32),
     /// The film itself, in the plane z = 0, along the axis only.
     Film,
+    /// None that a path from a light could be connected to.
+    Unseen,
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use description::{
-    CameraDesc, CameraKind, FilmDesc, LensDesc, RealisticCameraDesc, RenderSpace, ScreenDesc,
+    Arena, CameraDesc, CameraKind, FilmDesc, LensDesc, RealisticCameraDesc, RenderSpace, ScreenDesc,
     SphericalMapping, Stated, TransformDesc,
 };
 use lanes::Real;
@@ -37,7 +37,7 @@ pub(super) fn build(kind: CameraKind, camera_from_world: TransformDesc, render_s
     let film = FilmDesc { resolution: RESOLUTION.map(|n| n as i32), ..FilmDesc::default() };
     let space = world_from_render(&desc.camera_from_world, render_space);
     let mut diagnostics = Vec::new();
-    let camera = compile(&desc.into(), &film.into(), space, &mut diagnostics);
+    let camera = compile(&desc.into(), &film.into(), &Arena::default(), space, &mut diagnostics);
     assert!(diagnostics.is_empty(), "{diagnostics:?}");
     camera.unwrap()
 }
@@ -198,7 +198,7 @@ fn a_moving_camera_is_interpolated_in_time() {
     for render_space in [RenderSpace::World, RenderSpace::CameraWorld, RenderSpace::Camera] {
         let space = world_from_render(&desc.camera_from_world, render_space);
         let camera =
-            compile(&desc.clone().into(), &FilmDesc::default().into(), space, &mut Vec::new()).unwrap();
+            compile(&desc.clone().into(), &FilmDesc::default().into(), &Arena::default(), space, &mut Vec::new()).unwrap();
         for (u, time, x) in [(0.0, 0.5, 2.0), (0.5, 1.0, 3.0), (1.0, 1.5, 4.0)] {
             let ray = camera.generate_ray(&sample(9.0, 9.0, Vec2::ZERO, u)).unwrap().ray;
             assert_eq!(ray.time, time);
@@ -286,7 +286,9 @@ fn invalid_cameras_are_reported() {
     let codes = |desc: CameraDesc, resolution: [i32; 2]| {
         let film = FilmDesc { resolution, ..FilmDesc::default() };
         let mut diagnostics = Vec::new();
-        let camera = compile(&Stated::from(desc), &film.into(), DMat4::IDENTITY, &mut diagnostics);
+        let images = Arena::default();
+        let camera =
+            compile(&Stated::from(desc), &film.into(), &images, DMat4::IDENTITY, &mut diagnostics);
         (camera.is_some(), diagnostics.iter().map(|d| d.code).collect::<Vec<_>>())
     };
     let perspective = |fov, lens, window| CameraDesc {
@@ -314,7 +316,7 @@ fn invalid_cameras_are_reported() {
         (perspective(f32::NAN, pinhole, None), [8, 8], (false, vec!["invalid-value"])),
         (singular, [8, 8], (false, vec!["singular-transform"])),
         (late, [8, 8], (true, vec!["shutter"])),
-        (realistic, [8, 8], (true, vec!["not-drawn"])),
+        (realistic, [8, 8], (false, vec!["invalid-value"])),
     ] {
         assert_eq!(codes(desc, resolution), expected);
     }
@@ -328,9 +330,9 @@ impl LaneFunction for Rays<'_> {
     fn results<R: Real>(&self, u: &[R]) -> Vec<R> {
         let film = Vec2::new(u[0] * R::splat(200.0), u[1] * R::splat(150.0));
         let sample = CameraSample { film, lens: Vec2::new(u[2], u[3]), time: u[4], filter_weight: R::one() };
-        let ray = self.0.ray(&sample);
-        let mut results = vec![ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, ray.time];
-        let (ray, mut near) = self.0.ray_and_neighbours(&sample);
+        let (ray, weight) = self.0.ray(&sample);
+        let mut results = vec![ray.o.x, ray.o.y, ray.o.z, ray.d.x, ray.d.y, ray.d.z, ray.time, weight];
+        let (ray, mut near, _) = self.0.ray_and_neighbours(&sample);
         near.scale(&ray, R::splat(0.25));
         let across = self.0.approximate_dp_dxy(ray.at(R::splat(3.0)), -ray.d, ray.time, 0.5);
         let rays = [ray.o, ray.d, near.rx_origin, near.rx_direction, near.ry_origin, near.ry_direction];
