@@ -2,8 +2,8 @@
 
 use description::schema::Settings;
 use description::{
-    BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc, PathDesc,
-    Randomization, SamplerKind, SceneDesc,
+    BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc,
+    PathDesc, Randomization, SamplerKind, SceneDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
@@ -150,8 +150,7 @@ impl Builder<'_> {
             IntegratorDesc::LightTracing(_) => {
                 let message = format!("`{name}` cannot see through a `realistic` camera");
                 let help = "light paths cannot be connected to its lens; use `path` or `bdpt`";
-                self.diagnostics
-                    .push(Diagnostic::error("invalid-integrator", message, span).with_help(help));
+                self.diagnostics.push(Diagnostic::error("invalid-integrator", message, span).with_help(help));
             }
             IntegratorDesc::Bdpt(_) | IntegratorDesc::Mlt(_) | IntegratorDesc::Vcm(_) => {
                 let message = format!(

@@ -37,9 +37,8 @@ impl ApertureMask {
     pub fn star() -> Self {
         // The pentagram's inner corners lie on a circle of this radius.
         let inner = (0.4 * PI).cos() / (0.2 * PI).cos();
-        let corners: [Vec2; 10] = std::array::from_fn(|i| {
-            on_circle(i as f32 / 10.0) * if i % 2 == 1 { 1.0 } else { inner }
-        });
+        let corners: [Vec2; 10] =
+            std::array::from_fn(|i| on_circle(i as f32 / 10.0) * if i % 2 == 1 { 1.0 } else { inner });
         Self::shape(|p| f32::from(u8::from(is_in_polygon(&corners, p))))
     }
 

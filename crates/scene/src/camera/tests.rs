@@ -197,8 +197,14 @@ fn a_moving_camera_is_interpolated_in_time() {
     };
     for render_space in [RenderSpace::World, RenderSpace::CameraWorld, RenderSpace::Camera] {
         let space = world_from_render(&desc.camera_from_world, render_space);
-        let camera =
-            compile(&desc.clone().into(), &FilmDesc::default().into(), &Arena::default(), space, &mut Vec::new()).unwrap();
+        let camera = compile(
+            &desc.clone().into(),
+            &FilmDesc::default().into(),
+            &Arena::default(),
+            space,
+            &mut Vec::new(),
+        )
+        .unwrap();
         for (u, time, x) in [(0.0, 0.5, 2.0), (0.5, 1.0, 3.0), (1.0, 1.5, 4.0)] {
             let ray = camera.generate_ray(&sample(9.0, 9.0, Vec2::ZERO, u)).unwrap().ray;
             assert_eq!(ray.time, time);
@@ -287,8 +293,7 @@ fn invalid_cameras_are_reported() {
         let film = FilmDesc { resolution, ..FilmDesc::default() };
         let mut diagnostics = Vec::new();
         let images = Arena::default();
-        let camera =
-            compile(&Stated::from(desc), &film.into(), &images, DMat4::IDENTITY, &mut diagnostics);
+        let camera = compile(&Stated::from(desc), &film.into(), &images, DMat4::IDENTITY, &mut diagnostics);
         (camera.is_some(), diagnostics.iter().map(|d| d.code).collect::<Vec<_>>())
     };
     let perspective = |fov, lens, window| CameraDesc {
@@ -323,7 +328,7 @@ fn invalid_cameras_are_reported() {
 }
 
 /// A ray of a camera.
-struct Rays<'a>(&'a Camera);
+pub(super) struct Rays<'a>(pub &'a Camera);
 
 impl LaneFunction for Rays<'_> {
     #[inline(always)]
