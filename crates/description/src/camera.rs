@@ -48,7 +48,7 @@ settings! {
             mapping: SphericalMapping = SphericalMapping::EqualArea => ["mapping"];
         },
         /// Rays refracted through lens elements.
-        Realistic(RealisticCameraDesc) = "realistic" (not drawn),
+        Realistic(RealisticCameraDesc) = "realistic",
     }
 }
 

@@ -105,20 +105,20 @@ fn a_smaller_stop_blurs_less() {
         let p = DVec3::new(0.0, 0.0, 1.2);
         let mut widest: f64 = 0.0;
         for i in 0..2000 {
-            let ray = through(p, DVec3::new(f64::from(i) * 1e-5, 0.0, 0.11));
+            let ray = through(p, DVec3::new(f64::from(i) * 2e-6, 0.0, 0.11));
             if let Some((ray, _)) = lens.trace_from_scene(ray, Apertures::Closed) {
                 widest = widest.max((ray.o - ray.d * (ray.o.z / ray.d.z)).x.abs());
             }
         }
         widest
     };
-    let (wide, narrow) = (blur(8.0), blur(4.0));
-    assert!((wide / narrow - 2.0).abs() < 0.03, "{wide} and {narrow}");
+    let (wide, narrow) = (blur(4.0), blur(2.0));
+    assert!((wide / narrow - 2.0).abs() < 0.05, "{wide} and {narrow}");
     // The circle of confusion of a thin lens: stop × |image distances' difference| / image distance.
-    let thick = focused(8.0).thick_lens(1e-5).unwrap();
+    let thick = focused(4.0).thick_lens(1e-5).unwrap();
     let object = 1.2 - thick.film_side - thick.separation;
     let image = 1.0 / (1.0 / thick.focal_length - 1.0 / object);
-    let expected = 0.004 * (image - thick.film_side).abs() / image;
+    let expected = 0.002 * (image - thick.film_side).abs() / image;
     assert!((wide / expected - 1.0).abs() < 0.05, "{wide} instead of {expected}");
 }
 
@@ -166,7 +166,7 @@ fn exit_pupils_contain_all_rays_that_pass() {
                 passed += 1;
             }
         }
-        assert!(passed > 40, "{passed}");
+        assert!(passed > 20, "{passed}");
     }
 }
 
@@ -273,7 +273,8 @@ fn lenses_that_cannot_be_used_are_reported() {
         (camera.is_some(), diagnostics.into_iter().map(|d| d.message).collect::<Vec<_>>())
     };
     let concave = elements([[-100.0, 4.0, 1.5, 40.0], [100.0, 100.0, 1.0, 40.0]]);
-    let blind = elements([[100.0, 4.0, 1.5, 40.0], [-100.0, 30.0, 1.0, 40.0], [0.0, 1e-3, 0.0, 1e-4]]);
+    let mut blind = biconvex();
+    blind[0].aperture_diameter = 1e-4;
     let broken = |change: fn(&mut LensElement)| {
         let mut elements = biconvex();
         change(&mut elements[1]);
