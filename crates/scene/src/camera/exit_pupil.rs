@@ -57,9 +57,12 @@ fn pupil(lens: &LensSystem, x: f64) -> Option<Bounds2> {
     let all = Bounds2::new(Vec2::splat(-reach), Vec2::splat(reach));
     let coarse = [32, 128, 512].into_iter().find_map(|n| passing(lens, x, all, n))?;
     let fine = passing(lens, x, coarse, 48)?;
-    let margin = if lens.has_mask() { 2.0 * all.diagonal().length() / 1024.0 } else { 0.0 };
-    let finest = passing(lens, x, fine, 64)?;
-    Some(Bounds2 { min: finest.min - margin, max: finest.max + margin })
+    if lens.has_mask() {
+        let finest = passing(lens, x, fine, 256)?;
+        let margin = 2.0 * all.diagonal().length() / 1024.0;
+        return Some(Bounds2 { min: finest.min - margin, max: finest.max + margin });
+    }
+    passing(lens, x, fine, 64)
 }
 
 /// The rectangle around those points of a grid of n × n over `within` through which the film point
