@@ -3,7 +3,7 @@
 use description::schema::Settings;
 use description::{
     BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc,
-    PathDesc, Randomization, SamplerKind, SceneDesc,
+    MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
@@ -146,20 +146,24 @@ impl Builder<'_> {
             return;
         }
         let (name, span) = (self.desc.integrator.name(), self.desc.integrator.origin.span);
-        match self.desc.integrator.value {
+        let lost = match &self.desc.integrator.value {
             IntegratorDesc::LightTracing(_) => {
-                let message = format!("`{name}` cannot see through a `realistic` camera");
-                let help = "light paths cannot be connected to its lens; use `path` or `bdpt`";
-                self.diagnostics.push(Diagnostic::error("invalid-integrator", message, span).with_help(help));
+                let message = format!("`{name}` cannot connect light paths to a `realistic` camera");
+                let error = Diagnostic::error("invalid-integrator", message, span);
+                self.diagnostics.push(error.with_help("use an algorithm with camera paths, as `path`"));
+                return;
             }
-            IntegratorDesc::Bdpt(_) | IntegratorDesc::Mlt(_) | IntegratorDesc::Vcm(_) => {
-                let message = format!(
-                    "`{name}` cannot connect light paths to a `realistic` camera; its other strategies find all light"
-                );
-                self.diagnostics.push(Diagnostic::warning("camera-connections", message, span));
+            IntegratorDesc::Mlt(desc) if desc.technique == MltTechnique::Path => return,
+            // No other strategy finds light of a delta light that is scattered by deltas only until
+            // it reaches the first surface.
+            IntegratorDesc::Bdpt(_) | IntegratorDesc::Mlt(_) => {
+                "caustics of point, spot and distant lights are missing"
             }
-            _ => {}
-        }
+            IntegratorDesc::Vcm(_) => "photons take their place",
+            _ => return,
+        };
+        let message = format!("`{name}` cannot connect light paths to a `realistic` camera; {lost}");
+        self.diagnostics.push(Diagnostic::warning("camera-connections", message, span));
     }
 
     /// Checks the pictures of strategies: a warning if some are left out, an error if they take too

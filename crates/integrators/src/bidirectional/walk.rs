@@ -68,7 +68,7 @@ impl<'a> Walk<'a> {
         let camera = &paths.view.camera;
         let (pdf_position, pdf_direction) = camera.pdf_we(&camera_ray.ray.ray);
         let parallel = camera.is_parallel();
-        // A camera that light paths cannot be connected to leaves the strategy t = 1 without weight.
+        // The strategy t = 1 has no weight where light paths cannot be connected to the camera.
         let pdf = if camera.is_unseen() {
             f32::INFINITY
         } else if parallel {

@@ -3,10 +3,11 @@
 use alhazen_integrators::build;
 use description::schema::Settings;
 use description::{
-    AmbientOcclusionDesc, Diagnostic, Handle, InstanceDesc, IntegratorDesc, LightSamplerDesc,
-    LightTracingDesc, MltDesc, ObjectDesc, Origin, PathDesc, PhotonMappingDesc, RadiosityDesc,
-    RandomWalkDesc, SamplerDesc, SamplerKind, SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc,
-    SimpleVolPathDesc, SolidOperation, Span, Spanned, SppmDesc, Stated, TransformDesc, VcmDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, CameraKind, Diagnostic, Handle, InstanceDesc, IntegratorDesc,
+    LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, ObjectDesc, Origin, PathDesc,
+    PhotonMappingDesc, RadiosityDesc, RandomWalkDesc, RealisticCameraDesc, SamplerDesc, SamplerKind,
+    SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc, SimpleVolPathDesc, SolidOperation, Span, Spanned,
+    SppmDesc, Stated, TransformDesc, VcmDesc, WhittedDesc,
 };
 
 use crate::support::{compile, diffuse, glass, mirror, sphere, white_sky};
@@ -47,6 +48,34 @@ fn unsupported_algorithms_are_replaced_with_a_warning() {
     let light_sampler = LightSamplerDesc::Exhaustive;
     let found = warnings(IntegratorDesc::Path(PathDesc { max_depth: 5, regularize: false, light_sampler }));
     assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
+}
+
+#[test]
+fn light_paths_do_not_reach_a_camera_with_lenses() {
+    let span = Span { start: 7, ..Span::NONE };
+    let built = |integrator: IntegratorDesc| {
+        let origin = Origin { span, parameters: Vec::new() };
+        let mut desc = SceneDesc { integrator: Stated::new(integrator, origin), ..SceneDesc::default() };
+        desc.camera.kind = CameraKind::Realistic(RealisticCameraDesc::default());
+        build(&desc).map(|built| built.warnings)
+    };
+    let over_paths = MltDesc { technique: MltTechnique::Path, ..MltDesc::default() };
+    for integrator in [IntegratorDesc::Path(PathDesc::default()), IntegratorDesc::Mlt(over_paths)] {
+        assert_eq!(built(integrator).ok().unwrap(), []);
+    }
+    for (integrator, name, instead) in [
+        (IntegratorDesc::Bdpt(BdptDesc::default()), "bdpt", "caustics of point"),
+        (IntegratorDesc::Mlt(MltDesc::default()), "mlt", "caustics of point"),
+        (IntegratorDesc::Vcm(VcmDesc::default()), "vcm", "photons take their place"),
+    ] {
+        let [warning] = &built(integrator).ok().unwrap()[..] else { panic!("one warning for `{name}`") };
+        let start = format!("`{name}` cannot connect light paths to a `realistic` camera; {instead}");
+        assert!(warning.message.starts_with(&start), "{}", warning.message);
+        assert!(!warning.is_error() && warning.span() == span);
+    }
+    let errors = built(IntegratorDesc::LightTracing(LightTracingDesc { max_depth: 5 })).err().unwrap();
+    assert_eq!(messages(&errors), ["`light-tracing` cannot connect light paths to a `realistic` camera"]);
+    assert!(errors[0].is_error() && errors[0].span() == span);
 }
 
 #[test]

@@ -11,7 +11,8 @@ use description::{
 use math::{Bounds2, DMat4};
 
 /// Places the described camera in the render space given by `world_from_render`; `images` are those
-/// of the description. Errors and warnings are added to `diagnostics`; `None` if there was an error.
+/// of the description. Errors and warnings are added to `diagnostics`; `None` if there was an
+/// error.
 pub fn compile(
     camera: &Stated<CameraDesc>,
     film: &Stated<FilmDesc>,

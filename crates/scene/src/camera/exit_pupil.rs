@@ -13,6 +13,7 @@
 
 use super::lens::{Apertures, LensRay, LensSystem};
 use math::{Bounds2, DVec3, Vec2};
+use rayon::prelude::*;
 
 /// The number of intervals of the distance from the axis.
 const INTERVALS: usize = 64;
@@ -30,8 +31,8 @@ impl ExitPupils {
     /// The pupils of a film whose corners have the distance `radius` from the axis.
     pub fn new(lens: &LensSystem, radius: f32) -> Self {
         let places = 2 * INTERVALS;
-        let pupils: Vec<_> =
-            (0..=places).map(|i| pupil(lens, f64::from(radius) * i as f64 / places as f64)).collect();
+        let distance = |i: usize| f64::from(radius) * i as f64 / places as f64;
+        let pupils: Vec<_> = (0..=places).into_par_iter().map(|i| pupil(lens, distance(i))).collect();
         let rectangles = (0..INTERVALS)
             .map(|i| pupils[2 * i..=2 * i + 2].iter().flatten().copied().reduce(union))
             .collect();

@@ -145,7 +145,8 @@ impl LensSystem {
         let Interface { z, curvature, aperture, .. } = *interface;
         let Some(radius) = curvature else {
             let t = (z - ray.o.z) / ray.d.z;
-            if !(t >= 0.0) {
+            // Not along its plane either.
+            if t < 0.0 || !t.is_finite() {
                 return None;
             }
             ray.o += ray.d * t;

@@ -102,8 +102,8 @@ impl Projection {
     }
 
     /// The ray of [`Self::ray`] and its differentials, in camera space. They are finite differences
-    /// over a whole pixel on a flat film, which is exact; over less on the sphere, where a pixel may
-    /// span a large angle.
+    /// over a whole pixel on a flat film, which is exact; over less on the sphere, where a pixel
+    /// may span a large angle.
     #[inline(always)]
     pub(super) fn ray_differential<R: Real>(
         &self,

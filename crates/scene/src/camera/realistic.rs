@@ -4,8 +4,8 @@
 //! sensor. It sees the scene upside down, so that film position x counts towards −x. A ray is
 //! sampled by its point in the rectangle A around the exit pupil of the film point
 //! ([`exit_pupil`](super::exit_pupil)), in the plane of the rear vertex at the distance z. Of the
-//! irradiance on the film, ∫ L·cos θ·cos θ'/r² dA, the estimate is L·A·cos⁴θ/z², which is the weight
-//! of the ray, times the share of the light that a stop lets through. [Pharr 2023 §5.4.5]
+//! irradiance on the film, ∫ L·cos θ·cos θ'/r² dA, the estimate is L·A·cos⁴θ/z², which is the
+//! weight of the ray, times the share of the light that a stop lets through. [Pharr 2023 §5.4.5]
 //!
 //! Ray differentials are finite differences between rays that pass the same point of the rear
 //! plane, from film points a twentieth of a pixel apart, in a lens without apertures: vignetting

@@ -114,7 +114,8 @@ fn a_smaller_stop_blurs_less() {
     };
     let (wide, narrow) = (blur(4.0), blur(2.0));
     assert!((wide / narrow - 2.0).abs() < 0.05, "{wide} and {narrow}");
-    // The circle of confusion of a thin lens: stop × |image distances' difference| / image distance.
+    // The circle of confusion of a thin lens: stop × |difference of image distances| / image
+    // distance.
     let thick = focused(4.0).thick_lens(1e-5).unwrap();
     let object = 1.2 - thick.film_side - thick.separation;
     let image = 1.0 / (1.0 / thick.focal_length - 1.0 / object);

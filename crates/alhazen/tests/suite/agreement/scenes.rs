@@ -8,7 +8,7 @@ pub struct Scene {
     /// Samples that path tracing needs to be a reference.
     pub path_samples: u32,
     /// Whether the camera looks into mirrors, through glass, or beyond the scene's bounds, where
-    /// light paths cannot find it.
+    /// light paths cannot find it; or has lenses itself.
     pub is_hidden_from_light: bool,
     camera: &'static str,
     world: &'static str,
@@ -63,7 +63,7 @@ macro_rules! floor {
     };
 }
 
-pub const SCENES: [Scene; 19] = [
+pub const SCENES: [Scene; 20] = [
     Scene {
         name: "a diffuse box",
         max_depth: 4,
@@ -215,6 +215,23 @@ pub const SCENES: [Scene; 19] = [
             r#"LightSource "point" "point3 from" [1 1 2] "rgb I" [3 3 2]
             AttributeBegin Translate 0 -1.5 0.3 Shape "sphere" "float radius" 0.3 AttributeEnd
             AreaLightSource "diffuse" "rgb L" [5 5 9] Translate 0.5 1.5 0.5 Shape "sphere" "float radius" 0.3"#
+        ),
+    },
+    Scene {
+        name: "a system of lenses",
+        max_depth: 2,
+        path_samples: 64,
+        is_hidden_from_light: true,
+        camera: concat!(
+            "LookAt 0 -4 3  0 0 0.3  0 0 1\nCamera \"realistic\" \"string lensfile\" \"",
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../scenes/assets/triplet.dat\" \"float aperturediameter\" 9 \"float focusdistance\" 4",
+        ),
+        world: concat!(
+            floor!(),
+            r#"LightSource "point" "point3 from" [1 1 2] "rgb I" [3 3 2]
+            AttributeBegin Translate 0 -0.5 0.3 Shape "sphere" "float radius" 0.3 AttributeEnd
+            AreaLightSource "diffuse" "rgb L" [5 5 9] Translate 0.2 0.7 0.5 Shape "sphere" "float radius" 0.3"#
         ),
     },
     Scene {
