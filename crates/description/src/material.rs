@@ -1,5 +1,9 @@
 //! Materials: how surfaces scatter light.
 
+use std::sync::Arc;
+
+use scattering::MeasuredTable;
+
 use crate::names::names;
 use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
 
@@ -137,10 +141,10 @@ pub enum MaterialKind {
         /// Roughness of the interface.
         roughness: RoughnessDesc,
     },
-    /// A measured BSDF.
+    /// A measured surface.
     Measured {
-        /// Path of the measurement.
-        filename: String,
+        /// The measurements.
+        table: Arc<MeasuredTable>,
     },
     /// One of two materials, chosen at random.
     Mix {

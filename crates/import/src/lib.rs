@@ -9,6 +9,7 @@ mod foreign;
 mod ies;
 mod images;
 mod imported;
+mod measured;
 mod mesh;
 mod number;
 mod pbrt;

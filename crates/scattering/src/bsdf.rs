@@ -1,6 +1,6 @@
 //! A BxDF in the shading frame of a point, for directions in render space.
 
-use crate::{BsdfSample, Bxdf, BxdfFlags, Directions, Scatter, TransportMode};
+use crate::{BsdfSample, BxdfFlags, Directions, Scatter, TransportMode};
 use lanes::{Mask, Real};
 use math::{Frame, Normal3, Vec2, Vector3};
 use sampling::HashSequence;
@@ -8,10 +8,10 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 /// All scattering at a point of a surface.
 ///
-/// `B` is [`Bxdf`], or one of its members: [`each_bxdf!`](crate::each_bxdf) dispatches once around
-/// a whole shading step, within which `Bsdf { bxdf, frame }` has a concrete type.
+/// `B` is [`Bxdf`](crate::Bxdf), or one of its members: [`each_bxdf!`](crate::each_bxdf) dispatches
+/// once around a whole shading step, within which `Bsdf { bxdf, frame }` has a concrete type.
 #[derive(Clone, Copy, Debug)]
-pub struct Bsdf<B = Bxdf, R = f32> {
+pub struct Bsdf<B, R = f32> {
     /// The BxDF, in the local frame.
     pub bxdf: B,
     /// The local frame in render space: z is the shading normal, x follows ∂p/∂u.

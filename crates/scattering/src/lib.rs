@@ -19,7 +19,7 @@ mod phase;
 pub use bsdf::Bsdf;
 pub use bxdf::{
     BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
-    Scatter, ThinDielectric, inner_reflectance,
+    Measured, MeasuredData, MeasuredGrid, MeasuredTable, Scatter, ThinDielectric, inner_reflectance,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};

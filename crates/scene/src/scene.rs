@@ -17,7 +17,7 @@ use description::LightSamplerDesc;
 use geometry::{Filter, GeometryId, Hit, HitColumns, RayColumns, RayStats, SurfacePoint, World};
 use math::{DMat4, Point2, Ray, RayDifferential, Vec2, Vector3};
 use sampling::{Sampler, hash_float};
-use scattering::{Bsdf, Diffuse};
+use scattering::{Bsdf, Bxdf, Diffuse};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use std::sync::atomic::AtomicBool;
 
@@ -355,7 +355,7 @@ impl Scene {
         ray: &RayDifferential,
         lambda: &mut SampledWavelengths,
         sampler: &mut Sampler,
-    ) -> Option<Bsdf> {
+    ) -> Option<Bsdf<Bxdf<'_>>> {
         if self.needs_footprints(view) {
             interaction.compute_footprint(ray, view);
         }

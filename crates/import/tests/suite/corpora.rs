@@ -7,6 +7,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use alhazen_import::{Files, Imported, MemoryAssets, import, read_obj, read_ply};
+use description::MaterialKind;
+use math::spherical_direction;
+use scattering::{Directions, Measured, Scatter, TransportMode};
+use spectrum::{RgbColorSpace, RgbUnboundedSpectrum, SampledWavelengths};
 
 fn data(folder: &str) -> Option<PathBuf> {
     let root = std::env::var_os("ALHAZEN_DATA")
@@ -75,6 +79,56 @@ fn photometric_files_have_their_light() {
         let pixels = (desc.image.width() * desc.image.height()) as f32;
         let lumens = desc.image.values().sum::<f32>() / pixels * 4.0 * std::f32::consts::PI;
         assert!((lumens / expected - 1.0).abs() < 0.01, "{name}: {lumens} lm, not {expected}");
+    }
+}
+
+/// Directions as (θ, φ) of `wo` and of `wi`, and what Mitsuba 3 has there: the BRDF in red, green
+/// and blue, and the density of samples.
+type Scattered = ([f32; 4], [f32; 3], f32);
+
+const PAPER: [Scattered; 6] = [
+    ([0.05, 0.3, 0.4, 2.0], [0.269543, 0.274407, 0.322723], 0.301724),
+    ([0.5, 1.0, 0.55, 4.3], [0.284608, 0.288479, 0.335017], 0.291115),
+    ([1.0, -2.0, 0.3, 0.5], [0.268376, 0.271546, 0.314188], 0.29572),
+    ([1.2, 0.7, 1.1, 3.6], [0.39192, 0.389459, 0.422749], 0.200664),
+    ([0.8, 3.0, 0.75, 3.1], [0.251208, 0.255789, 0.301453], 0.217656),
+    ([0.3, -1.0, 1.45, 2.0], [0.32228, 0.327153, 0.383541], 0.046434),
+];
+
+const VINYL: [Scattered; 6] = [
+    ([0.05, 0.3, 0.4, 2.0], [0.189356, 0.105111, 0.13686], 0.783994),
+    ([0.5, 1.0, 0.55, 4.3], [1.96466, 0.777273, 0.956316], 5.59934),
+    ([1.0, -2.0, 0.3, 0.5], [0.0221861, 0.00904098, 0.00497709], 0.0510341),
+    ([1.2, 0.7, 1.1, 3.6], [0.802144, 0.504755, 0.188186], 0.966753),
+    ([1.4, 0.0, 0.2, -1.0], [0.00427855, 0.00153517, 2.14595e-5], 0.00515412),
+    ([0.3, -1.0, 1.45, 2.0], [0.0078775, 0.00296807, 0.000735182], 0.00310128),
+];
+
+#[test]
+fn measured_files_have_the_values_of_mitsuba() {
+    let Some(folder) = data("measured/bsdf") else { return };
+    let scene = "WorldBegin Material \"measured\" \"string filename\" \"a.bsdf\" Shape \"sphere\"";
+    let lambda = SampledWavelengths::new([450.0, 530.0, 600.0, 680.0], [1.0; 4]);
+    for (name, scattered) in [("paper_white_rgb", PAPER), ("cc_ibiza_sunset_rgb", VINYL)] {
+        let file = std::fs::read(folder.join(name).with_extension("bsdf")).expect("the file is there");
+        let assets = MemoryAssets::default().with("a.pbrt", scene).with("a.bsdf", file);
+        let imported = import("a.pbrt", &assets);
+        assert!(!imported.has_errors(), "{}", shown(&imported));
+        let (_, material) = imported.desc.materials.iter().next().expect("a material");
+        let MaterialKind::Measured { table } = &material.kind else { panic!("{:?}", material.kind) };
+        let bxdf = Measured::new(table, &lambda);
+        for (angles, rgb, density) in scattered {
+            let [wo, wi] = [&angles[..2], &angles[2..]]
+                .map(|angles| spherical_direction(angles[0].sin(), angles[0].cos(), angles[1]));
+            let expected = RgbUnboundedSpectrum::new(RgbColorSpace::srgb(), rgb);
+            let found = bxdf.f(wo, wi, TransportMode::Radiance);
+            for (&lambda, found) in lambda.lambda().iter().zip(found.0) {
+                let expected = expected.at(lambda);
+                assert!((found / expected - 1.0).abs() < 5e-3, "{name}: {found}, not {expected}");
+            }
+            let found = bxdf.pdf(wo, wi, TransportMode::Radiance, Directions::All);
+            assert!((found / density - 1.0).abs() < 5e-3, "{name}: density {found}, not {density}");
+        }
     }
 }
 

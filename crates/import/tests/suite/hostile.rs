@@ -44,6 +44,45 @@ fn refuses_lamp(bytes: Vec<u8>) -> bool {
     import("a.pbrt", &MemoryAssets::default().with("a.pbrt", scene).with("lamp.IES", bytes)).has_errors()
 }
 
+/// A file of measurements with a field of each kind, padded to where its numbers begin.
+fn measurements() -> Vec<u8> {
+    const NUMBERS: usize = 320;
+    let fields: [(&str, &[u64]); 7] = [
+        ("phi_i", &[1]),
+        ("theta_i", &[2]),
+        ("ndf", &[2, 2]),
+        ("sigma", &[2, 2]),
+        ("vndf", &[1, 2, 2, 2]),
+        ("luminance", &[1, 2, 2, 2]),
+        ("rgb", &[1, 2, 3, 2, 2]),
+    ];
+    let mut bytes = b"tensor_file\0\x01\x00".to_vec();
+    bytes.extend(7_u32.to_le_bytes());
+    let mut numbers: Vec<u8> = Vec::new();
+    for (name, shape) in fields {
+        bytes.extend((name.len() as u16).to_le_bytes());
+        bytes.extend(name.as_bytes());
+        bytes.extend((shape.len() as u16).to_le_bytes());
+        bytes.push(10);
+        bytes.extend(((NUMBERS + numbers.len()) as u64).to_le_bytes());
+        shape.iter().for_each(|length| bytes.extend(length.to_le_bytes()));
+        let count = shape.iter().product::<u64>() as u16;
+        numbers.extend((1..=count).flat_map(|i| f32::from(i).to_le_bytes()));
+    }
+    assert!(bytes.len() <= NUMBERS, "{}", bytes.len());
+    bytes.resize(NUMBERS, 0);
+    bytes.extend(numbers);
+    bytes
+}
+
+/// Why a file of measurements is refused; empty if it is not.
+fn measurements_refused(bytes: Vec<u8>) -> String {
+    let scene = "WorldBegin Material \"measured\" \"string filename\" \"a.bsdf\" Shape \"sphere\"";
+    let assets = MemoryAssets::default().with("a.pbrt", scene).with("a.bsdf", bytes);
+    let messages = import("a.pbrt", &assets).diagnostics.into_iter().map(|diagnostic| diagnostic.message);
+    messages.collect::<Vec<_>>().join("; ")
+}
+
 /// A text with some bytes replaced, removed or doubled.
 fn mutated(text: &'static str) -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec((0..text.len(), any::<u8>(), 0..3_u8), 1..8).prop_map(move |changes| {
@@ -79,6 +118,33 @@ fn cut_off_lamps_are_refused() {
     }
 }
 
+#[test]
+fn measurements_that_are_cut_off_or_do_not_fit_are_refused() {
+    let good = measurements();
+    assert_eq!(measurements_refused(good.clone()), "");
+    for length in 0..good.len() {
+        let message = measurements_refused(good[..length].into());
+        assert!(message.starts_with("cannot read the measurements `a.bsdf`: it "), "{length}: {message}");
+    }
+    let changed = |from: &[u8], to: &[u8]| {
+        let at = good.windows(from.len()).position(|bytes| bytes == from).expect("the bytes are there");
+        let mut bytes = good.clone();
+        bytes[at..at + from.len()].copy_from_slice(to);
+        measurements_refused(bytes)
+    };
+    for (from, to, expected) in [
+        (&b"tensor"[..], &b"sensor"[..], "not a tensor file"),
+        (b"vndf", b"vndg", "has no field `vndf`"),
+        (b"rgb\x05", b"rgb\x04", "layers [1, 2], not [1, 2, 3]"),
+        (b"sigma\x02\0\x0a", b"sigma\x02\0\x01", "`sigma` does not have 32-bit floats"),
+        (b"theta_i\x01", b"theta_i\x02", "ends within its field `theta_i`"),
+        (b"theta_i\x01\0\x0a", b"theta_i\x00\0\x0a", "`theta_i` has 0 dimensions"),
+    ] {
+        let message = changed(from, to);
+        assert!(message.contains(expected), "{message}, not {expected}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -107,6 +173,20 @@ proptest! {
     #[test]
     fn damaged_lamps_do_not_panic(bytes in mutated(IES)) {
         let _ = refuses_lamp(bytes);
+    }
+
+    #[test]
+    fn damaged_measurements_do_not_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        length in 0..700_usize,
+    ) {
+        let mut bytes = measurements();
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        bytes.truncate(length);
+        let _ = measurements_refused(bytes);
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub(crate) struct LightVertex {
     pub hero_only: bool,
 }
 
-impl From<&Vertex> for LightVertex {
+impl From<&Vertex<'_>> for LightVertex {
     fn from(vertex: &Vertex) -> Self {
         let &Vertex { p, wo, partial, depth, hero_only, .. } = vertex;
         let (beta, depth) = (vertex.photon_beta(), depth.min(u16::MAX.into()) as u16);

@@ -12,18 +12,18 @@ pub(crate) enum Encounter<'a> {
     /// A light that it hit.
     Light(Found),
     /// A vertex.
-    Vertex(&'a Vertex),
+    Vertex(&'a Vertex<'a>),
 }
 
 impl Bidirectional<'_> {
     /// Samples a light subpath, and visits the vertices that can be connected. A cancellation cuts
     /// the subpath off.
-    pub fn light_subpath(
-        &self,
+    pub fn light_subpath<'a>(
+        &'a self,
         time: f32,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-        mut visit: impl FnMut(&Vertex, &mut Tracer),
+        mut visit: impl FnMut(&Vertex<'a>, &mut Tracer),
     ) {
         let Some(mut walk) = Walk::from_light(self, time, *lambda, tracer) else { return };
         while walk.depth < self.max_depth {
@@ -50,9 +50,9 @@ impl Bidirectional<'_> {
     }
 
     /// The same, up to the first vertex at which `is_end` is true.
-    pub fn camera_subpath_to(
-        &self,
-        is_end: impl Fn(&Vertex) -> bool,
+    pub fn camera_subpath_to<'a>(
+        &'a self,
+        is_end: impl Fn(&Vertex<'a>) -> bool,
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
@@ -89,7 +89,7 @@ impl Bidirectional<'_> {
         time: f32,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-    ) -> Option<Vertex> {
+    ) -> Option<Vertex<'_>> {
         let mut walk = Walk::from_light(self, time, *lambda, tracer)?;
         Some(walk.follow_to(depth, tracer)?.0)
     }
@@ -101,7 +101,7 @@ impl Bidirectional<'_> {
         camera_ray: &CameraRayDifferential,
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
-    ) -> Option<Vertex> {
+    ) -> Option<Vertex<'_>> {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         Some(walk.follow_to(depth, tracer)?.0)
     }

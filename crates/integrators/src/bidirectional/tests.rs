@@ -68,7 +68,7 @@ fn room() -> (Scene, View) {
 /// A path from a light to the camera: its scattering vertices, from the light's side.
 struct Path<'a> {
     light: (LightId, Point3, Normal3),
-    surfaces: Vec<&'a Vertex>,
+    surfaces: Vec<&'a Vertex<'a>>,
     camera: Point3,
 }
 
@@ -309,7 +309,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 }
 
 /// The vertex of a camera subpath that continues from `before` to the position of `at`.
-fn stepped(balance: &Balance, before: &Vertex, at: &Vertex) -> Vertex {
+fn stepped<'a>(balance: &Balance, before: &Vertex, at: &Vertex<'a>) -> Vertex<'a> {
     let way = at.p.p - before.p.p;
     let wi = way.normalize();
     let partial = balance

@@ -1,7 +1,7 @@
 //! Vertices of subpaths.
 
 use math::{Normal3, Point3Error, Ray, Vector3};
-use scattering::{Bsdf, TransportMode};
+use scattering::{Bsdf, Bxdf, TransportMode};
 use scene::light::LightSampleContext;
 use spectrum::SampledSpectrum;
 
@@ -10,7 +10,7 @@ use crate::transport::direct::on_its_side;
 
 /// A vertex of a subpath on a surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex {
+pub(crate) struct Vertex<'a> {
     /// Position.
     pub p: Point3Error,
     /// Geometric normal.
@@ -20,7 +20,7 @@ pub(crate) struct Vertex {
     /// Time, in the scene's units.
     pub time: f32,
     /// The BSDF.
-    pub bsdf: Bsdf,
+    pub bsdf: Bsdf<Bxdf<'a>>,
     /// The probability with which a ray hits the surface there.
     pub alpha: f32,
     /// Throughput: importance (from the camera) or power (from a light) that arrives along `wo`,
@@ -38,7 +38,7 @@ pub(crate) struct Vertex {
     pub mode: TransportMode,
 }
 
-impl Vertex {
+impl Vertex<'_> {
     /// The context for sampling lights from it.
     #[inline]
     pub fn light_context(&self) -> LightSampleContext {

@@ -140,8 +140,9 @@ impl<'a> Walk<'a> {
 
     /// The vertex at a surface that was hit; `None` if the ray passes it and has to be traced
     /// further.
-    pub fn arrive(&mut self, surface: &mut SurfaceInteraction, tracer: &mut Tracer) -> Option<Vertex> {
-        let Some(mut bsdf) = tracer.bsdf(surface, &self.ray, &mut self.lambda) else {
+    pub fn arrive(&mut self, surface: &mut SurfaceInteraction, tracer: &mut Tracer) -> Option<Vertex<'a>> {
+        let (scene, view) = (self.paths.scene, self.paths.view);
+        let Some(mut bsdf) = scene.bsdf(view, surface, &self.ray, &mut self.lambda, tracer.sampler) else {
             let t = self.ray.ray.o.distance(surface.p());
             self.ray = pass_through(&self.ray, surface, t);
             if let Origin::Light(light, _) = self.origin
@@ -190,7 +191,7 @@ impl<'a> Walk<'a> {
 
     /// Samples up to the vertex of a depth, without Russian roulette; `None` if the subpath ends
     /// before.
-    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex, SurfaceInteraction)> {
+    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex<'a>, SurfaceInteraction)> {
         loop {
             let mut surface = self.intersect(tracer)?;
             let Some(vertex) = self.arrive(&mut surface, tracer) else { continue };

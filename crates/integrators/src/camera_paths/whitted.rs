@@ -11,7 +11,7 @@
 use description::WhittedDesc;
 use math::RayDifferential;
 use sampling::Sampler;
-use scattering::{Bsdf, Directions, TransportMode};
+use scattering::{Bsdf, Bxdf, Directions, TransportMode};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -38,7 +38,7 @@ impl Node {
     pub fn children(
         &self,
         surface: &SurfaceInteraction,
-        bsdf: &Bsdf,
+        bsdf: &Bsdf<Bxdf>,
         sampler: &mut Sampler,
     ) -> [Option<Self>; 2] {
         if !bsdf.flags().is_specular() {

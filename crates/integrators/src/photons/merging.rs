@@ -124,13 +124,13 @@ impl Merging {
 
     /// Samples the light subpaths of a pass and stores the values that `keep` returns for their
     /// vertices. `sampler` returns the sampler of a path.
-    pub fn shoot<V: Send>(
+    pub fn shoot<'a, V: Send>(
         &self,
-        paths: &Bidirectional,
+        paths: &'a Bidirectional,
         count: usize,
         pass: u32,
         sampler: impl Fn(usize) -> Sampler + Sync,
-        keep: impl Fn(&Vertex, &mut Sampler) -> Option<V> + Sync,
+        keep: impl Fn(&Vertex<'a>, &mut Sampler) -> Option<V> + Sync,
         control: &Control,
     ) -> Result<(LightSubpaths<V>, RayStats), PassError> {
         // A subpath stores about two vertices, which are copied once.

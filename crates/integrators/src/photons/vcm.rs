@@ -51,6 +51,7 @@
 use description::VcmDesc;
 use film::Film;
 use geometry::RayStats;
+use math::Vec2;
 use sampling::Sampler;
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
@@ -136,8 +137,6 @@ impl Integrator for Vcm {
             max_depth: self.settings.max_depth,
             regularize: false,
         };
-        // Each vertex is stored with the sample value of the lens point that it is connected to.
-        let keep = |vertex: &Vertex, sampler: &mut Sampler| Some((*vertex, sampler.get_2d()));
         let light_sampler = |pixel| {
             let mut sampler = self.light_sampler.clone();
             sampler.start_pixel_sample(pixel, pass, 0);
@@ -215,4 +214,9 @@ impl Integrator for Vcm {
     fn summary(&self) -> Vec<(&'static str, String)> {
         self.merging.summary()
     }
+}
+
+/// A vertex of a light subpath, with the sample value of the lens point that it is connected to.
+fn keep<'a>(vertex: &Vertex<'a>, sampler: &mut Sampler) -> Option<(Vertex<'a>, Vec2)> {
+    Some((*vertex, sampler.get_2d()))
 }

@@ -58,7 +58,7 @@ impl Albedo {
 }
 
 /// ρ_hh by fixed samples, separately for reflection and transmission.
-fn mean_albedo(bsdf: &Bsdf) -> [SampledSpectrum; 2] {
+fn mean_albedo(bsdf: &Bsdf<Bxdf>) -> [SampledSpectrum; 2] {
     const STRATA: usize = 4;
     let mut shares = [SampledSpectrum::ZERO; 2];
     for i in 0..STRATA * STRATA {

@@ -11,7 +11,7 @@ use description::LightSamplerDesc;
 use lanes::Real;
 use math::{Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
 use sampling::Sampler;
-use scattering::{Bsdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightLiSample, LightRef, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::{Interfaces, Scene, SurfaceInteraction};
@@ -158,7 +158,7 @@ pub(crate) fn connect_all(
     scene: &Scene,
     sampler: &mut Sampler,
     surface: &SurfaceInteraction,
-    bsdf: &Bsdf,
+    bsdf: &Bsdf<Bxdf>,
     lambda: &SampledWavelengths,
     mut connect: impl FnMut(Connection),
 ) {

@@ -3,7 +3,7 @@
 use geometry::{Hit, RayStats};
 use math::{Ray, RayDifferential};
 use sampling::Sampler;
-use scattering::Bsdf;
+use scattering::{Bsdf, Bxdf};
 use scene::{Scene, SurfaceInteraction, View};
 use spectrum::SampledWavelengths;
 
@@ -79,7 +79,7 @@ impl<'a> Tracer<'a> {
         surface: &mut SurfaceInteraction,
         ray: &RayDifferential,
         lambda: &mut SampledWavelengths,
-    ) -> Option<Bsdf> {
+    ) -> Option<Bsdf<Bxdf<'a>>> {
         self.scene.bsdf(self.view, surface, ray, lambda, self.sampler)
     }
 }

@@ -3,7 +3,7 @@
 use film::FilmTile;
 use geometry::{Hit, HitColumns, PointColumns, RayStats};
 use sampling::Sampler;
-use scattering::Bsdf;
+use scattering::{Bsdf, Bxdf};
 use scene::light::LightId;
 use scene::material::{Material, MaterialId, MaterialModel};
 use scene::{Interfaces, SurfaceInteraction};
@@ -49,12 +49,12 @@ pub struct Batch<'a> {
 }
 
 /// A vertex of one path.
-pub(super) struct Vertex {
+pub(super) struct Vertex<'a> {
     /// The path before it scatters there.
     pub state: PathState,
     pub lambda: SampledWavelengths,
     pub surface: SurfaceInteraction,
-    pub bsdf: Bsdf,
+    pub bsdf: Bsdf<Bxdf<'a>>,
 }
 
 impl<'a> Batch<'a> {
@@ -179,8 +179,8 @@ impl<'a> Batch<'a> {
                 Material::CoatedConductor(material) => {
                     self.dispatch(algorithm, (id, material), turns, rows);
                 }
-                Material::Hair(_) | Material::Mix(_) | Material::Interface => {
-                    unreachable!("invariant: hair, mixes and interfaces are not shaded in lanes")
+                Material::Hair(_) | Material::Measured(_) | Material::Mix(_) | Material::Interface => {
+                    unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
             }
         }
@@ -221,7 +221,7 @@ impl<'a> Batch<'a> {
 
     /// The vertex of a path at a hit, to which the batch's sampler has gone on. Adds emission.
     /// `None` where the ray passes through the surface.
-    pub(super) fn vertex(&mut self, path: u32, hit: &Hit, direct: &DirectLighting) -> Option<Vertex> {
+    pub(super) fn vertex(&mut self, path: u32, hit: &Hit, direct: &DirectLighting) -> Option<Vertex<'a>> {
         let Self { pass, paths, sampler, queues, .. } = self;
         let &PixelSamples { scene, view, index, .. } = pass.pixels;
         let row = path as usize;

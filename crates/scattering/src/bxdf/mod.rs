@@ -9,6 +9,7 @@ mod diffuse;
 mod diffuse_transmission;
 mod hair;
 mod layered;
+mod measured;
 mod scatter;
 mod thin_dielectric;
 
@@ -18,6 +19,7 @@ pub use diffuse::Diffuse;
 pub use diffuse_transmission::DiffuseTransmission;
 pub use hair::Hair;
 pub use layered::{CoatedBase, Layered, inner_reflectance};
+pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use scatter::{BsdfSample, Scatter};
 pub use thin_dielectric::ThinDielectric;
 
@@ -25,9 +27,9 @@ use crate::{BxdfFlags, Directions, TransportMode};
 use math::{Vec2, Vector3};
 use spectrum::SampledSpectrum;
 
-/// Any BxDF, by value: made at each hit, without allocation.
+/// Any BxDF, by value: made at each hit, without allocation. It may refer to tables of the scene.
 #[derive(Clone, Copy, Debug)]
-pub enum Bxdf {
+pub enum Bxdf<'a> {
     /// Lambertian reflection.
     Diffuse(Diffuse),
     /// Lambertian reflection and transmission.
@@ -44,6 +46,8 @@ pub enum Bxdf {
     CoatedConductor(Layered<Conductor>),
     /// A fibre.
     Hair(Hair),
+    /// A measured surface.
+    Measured(Measured<'a>),
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
@@ -67,11 +71,12 @@ macro_rules! each_bxdf {
             $crate::Bxdf::CoatedDiffuse($member) => $body,
             $crate::Bxdf::CoatedConductor($member) => $body,
             $crate::Bxdf::Hair($member) => $body,
+            $crate::Bxdf::Measured($member) => $body,
         }
     };
 }
 
-impl Scatter for Bxdf {
+impl Scatter for Bxdf<'_> {
     #[inline]
     fn flags(&self) -> BxdfFlags {
         each_bxdf!(self, bxdf => bxdf.flags())
@@ -113,7 +118,7 @@ impl Scatter for Bxdf {
 /// Makes each member a [`Bxdf`].
 macro_rules! into_bxdf {
     ($($variant:ident($member:ty))*) => {$(
-        impl From<$member> for Bxdf {
+        impl<'a> From<$member> for Bxdf<'a> {
             #[inline]
             fn from(bxdf: $member) -> Self {
                 Self::$variant(bxdf)
@@ -131,4 +136,5 @@ into_bxdf! {
     CoatedDiffuse(Layered<Diffuse>)
     CoatedConductor(Layered<Conductor>)
     Hair(Hair)
+    Measured(Measured<'a>)
 }

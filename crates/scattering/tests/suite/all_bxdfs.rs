@@ -1,8 +1,8 @@
 //! The contract of all BxDFs.
 
 use alhazen_scattering::{
-    Bsdf, BsdfSample, Bxdf, BxdfFlags, Conductor, Dielectric, Diffuse, DiffuseTransmission, Directions,
-    Scatter, ThinDielectric, TransportMode, TrowbridgeReitz,
+    Bsdf, BsdfSample, BxdfFlags, Conductor, Dielectric, Diffuse, DiffuseTransmission, Directions, Scatter,
+    ThinDielectric, TransportMode, TrowbridgeReitz,
 };
 use math::{
     Frame, ONE_MINUS_EPSILON, Vec2, Vec3, Vector3, same_hemisphere, spherical_direction, spherical_phi,
@@ -12,6 +12,8 @@ use proptest::prelude::*;
 use spectrum::SampledSpectrum;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use testkit::{Chi2, Moments, Random, integrate};
+
+type Bxdf = alhazen_scattering::Bxdf<'static>;
 
 const MODES: [TransportMode; 2] = [TransportMode::Radiance, TransportMode::Importance];
 const DIRECTIONS: [Directions; 3] = [Directions::All, Directions::Reflection, Directions::Transmission];

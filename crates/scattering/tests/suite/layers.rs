@@ -1,7 +1,7 @@
 //! Layered BxDFs: their values and samples are estimates, so that the contract holds in the mean.
 
 use alhazen_scattering::{
-    BsdfSample, Bxdf, Conductor, Dielectric, Diffuse, Directions, HenyeyGreenstein, Layered, Scatter,
+    BsdfSample, Conductor, Dielectric, Diffuse, Directions, HenyeyGreenstein, Layered, Scatter,
     TransportMode, TrowbridgeReitz, inner_reflectance,
 };
 use lanes::Real;
@@ -12,6 +12,8 @@ use std::f32::consts::{PI, TAU};
 use testkit::{LaneFunction, Moments, Random, lanes_agree, welch_test};
 
 use TransportMode::{Importance, Radiance};
+
+type Bxdf = alhazen_scattering::Bxdf<'static>;
 
 /// A coat over `base`.
 fn coated<B>(base: B, alpha: f32, thickness: f32, albedo: f32) -> Layered<B> {

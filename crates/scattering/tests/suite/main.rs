@@ -3,4 +3,5 @@
 mod all_bxdfs;
 mod hair;
 mod layers;
+mod measured;
 mod microfacets;

@@ -4,7 +4,7 @@ use super::Compiler;
 use crate::material::{
     BumpMap, Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
     DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
-    MaterialEntry, MaterialId, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
@@ -168,10 +168,7 @@ impl Compiler<'_> {
                     }
                 }
             }
-            MaterialKind::Measured { .. } => {
-                self.not_drawn(kind.name(), "diffuse", origin);
-                self.diffuse(&0.5.into(), origin)
-            }
+            MaterialKind::Measured { table } => Material::Measured(MeasuredMaterial { table: table.clone() }),
         }
     }
 

@@ -13,6 +13,7 @@ mod dielectric;
 mod diffuse;
 mod diffuse_transmission;
 mod hair;
+mod measured;
 mod mix;
 mod normal_map;
 mod roughness;
@@ -28,6 +29,7 @@ pub use dielectric::DielectricMaterial;
 pub use diffuse::DiffuseMaterial;
 pub use diffuse_transmission::DiffuseTransmissionMaterial;
 pub use hair::{HairAbsorption, HairMaterial};
+pub use measured::MeasuredMaterial;
 pub use mix::MixMaterial;
 pub use normal_map::NormalMap;
 pub use roughness::Roughness;
@@ -73,6 +75,8 @@ pub enum Material {
     CoatedConductor(CoatedConductorMaterial),
     /// See [`HairMaterial`].
     Hair(HairMaterial),
+    /// See [`MeasuredMaterial`].
+    Measured(MeasuredMaterial),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
     /// Rays pass through; only the medium changes.
@@ -88,7 +92,7 @@ impl Material {
         textures: &Textures,
         context: &TextureContext,
         lambda: &mut SampledWavelengths,
-    ) -> Option<Bxdf> {
+    ) -> Option<Bxdf<'_>> {
         match self {
             Self::Diffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::DiffuseTransmission(m) => Some(m.bxdf(textures, context, lambda).into()),
@@ -98,6 +102,7 @@ impl Material {
             Self::CoatedDiffuse(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::CoatedConductor(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Hair(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::Measured(m) => Some(m.bxdf(lambda).into()),
             Self::Mix(_) | Self::Interface => None,
         }
     }
@@ -105,7 +110,7 @@ impl Material {
     /// Whether the BxDF may be specular somewhere.
     pub fn may_be_specular(&self, textures: &Textures) -> bool {
         match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Hair(_) => false,
+            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Hair(_) | Self::Measured(_) => false,
             Self::Conductor(m) => m.roughness.may_be_smooth(textures),
             Self::CoatedDiffuse(m) => m.coat.roughness.may_be_smooth(textures),
             Self::CoatedConductor(m) => m.coat.roughness.may_be_smooth(textures),
@@ -117,7 +122,11 @@ impl Material {
     /// passes through the material, and it is not dispersive.
     pub fn stops(&self) -> bool {
         match self {
-            Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Conductor(_) | Self::Hair(_) => true,
+            Self::Diffuse(_)
+            | Self::DiffuseTransmission(_)
+            | Self::Conductor(_)
+            | Self::Hair(_)
+            | Self::Measured(_) => true,
             Self::Dielectric(m) => !is_dispersive(&m.eta),
             Self::ThinDielectric(m) => !is_dispersive(&m.eta),
             Self::CoatedDiffuse(m) => !m.coat.is_dispersive(),

@@ -14,8 +14,8 @@ const EDGES: [(&str, &[&str]); 17] = [
     ("image", &["lanes", "math", "spectrum"]),
     ("geometry", &["math", "lanes", "sampling"]),
     ("scattering", &["lanes", "math", "spectrum", "sampling"]),
-    ("description", &["math", "spectrum", "image"]),
-    ("import", &["math", "spectrum", "image", "description"]),
+    ("description", &["math", "spectrum", "image", "scattering"]),
+    ("import", &["math", "spectrum", "image", "scattering", "description"]),
     ("scene", &["lanes", "math", "spectrum", "sampling", "image", "geometry", "scattering", "description"]),
     ("film", &["lanes", "math", "spectrum", "sampling", "image", "description"]),
     (

@@ -6,10 +6,12 @@ use std::sync::Arc;
 
 use description::{Arena, Diagnostic, EncodingDesc, Handle, ImageDesc, Origin, Span, Spanned, Stated};
 use rayon::prelude::*;
+use scattering::MeasuredTable;
 
 use super::{Builder, Samples};
 use crate::assets::{read_unpacked, resolve};
 use crate::images;
+use crate::measured;
 use crate::number;
 
 /// The images of the scene, each path and encoding once. They are decoded together, in parallel.
@@ -112,6 +114,25 @@ impl Builder<'_> {
             return None;
         }
         Some(pairs.iter().map(|&[lambda, value]| (lambda, value)).collect())
+    }
+
+    /// A file of a measured surface, which is read once.
+    pub(super) fn measured_file(&mut self, file: &Spanned<String>) -> Option<Arc<MeasuredTable>> {
+        let path = self.path(file);
+        if let Some(known) = self.measurements.get(&path) {
+            return known.clone();
+        }
+        let bytes = self.assets.read(&path).map_err(|error| error.to_string());
+        let table = match bytes.and_then(|bytes| measured::read(&bytes)) {
+            Ok(table) => Some(Arc::new(table)),
+            Err(reason) => {
+                let message = format!("cannot read the measurements `{}`: {reason}", path.display());
+                self.report.error("unreadable-measurements", message, file.span);
+                None
+            }
+        };
+        self.measurements.insert(path, table.clone());
+        table
     }
 
     /// A file with four numbers per lens element.

@@ -137,7 +137,7 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
                 reader.missing("filename");
                 return None;
             };
-            MaterialKind::Measured { filename: reader.builder.path(&file).to_string_lossy().into_owned() }
+            MaterialKind::Measured { table: reader.builder.measured_file(&file)? }
         }
         MaterialType::Mix => mix(reader)?,
         MaterialType::Interface => MaterialKind::Interface,

@@ -19,6 +19,7 @@ use description::{
     Diagnostic, FloatTextureDesc, Handle, MaterialDesc, MediumDesc, ObjectDesc, Origin, SceneDesc, SourceMap,
     Span, Spanned, SpectrumDesc, SpectrumTextureDesc, Stated,
 };
+use scattering::MeasuredTable;
 
 use self::files::ImageRequests;
 use self::reader::Reader;
@@ -87,6 +88,7 @@ pub(crate) struct Builder<'a> {
     materials: HashMap<String, Handle<MaterialDesc>>,
     media: HashMap<String, Handle<MediumDesc>>,
     spectra: HashMap<PathBuf, Option<Samples>>,
+    measurements: HashMap<PathBuf, Option<Arc<MeasuredTable>>>,
     /// Declarations of the attributes that some statement used.
     pub(crate) used_attributes: HashSet<Span>,
     images: ImageRequests,
@@ -112,6 +114,7 @@ impl<'a> Builder<'a> {
             materials: HashMap::new(),
             media: HashMap::new(),
             spectra: HashMap::new(),
+            measurements: HashMap::new(),
             used_attributes: HashSet::new(),
             images: ImageRequests::default(),
             meshes: HashMap::new(),

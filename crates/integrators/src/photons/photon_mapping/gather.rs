@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::PhotonMappingDesc;
 use math::{RayDifferential, Vec2};
-use scattering::{Bsdf, Directions, TransportMode, each_bxdf};
+use scattering::{Bsdf, Bxdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -94,7 +94,7 @@ enum Sought {
 #[derive(Clone, Copy)]
 struct GatherPoint<'a> {
     surface: &'a SurfaceInteraction,
-    bsdf: &'a Bsdf,
+    bsdf: &'a Bsdf<Bxdf<'a>>,
     /// Scattering events from the camera, this one included.
     depth: u32,
     lambda: &'a SampledWavelengths,
