@@ -30,6 +30,7 @@ mod shape;
 mod source;
 mod texture;
 mod transform;
+mod voxels;
 
 pub use self::image::ImageDesc;
 pub use accelerator::{AcceleratorDesc, BuildQualityDesc, BvhSplit};
@@ -66,3 +67,4 @@ pub use texture::{
     SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, WrapMode,
 };
 pub use transform::TransformDesc;
+pub use voxels::VoxelsDesc;
