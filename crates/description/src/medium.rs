@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use math::Point3;
 
-use crate::{ColorSpaceDesc, Handle, SpectrumDesc, TransformDesc};
+use crate::{ColorSpaceDesc, Handle, SpectrumDesc, TransformDesc, VoxelsDesc};
 
 /// A medium.
 #[derive(Clone, Debug)]
@@ -80,6 +80,7 @@ impl Default for TemperatureDesc {
 }
 
 /// The media of the format.
+#[expect(clippy::large_enum_variant, reason = "scenes have few media")]
 #[derive(Clone, Debug)]
 pub enum MediumKind {
     /// Constant coefficients.
@@ -140,10 +141,12 @@ pub enum MediumKind {
         /// Frequency of the noise.
         frequency: f32,
     },
-    /// A NanoVDB file, not decoded here.
+    /// Densities on a sparse grid.
     NanoVdb {
-        /// Its path.
-        filename: String,
+        /// Densities.
+        density: VoxelsDesc,
+        /// Temperatures that make it emit.
+        temperature: Option<VoxelsDesc>,
         /// Absorption and scattering at density one.
         coefficients: CoefficientsDesc,
         /// Conversion of temperatures to kelvin.

@@ -11,6 +11,7 @@ mod images;
 mod imported;
 mod measured;
 mod mesh;
+mod nanovdb;
 mod number;
 mod pbrt;
 mod report;

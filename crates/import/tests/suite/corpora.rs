@@ -12,7 +12,7 @@ use math::spherical_direction;
 use scattering::{Directions, Measured, Scatter, TransportMode};
 use spectrum::{RgbColorSpace, RgbUnboundedSpectrum, SampledWavelengths};
 
-fn data(folder: &str) -> Option<PathBuf> {
+pub(crate) fn data(folder: &str) -> Option<PathBuf> {
     let root = std::env::var_os("ALHAZEN_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     let path = root.join(folder);
@@ -37,7 +37,7 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
     found
 }
 
-fn shown(imported: &Imported) -> String {
+pub(crate) fn shown(imported: &Imported) -> String {
     let mut text = String::new();
     for diagnostic in &imported.diagnostics {
         let span = diagnostic.span();

@@ -6,6 +6,8 @@ use alhazen_import::{MemoryAssets, import, read_obj, read_ply};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+use crate::volumes;
+
 const SCENE: &str = r#"
 Option "seed" 3
 LookAt 0 1 -5 0 0 0 0 1 0
@@ -232,5 +234,51 @@ proptest! {
         let scene = "Camera \"realistic\" \"string lensfile\" \"a.dat\"\nWorldBegin\n\
                      Material \"diffuse\" \"spectrum reflectance\" \"a.dat\"\nShape \"plymesh\" \"string filename\" \"a.dat\"\n";
         let _ = import("a.pbrt", &MemoryAssets::default().with("a.pbrt", scene).with("a.dat", bytes)).has_errors();
+    }
+}
+
+fn refuses_volume(file: Vec<u8>) -> bool {
+    volumes::read(volumes::SCENE, file).has_errors()
+}
+
+#[test]
+fn cut_off_volumes_are_refused() {
+    for codec in 0..3 {
+        let file = volumes::file(codec);
+        assert!(!refuses_volume(file.clone()));
+        let step = if file.len() < 10_000 { 1 } else { 997 };
+        for length in (0..300).chain((300..file.len()).step_by(step)).chain([file.len() - 1]) {
+            assert!(refuses_volume(file[..length].into()), "codec {codec}, {length} bytes");
+        }
+    }
+    // The header of the file knows nothing of the cut.
+    let grid = volumes::grid("density", 0.0);
+    for length in (0..1000).chain((1000..grid.len()).step_by(997)).chain([grid.len() - 1]) {
+        let cut = vec![("density", grid[..length].to_vec())];
+        assert!(refuses_volume(volumes::segment(b"NanoVDB0", 0, &cut)), "{length}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, rng_seed: RngSeed::Fixed(3), failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn damaged_volumes_do_not_panic(
+        codec in 0..3_u16,
+        flips in prop::collection::vec((any::<prop::sample::Index>(), 0..8), 1..5),
+    ) {
+        // The bytes that mean most: headers, the root, masks, the ends of tables, and a leaf.
+        let places = [0..volumes::ROOT + 96, volumes::UPPER..volumes::UPPER + 8300, volumes::LOWER..volumes::LOWER + 1200,
+            volumes::LEAF - 3000..volumes::LEAF + 200];
+        let places: Vec<usize> = places.into_iter().flatten().collect();
+        let mut grid = volumes::grid("density", 0.0);
+        let mut file = volumes::file(codec);
+        for (at, bit) in flips {
+            grid[places[at.index(places.len())]] ^= 1_u8 << bit;
+            let at = at.index(file.len().min(4000));
+            file[at] ^= 1_u8 << bit;
+        }
+        let _ = refuses_volume(volumes::segment(b"NanoVDB2", codec, &[("density", grid)]));
+        let _ = refuses_volume(file);
     }
 }

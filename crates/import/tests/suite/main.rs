@@ -5,3 +5,4 @@ mod directives;
 mod hostile;
 mod meshes;
 mod messages;
+mod volumes;

@@ -10,6 +10,7 @@ use math::Vec3;
 use super::Builder;
 use super::material::substance;
 use super::reader::Reader;
+use super::volume::GridName;
 use crate::pbrt::statement::MediumStatement;
 
 const TYPES: [&str; 5] = ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"];
@@ -54,18 +55,7 @@ fn kind(reader: &mut Reader) -> Option<MediumKind> {
             wispiness: reader.float("wispiness", 1.0),
             frequency: reader.float("frequency", 5.0),
         },
-        "nanovdb" => {
-            let Some(file) = reader.string("filename") else {
-                reader.missing("filename");
-                return None;
-            };
-            MediumKind::NanoVdb {
-                filename: reader.builder.path(&file).to_string_lossy().into_owned(),
-                coefficients: coefficients(reader),
-                temperature_scale: temperature_scale(reader),
-                le_scale: reader.float("Lescale", 1.0),
-            }
-        }
+        "nanovdb" => nano_vdb(reader)?,
         _ => {
             reader.unknown_type("medium", "medium", &TYPES);
             return None;
@@ -184,4 +174,23 @@ fn rgb_grid(reader: &mut Reader) -> Option<MediumKind> {
         le_scale: reader.float("Lescale", 1.0),
         space: reader.color_space,
     })
+}
+
+fn nano_vdb(reader: &mut Reader) -> Option<MediumKind> {
+    let Some(file) = reader.string("filename") else {
+        reader.missing("filename");
+        return None;
+    };
+    let [density, temperature] = ["gridname", "temperaturename"].map(|name| reader.string(name));
+    let coefficients = coefficients(reader);
+    let temperature_scale = temperature_scale(reader);
+    let le_scale = reader.float("Lescale", 1.0);
+    let grid = |name: Option<Spanned<String>>, default: &str, is_needed| GridName {
+        name: name.unwrap_or(Spanned { value: default.into(), span: file.span }),
+        is_needed,
+    };
+    let needs_temperature = temperature.is_some();
+    let names = [grid(density, "density", true), grid(temperature, "temperature", needs_temperature)];
+    let [density, temperature] = reader.builder.grids(&file, &names)?;
+    Some(MediumKind::NanoVdb { density: density?, temperature, coefficients, temperature_scale, le_scale })
 }

@@ -10,6 +10,7 @@ mod reader;
 mod settings;
 mod shape;
 mod texture;
+mod volume;
 
 use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
@@ -93,6 +94,7 @@ pub(crate) struct Builder<'a> {
     pub(crate) used_attributes: HashSet<Span>,
     images: ImageRequests,
     meshes: shape::Meshes,
+    grids: volume::Grids,
     objects: HashMap<String, Handle<ObjectDesc>>,
     /// The number of objects that are complete, and may be operands of a solid.
     complete_objects: usize,
@@ -118,6 +120,7 @@ impl<'a> Builder<'a> {
             used_attributes: HashSet::new(),
             images: ImageRequests::default(),
             meshes: HashMap::new(),
+            grids: HashMap::new(),
             objects: HashMap::new(),
             complete_objects: 0,
         };
