@@ -181,8 +181,8 @@ pub struct Changes {
     pub pixel: Option<[i32; 2]>,
     /// Layers of the picture beside its colours, written to .exr files: alpha, depth, normal,
     /// albedo, position, uv, motion, object-id, material-id, samples, variance (of the mean
-    /// luminance; splats are not part of it), camera-position, camera-normal. [default: the
-    /// scene's]
+    /// luminance; splats are not part of it), camera-position, camera-normal, geometric-normal,
+    /// camera-geometric-normal, slope, camera-slope, color-variance. [default: the scene's]
     #[arg(long, value_name = "LAYER,LAYER,…", value_delimiter = ',')]
     pub aov: Vec<String>,
     /// Seed of all random numbers: the same seed gives the same picture, bit for bit.

@@ -72,14 +72,14 @@ settings! {
             /// The space of positions and normals.
             space: GBufferSpace = GBufferSpace::Camera => ["coordinatesystem"];
         },
-        /// Radiance in wavelength buckets.
-        Spectral = "spectral" (not drawn) {
+        /// Colour, and radiance in buckets of wavelengths.
+        Spectral = "spectral" {
             /// Number of buckets.
-            buckets: i32 = 16 => ["nbuckets": from(1.0, 1e5)];
+            buckets: i32 = 16 => ["nbuckets": from(1.0, 4096.0)];
             /// Lower end of the first bucket.
-            lambda_min: f32 = 360.0 => ["lambdamin": above(0.0).unit("nm")];
+            lambda_min: f32 = 360.0 => ["lambdamin": from(360.0, 830.0).unit("nm")];
             /// Upper end of the last bucket.
-            lambda_max: f32 = 830.0 => ["lambdamax": above(0.0).unit("nm")];
+            lambda_max: f32 = 830.0 => ["lambdamax": from(360.0, 830.0).unit("nm")];
         },
     }
 }

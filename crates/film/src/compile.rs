@@ -5,13 +5,13 @@ use description::{ColorSpaceDesc, Diagnostic, FilmDesc, FilmKind, GBufferSpace, 
 use math::Bounds2i;
 use spectrum::RgbColorSpace;
 
-use crate::{Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
+use crate::{Buckets, Film, FilmSettings, Filter, Layer, LayerSet, PixelSensor};
 
 /// The range of white balance temperatures in kelvin.
 const WHITE_BALANCE: std::ops::RangeInclusive<f32> = 500.0..=100_000.0;
 
-/// The layers of the format's film `gbuffer` that exist here, apart from positions and normals.
-const GBUFFER_LAYERS: [Layer; 4] = [Layer::Depth, Layer::Albedo, Layer::Uv, Layer::Variance];
+/// The layers of the format's film `gbuffer`, apart from those of its space.
+const GBUFFER_LAYERS: [Layer; 3] = [Layer::Albedo, Layer::Uv, Layer::ColorVariance];
 
 /// The result of [`compile`].
 #[derive(Debug)]
@@ -46,18 +46,29 @@ pub fn compile(desc: &SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
 fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmSettings> {
     let film = &desc.film;
     let mut layers = layers(&film.layers, diagnostics);
+    let (mut buckets, mut gbuffer) = (None, None);
     match film.kind {
         FilmKind::Rgb => {}
         FilmKind::GBuffer { space } => {
             let geometry = match space {
-                GBufferSpace::Camera => [Layer::CameraPosition, Layer::CameraNormal],
-                GBufferSpace::World => [Layer::Position, Layer::Normal],
+                GBufferSpace::Camera => [
+                    Layer::CameraPosition,
+                    Layer::CameraNormal,
+                    Layer::CameraGeometricNormal,
+                    Layer::CameraSlope,
+                ],
+                GBufferSpace::World => [Layer::Position, Layer::Normal, Layer::GeometricNormal, Layer::Slope],
             };
             layers = GBUFFER_LAYERS.into_iter().chain(geometry).fold(layers, LayerSet::with);
+            gbuffer = Some(space);
         }
-        FilmKind::Spectral { .. } => {
-            let message = "film `spectral` is not drawn yet; drawn as `rgb`";
-            diagnostics.push(Diagnostic::warning("not-drawn", message, film.origin.span));
+        FilmKind::Spectral { buckets: count, lambda_min, lambda_max } => {
+            buckets = u32::try_from(count).ok().and_then(|count| Buckets::new(count, lambda_min, lambda_max));
+            if buckets.is_none() {
+                let message = format!("no {count} buckets go from {lambda_min} to {lambda_max} nm");
+                let span = film.origin.parameter("lambdamax");
+                diagnostics.push(Diagnostic::error("invalid-film", message, span));
+            }
         }
     }
     let color_space = match film.color_space {
@@ -81,6 +92,8 @@ fn settings(desc: &SceneDesc, diagnostics: &mut Vec<Diagnostic>) -> Option<FilmS
         color_space,
         half_floats: film.save_fp16,
         layers,
+        buckets,
+        gbuffer,
     })
 }
 
@@ -143,9 +156,11 @@ fn sensor(
     if diagnostics.len() > count {
         return None;
     }
-    if sensor.name != "cie1931" {
-        let message = format!("sensor `{}` is not drawn yet; drawn as `cie1931`", sensor.name);
-        diagnostics.push(Diagnostic::warning("not-drawn", message, origin.parameter("sensor")));
+    let compiled =
+        PixelSensor::new(&sensor.name, color_space, (white != 0.0).then_some(white), imaging_ratio);
+    if compiled.is_none() {
+        let message = format!("no sensor is called `{}`", sensor.name);
+        diagnostics.push(Diagnostic::error("invalid-sensor", message, origin.parameter("sensor")));
     }
-    Some(PixelSensor::cie1931(color_space, (white != 0.0).then_some(white), imaging_ratio))
+    compiled
 }

@@ -7,11 +7,13 @@ use half::f16;
 use image::{
     Channel, Chromaticities, Image, ImageError, ImageMetadata, PixelSource, Pixels, SampleDepth, Window,
 };
+use math::Vec3;
 use spectrum::{Matrix3, Rgb};
 
 use crate::film::ID_LAYERS;
+use crate::splats::SPLAT_SUMS;
 use crate::sum::{reserved, value};
-use crate::{Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
+use crate::{Buckets, Film, Layer, LayerSet, TILE_SIZE, cryptomatte};
 
 /// The depth of pixels in which nothing is hit: the usual number for "infinitely far" in
 /// compositing, where infinity itself would spoil arithmetic.
@@ -21,26 +23,27 @@ impl Film {
     /// The current picture: linear R, G and B in the film's colour space, without layers. Refused
     /// where there is no memory for it.
     pub fn develop(&self) -> Result<Image, ImageError> {
-        Development::new(self, None, LayerSet::NONE).to_image()
+        Development::of_colors(self, None).to_image()
     }
 
-    /// The picture with all layers, row by row while it is written, so that a large one needs no
-    /// copy in memory.
+    /// The picture with all layers and buckets, row by row while it is written, so that a large one
+    /// needs no copy in memory.
     pub fn development(&self) -> Development<'_> {
-        Development::new(self, None, self.layers())
+        Development::of_all(self, None)
     }
 }
 
 /// A film, or the sum of two, that is developed while it is written.
 ///
 /// Beside R, G and B there are the channels of the layers: A; Z; N, P, uv and motion; albedo;
-/// samples and variance; and for identifiers those of Cryptomatte. All but the colours, alpha and
-/// albedo are single floats.
+/// samples and variance; and for identifiers those of Cryptomatte; and those of the buckets. All
+/// but the colours, alpha, albedo and buckets are single floats.
 #[derive(Debug)]
 pub struct Development<'film> {
     film: &'film Film,
     second: Option<&'film Film>,
     layers: LayerSet,
+    buckets: Option<Buckets>,
     output_from_sensor: Matrix3,
     channels: Vec<Channel>,
     /// The metadata of the picture.
@@ -48,9 +51,23 @@ pub struct Development<'film> {
 }
 
 impl<'film> Development<'film> {
-    /// The picture of a film with these of its layers. Where there is a second film, of the same
-    /// pixels and settings, it is the picture of both [merged](Film::merge).
-    pub fn new(film: &'film Film, second: Option<&'film Film>, layers: LayerSet) -> Self {
+    /// The colours of a film. Where there is a second film, of the same pixels and settings, it is
+    /// the picture of both [merged](Film::merge).
+    pub fn of_colors(film: &'film Film, second: Option<&'film Film>) -> Self {
+        Self::new(film, second, LayerSet::NONE, None)
+    }
+
+    /// The same with all layers and buckets.
+    pub fn of_all(film: &'film Film, second: Option<&'film Film>) -> Self {
+        Self::new(film, second, film.layers(), film.buckets)
+    }
+
+    fn new(
+        film: &'film Film,
+        second: Option<&'film Film>,
+        layers: LayerSet,
+        buckets: Option<Buckets>,
+    ) -> Self {
         let color_space = film.color_space();
         let [red, green, blue] = color_space.primaries();
         let bounds = film.pixel_bounds();
@@ -66,14 +83,18 @@ impl<'film> Development<'film> {
         for layer in layers.iter() {
             let depth =
                 if matches!(layer, Layer::Alpha | Layer::Albedo) { color_depth } else { SampleDepth::F32 };
-            channels.extend(layer.channels().iter().map(|name| channel(name, depth)));
+            channels.extend(layer.channels(film.gbuffer).iter().map(|name| channel(name, depth)));
             if layer.is_id() {
                 channels.extend(cryptomatte::channels(layer).map(|name| channel(&name, depth)));
                 cryptomatte::describe(layer, &mut metadata);
             }
         }
+        if let Some(buckets) = buckets {
+            channels.extend(buckets.channels().map(|name| channel(&name, color_depth)));
+            Buckets::describe(&mut metadata);
+        }
         let output_from_sensor = color_space.rgb_from_xyz() * film.exposure.sensor.xyz_from_sensor_rgb();
-        Self { film, second, layers, output_from_sensor, channels, metadata }
+        Self { film, second, layers, buckets, output_from_sensor, channels, metadata }
     }
 
     /// Writes the names of a layer's identifiers to the header, if the film has the layer: of these
@@ -129,25 +150,25 @@ impl<'film> Development<'film> {
         let color = |c| self.sum(|film| film.color.units(tile, first, pixel, c));
         let weight = if self.film.counts.is_empty() { 0.0 } else { color(3) };
         let mean = if weight == 0.0 { [0.0; 3] } else { [0, 1, 2].map(|c| color(c) / weight) };
-        let splat = self.splat(tile, pixel);
-        let response = [0, 1, 2].map(|c| mean[c] + splat[c]);
+        let paths: u64 = self.films().map(|film| film.splats.paths()).sum();
+        let splat = |c| {
+            let sum = |films: &Self| films.sum(|film| film.splats.units(tile, pixel, c)) / paths as f64;
+            if paths == 0 { 0.0 } else { sum(self) }
+        };
+        let response = [0, 1, 2].map(|c| mean[c] + splat(c));
         let rgb = Rgb::from(self.output_from_sensor.apply(response).map(|c| c as f32));
         let rgb = if self.film.half_floats() { as_half(rgb) } else { rgb };
         rgb.to_array().into_iter().for_each(&mut put);
         for layer in self.layers.iter() {
             self.layer(layer, [tile, first, pixel], weight, &mut put);
         }
-    }
-
-    /// The contribution of all light paths to a pixel of a tile, in sensor RGB.
-    fn splat(&self, tile: usize, pixel: usize) -> [f64; 3] {
-        let paths: u64 = self.films().map(|film| film.splats.paths()).sum();
-        if paths == 0 {
-            return [0.0; 3];
+        for bucket in 0..self.buckets.map_or(0, |buckets| buckets.count()) {
+            let sum = |i| self.sum(|film| film.spectrum.units(tile, first, pixel, 2 * bucket + i));
+            let weight = if self.film.counts.is_empty() { 0.0 } else { sum(1) };
+            let mean = if weight == 0.0 { 0.0 } else { sum(0) / weight };
+            let light = (mean + splat(SPLAT_SUMS + bucket)) as f32;
+            put(if self.film.half_floats() { half(light) } else { light });
         }
-        let sums = self.films().map(|film| film.splats.units(tile, pixel));
-        let sums = sums.fold([0; 3], |a, b| [0, 1, 2].map(|c| i128::saturating_add(a[c], b[c])));
-        sums.map(|sum| value(sum) / paths as f64)
     }
 
     fn layer(&self, layer: Layer, [tile, first, pixel]: [usize; 3], weight: f64, mut put: impl FnMut(f32)) {
@@ -171,12 +192,32 @@ impl<'film> Development<'film> {
                 let covered = covered.into_iter().map(|(id, weight)| (id, value(weight)));
                 cryptomatte::ranks(covered, sum(1)).for_each(put);
             }
+            Layer::ColorVariance => {
+                let count = sum(offset);
+                let moments = [0, 1, 2].map(|c| (sum(offset + 1 + c), sum(offset + 4 + c)));
+                let mean = |sum: f64| if count == 0.0 { 0.0 } else { sum / count };
+                let variance = moments.map(|(sum, squares)| match count > 1.0 {
+                    true => (squares - sum * mean(sum)).max(0.0) / (count - 1.0),
+                    false => 0.0,
+                });
+                variance.into_iter().for_each(|variance| put(variance as f32));
+                variance.into_iter().zip(moments).for_each(|(v, (sum, _))| put(quotient(v, mean(sum))));
+            }
             _ => {
                 let divisor = if layer.is_mean_of_hits() { sum(0) } else { weight };
                 if layer == Layer::Depth && divisor == 0.0 {
                     return put(FAR);
                 }
-                (0..layer.sums()).for_each(|i| put(quotient(sum(offset + i), divisor)));
+                let mean = |i| quotient(sum(offset + i), divisor);
+                match layer {
+                    // The format's normals have unit length.
+                    _ if layer.is_normal() && self.film.gbuffer.is_some() => {
+                        let mean = Vec3::from_array([0, 1, 2].map(mean)).normalize_or_zero();
+                        mean.to_array().into_iter().for_each(put);
+                    }
+                    Layer::Slope | Layer::CameraSlope => (0..2).for_each(|i| put(mean(i).abs())),
+                    _ => (0..layer.sums()).for_each(|i| put(mean(i))),
+                }
             }
         }
     }
@@ -198,6 +239,11 @@ impl<'film> Development<'film> {
 fn as_half(rgb: Rgb) -> Rgb {
     let (least, most) = (f16::MIN.to_f32(), f16::MAX.to_f32());
     Rgb::from(rgb.clamp(least, most).to_array().map(|value| f16::from_f32(value).to_f32()))
+}
+
+/// A number as a half float can hold it.
+fn half(value: f32) -> f32 {
+    f16::from_f32(value.clamp(f16::MIN.to_f32(), f16::MAX.to_f32())).to_f32()
 }
 
 /// The identifiers of a pixel among those of its tile.

@@ -5,8 +5,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use lanes::{Each, Real};
 use spectrum::{CIE_Y_INTEGRAL, RgbColorSpace, SampledSpectrum, SampledWavelengths, Spectrum, xyz_from};
 
+use crate::buckets::InBucket;
 use crate::sum::can_add;
-use crate::{PixelSensor, Rejected, Sample};
+use crate::{Buckets, PixelSensor, Rejected, Sample};
 
 /// How light becomes terms of sums, and which samples were refused; shared by the tiles of a film.
 #[derive(Debug)]
@@ -51,10 +52,16 @@ impl Exposure {
         lambda: &SampledWavelengths<R>,
         samples: f32,
     ) -> [R; 3] {
-        let [r, g, b] = self.sensor.response(l, lambda);
+        let rgb = self.sensor.response(l, lambda);
+        let factor = self.factor(rgb, samples);
+        rgb.each(|c| c * factor)
+    }
+
+    /// The factor by which light of this response is scaled down to what it may have.
+    #[inline(always)]
+    fn factor<R: Real>(&self, [r, g, b]: [R; 3], samples: f32) -> R {
         let (largest, limit) = (r.max(g).max(b), R::splat(self.max_component_value * samples));
-        let factor = R::select(largest.gt(limit), limit / largest, R::one());
-        [r, g, b].each(|c| c * factor)
+        R::select(largest.gt(limit), limit / largest, R::one())
     }
 
     /// [`response`](Self::response); `None` for light that is not finite, or too large for the
@@ -81,6 +88,19 @@ impl Exposure {
         })?;
         let terms = [r, g, b, weight];
         terms.into_iter().all(can_add).then_some(terms)
+    }
+
+    /// Light that counts one in `samples` of a pixel by the buckets that it reaches, scaled as its
+    /// [`response`](Self::response) is.
+    pub(crate) fn in_buckets(
+        &self,
+        buckets: Buckets,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+        samples: f32,
+    ) -> impl Iterator<Item = InBucket> + use<> {
+        let factor = f64::from(self.factor(self.sensor.response(l, lambda), samples));
+        buckets.light(l, lambda).map(move |light| InBucket { l: factor * light.l, ..light })
     }
 
     /// The colour of a reflectance under the white of the film's colour space.

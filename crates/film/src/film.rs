@@ -8,9 +8,11 @@
 //!
 //! Sums are stored tile by tile, so that each tile is a contiguous slice that one thread can fill.
 //! A pixel takes [`PIXEL_BYTES`] for its colour, 12 bytes for each further sum (a layer has one for
-//! each of its numbers, and two serve all layers of first hits), [`SPLAT_BYTES`] once there are
-//! splats, and about [`ID_BYTES`] for each identifier in it.
+//! each of its numbers, and two serve all layers of first hits; a bucket of a spectral film has
+//! two), [`SPLAT_BYTES`] and 12 bytes for each bucket once there are splats, and about [`ID_BYTES`]
+//! for each identifier in it.
 
+use description::GBufferSpace;
 use image::{ImageError, require_memory};
 use math::Bounds2i;
 use spectrum::{RgbColorSpace, SampledSpectrum, SampledWavelengths};
@@ -21,13 +23,16 @@ use crate::layer::Layout;
 use crate::splats::SplatSums;
 use crate::sum::{SUM_BYTES, Sums, maps, reserved, zeros};
 use crate::tile::{FilmTile, IdSums, TileData};
-use crate::{Filter, Layer, LayerSet, PixelSensor, Rejected, SPLAT_BYTES, Sample, Splatter};
+use crate::{Buckets, Filter, Layer, LayerSet, PixelSensor, Rejected, SPLAT_BYTES, Sample, Splatter};
 
 /// The sums of a pixel's colour: red, green, blue and weight.
 const COLOR_SUMS: usize = 4;
 
 /// The bytes of a pixel's colour: four sums and the number of samples.
 pub const PIXEL_BYTES: usize = COLOR_SUMS * SUM_BYTES + size_of::<u32>();
+
+/// The sums of a bucket: light and weight.
+const BUCKET_SUMS: usize = 2;
 
 /// The bytes of an identifier in a pixel, about: maps grow as identifiers are found.
 const ID_BYTES: usize = 60;
@@ -53,6 +58,10 @@ pub struct FilmSettings {
     pub half_floats: bool,
     /// The layers beside the colour.
     pub layers: LayerSet,
+    /// The buckets of a spectral film, which has radiance by wavelength beside the colour.
+    pub buckets: Option<Buckets>,
+    /// The space of a geometry buffer, whose layers have the format's names.
+    pub gbuffer: Option<GBufferSpace>,
 }
 
 /// A film.
@@ -71,6 +80,10 @@ pub struct Film {
     pub(crate) counts: Vec<u32>,
     /// The sums of the layers.
     pub(crate) data: Sums,
+    pub(crate) buckets: Option<Buckets>,
+    /// Light and weight of each bucket; none in films of splats alone.
+    pub(crate) spectrum: Sums,
+    pub(crate) gbuffer: Option<GBufferSpace>,
     /// Weights of object and material identifiers, for each tile; none without their layers.
     pub(crate) ids: [Vec<IdSums>; 2],
     pub(crate) splats: SplatSums,
@@ -106,6 +119,8 @@ impl Film {
         }
         let (grid, layout) = (Grid(bounds), Layout::new(layers));
         let no_memory = |_| no_memory(grid);
+        let buckets = settings.buckets.filter(|_| color_sums > 0);
+        let bucket_sums = buckets.map_or(0, |buckets| BUCKET_SUMS * buckets.count());
         let ids = |layer| maps(if layers.has(layer) { grid.tile_count() } else { 0 });
         let film = Self {
             full_resolution,
@@ -119,6 +134,9 @@ impl Film {
             color: Sums::new(grid, color_sums).map_err(no_memory)?,
             counts: zeros(if color_sums > 0 { bounds.area() } else { 0 }).map_err(no_memory)?,
             data: Sums::new(grid, layout.count()).map_err(no_memory)?,
+            buckets: settings.buckets,
+            spectrum: Sums::new(grid, bucket_sums).map_err(no_memory)?,
+            gbuffer: settings.gbuffer,
             ids: [ids(ID_LAYERS[0]).map_err(no_memory)?, ids(ID_LAYERS[1]).map_err(no_memory)?],
             splats: SplatSums::default(),
         };
@@ -140,6 +158,8 @@ impl Film {
             color_space: self.color_space,
             half_floats: self.half_floats,
             layers: self.layout.layers(),
+            buckets: self.buckets,
+            gbuffer: self.gbuffer,
         }
     }
 
@@ -187,6 +207,11 @@ impl Film {
         self.half_floats
     }
 
+    /// The buckets of a spectral film.
+    pub fn buckets(&self) -> Option<Buckets> {
+        self.buckets
+    }
+
     /// The layers beside the colour.
     pub fn layers(&self) -> LayerSet {
         self.layout.layers()
@@ -223,10 +248,12 @@ impl Film {
             sums: (self.layout.count() > 0).then(|| self.data.tile(tile, range.clone())),
             ids: [objects.get_mut(tile), materials.get_mut(tile)],
         });
+        let spectrum = &mut self.spectrum;
         FilmTile {
             bounds: self.grid.bounds(tile),
             exposure: &self.exposure,
             color: self.color.tile(tile, range.clone()),
+            spectrum: self.buckets.map(|buckets| (buckets, spectrum.tile(tile, range.clone()))),
             counts: &mut self.counts[range],
             data,
         }
@@ -248,7 +275,8 @@ impl Film {
     fn cut(&mut self) -> Result<(Vec<FilmTile<'_>>, Splatter<'_>), ImageError> {
         let (grid, exposure, layout) = (self.grid, &self.exposure, &self.layout);
         let mut rest = &mut self.counts[..];
-        let mut data = self.data.tiles(grid);
+        let (mut data, mut spectrum) = (self.data.tiles(grid), self.spectrum.tiles(grid));
+        let buckets = self.buckets;
         let [mut objects, mut materials] = self.ids.each_mut().map(|ids| ids.iter_mut());
         let mut tiles = reserved(grid.tile_count()).map_err(|_| no_memory(grid))?;
         tiles.extend(self.color.tiles(grid).enumerate().map(|(tile, color)| {
@@ -260,30 +288,34 @@ impl Film {
                 sums: data.next(),
                 ids: [objects.next(), materials.next()],
             });
-            FilmTile { bounds, exposure, color, counts, data }
+            let spectrum = buckets.zip(spectrum.next());
+            FilmTile { bounds, exposure, color, counts, data, spectrum }
         }));
-        Ok((tiles, Splatter::new(grid, &self.filter, exposure, &self.splats)))
+        Ok((tiles, Splatter::new(grid, &self.filter, exposure, buckets, &self.splats)))
     }
 
     /// Allocates the memory of splats; refused where there is none.
     pub fn reserve_splats(&mut self) -> Result<(), ImageError> {
-        self.splats.reserve(self.grid).map_err(|_| no_memory(self.grid))
+        let buckets = self.buckets.map_or(0, |buckets| buckets.count());
+        self.splats.reserve(self.grid, buckets).map_err(|_| no_memory(self.grid))
     }
 
     /// Adds the sums of another film of the same pixels and settings; refused
     /// where the other film has splats and there is no memory for them.
     ///
     /// # Panics
-    /// If the other film has other pixels or layers.
+    /// If the other film has other pixels, layers or buckets.
     pub fn merge(&mut self, other: &Self) -> Result<(), ImageError> {
         assert_eq!(self.grid.0, other.grid.0, "films of the same pixels can be merged");
         assert_eq!(self.layers(), other.layers(), "films of the same layers can be merged");
+        assert_eq!(self.buckets, other.buckets, "films of the same buckets can be merged");
         if !other.splats.is_empty() {
             self.reserve_splats()?;
             self.splats.merge(&other.splats);
         }
         self.color.merge(&other.color, self.grid);
         self.data.merge(&other.data, self.grid);
+        self.spectrum.merge(&other.spectrum, self.grid);
         for (count, other) in self.counts.iter_mut().zip(&other.counts) {
             *count = count.saturating_add(*other);
         }
@@ -319,10 +351,13 @@ impl Film {
         self.exposure.rejected().merge(rejected);
     }
 
-    /// The bytes per pixel of a film with these settings, without identifiers.
-    pub(crate) fn pixel_bytes(layers: LayerSet, color: bool, splats: bool) -> u64 {
-        let data = Layout::new(layers).count() * SUM_BYTES;
-        let (color, splats) = (if color { PIXEL_BYTES } else { 0 }, if splats { SPLAT_BYTES } else { 0 });
+    /// The bytes per pixel of a film with these settings, with or without colours and splats, and
+    /// without identifiers.
+    pub(crate) fn pixel_bytes(settings: &FilmSettings, color: bool, splats: bool) -> u64 {
+        let buckets = settings.buckets.map_or(0, |buckets| buckets.count() * SUM_BYTES);
+        let data = Layout::new(settings.layers).count() * SUM_BYTES;
+        let color = if color { PIXEL_BYTES + BUCKET_SUMS * buckets } else { 0 };
+        let splats = if splats { SPLAT_BYTES + buckets } else { 0 };
         (color + data + splats) as u64
     }
 }

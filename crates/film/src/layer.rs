@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use description::GBufferSpace;
+
 /// A layer beside the colour: a quantity of the samples of a pixel, or of their first hits.
 ///
 /// Alpha, albedo and variance are means as the colour is. The other quantities of a first hit are
@@ -36,11 +38,23 @@ pub enum Layer {
     CameraPosition,
     /// Shading normal in camera space, towards the camera.
     CameraNormal,
+    /// Geometric normal in world space, towards the camera.
+    GeometricNormal,
+    /// Geometric normal in camera space, towards the camera.
+    CameraGeometricNormal,
+    /// How much world z changes to the right and down, over the footprint of a sample by which
+    /// textures are filtered; the absolute value of the mean.
+    Slope,
+    /// The same of z in camera space.
+    CameraSlope,
+    /// Variance of the sensor's responses to the samples that hit something, and that variance over
+    /// their mean.
+    ColorVariance,
 }
 
 impl Layer {
     /// Every layer.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 18] = [
         Self::Alpha,
         Self::Depth,
         Self::Normal,
@@ -54,6 +68,11 @@ impl Layer {
         Self::Variance,
         Self::CameraPosition,
         Self::CameraNormal,
+        Self::GeometricNormal,
+        Self::CameraGeometricNormal,
+        Self::Slope,
+        Self::CameraSlope,
+        Self::ColorVariance,
     ];
 
     /// Its name, as the command line and film files have it.
@@ -72,6 +91,11 @@ impl Layer {
             Self::Variance => "variance",
             Self::CameraPosition => "camera-position",
             Self::CameraNormal => "camera-normal",
+            Self::GeometricNormal => "geometric-normal",
+            Self::CameraGeometricNormal => "camera-geometric-normal",
+            Self::Slope => "slope",
+            Self::CameraSlope => "camera-slope",
+            Self::ColorVariance => "color-variance",
         }
     }
 
@@ -80,8 +104,16 @@ impl Layer {
         Self::ALL.into_iter().find(|layer| layer.name() == name)
     }
 
-    /// The names of its channels in a picture; none where they depend on the pixels.
-    pub(crate) fn channels(self) -> &'static [&'static str] {
+    /// The names of its channels in a picture; none where they depend on the pixels. A geometry
+    /// buffer has the format's names.
+    pub(crate) fn channels(self, gbuffer: Option<GBufferSpace>) -> &'static [&'static str] {
+        match gbuffer {
+            Some(space) => self.format_channels(space).unwrap_or(self.own_channels()),
+            None => self.own_channels(),
+        }
+    }
+
+    fn own_channels(self) -> &'static [&'static str] {
         match self {
             Self::Alpha => &["A"],
             Self::Depth => &["Z"],
@@ -94,8 +126,47 @@ impl Layer {
             Self::Variance => &["variance"],
             Self::CameraPosition => &["Pcam.X", "Pcam.Y", "Pcam.Z"],
             Self::CameraNormal => &["Ncam.X", "Ncam.Y", "Ncam.Z"],
+            Self::GeometricNormal => &["Ng.X", "Ng.Y", "Ng.Z"],
+            Self::CameraGeometricNormal => &["Ngcam.X", "Ngcam.Y", "Ngcam.Z"],
+            Self::Slope => &["slope.X", "slope.Y"],
+            Self::CameraSlope => &["slopecam.X", "slopecam.Y"],
+            Self::ColorVariance => &[
+                "variance.R",
+                "variance.G",
+                "variance.B",
+                "relativeVariance.R",
+                "relativeVariance.G",
+                "relativeVariance.B",
+            ],
             Self::ObjectId | Self::MaterialId => &[],
         }
+    }
+
+    /// The names of the format's film `gbuffer` in this space. Layers of the other space that would
+    /// have the same names have others.
+    fn format_channels(self, space: GBufferSpace) -> Option<&'static [&'static str]> {
+        let (p, n, ns) = (&["P.X", "P.Y", "P.Z"], &["N.X", "N.Y", "N.Z"], &["Ns.X", "Ns.Y", "Ns.Z"]);
+        let slopes = &["dzdx", "dzdy"];
+        Some(match (self, space) {
+            (Self::Albedo, _) => &["Albedo.R", "Albedo.G", "Albedo.B"],
+            (Self::Uv, _) => &["u", "v"],
+            (Self::ColorVariance, _) => &[
+                "Variance.R",
+                "Variance.G",
+                "Variance.B",
+                "RelativeVariance.R",
+                "RelativeVariance.G",
+                "RelativeVariance.B",
+            ],
+            (Self::CameraPosition, GBufferSpace::Camera) | (Self::Position, GBufferSpace::World) => p,
+            (Self::CameraNormal, GBufferSpace::Camera) | (Self::Normal, GBufferSpace::World) => ns,
+            (Self::CameraGeometricNormal, GBufferSpace::Camera)
+            | (Self::GeometricNormal, GBufferSpace::World) => n,
+            (Self::CameraSlope, GBufferSpace::Camera) | (Self::Slope, GBufferSpace::World) => slopes,
+            (Self::Position, GBufferSpace::Camera) => &["Pworld.X", "Pworld.Y", "Pworld.Z"],
+            (Self::Normal, GBufferSpace::Camera) => &["Nsworld.X", "Nsworld.Y", "Nsworld.Z"],
+            _ => return None,
+        })
     }
 
     /// The number of its sums per pixel.
@@ -105,7 +176,9 @@ impl Layer {
             Self::Variance => 3,
             // Samples are counted in any case.
             Self::Samples => 0,
-            _ => self.channels().len(),
+            // The number of samples that hit, Σ c and Σ c² of each response c.
+            Self::ColorVariance => 7,
+            _ => self.own_channels().len(),
         }
     }
 
@@ -120,6 +193,18 @@ impl Layer {
                 | Self::Motion
                 | Self::CameraPosition
                 | Self::CameraNormal
+                | Self::GeometricNormal
+                | Self::CameraGeometricNormal
+                | Self::Slope
+                | Self::CameraSlope
+        )
+    }
+
+    /// Whether it is a normal.
+    pub(crate) fn is_normal(self) -> bool {
+        matches!(
+            self,
+            Self::Normal | Self::CameraNormal | Self::GeometricNormal | Self::CameraGeometricNormal
         )
     }
 
@@ -142,7 +227,7 @@ impl fmt::Display for Layer {
 
 /// A set of layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LayerSet(u16);
+pub struct LayerSet(u32);
 
 impl LayerSet {
     /// No layers.

@@ -10,6 +10,7 @@
 //! Film coordinates have x to the right, y down, pixel (0, 0) at the top left; the centre of pixel
 //! (x, y) is at (x + ½, y + ½).
 
+mod buckets;
 mod compile;
 mod cryptomatte;
 mod develop;
@@ -27,6 +28,7 @@ mod splats;
 mod sum;
 mod tile;
 
+pub use buckets::Buckets;
 pub use compile::{Compiled, compile, pixel_bounds};
 pub use cryptomatte::id_of_name;
 pub use develop::Development;

@@ -39,6 +39,14 @@ pub struct FirstHit {
     pub camera_position: [f32; 3],
     /// Shading normal in camera space, of unit length.
     pub camera_normal: [f32; 3],
+    /// Geometric normal in world space, of unit length.
+    pub geometric_normal: [f32; 3],
+    /// Geometric normal in camera space, of unit length.
+    pub camera_geometric_normal: [f32; 3],
+    /// Derivatives of world z by film x and y, over the footprint of a sample.
+    pub slope: [f32; 2],
+    /// Derivatives of camera z by film x and y, over the footprint of a sample.
+    pub camera_slope: [f32; 2],
     /// Reflectance at the sample's first group of wavelengths.
     pub albedo: SampledSpectrum,
     /// Surface parameters.

@@ -15,13 +15,14 @@ use image::ImageError;
 use math::{Bounds2, Bounds2i, Point2, Vec2};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::Filter;
 use crate::exposure::Exposure;
 use crate::grid::Grid;
 use crate::sum::{OwnTileSums, SUM_BYTES, can_add, reserved};
+use crate::{Buckets, Filter};
 
-/// The sums of a pixel's splats: the three responses of the sensor.
-const SPLAT_SUMS: usize = 3;
+/// The sums of a pixel's splats of colour: the three responses of the sensor. Those of the buckets
+/// of a spectral film follow.
+pub(crate) const SPLAT_SUMS: usize = 3;
 
 /// The bytes of a pixel's splats.
 pub const SPLAT_BYTES: usize = SPLAT_SUMS * SUM_BYTES;
@@ -34,12 +35,13 @@ pub(crate) struct SplatSums {
 }
 
 impl SplatSums {
-    /// Allocates memory for a film of these tiles; refused where there is none.
-    pub(crate) fn reserve(&mut self, grid: Grid) -> Result<(), ImageError> {
+    /// Allocates memory for a film of these tiles and this number of buckets; refused where there
+    /// is none.
+    pub(crate) fn reserve(&mut self, grid: Grid, buckets: usize) -> Result<(), ImageError> {
         if self.tiles.is_empty() {
             let mut tiles = reserved(grid.tile_count())?;
             for tile in 0..grid.tile_count() {
-                tiles.push(Mutex::new(OwnTileSums::new(grid.bounds(tile).area(), SPLAT_SUMS)?));
+                tiles.push(Mutex::new(OwnTileSums::new(grid.bounds(tile).area(), SPLAT_SUMS + buckets)?));
             }
             self.tiles = tiles;
         }
@@ -74,13 +76,9 @@ impl SplatSums {
         *self.paths.get_mut() += other.paths();
     }
 
-    /// The sums of a pixel of a tile, in units of 2⁻⁶⁴.
-    pub(crate) fn units(&self, tile: usize, pixel: usize) -> [i128; 3] {
-        if self.is_empty() {
-            return [0; 3];
-        }
-        let sums = self.tile(tile);
-        [0, 1, 2].map(|c| sums.units(pixel, c))
+    /// A sum of a pixel of a tile, in units of 2⁻⁶⁴.
+    pub(crate) fn units(&self, tile: usize, pixel: usize, component: usize) -> i128 {
+        if self.is_empty() { 0 } else { self.tile(tile).units(pixel, component) }
     }
 }
 
@@ -91,6 +89,7 @@ pub struct Splatter<'film> {
     filter: &'film Filter,
     filter_integral: f32,
     exposure: &'film Exposure,
+    buckets: Option<Buckets>,
     sums: &'film SplatSums,
 }
 
@@ -100,9 +99,10 @@ impl<'film> Splatter<'film> {
         grid: Grid,
         filter: &'film Filter,
         exposure: &'film Exposure,
+        buckets: Option<Buckets>,
         sums: &'film SplatSums,
     ) -> Self {
-        Self { grid, filter, filter_integral: filter.integral(), exposure, sums }
+        Self { grid, filter, filter_integral: filter.integral(), exposure, buckets, sums }
     }
 
     /// Counts light paths, whether or not they have added splats.
@@ -131,7 +131,8 @@ impl<'film> Splatter<'film> {
             for x in reached.min[0]..reached.max[0] {
                 let offset = film - Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                 let weight = f64::from(self.filter.evaluate(offset) / self.filter_integral);
-                self.add_rgb([x, y], rgb.map(|value| weight * value));
+                self.add_terms([x, y], rgb.map(|value| weight * value));
+                self.add_to_buckets([x, y], l, lambda, weight);
             }
         }
     }
@@ -139,7 +140,10 @@ impl<'film> Splatter<'film> {
     /// Adds the light `l` of one path to a pixel alone.
     pub fn add_to_pixel(&self, pixel: [i32; 2], l: &SampledSpectrum, lambda: &SampledWavelengths) {
         match self.measure(l, lambda) {
-            Some(rgb) if self.grid.0.contains(pixel) => self.add_rgb(pixel, rgb),
+            Some(rgb) if self.grid.0.contains(pixel) => {
+                self.add_terms(pixel, rgb);
+                self.add_to_buckets(pixel, l, lambda, 1.0);
+            }
             Some(_) => (),
             None => self.exposure.reject(pixel),
         }
@@ -150,14 +154,27 @@ impl<'film> Splatter<'film> {
         self.exposure.measure(l, lambda, self.grid.0.area() as f32)
     }
 
-    fn add_rgb(&self, pixel: [i32; 2], rgb: [f64; 3]) {
+    /// Adds terms to the sums of a pixel, of which they are the first.
+    fn add_terms(&self, pixel: [i32; 2], terms: [f64; SPLAT_SUMS]) {
+        self.add_each(pixel, terms.into_iter().enumerate());
+    }
+
+    /// Adds light to the buckets, if there are any: its integral over each bucket's wavelengths,
+    /// over the bucket's width.
+    fn add_to_buckets(&self, pixel: [i32; 2], l: &SampledSpectrum, lambda: &SampledWavelengths, weight: f64) {
+        let Some(buckets) = self.buckets else { return };
+        let count = buckets.count() as f64;
+        let light = self.exposure.in_buckets(buckets, l, lambda, self.grid.0.area() as f32);
+        let terms = light.map(|light| (SPLAT_SUMS + light.bucket, weight * light.l * light.share * count));
+        self.add_each(pixel, terms);
+    }
+
+    fn add_each(&self, pixel: [i32; 2], terms: impl Iterator<Item = (usize, f64)>) {
         let (tile, index) = self.grid.find(pixel);
         let mut sums = self.sums.tile(tile);
         let mut sums = sums.open();
-        for (c, term) in rgb.into_iter().enumerate() {
-            if can_add(term) {
-                sums.add(index, c, term);
-            }
+        for (component, term) in terms.filter(|&(_, term)| can_add(term)) {
+            sums.add(index, component, term);
         }
     }
 

@@ -28,7 +28,7 @@ const UNITS_PER_ONE: f64 = 18_446_744_073_709_551_616.0;
 type Low = [u32; 3];
 
 /// The rest of the sums of a tile, in units of 2⁹⁶, by their index in the tile; none is 0.
-type High = BTreeMap<u16, i64>;
+type High = BTreeMap<u32, i64>;
 
 /// Whether `term` can be added: it is a number and not larger than [`MAX_TERM`].
 #[inline]
@@ -130,7 +130,7 @@ impl Sums {
 /// The sum that low and high bits make, as far as 128 bits hold it.
 #[inline]
 fn whole(low: i128, high: &High, index: usize) -> i128 {
-    match high.get(&(index as u16)).filter(|_| !high.is_empty()) {
+    match high.get(&(index as u32)).filter(|_| !high.is_empty()) {
         None => low,
         Some(&high) => {
             // With low bits that are not negative only sums beyond 128 bits saturate.
@@ -176,10 +176,10 @@ impl TileSums<'_> {
 
     #[cold]
     fn add_high(&mut self, index: usize, units: i64) {
-        let high = self.high.entry(index as u16).or_insert(0);
+        let high = self.high.entry(index as u32).or_insert(0);
         *high = high.saturating_add(units);
         if *high == 0 {
-            self.high.remove(&(index as u16));
+            self.high.remove(&(index as u32));
         }
     }
 
@@ -187,7 +187,7 @@ impl TileSums<'_> {
         for (index, &low) in low.iter().enumerate() {
             self.add_low(index, extended(low));
         }
-        high.iter().for_each(|(&index, &high)| self.add_high(index.into(), high));
+        high.iter().for_each(|(&index, &high)| self.add_high(index as usize, high));
     }
 }
 

@@ -10,7 +10,7 @@ use crate::exposure::Exposure;
 use crate::grid::index_in;
 use crate::layer::Layout;
 use crate::sum::{MAX_TERM, TileSums, can_add, units};
-use crate::{FirstHit, Layer, Sample};
+use crate::{Buckets, FirstHit, Layer, LayerSet, Sample};
 
 /// The weights of identifiers in a tile, in units of sums: by pixel and identifier.
 pub(crate) type IdSums = BTreeMap<(u16, u32), i128>;
@@ -24,6 +24,8 @@ pub struct FilmTile<'film> {
     pub(crate) counts: &'film mut [u32],
     /// The layers, if there are any.
     pub(crate) data: Option<TileData<'film>>,
+    /// The buckets of a spectral film, and the sums of each: light and weight.
+    pub(crate) spectrum: Option<(Buckets, TileSums<'film>)>,
 }
 
 impl FilmTile<'_> {
@@ -37,6 +39,12 @@ impl FilmTile<'_> {
         self.data.as_ref().is_some_and(|data| data.layout.layers().has_first_hit())
     }
 
+    /// Whether some layer of the film takes the slopes of [`Sample::first_hit`].
+    pub fn wants_slopes(&self) -> bool {
+        let has = |layers: LayerSet| layers.has(Layer::Slope) || layers.has(Layer::CameraSlope);
+        self.data.as_ref().is_some_and(|data| has(data.layout.layers()))
+    }
+
     /// Adds a sample to a pixel.
     ///
     /// # Panics
@@ -45,15 +53,27 @@ impl FilmTile<'_> {
     pub fn add(&mut self, pixel: [i32; 2], sample: &Sample) {
         assert!(self.bounds.contains(pixel), "{pixel:?} is not in the tile");
         let index = index_in(&self.bounds, pixel);
-        let Some(terms) = self.exposure.terms(sample) else {
+        let Some(terms) = self.exposure.terms(sample).filter(|_| self.can_add_to_buckets(sample)) else {
             self.exposure.reject(pixel);
             return;
         };
         terms.into_iter().enumerate().for_each(|(sum, term)| self.color.add(index, sum, term));
+        if let Some((buckets, sums)) = &mut self.spectrum {
+            for (bucket, terms) in bucket_terms(self.exposure, *buckets, sample) {
+                terms.into_iter().enumerate().for_each(|(i, term)| sums.add(index, 2 * bucket + i, term));
+            }
+        }
         self.counts[index] = self.counts[index].saturating_add(1);
         if let Some(data) = &mut self.data {
             data.add(index, sample, terms, self.exposure);
         }
+    }
+
+    /// Whether the sums of the buckets, if there are any, can take a sample.
+    fn can_add_to_buckets(&self, sample: &Sample) -> bool {
+        self.spectrum.as_ref().is_none_or(|&(buckets, _)| {
+            bucket_terms(self.exposure, buckets, sample).all(|(_, terms)| terms.into_iter().all(can_add))
+        })
     }
 
     /// Adds samples of radiance `l` alone to successive pixels, row by row, from the one with index
@@ -78,7 +98,7 @@ impl FilmTile<'_> {
             is_plain = is_plain & c.abs().lt(limit) & (c * weight).abs().lt(limit);
         }
         let terms = LaneTerms { rgb: rgb.each(R::to_array), weight: weight.to_array() };
-        let plain = if self.data.is_none() { is_plain.bits() } else { 0 };
+        let plain = if self.data.is_none() && self.spectrum.is_none() { is_plain.bits() } else { 0 };
         self.add_plain(first, count, &terms, plain);
         if (!plain).trailing_zeros() < count as u32 {
             let l = l.0.each(R::to_array);
@@ -126,6 +146,20 @@ impl FilmTile<'_> {
     }
 }
 
+/// What a sample adds to the two sums of buckets: its light and its weight there.
+fn bucket_terms(
+    exposure: &Exposure,
+    buckets: Buckets,
+    sample: &Sample,
+) -> impl Iterator<Item = (usize, [f64; 2])> {
+    let part = f64::from(sample.weight) / sample.l.len() as f64;
+    let light = sample.l.iter().zip(sample.lambda);
+    light.flat_map(move |(l, lambda)| exposure.in_buckets(buckets, l, lambda, 1.0)).map(move |light| {
+        let weight = part * light.share;
+        (light.bucket, [weight * light.l, weight])
+    })
+}
+
 /// The responses to samples, and their weights.
 struct LaneTerms {
     rgb: [[f32; MAX_LANES]; 3],
@@ -166,6 +200,10 @@ impl TileData<'_> {
             add(Layer::Position, positive, &hit.position);
             add(Layer::CameraPosition, positive, &hit.camera_position);
             add(Layer::CameraNormal, positive, &hit.camera_normal);
+            add(Layer::GeometricNormal, positive, &hit.geometric_normal);
+            add(Layer::CameraGeometricNormal, positive, &hit.camera_geometric_normal);
+            add(Layer::Slope, positive, &hit.slope);
+            add(Layer::CameraSlope, positive, &hit.camera_slope);
             add(Layer::Uv, positive, &hit.uv);
             add(Layer::Motion, positive, &hit.motion);
         }
@@ -174,6 +212,14 @@ impl TileData<'_> {
             let luminance = terms[1];
             let moments = [weight * weight, weight * luminance, luminance * luminance];
             for (i, moment) in moments.into_iter().enumerate() {
+                sums.add(pixel, offset + i, moment.clamp(-crate::sum::MAX_TERM, crate::sum::MAX_TERM));
+            }
+        }
+        let color_variance = self.layout.offset(Layer::ColorVariance);
+        if let Some(offset) = color_variance.filter(|_| sample.first_hit.is_some() && weight != 0.0) {
+            let rgb = [0, 1, 2].map(|c: usize| terms[c] / weight);
+            let squares = rgb.map(|c| c * c);
+            for (i, moment) in [1.0].into_iter().chain(rgb).chain(squares).enumerate() {
                 sums.add(pixel, offset + i, moment.clamp(-crate::sum::MAX_TERM, crate::sum::MAX_TERM));
             }
         }

@@ -32,7 +32,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::Duration;
 
-use film::{Development, Film, LayerSet, PassSet, Rejected};
+use film::{Development, Film, PassSet, Rejected};
 use geometry::RayStats;
 use image::{Image, ImageError, PixelSource};
 use rayon::prelude::*;
@@ -129,12 +129,12 @@ impl SessionState {
 
     /// The picture of all passes, without layers; refused where there is no memory for it.
     pub fn develop(&self) -> Result<Image, ImageError> {
-        Development::new(&self.film, self.second.as_ref(), LayerSet::NONE).to_image()
+        Development::of_colors(&self.film, self.second.as_ref()).to_image()
     }
 
     /// The picture of all passes with its layers, row by row while it is written.
     pub fn development(&self) -> Development<'_> {
-        Development::new(&self.film, self.second.as_ref(), self.film.layers())
+        Development::of_all(&self.film, self.second.as_ref())
     }
 
     /// The number of samples in the films.
@@ -376,7 +376,7 @@ fn noise(films: [&Film; 2], counts: [u32; 2]) -> f64 {
 /// pictures are developed row by row to save memory. Rows are summed in order, so that the result
 /// does not depend on the number of threads.
 fn mean_over(films: [&Film; 2], f: impl Fn([f64; 2]) -> f64 + Sync) -> f64 {
-    let pictures = films.map(|film| Development::new(film, None, LayerSet::NONE));
+    let pictures = films.map(|film| Development::of_colors(film, None));
     let (width, height) = (pictures[0].width(), pictures[0].height());
     let row_sum = |y| {
         let [a, b] = pictures.each_ref().map(|picture| {

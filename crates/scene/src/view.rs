@@ -4,7 +4,7 @@
 //! samples or a preview in larger pixels needs a new view, but no new scene.
 
 use crate::camera::{self, Camera};
-use description::{Diagnostic, IntegratorDesc, SamplerKind, SceneDesc};
+use description::{Diagnostic, FilmKind, IntegratorDesc, SamplerKind, SceneDesc};
 use math::DMat4;
 
 /// Options of the format that apply to all algorithms.
@@ -30,6 +30,9 @@ pub struct View {
     pub samples_per_pixel: u32,
     /// Options that apply to all algorithms.
     pub options: ViewOptions,
+    /// The range of wavelengths in nanometres that a spectral film wants, over which they are
+    /// sampled uniformly; without it, they are sampled as the eye sees them.
+    pub wavelengths: Option<[f32; 2]>,
 }
 
 /// What [`View::compile`] returns.
@@ -42,7 +45,7 @@ pub struct CompiledView {
 }
 
 impl View {
-    /// Compiles camera, resolution, number of samples and options of a description, and ignores the
+    /// Compiles camera, film, number of samples and options of a description, and ignores the
     /// rest of it. `world_from_render` is the render space of the scene to be viewed:
     /// [`Scene::world_from_render`](crate::Scene::world_from_render), or, before it is compiled,
     /// [`world_from_render`]. Returns all errors and warnings if there is an error.
@@ -57,7 +60,11 @@ impl View {
             disable_texture_filtering: desc.options.disable_texture_filtering,
             force_diffuse: desc.options.force_diffuse,
         };
-        let view = Self { camera, samples_per_pixel: samples_per_pixel(desc), options };
+        let wavelengths = match desc.film.kind {
+            FilmKind::Spectral { lambda_min, lambda_max, .. } => Some([lambda_min, lambda_max]),
+            FilmKind::Rgb | FilmKind::GBuffer { .. } => None,
+        };
+        let view = Self { camera, samples_per_pixel: samples_per_pixel(desc), options, wavelengths };
         Ok(CompiledView { view, warnings: diagnostics })
     }
 

@@ -50,7 +50,7 @@ pub(crate) fn integrate(f: impl Fn(f32) -> f32) -> f32 {
 }
 
 /// The colour of light with the spectrum `f`.
-pub(crate) fn integrate_xyz(f: impl Fn(f32) -> f32) -> Xyz {
+pub fn integrate_xyz(f: impl Fn(f32) -> f32) -> Xyz {
     let functions = matching_functions();
     let component = |g: &DenselySampled| integrate(|lambda| f(lambda) * g.at(lambda)) / CIE_Y_INTEGRAL;
     Xyz::new(component(&functions.x), component(&functions.y), component(&functions.z))
@@ -69,6 +69,19 @@ pub fn tristimulus<R: Real>(light: &SampledSpectrum<R>, lambda: &SampledWaveleng
     [integral(x, lambda, weighted), integral(y, lambda, weighted), integral(z, lambda, weighted)]
 }
 
+/// ∫ L f dλ in nanometres for each of three functions f and light sampled at `lambda`: unbiased
+/// estimates.
+#[inline(always)]
+pub fn responses<R: Real>(
+    functions: [&DenselySampled; 3],
+    light: &SampledSpectrum<R>,
+    lambda: &SampledWavelengths<R>,
+) -> [R; 3] {
+    let weighted = light.safe_div(lambda.pdf());
+    let [a, b, c] = functions;
+    [inner(a, lambda, weighted), inner(b, lambda, weighted), inner(c, lambda, weighted)]
+}
+
 /// The luminance of light sampled at `lambda`: an unbiased estimate.
 pub fn y_from(light: &SampledSpectrum, lambda: &SampledWavelengths) -> f32 {
     integral(&matching_functions().y, lambda, light.safe_div(lambda.pdf()))
@@ -81,11 +94,21 @@ fn integral<R: Real>(
     lambda: &SampledWavelengths<R>,
     weighted: SampledSpectrum<R>,
 ) -> R {
+    inner(function, lambda, weighted) / R::splat(CIE_Y_INTEGRAL)
+}
+
+/// ∫ L f dλ for a function f and light divided by its densities.
+#[inline(always)]
+fn inner<R: Real>(
+    function: &DenselySampled,
+    lambda: &SampledWavelengths<R>,
+    weighted: SampledSpectrum<R>,
+) -> R {
     let mut values = *lambda.lambda();
     for value in &mut values {
         *value = function.at(*value);
     }
-    (SampledSpectrum(values) * weighted).average() / R::splat(CIE_Y_INTEGRAL)
+    (SampledSpectrum(values) * weighted).average()
 }
 
 #[cfg(test)]

@@ -20,12 +20,12 @@ pub mod spectrum;
 pub mod uplift;
 
 pub use blackbody::{Blackbody, blackbody};
-pub use cie::{CIE_Y_INTEGRAL, tristimulus, xyz_from, y_from};
+pub use cie::{CIE_Y_INTEGRAL, responses, tristimulus, xyz_from, y_from};
 pub use color_space::{RgbColorSpace, white_balance};
 pub use daylight::daylight;
 pub use dense::DenselySampled;
 pub use matrix::Matrix3;
-pub use measured::names;
+pub use measured::{color_checker, names};
 pub use piecewise::{ParseError, PiecewiseLinear, SpectrumError};
 pub use rgb::{Rgb, Xyz};
 pub use rgb_spectrum::{RgbAlbedoSpectrum, RgbIlluminantSpectrum, RgbUnboundedSpectrum};

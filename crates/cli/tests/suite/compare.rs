@@ -108,12 +108,9 @@ fn an_interruption_leaves_a_report() {
 
     let folder = Folder::with_scene("compare-interrupt");
     folder.alhazen(&["render", "scene.pbrt", "--quiet", "-o", "r.exr"]).expect(0);
-    // The warning about the sensor is printed when rendering begins, so that the test knows when to
-    // interrupt it.
-    folder.write(
-        "scene.pbrt",
-        &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),
-    );
+    // The warning about the second film is printed when rendering begins, so that the test knows
+    // when to interrupt it.
+    folder.write("scene.pbrt", &SCENE.replace("Film \"rgb\"", "Film \"rgb\" Film \"rgb\""));
     let arguments = ["compare", "scene.pbrt", "--integrators", "path,whitted", "--spp", "100000000"];
     let mut child = folder
         .command(&[&arguments[..], &["--reference", "r.exr", "-o", "a.html"]].concat())

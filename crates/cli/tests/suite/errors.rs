@@ -41,18 +41,15 @@ fn scene_check_does_not_render() {
     let folder = Folder::with_scene("check");
     let right = folder.alhazen(&["scene", "check", "scene.pbrt"]).expect(0);
     assert_eq!((right.out.as_str(), right.err.as_str()), ("scene.pbrt is valid\n", ""));
-    folder.write(
-        "sensor.pbrt",
-        &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),
-    );
-    let warned = folder.alhazen(&["scene", "check", "sensor.pbrt"]).expect(0);
+    folder.write("films.pbrt", &SCENE.replace("Film \"rgb\"", "Film \"rgb\" Film \"rgb\""));
+    let warned = folder.alhazen(&["scene", "check", "films.pbrt"]).expect(0);
     assert!(
-        warned.err.contains("warning[not-drawn]: sensor `canon_eos_100d` is not drawn yet"),
+        warned.err.contains("warning[replaced-statement]: this `Film` replaces an earlier one"),
         "{warned:?}"
     );
-    assert!(warned.err.contains("sensor.pbrt:4:") && warned.err.contains("1 warning"), "{warned:?}");
-    let json = folder.alhazen(&["scene", "check", "sensor.pbrt", "--json"]).expect(0).json();
-    assert_eq!(json["warnings"][0]["code"], "not-drawn");
+    assert!(warned.err.contains("films.pbrt:4:") && warned.err.contains("1 warning"), "{warned:?}");
+    let json = folder.alhazen(&["scene", "check", "films.pbrt", "--json"]).expect(0).json();
+    assert_eq!(json["warnings"][0]["code"], "replaced-statement");
     folder.write("wrong.pbrt", &SCENE.replace("WorldBegin", "WorldBegins"));
     folder.alhazen(&["scene", "check", "wrong.pbrt"]).expect(1);
     folder.alhazen_reading(&["scene", "check", "-"], SCENE).expect(0);

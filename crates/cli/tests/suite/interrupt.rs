@@ -9,12 +9,9 @@ use crate::common::{Folder, SCENE};
 
 /// An unlimited render, interrupted after a moment: its exit code and standard output.
 fn interrupted(folder: &Folder, signal: &str) -> (Option<i32>, String) {
-    // The warning about the sensor is printed when the render begins, so that the test knows when
-    // to interrupt it.
-    folder.write(
-        "scene.pbrt",
-        &SCENE.replace("Film \"rgb\"", "Film \"rgb\" \"string sensor\" \"canon_eos_100d\""),
-    );
+    // The warning about the second film is printed when the render begins, so that the test knows
+    // when to interrupt it.
+    folder.write("scene.pbrt", &SCENE.replace("Film \"rgb\"", "Film \"rgb\" Film \"rgb\""));
     let arguments = ["render", "scene.pbrt", "--spp", "100000000", "-o", "a.exr", "-o", "a.png"];
     let mut child = folder
         .command(&arguments)

@@ -45,8 +45,10 @@ pub fn put_row(payload: &mut Vec<u8>, film: &Film, row: usize) {
         if !film.counts.is_empty() {
             put(&|pixel| film.counts[range.start + pixel].into());
         }
-        for c in 0..film.data.components() {
-            put(&|pixel| film.data.units(tile, range.start, pixel, c));
+        for sums in [&film.data, &film.spectrum] {
+            for c in 0..sums.components() {
+                put(&|pixel| sums.units(tile, range.start, pixel, c));
+            }
         }
         if !film.splats.is_empty() {
             let sums = film.splats.tile(tile);
@@ -79,10 +81,12 @@ pub fn add_row(fields: &mut Fields, film: &mut Film, row: usize) -> Result<(), F
                 *sum = sum.saturating_add(count);
             }
         }
-        for c in 0..film.data.components() {
-            let sums = block(fields, range.len())?;
-            let mut tile = film.data.tile(tile, range.clone());
-            sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+        for own in [&mut film.data, &mut film.spectrum] {
+            for c in 0..own.components() {
+                let sums = block(fields, range.len())?;
+                let mut tile = own.tile(tile, range.clone());
+                sums.into_iter().enumerate().for_each(|(pixel, units)| tile.add_units(pixel, c, units));
+            }
         }
         if !film.splats.is_empty() {
             let mut own = film.splats.tile(tile);
@@ -115,7 +119,8 @@ pub fn max_row_bytes(film: &Film, limit: u64) -> u64 {
     let Grid(bounds) = film.grid;
     let count = usize::from(!film.counts.is_empty());
     let splats = if film.splats.is_empty() { 0 } else { film.splats.tile(0).components() };
-    let components = film.color.components() + count + film.data.components() + splats;
+    let sums = [&film.color, &film.data, &film.spectrum].map(|sums| sums.components());
+    let components = sums.iter().sum::<usize>() + count + splats;
     let tile = 1 + 16 * TILE_SIZE as u64 * TILE_SIZE as u64;
     (bounds.width() as u64).div_ceil(TILE_SIZE as u64) * components as u64 * tile
 }

@@ -43,7 +43,7 @@ pub use error::FilmFileError;
 use section::{Fields, Section, SectionReader, SectionWriter, damaged, put_text};
 
 /// The version of the format that is written, and the only one that is read.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const HEADER: section::Tag = *b"HEAD";
 const FILM: section::Tag = *b"FILM";

@@ -213,8 +213,8 @@ fn errors_name_the_section_and_the_problem() {
     let message = |bytes: &[u8]| read(bytes).unwrap_err().to_string();
     assert_eq!(message(b"PNG"), "not a film file");
     let mut newer = bytes.clone();
-    newer[8] = 2;
-    assert_eq!(message(&newer), "a film file of version 2; this program reads version 1");
+    newer[8] = 3;
+    assert_eq!(message(&newer), "a film file of version 3; this program reads version 2");
     let mut damaged = bytes.clone();
     damaged[40] ^= 1;
     let text = message(&damaged);

@@ -1,5 +1,7 @@
 //! The film as a whole: order, merging, refusal, bounds and development.
 
+use std::collections::BTreeSet;
+
 use alhazen_film::{Film, FilmTile, Layer, compile};
 use description::{ColorSpaceDesc, FilmKind, FilterDesc, GBufferSpace, SceneDesc, Severity, Span, Spanned};
 use image::Pixels;
@@ -245,14 +247,18 @@ fn settings_outside_their_domain_are_errors() {
 }
 
 #[test]
-fn unsupported_settings_are_warnings() {
+fn impossible_buckets_and_unknown_sensors_are_errors() {
     let mut desc = scene([10, 10]);
-    desc.film.kind = FilmKind::Spectral { buckets: 8, lambda_min: 400.0, lambda_max: 700.0 };
-    desc.film.sensor.name = "canon_eos_100d".into();
-    let said = said(&desc);
-    assert_eq!(said.len(), 2);
-    assert!(said.iter().all(|(severity, code, _)| *severity == Severity::Warning && *code == "not-drawn"));
-    assert_eq!(said[0].2, "film `spectral` is not drawn yet; drawn as `rgb`");
+    desc.film.kind = FilmKind::Spectral { buckets: 8, lambda_min: 700.0, lambda_max: 400.0 };
+    assert_eq!(said(&desc)[0].2, "no 8 buckets go from 700 to 400 nm");
+    desc.film.kind = FilmKind::Spectral { buckets: 5000, lambda_min: 300.0, lambda_max: 700.0 };
+    let messages: Vec<_> = said(&desc).into_iter().map(|(.., message)| message).collect();
+    assert!(messages[0].starts_with("`nbuckets` is "), "{messages:?}");
+    assert!(messages[1].starts_with("`lambdamin` is "), "{messages:?}");
+    desc = scene([10, 10]);
+    desc.film.sensor.name = "canon_eos_10d".into();
+    let (_, code, message) = said(&desc).remove(0);
+    assert!(code == "invalid-value" && message.ends_with("sony_ilce_9, not canon_eos_10d"), "{message}");
 }
 
 #[test]
@@ -260,15 +266,17 @@ fn layers_are_asked_for_by_name_or_as_a_gbuffer() {
     let layer = |name: &str| Spanned::new(name.to_owned(), Span::NONE);
     let mut desc = scene([10, 10]);
     desc.film.layers = ["samples", "depth"].map(layer).into();
-    let layers = |desc: &SceneDesc| film_of(desc).layers().iter().map(Layer::name).collect::<Vec<_>>();
-    assert_eq!(layers(&desc), ["depth", "samples"]);
+    let layers = |desc: &SceneDesc| film_of(desc).layers().iter().map(Layer::name).collect::<BTreeSet<_>>();
+    assert_eq!(layers(&desc), BTreeSet::from(["depth", "samples"]));
     desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
     assert_eq!(said(&desc), []);
-    let gbuffer = ["depth", "normal", "albedo", "position", "uv", "samples", "variance"];
+    let both = ["albedo", "uv", "color-variance", "depth", "samples"];
+    let of = |space: [&'static str; 4]| both.into_iter().chain(space).collect::<BTreeSet<_>>();
+    let gbuffer = of(["normal", "position", "geometric-normal", "slope"]);
     assert_eq!(layers(&desc), gbuffer);
     desc.film.kind = FilmKind::GBuffer { space: GBufferSpace::Camera };
     assert_eq!(said(&desc), []);
-    let gbuffer = ["depth", "albedo", "uv", "samples", "variance", "camera-position", "camera-normal"];
+    let gbuffer = of(["camera-position", "camera-normal", "camera-geometric-normal", "camera-slope"]);
     assert_eq!(layers(&desc), gbuffer);
     desc.film.layers = vec![layer("depht")];
     let (severity, _, message) = said(&desc).remove(0);
@@ -291,6 +299,11 @@ fn the_imaging_ratio_is_exposure_time_times_iso_over_100() {
     desc.film.sensor.iso = 800.0;
     let brighter = picture(&desc);
     assert!((0..3).all(|c| (brighter[c] / plain[c] - 4.0).abs() < 1e-5), "{brighter:?} {plain:?}");
+    desc.film.sensor.name = "nikon_d810".into();
+    let bright = picture(&desc);
+    desc.film.sensor.iso = 100.0;
+    let dark = picture(&desc);
+    assert!((0..3).all(|c| (bright[c] / dark[c] - 8.0).abs() < 1e-5), "{bright:?} {dark:?}");
 }
 
 /// Adds the samples of all pixels of a tile, in lanes.
@@ -317,7 +330,11 @@ fn samples_in_lanes_are_added_like_single_ones() {
     let resolution = [19, 21];
     let mut with_layers = scene(resolution);
     with_layers.film.kind = FilmKind::GBuffer { space: GBufferSpace::World };
-    for desc in [scene(resolution), with_layers] {
+    let mut of_camera = scene(resolution);
+    of_camera.film.sensor.name = "sony_ilce_9".into();
+    let mut spectral = scene(resolution);
+    spectral.film.kind = FilmKind::Spectral { buckets: 5, lambda_min: 400.0, lambda_max: 700.0 };
+    for desc in [scene(resolution), with_layers, of_camera, spectral] {
         for set in InstructionSet::ALL.into_iter().filter(|set| set.is_available()) {
             let [mut single, mut lanes] = [film_of(&desc), film_of(&desc)];
             for seed in 0..4 {

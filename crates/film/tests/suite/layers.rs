@@ -1,10 +1,12 @@
 //! Layers beside the colour: means, identifiers, variance, and how they are written.
 
+use std::collections::BTreeSet;
+
 use alhazen_film::{
     Development, Film, FilmFile, FilmHeader, FilmSettings, FilmWriter, FirstHit, Layer, LayerSet,
     PIXEL_BYTES, PassSet, ReadLimits, SPLAT_BYTES, Sample, compile, id_of_name,
 };
-use description::SceneDesc;
+use description::{FilmKind, GBufferSpace, SceneDesc, Span, Spanned};
 use image::{Attribute, Format, Image, PixelSource, ReadOptions, WriteOptions, encode, read};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
@@ -29,6 +31,10 @@ fn hit(depth: f32, object: &str) -> FirstHit {
         normal: [0.0, 0.6, 0.8],
         camera_position: [5.0, -6.0, depth],
         camera_normal: [0.0, 0.8, -0.6],
+        geometric_normal: [0.6, 0.0, 0.8],
+        camera_geometric_normal: [0.8, 0.0, -0.6],
+        slope: [-0.25, 0.5],
+        camera_slope: [0.125, -2.0],
         albedo: SampledSpectrum::splat(0.5),
         uv: [0.25, 0.75],
         motion: [-2.0, 4.0],
@@ -76,10 +82,77 @@ fn means_of_first_hits_are_over_the_samples_that_hit() {
     assert_eq!(["N.X", "N.Y", "N.Z"].map(at), [0.0, 0.6, 0.8]);
     assert_eq!(["Pcam.X", "Pcam.Y", "Pcam.Z"].map(at), [5.0, -6.0, 3.5]);
     assert_eq!(["Ncam.X", "Ncam.Y", "Ncam.Z"].map(at), [0.0, 0.8, -0.6]);
+    assert_eq!(["Ng.X", "Ng.Y", "Ng.Z"].map(at), [0.6, 0.0, 0.8]);
+    assert_eq!(["Ngcam.X", "Ngcam.Y", "Ngcam.Z"].map(at), [0.8, 0.0, -0.6]);
+    assert_eq!(["slope.X", "slope.Y", "slopecam.X", "slopecam.Y"].map(at), [0.25, 0.5, 0.125, 2.0]);
     assert_eq!(["uv.U", "uv.V"].map(at), [0.25, 0.75]);
     assert_eq!(["motion.X", "motion.Y"].map(at), [-2.0, 4.0]);
     assert_eq!(at("samples"), 4.0);
     assert!((at("A") - 3.5 / 7.5).abs() < 1e-6, "weighted as colours are: {}", at("A"));
+}
+
+#[test]
+fn a_geometry_buffer_has_the_channels_of_the_format() {
+    let mut desc = SceneDesc::default();
+    desc.film.resolution = RESOLUTION;
+    for space in [GBufferSpace::Camera, GBufferSpace::World] {
+        desc.film.kind = FilmKind::GBuffer { space };
+        desc.film.layers = Vec::new();
+        let mut film = compile(&desc).unwrap().film;
+        add(&mut film, [1, 2], 1.0, Some(hit(2.0, "cube")));
+        let tilted =
+            FirstHit { normal: [0.0, -0.6, 0.8], camera_normal: [0.0, 0.8, 0.6], ..hit(4.0, "cube") };
+        add(&mut film, [1, 2], 1.0, Some(tilted));
+        let image = written(&film);
+        let mut names: Vec<&str> = image.channels().iter().map(String::as_str).collect();
+        names.sort_unstable();
+        let expected = "Albedo.B Albedo.G Albedo.R B G N.X N.Y N.Z Ns.X Ns.Y Ns.Z P.X P.Y P.Z R \
+             RelativeVariance.B RelativeVariance.G RelativeVariance.R Variance.B Variance.G Variance.R \
+             dzdx dzdy u v";
+        assert_eq!(names, expected.split_whitespace().collect::<Vec<_>>());
+        let at = |channel| at(&image, channel, [1, 2]);
+        let is_world = space == GBufferSpace::World;
+        let (p, n) =
+            if is_world { ([3.0, 2.0, -3.0], [0.6, 0.0, 0.8]) } else { ([5.0, -6.0, 3.0], [0.8, 0.0, -0.6]) };
+        assert_eq!(["P.X", "P.Y", "P.Z"].map(at), p);
+        assert_eq!(["N.X", "N.Y", "N.Z"].map(at), n);
+        // A mean of normals has unit length, too.
+        assert_eq!(
+            ["Ns.X", "Ns.Y", "Ns.Z"].map(at),
+            if is_world { [0.0, 0.0, 1.0] } else { [0.0, 1.0, 0.0] }
+        );
+        assert_eq!(["dzdx", "dzdy"].map(at), if is_world { [0.25, 0.5] } else { [0.125, 2.0] });
+        assert_eq!(["u", "v"].map(at), [0.25, 0.75]);
+        // No other layer has the name of one of these.
+        desc.film.layers = Layer::ALL.map(|layer| Spanned::new(layer.name().into(), Span::NONE)).into();
+        let all = compile(&desc).unwrap().film.development().channels();
+        let names: BTreeSet<_> = all.iter().map(|channel| &channel.name).collect();
+        assert_eq!(names.len(), all.len());
+    }
+}
+
+#[test]
+fn the_variance_of_colours_is_that_of_samples_that_hit() {
+    let mut film = film([Layer::ColorVariance]);
+    let lights = [1.0, 4.0, 7.0];
+    for l in lights {
+        add_light(&mut film, [0, 0], 0.5, Some(hit(1.0, "cube")), l, 0.5);
+    }
+    add_light(&mut film, [0, 0], 1.0, None, 100.0, 0.5);
+    add_light(&mut film, [1, 0], 1.0, Some(hit(1.0, "cube")), 1.0, 0.5);
+    let image = written(&film);
+    let at = |channel: &str, pixel| at(&image, channel, pixel);
+    // The responses are 1, 4 and 7 times that to light of strength 1: their variance is 9 times its
+    // square, their mean 4 times it.
+    let l = SampledSpectrum::splat(1.0);
+    let unit = film.settings().sensor.response(&l, &SampledWavelengths::sample_visible(0.5));
+    for (channel, unit) in ["R", "G", "B"].into_iter().zip(unit) {
+        let variance = at(&format!("variance.{channel}"), [0, 0]);
+        let relative = at(&format!("relativeVariance.{channel}"), [0, 0]);
+        assert!((variance / (9.0 * unit * unit) - 1.0).abs() < 1e-5, "{channel}: {variance}");
+        assert!((relative / (9.0 / 4.0 * unit) - 1.0).abs() < 1e-5, "{channel}: {relative}");
+    }
+    assert_eq!(at("variance.R", [1, 0]), 0.0, "one sample has none");
 }
 
 #[test]
@@ -217,7 +290,7 @@ fn order_merging_and_files_do_not_change_a_bit() {
     let mut merged = whole.blank().unwrap();
     parts.iter().for_each(|part| merged.merge(part).unwrap());
     assert!(bits(&merged) == bits(&whole));
-    let both = Development::new(&parts[0], Some(&parts[1]), whole.layers());
+    let both = Development::of_all(&parts[0], Some(&parts[1]));
     assert!(through_file(&both).values().map(f32::to_bits).eq(bits(&whole)), "without merging");
 
     let files = [0, 1].map(|part| {

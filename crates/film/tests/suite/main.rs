@@ -6,4 +6,5 @@ mod all_filters;
 mod file;
 mod film;
 mod layers;
+mod spectral;
 mod splats;

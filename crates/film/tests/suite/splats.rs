@@ -1,6 +1,6 @@
 //! Light that arrives anywhere on the film.
 
-use alhazen_film::{Development, Film, LayerSet, compile};
+use alhazen_film::{Development, Film, compile};
 use description::{FilterDesc, SceneDesc};
 use math::Vec2;
 use spectrum::{SampledSpectrum, SampledWavelengths};
@@ -111,7 +111,7 @@ fn order_and_merging_do_not_change_a_bit() {
     count(&mut whole, 250);
     assert_eq!(bits(&merged), bits(&whole), "paths are added, too");
     let parts = [&second, &first].map(|part| all(&mut part.iter()));
-    let both = Development::new(&parts[0], Some(&parts[1]), LayerSet::NONE).to_image().unwrap();
+    let both = Development::of_colors(&parts[0], Some(&parts[1])).to_image().unwrap();
     assert!(both.values().map(f32::to_bits).eq(bits(&whole)), "without merging");
     count(&mut backward, 250);
     assert_eq!(bits(&backward), bits(&whole));

@@ -10,6 +10,7 @@ use crate::Path;
 use crate::bidirectional::Bidirectional;
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::camera_ray;
+use crate::transport::shutter_sample::ShutterSample;
 
 /// A contribution to the film.
 #[derive(Clone, Copy, Debug)]
@@ -20,13 +21,20 @@ pub(super) struct Contribution {
     l: SampledSpectrum,
     /// The wavelengths of `l`.
     lambda: SampledWavelengths,
+    /// Whether the film wants light at all wavelengths alike, not as the eye sees it.
+    is_spectral: bool,
 }
 
 impl Contribution {
-    /// The scalar contribution function: the mean of X, Y and Z, which is positive for all colours.
+    /// The scalar contribution function: the mean of X, Y and Z, which is positive for all colours,
+    /// or for a spectral film the light's integral over wavelength.
     pub fn c(&self) -> f32 {
-        let xyz = xyz_from(&self.l, &self.lambda);
-        let c = (xyz.x + xyz.y + xyz.z) / 3.0;
+        let c = if self.is_spectral {
+            self.l.safe_div(self.lambda.pdf()).average()
+        } else {
+            let xyz = xyz_from(&self.l, &self.lambda);
+            (xyz.x + xyz.y + xyz.z) / 3.0
+        };
         if c.is_finite() { c.max(0.0) } else { 0.0 }
     }
 
@@ -64,14 +72,13 @@ impl FilmDomain {
     /// The camera's dimensions: wavelengths (1), film (2), time (1), lens (2).
     fn sample(&self, tracer: &mut Tracer) -> CameraEnd {
         let Tracer { scene, view, sampler, .. } = tracer;
-        let u = sampler.get_1d();
-        let u = if view.options.disable_wavelength_jitter { 0.5 } else { u };
+        let wavelength = sampler.get_1d();
         let film = self.0.lerp(sampler.get_2d());
         let (time, lens) = (sampler.get_1d(), sampler.get_2d());
         let sample = CameraSample { film, lens, time, filter_weight: 1.0 };
         CameraEnd {
             film,
-            lambda: SampledWavelengths::sample_visible(u),
+            lambda: ShutterSample::wavelengths(view, wavelength),
             time: view.camera.sample_time(time),
             camera_ray: camera_ray(scene, view, &sample),
         }
@@ -98,7 +105,7 @@ impl Target for CameraPaths<'_> {
             let l = self.path.li_from(1, tracer, camera_ray.ray, &mut lambda);
             l * (camera_ray.weight * self.film.area())
         });
-        Contribution { places: film.into(), l, lambda }
+        Contribution { places: film.into(), l, lambda, is_spectral: tracer.view.wavelengths.is_some() }
     }
 }
 
@@ -124,7 +131,8 @@ impl Target for ConnectedPaths<'_> {
         let (places, l) = self
             .find(s, strategies - s, &end, tracer, others)
             .unwrap_or((end.film.into(), SampledSpectrum::ZERO));
-        Contribution { places, l: l * (strategies as f32 / probability), lambda }
+        let is_spectral = tracer.view.wavelengths.is_some();
+        Contribution { places, l: l * (strategies as f32 / probability), lambda, is_spectral }
     }
 }
 

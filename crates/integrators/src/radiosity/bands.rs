@@ -2,7 +2,7 @@
 //!
 //! A radiosity solution is computed once for all pixels, so that it has fixed wavelengths:
 //! [`BANDS`] of them, λ_i = P⁻¹((i + s)/BANDS), where P is the distribution from which paths sample
-//! their wavelengths ([`SampledWavelengths::sample_visible`]). The sensor's integral ∫ L(λ) c̄(λ)
+//! their wavelengths ([`ShutterSample::wavelengths`]). The sensor's integral ∫ L(λ) c̄(λ)
 //! dλ becomes the rectangle rule under that substitution, Σ L(λ_i) c̄(λ_i) / p(λ_i) / BANDS, which
 //! is accurate because the integrand vanishes at both ends. With 32 bands, the error is mostly due
 //! to the steps of the sensor's tables, of a nanometre each, and depends on s: 0.2 to 0.6 % for s =
@@ -10,8 +10,11 @@
 //! lamp of the measured Cornell box for s = 0.65. With 16 bands it is 1 %, with 64 it is 0.2 %.
 //! Every sample then has all wavelengths, without the noise of random ones.
 
+use scene::View;
 use spectrum::{N, SampledSpectrum, SampledWavelengths, xyz_from};
 use std::ops::{Add, AddAssign, Mul};
+
+use crate::transport::shutter_sample::ShutterSample;
 
 /// Number of groups of [`N`] wavelengths.
 const GROUPS: usize = 8;
@@ -114,10 +117,13 @@ pub(crate) struct Wavelengths {
 }
 
 impl Wavelengths {
-    /// All wavelengths; without `jitter`, those that all samples of paths share.
-    pub fn new(jitter: bool) -> Self {
-        let place = |i: usize| if jitter { (i as f32 + PLACE) / BANDS as f32 } else { 0.5 };
-        let groups = std::array::from_fn(|i| SampledWavelengths::sample_visible(place(i)));
+    /// All wavelengths; without jitter, those that all samples of paths share.
+    pub fn new(view: &View) -> Self {
+        let place = |i: usize| (i as f32 + PLACE) / BANDS as f32;
+        Self::from_groups(std::array::from_fn(|i| ShutterSample::wavelengths(view, place(i))))
+    }
+
+    fn from_groups(groups: [SampledWavelengths; GROUPS]) -> Self {
         let weight = |lambda: &SampledWavelengths, i: usize| {
             let unit = SampledSpectrum::new(std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));
             let xyz = xyz_from(&unit, lambda);
@@ -172,6 +178,11 @@ mod tests {
         sum.map(|x| x / groups.len() as f64)
     }
 
+    fn visible() -> Wavelengths {
+        let place = |i: usize| (i as f32 + PLACE) / BANDS as f32;
+        Wavelengths::from_groups(std::array::from_fn(|i| SampledWavelengths::sample_visible(place(i))))
+    }
+
     #[test]
     fn bands_integrate_to_the_colours_of_spectra() {
         let srgb = RgbColorSpace::srgb();
@@ -186,7 +197,7 @@ mod tests {
             .map(|i| SampledWavelengths::sample_visible((i as f32 + 0.5) / (1 << 14) as f32))
             .collect();
         for spectrum in spectra {
-            let (found, exact) = (xyz(&spectrum, Wavelengths::new(true).groups()), xyz(&spectrum, &many));
+            let (found, exact) = (xyz(&spectrum, visible().groups()), xyz(&spectrum, &many));
             for (found, exact) in found.into_iter().zip(exact) {
                 assert!((found / exact - 1.0).abs() < 2.5e-3, "{found}, not {exact}");
             }
@@ -195,7 +206,7 @@ mod tests {
 
     #[test]
     fn brightness_is_proportional_to_the_sum_of_xyz() {
-        let wavelengths = Wavelengths::new(true);
+        let wavelengths = visible();
         let light = RgbColorSpace::srgb().illuminant();
         let bands = wavelengths.sample(|lambda| light.sample(lambda));
         let expected: f64 = xyz(&light, wavelengths.groups()).iter().sum();

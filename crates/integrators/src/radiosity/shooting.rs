@@ -72,7 +72,7 @@ impl Solution {
         settings: &RadiosityDesc,
         control: &Control,
     ) -> Result<Self, Cancelled> {
-        let wavelengths = Wavelengths::new(!view.options.disable_wavelength_jitter);
+        let wavelengths = Wavelengths::new(view);
         let cut = Cut::new(scene, view, settings, &wavelengths, control)?;
         let settings = settings.clone();
         let lights_received = settings.max_depth == 0;

@@ -2,7 +2,7 @@
 
 use film::{FirstHit, id_of_name};
 use geometry::Hit;
-use math::{RayDifferential, Vec2, Vec3};
+use math::{Differentials, RayDifferential, Vec2, Vec3, face_forward};
 use scene::camera::Projection;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -15,9 +15,11 @@ const MAX_INTERFACES: u32 = 64;
 const ALBEDO_SAMPLES: u32 = 16;
 
 /// The first surface that a camera ray hits, except interfaces. The albedo is that at `lambda`.
+/// Slopes come from the neighbours of the camera ray, without which they are 0.
 pub(crate) fn first_hit(
     tracer: &mut Tracer,
     ray: &RayDifferential,
+    neighbours: Option<&Differentials>,
     lambda: &SampledWavelengths,
 ) -> Option<FirstHit> {
     let mut ray = *ray;
@@ -45,19 +47,22 @@ pub(crate) fn first_hit(
             _ => in_camera.z,
         };
         // Towards the camera, as compositing software expects.
-        let normal = surface.surface.shading.n;
-        let normal = if normal.dot(wo) < 0.0 { -normal } else { normal };
+        let [normal, geometric] = [surface.surface.shading.n, surface.surface.n].map(|n| face_forward(n, wo));
+        let in_world = |v: Vec3| world_from_render.transform_vector3(v.as_dvec3()).as_vec3();
+        let steps = neighbours.map_or([Vec3::splat(0.0); 2], |neighbours| {
+            tracer.view.pixel_on_plane(Some((neighbours, true)), p, surface.surface.n, time)
+        });
         let names = tracer.scene.names();
         return Some(FirstHit {
             depth,
             position: world_from_render.transform_point3(p.as_dvec3()).as_vec3().to_array(),
-            normal: world_from_render
-                .transform_vector3(normal.as_dvec3())
-                .as_vec3()
-                .normalize_or_zero()
-                .to_array(),
+            normal: in_world(normal).normalize_or_zero().to_array(),
+            geometric_normal: in_world(geometric).normalize_or_zero().to_array(),
             camera_position: in_camera.to_array(),
             camera_normal: camera_from_render.normal(normal).normalize_or_zero().to_array(),
+            camera_geometric_normal: camera_from_render.normal(geometric).normalize_or_zero().to_array(),
+            slope: steps.map(|step| in_world(step).z),
+            camera_slope: steps.map(|step| camera_from_render.vector(step).z),
             albedo,
             uv: surface.surface.uv.to_array(),
             motion: motion(tracer, &hit, p).to_array(),

@@ -37,6 +37,8 @@ pub(crate) struct PixelSample {
     pub lambda: SampledWavelengths,
     /// The time, in the scene's units.
     pub time: f32,
+    /// Where it is on film and lens.
+    pub camera_sample: CameraSample,
     /// The camera ray; `None` if no light reaches that point of the film.
     pub camera_ray: Option<CameraRayDifferential>,
     /// Weight in the pixel.
@@ -101,7 +103,12 @@ impl PixelSamples<'_> {
         tracer: &mut Tracer,
     ) -> Option<FirstHit> {
         let camera_ray = sample.camera_ray.as_ref().filter(|_| tile.wants_first_hit())?;
-        first_hit(tracer, &camera_ray.ray, lambda)
+        let neighbours = tile.wants_slopes().then(|| {
+            let mut ray = self.view.camera.ray_differential(&sample.camera_sample);
+            ray.scale(differential_scale(self.view.samples_per_pixel));
+            ray.differentials
+        });
+        first_hit(tracer, &camera_ray.ray, neighbours.flatten().as_ref(), lambda)
     }
 
     /// Starts the sampler for a sample of a pixel and takes the dimensions of the camera.
@@ -128,6 +135,7 @@ impl PixelSamples<'_> {
             pixel,
             lambda: shutter.lambda,
             time: shutter.time(self.view),
+            camera_sample: sample,
             camera_ray,
             filter_weight: sample.filter_weight,
         }

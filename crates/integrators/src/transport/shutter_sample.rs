@@ -30,7 +30,10 @@ impl ShutterSample {
     #[inline(always)]
     pub fn wavelengths<R: Real>(view: &View, u: R) -> SampledWavelengths<R> {
         let u = if view.options.disable_wavelength_jitter { R::splat(0.5) } else { u };
-        SampledWavelengths::sample_visible(u)
+        match view.wavelengths {
+            None => SampledWavelengths::sample_visible(u),
+            Some([min, max]) => SampledWavelengths::sample_uniform_in(u, min, max),
+        }
     }
 
     /// The sample that all paths of a pass share. Over the passes both are stratified by an
