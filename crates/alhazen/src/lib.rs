@@ -36,5 +36,5 @@ pub use fingerprint::Fingerprint;
 pub use header::Header;
 pub use job::{CompiledJob, Job, RenderError, render_file};
 pub use overrides::{OverrideError, Overrides};
-pub use picture::write_picture;
+pub use picture::{InSrgb, write_picture};
 pub use settings::{Group, PARTS, Part, integrator_names};

@@ -3,40 +3,71 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use image::{Channel, Chromaticities, Format, Image, ImageError, ImageMetadata, PixelSource, WriteOptions};
+use image::{
+    Attribute, Channel, Chromaticities, Display, DisplaySettings, Format, Image, ImageError, ImageMetadata,
+    PixelSource, WriteOptions,
+};
 use spectrum::{Matrix3, Rgb, RgbColorSpace};
 
 /// Writes a picture in the format of the name's extension. EXR files keep all channels, the
-/// picture's colour space and its header; other formats keep only the colours and cannot state
-/// their colour space, so these are converted to sRGB.
-pub fn write_picture(picture: &dyn PixelSource, path: impl AsRef<Path>) -> Result<(), ImageError> {
+/// picture's colour space and its header. Other formats keep only the colours and cannot state
+/// their colour space, so these are converted to sRGB. Formats of codes for a display get what
+/// `display` says; others stay linear.
+pub fn write_picture(
+    picture: &dyn PixelSource,
+    path: impl AsRef<Path>,
+    display: &DisplaySettings,
+) -> Result<(), ImageError> {
     let path = path.as_ref();
-    let format = Format::from_name(&path.to_string_lossy());
-    match color_space(picture.metadata().chromaticities).filter(|_| format != Some(Format::Exr)) {
-        None => image::write(picture, path, &WriteOptions::default()),
-        Some(space) => image::write(&InSrgb::new(picture, space), path, &WriteOptions::default()),
+    let write = |picture: &dyn PixelSource| image::write(picture, path, &WriteOptions::default());
+    match Format::from_name(&path.to_string_lossy()) {
+        Some(format) if format != Format::Exr => write(&InSrgb::new(picture, format, display)),
+        _ => write(picture),
     }
 }
 
-/// A pixel source that converts colours to sRGB as rows are read.
-struct InSrgb<'a> {
+/// A pixel source that converts colours to sRGB, and for formats of codes to what a display shows,
+/// as rows are read.
+pub struct InSrgb<'a> {
     picture: &'a dyn PixelSource,
-    srgb_from_picture: Matrix3,
+    conversion: Conversion,
     metadata: ImageMetadata,
     /// Indices of the channels R, G and B.
     color: Option<[usize; 3]>,
 }
 
+/// What becomes of colours.
+enum Conversion {
+    /// They stay as they are.
+    None,
+    /// Linear colours of sRGB.
+    Srgb(Matrix3),
+    /// What a display shows.
+    Display(Box<Display>),
+}
+
 impl<'a> InSrgb<'a> {
-    fn new(picture: &'a dyn PixelSource, space: &RgbColorSpace) -> Self {
+    /// For a file of this format.
+    pub fn new(picture: &'a dyn PixelSource, format: Format, display: &DisplaySettings) -> Self {
         let channels = picture.channels();
         let find = |name| channels.iter().position(|channel| channel.name == name);
         let color = match ["R", "G", "B"].map(find) {
             [Some(r), Some(g), Some(b)] => Some([r, g, b]),
             _ => None,
         };
-        let metadata = ImageMetadata { chromaticities: None, ..picture.metadata().clone() };
-        Self { picture, srgb_from_picture: space.convert(RgbColorSpace::srgb()), metadata, color }
+        let mut metadata = picture.metadata().clone();
+        let space = color_space(metadata.chromaticities.take());
+        if format.is_for_display() {
+            metadata.set(ImageMetadata::VIEW, Attribute::Text(display.view.name().to_owned()));
+        }
+        let conversion = match (format.is_for_display() && *display != DisplaySettings::default(), space) {
+            (true, space) => {
+                Conversion::Display(Box::new(Display::new(display, space.unwrap_or(RgbColorSpace::srgb()))))
+            }
+            (false, Some(space)) => Conversion::Srgb(space.convert(RgbColorSpace::srgb())),
+            (false, None) => Conversion::None,
+        };
+        Self { picture, conversion, metadata, color }
     }
 }
 
@@ -60,11 +91,15 @@ impl PixelSource for InSrgb<'_> {
     fn row(&self, y: u32, values: &mut [f32]) {
         self.picture.row(y, values);
         let count = values.len() / self.width() as usize;
-        if let Some(color) = self.color {
-            for pixel in values.chunks_exact_mut(count) {
-                let rgb = self.srgb_from_picture.apply_f32(color.map(|c| pixel[c]));
-                (0..3).for_each(|i| pixel[color[i]] = rgb[i]);
-            }
+        let Some(color) = self.color else { return };
+        for pixel in values.chunks_exact_mut(count) {
+            let rgb = color.map(|c| pixel[c]);
+            let shown = match &self.conversion {
+                Conversion::None => rgb,
+                Conversion::Srgb(matrix) => matrix.apply_f32(rgb),
+                Conversion::Display(display) => display.show(rgb),
+            };
+            (0..3).for_each(|i| pixel[color[i]] = shown[i]);
         }
     }
 }
@@ -104,10 +139,24 @@ mod tests {
         for (name, expected, tolerance) in
             [("a.exr", grey_green, 1e-3), ("a.pfm", [0.2, 0.5, 0.3], 1e-4), ("a.png", [0.2, 0.5, 0.3], 1e-2)]
         {
-            write_picture(&picture, folder.join(name)).unwrap();
+            write_picture(&picture, folder.join(name), &DisplaySettings::default()).unwrap();
             let read = image::open(folder.join(name)).unwrap().rgb(1, 0);
             assert!((0..3).all(|c| (read[c] - expected[c]).abs() < tolerance), "{name}: {read:?}");
         }
+        // A view acts on formats of codes only, and they name it.
+        let view = image::DisplayView::KhronosNeutral;
+        let settings = DisplaySettings { view, exposure: 1.0, white: None };
+        for (name, expected, tolerance) in
+            [("b.pfm", [0.2, 0.5, 0.3], 1e-4), ("b.png", [0.4 - 0.04, 0.92, 0.56], 1e-2)]
+        {
+            write_picture(&picture, folder.join(name), &settings).unwrap();
+            let read = image::open(folder.join(name)).unwrap().rgb(1, 0);
+            let close = |c: usize| (read[c] - expected[c]).abs() < tolerance;
+            assert!((0..3).filter(|&c| name == "b.pfm" || c != 1).all(close), "{name}: {read:?}");
+        }
+        let bytes = std::fs::read(folder.join("b.png")).unwrap();
+        let text = b"tEXtView\0khronos-neutral";
+        assert!(bytes.windows(text.len()).any(|window| window == text));
         std::fs::remove_dir_all(folder).unwrap();
     }
 }

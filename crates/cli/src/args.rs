@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use alhazen::compare::Contender;
+use alhazen::image::{DisplaySettings, DisplayView, DisplayWhite};
 use alhazen::{Overrides, Shard};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::help;
-use crate::values::{crop, film_file, key_value, noise, pixel, resolution, shard, time};
+use crate::values::{crop, film_file, key_value, noise, pixel, resolution, shard, stops, time, view, white};
 
 /// A physically based renderer.
 #[derive(Debug, Parser)]
@@ -119,6 +120,9 @@ pub struct Render {
     /// Other changes to the scene.
     #[command(flatten)]
     pub changes: Changes,
+    /// How pictures for displays show the light.
+    #[command(flatten)]
+    pub display: DisplayOptions,
     /// Print nothing but errors; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,
@@ -135,6 +139,28 @@ impl Render {
             samples_per_pixel: self.spp,
             ..self.changes.overrides()
         }
+    }
+}
+
+/// How pictures for displays show the light.
+#[derive(Args, Clone, Debug)]
+pub struct DisplayOptions {
+    /// The view of .png, .jpg, .tga, .bmp and .qoi: standard (sRGB), agx, aces (ACES 2.0),
+    /// khronos-neutral or filmic. PNG files name it; other formats stay linear.
+    #[arg(long, value_name = "NAME", default_value = "standard", value_parser = view)]
+    pub view: DisplayView,
+    /// Exposure of the same files in stops: 1 doubles the light.
+    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true, value_parser = stops)]
+    pub exposure: f32,
+    /// The light that becomes white in them: kelvin, or a CIE xy chromaticity. [default: as it is]
+    #[arg(long, value_name = "K|X,Y", value_parser = white)]
+    pub white_balance: Option<DisplayWhite>,
+}
+
+impl DisplayOptions {
+    /// The settings by these options.
+    pub fn settings(&self) -> DisplaySettings {
+        DisplaySettings { view: self.view, exposure: self.exposure, white: self.white_balance }
     }
 }
 
@@ -234,6 +260,9 @@ pub struct Resume {
     /// Threads to render with; their number never changes the picture. [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// How pictures for displays show the light.
+    #[command(flatten)]
+    pub display: DisplayOptions,
     /// Print nothing but errors; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,
@@ -253,6 +282,9 @@ pub struct Merge {
     /// [default: the first film file's name with .exr, in the current folder]
     #[arg(short, long = "output", value_name = "FILE")]
     pub output: Vec<PathBuf>,
+    /// How pictures for displays show the light.
+    #[command(flatten)]
+    pub display: DisplayOptions,
     /// Print nothing but errors; with --json, the JSON object too.
     #[arg(long)]
     pub quiet: bool,
@@ -400,6 +432,9 @@ pub struct Convert {
     /// projection. Its own projection is determined by its aspect ratio.
     #[arg(long, value_enum)]
     pub projection: Option<Projection>,
+    /// How pictures for displays show the light.
+    #[command(flatten)]
+    pub display: DisplayOptions,
     /// Write one JSON object to standard output instead of text.
     #[arg(long)]
     pub json: bool,

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use alhazen::description::schema::Settings;
 use alhazen::description::{IntegratorDesc, RadiosityDesc};
+use alhazen::image::DisplaySettings;
 use alhazen::import::{AssetSource, Imported, import};
 use alhazen::integrators::{Control, Limits, PassError, Session};
 use alhazen::{Header, Job, Overrides, system_clock};
@@ -113,6 +114,8 @@ pub struct Task<'a> {
     pub limits: Limits,
     /// The files of the picture; it is not written if there are none.
     pub outputs: Vec<PathBuf>,
+    /// How they show the light if they are for displays.
+    pub display: DisplaySettings,
     /// Where the render is saved.
     pub checkpoint: Option<Checkpoint>,
     /// Notes on the result beside those of the algorithm.
@@ -135,11 +138,11 @@ impl Task<'_> {
             && self.job.session.state().done.is_empty()
             && let Some(sketch) = self.job.sketch(&control)
         {
-            write_preview(&sketch, &self.outputs);
+            write_preview(&sketch, &self.outputs, &self.display);
             interrupt.note_written(&self.outputs, 0);
         }
         let bar = Bar::new(is_talkative);
-        let mut preview = Preview::new(self.job.header().clone(), &self.outputs, interrupt);
+        let mut preview = Preview::new(self.job.header().clone(), (&self.outputs, &self.display), interrupt);
         let outcome = self.job.session.run(self.passes.clone(), &self.limits, &control, &mut |session| {
             bar.show(&session.progress());
             preview.after_pass(session);
@@ -162,7 +165,7 @@ impl Task<'_> {
         let files = session.integrator().files();
         let films = if self.outputs.is_empty() { Vec::new() } else { session.integrator().films() };
         let picture = self.job.header().development(session.state());
-        let beside = write_results(&picture, &self.outputs, films, files);
+        let beside = write_results(&picture, &self.outputs, &self.display, films, files);
         // If a cancelled pass has left samples on the film, the last checkpoint is kept.
         let saved = match &mut self.checkpoint {
             Some(checkpoint) if session.is_whole() => checkpoint.finish(session),
@@ -214,14 +217,20 @@ impl Task<'_> {
 struct Preview<'a> {
     header: Header,
     outputs: &'a [PathBuf],
+    display: &'a DisplaySettings,
     interrupt: &'a Interrupt,
     begin: Instant,
     next: Duration,
 }
 
 impl<'a> Preview<'a> {
-    fn new(header: Header, outputs: &'a [PathBuf], interrupt: &'a Interrupt) -> Self {
-        Self { header, outputs, interrupt, begin: Instant::now(), next: Duration::from_millis(500) }
+    fn new(
+        header: Header,
+        (outputs, display): (&'a [PathBuf], &'a DisplaySettings),
+        interrupt: &'a Interrupt,
+    ) -> Self {
+        let next = Duration::from_millis(500);
+        Self { header, outputs, display, interrupt, begin: Instant::now(), next }
     }
 
     fn after_pass(&mut self, session: &Session) {
@@ -229,7 +238,7 @@ impl<'a> Preview<'a> {
         if self.outputs.is_empty() || elapsed < self.next {
             return;
         }
-        write_preview(&self.header.development(session.state()), self.outputs);
+        write_preview(&self.header.development(session.state()), self.outputs, self.display);
         self.interrupt.note_written(self.outputs, session.progress().pass);
         let writing = self.begin.elapsed() - elapsed;
         self.next = elapsed + writing + elapsed.min(PREVIEW_INTERVAL).max(PREVIEW_SHARE * writing);

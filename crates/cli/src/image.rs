@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use alhazen::InSrgb;
 use alhazen::image::flip::{PIXELS_PER_DEGREE, hdr_flip};
 use alhazen::image::{
-    Image, ImageError, Projection, SampleDepth, WriteOptions, false_color::false_color, info as image_info,
-    metrics, read, write,
+    Format, Image, ImageError, PixelSource, Projection, SampleDepth, WriteOptions, false_color::false_color,
+    info as image_info, metrics, read, write,
 };
 use serde_json::json;
 
@@ -97,6 +98,8 @@ pub fn diff(arguments: &Diff) -> Result<(), Failure> {
 /// Writes a picture in another format.
 pub fn convert(arguments: &Convert) -> Result<(), Failure> {
     output::check(&arguments.output).map_err(Failure::Usage)?;
+    let outputs = std::slice::from_ref(&arguments.output);
+    let display = output::display(&arguments.display, outputs).map_err(Failure::Usage)?;
     let mut image = open(&arguments.input)?;
     if let Some(projection) = arguments.projection {
         let projection = match projection {
@@ -112,7 +115,11 @@ pub fn convert(arguments: &Convert) -> Result<(), Failure> {
         Depth::F16 => SampleDepth::F16,
         Depth::F32 => SampleDepth::F32,
     };
-    write(&image, &arguments.output, &WriteOptions { depth })
+    let format = Format::from_name(&arguments.output.to_string_lossy());
+    let shown = format.filter(|format| format.is_for_display());
+    let shown = shown.map(|format| InSrgb::new(&image, format, &display));
+    let picture = shown.as_ref().map_or(&image as &dyn PixelSource, |shown| shown);
+    write(picture, &arguments.output, &WriteOptions { depth })
         .map_err(|error| about_file(&arguments.output, error))?;
     if arguments.json {
         say(json!({

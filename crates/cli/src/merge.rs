@@ -10,6 +10,7 @@ use crate::args::Merge;
 use crate::checkpoint;
 use crate::console::say;
 use crate::failure::{Failure, about_file};
+use crate::output;
 use crate::results::write_results;
 use crate::resume::outputs;
 
@@ -19,6 +20,7 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
         return Err(Failure::Usage("there is no film file to merge".into()));
     };
     let outputs = outputs(&arguments.output, first)?;
+    let display = output::display(&arguments.display, &outputs).map_err(Failure::Usage)?;
     let mut merged = checkpoint::read(first)?;
     for (path, before) in others.iter().zip(1..) {
         let (file, limits) = checkpoint::open(path)?;
@@ -46,7 +48,7 @@ pub fn merge(arguments: &Merge) -> Result<(), Failure> {
     let header = merged.header().clone();
     let (state, films) = merged.into_state();
     let films = films.iter().map(|(name, film)| (name.clone(), film));
-    let beside = write_results(&header.development(&state), &outputs, films, Vec::new())?;
+    let beside = write_results(&header.development(&state), &outputs, &display, films, Vec::new())?;
     let passes = state.done.count();
     if arguments.json {
         let names = |paths: &[PathBuf]| paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>();

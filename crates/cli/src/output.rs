@@ -1,9 +1,11 @@
 //! Paths of pictures and reports, checked before anything is rendered.
 
 use std::fs::{self, OpenOptions};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use alhazen::image::{Format, link_target};
+use alhazen::image::{DisplaySettings, Format, link_target};
+
+use crate::args::DisplayOptions;
 
 /// Checks that a picture can be written to `path`: its extension names a format, its folder exists
 /// and is writable, and an existing file can be replaced.
@@ -16,6 +18,21 @@ pub fn check(path: &Path) -> Result<(), String> {
         ));
     }
     check_place(path)
+}
+
+/// How these pictures show the light; refused where none of them is in a format for a display.
+pub fn display(options: &DisplayOptions, outputs: &[PathBuf]) -> Result<DisplaySettings, String> {
+    let settings = options.settings();
+    let is_for_display =
+        |path: &PathBuf| Format::from_name(&path.to_string_lossy()).is_some_and(Format::is_for_display);
+    if settings != DisplaySettings::default() && !outputs.iter().any(is_for_display) {
+        let known = Format::ALL.into_iter().filter(|format| format.is_for_display());
+        let known = known.map(|format| format!(".{}", format.extensions()[0])).collect::<Vec<_>>().join(", ");
+        return Err(format!(
+            "--view, --exposure and --white-balance are for {known}; other files stay linear"
+        ));
+    }
+    Ok(settings)
 }
 
 /// Checks that a file can be written to `path`, whatever its extension.

@@ -43,6 +43,7 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
     } else {
         arguments.output.clone()
     };
+    let display = output::display(&arguments.display, &outputs).map_err(Failure::Usage)?;
     let (job, compiled) = prepared.compile()?;
     let limits = Limits { time: arguments.limits.time, noise: arguments.limits.noise };
     let all = all_passes(&job, arguments);
@@ -71,8 +72,8 @@ pub fn render(arguments: &Render) -> Result<ExitCode, Failure> {
         None => None,
     };
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
-    let scene = &arguments.scene;
-    let task = Task { scene, job, passes, limits, outputs, checkpoint, notes: Vec::new(), verbosity };
+    let (scene, notes) = (&arguments.scene, Vec::new());
+    let task = Task { scene, job, passes, limits, outputs, display, checkpoint, notes, verbosity };
     task.run(compiled, &interrupt)
 }
 

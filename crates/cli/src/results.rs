@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use alhazen::film::Film;
-use alhazen::image::{PixelSource, replace_file};
+use alhazen::image::{DisplaySettings, PixelSource, replace_file};
 use alhazen::integrators::OutputFile;
 use alhazen::write_picture;
 
@@ -14,6 +14,7 @@ use crate::failure::{Failure, about_file};
 pub fn write_results<'a>(
     picture: &dyn PixelSource,
     outputs: &[PathBuf],
+    display: &DisplaySettings,
     films: impl IntoIterator<Item = (String, &'a Film)>,
     files: Vec<OutputFile>,
 ) -> Result<Vec<PathBuf>, Failure> {
@@ -25,13 +26,13 @@ pub fn write_results<'a>(
         is_written.then(|| path.to_owned())
     };
     for path in outputs {
-        write(path, &|| write_picture(picture, path).map_err(|error| about_file(path, error)));
+        write(path, &|| write_picture(picture, path, display).map_err(|error| about_file(path, error)));
     }
     let mut beside = Vec::new();
     for (name, film) in films {
         let path = named_beside(&outputs[0], &name);
         beside.extend(write(&path, &|| {
-            write_picture(&film.development(), &path).map_err(|error| about_file(&path, error))
+            write_picture(&film.development(), &path, display).map_err(|error| about_file(&path, error))
         }));
     }
     for OutputFile { path, contents } in &files {
@@ -44,9 +45,9 @@ pub fn write_results<'a>(
 }
 
 /// Writes a picture that a better one will replace. Errors are ignored: they recur at the end.
-pub fn write_preview(picture: &dyn PixelSource, outputs: &[PathBuf]) {
+pub fn write_preview(picture: &dyn PixelSource, outputs: &[PathBuf], display: &DisplaySettings) {
     for path in outputs {
-        let _ = write_picture(picture, path);
+        let _ = write_picture(picture, path, display);
     }
 }
 

@@ -19,6 +19,7 @@ use crate::threads::start_threads;
 /// Resumes a render, saves it and writes the picture.
 pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     let outputs = outputs(&arguments.output, &arguments.film)?;
+    let display = output::display(&arguments.display, &outputs).map_err(Failure::Usage)?;
     output::check_place(&arguments.film).map_err(Failure::Usage)?;
     start_threads(arguments.threads)?;
     let interrupt = Interrupt::listen(arguments.json)?;
@@ -73,7 +74,7 @@ pub fn resume(arguments: &Resume) -> Result<ExitCode, Failure> {
     let checkpoint = Checkpoint::new(film.clone(), arguments.every, order, job.header().clone(), done);
     let verbosity = Verbosity { quiet: arguments.quiet, json: arguments.json };
     let checkpoint = Some(checkpoint);
-    let task = Task { scene: &scene, job, passes, limits, outputs, checkpoint, notes, verbosity };
+    let task = Task { scene: &scene, job, passes, limits, outputs, display, checkpoint, notes, verbosity };
     task.run(compiled, &interrupt)
 }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use alhazen::Shard;
+use alhazen::image::{DisplayView, DisplayWhite};
 
 /// A pair of name and value.
 pub fn key_value(text: &str) -> Result<(String, String), String> {
@@ -26,6 +27,29 @@ pub fn time(text: &str) -> Result<Duration, String> {
         .filter(|&seconds| seconds > 0.0)
         .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
         .ok_or_else(|| "expected a duration such as 30s, 1.5min or 2h".into())
+}
+
+/// A display view.
+pub fn view(text: &str) -> Result<DisplayView, String> {
+    let known = || DisplayView::ALL.map(DisplayView::name).join(", ");
+    DisplayView::from_name(text).ok_or_else(|| format!("there are {}", known()))
+}
+
+/// An exposure in stops.
+pub fn stops(text: &str) -> Result<f32, String> {
+    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 64.0);
+    stops.ok_or_else(|| "expected a number of stops from -64 to 64".into())
+}
+
+/// A light that becomes white: kelvin, or x and y.
+pub fn white(text: &str) -> Result<DisplayWhite, String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let white = match numbers.as_deref() {
+        Some([kelvin]) if (500.0..=100_000.0).contains(kelvin) => Some(DisplayWhite::Kelvin(*kelvin)),
+        Some([x, y]) if *x > 0.0 && *y > 0.0 && x + y <= 1.0 => Some(DisplayWhite::Chromaticity([*x, *y])),
+        _ => None,
+    };
+    white.ok_or_else(|| "expected kelvin from 500 to 100000, or x,y such as 0.3127,0.329".into())
 }
 
 /// A relative standard error.

@@ -4,10 +4,11 @@
 //! floats; values read by [`Image::channel`] are always linear. Row 0 is the top row, x runs to the
 //! right. [`read`] decodes a file's bytes, [`write`](write()) encodes by extension; a [`Pyramid`]
 //! answers filtered lookups at texture coordinates; [`metrics`] and [`flip`] measure the difference
-//! of two pictures.
+//! of two pictures; a [`Display`] turns linear colours into those of a display.
 
 pub mod codec;
 mod depth;
+pub mod display;
 mod encoding;
 mod error;
 pub mod false_color;
@@ -28,6 +29,7 @@ pub use codec::{
     replace_file, replace_file_with, write,
 };
 pub use depth::SampleDepth;
+pub use display::{Display, DisplaySettings, DisplayView, DisplayWhite};
 pub use encoding::{ColorEncoding, linear_from_srgb, srgb_from_linear};
 pub use error::ImageError;
 pub use image::{Image, Pixels};

@@ -84,6 +84,8 @@ impl ImageMetadata {
     pub const WORLD_TO_NDC: &'static str = "worldToNDC";
     /// The attribute that names the program that made the picture.
     pub const SOFTWARE: &'static str = "software";
+    /// The attribute that names the [display view](crate::DisplayView) of a picture of codes.
+    pub const VIEW: &'static str = "view";
     /// The attribute for free text.
     pub const COMMENTS: &'static str = "comments";
 

@@ -28,7 +28,8 @@ fn picture(integrator: &str, samples: u32, world: &str, overrides: &Overrides) -
     let name =
         format!("alhazen-furnace-{}-{}.exr", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
     let path = std::env::temp_dir().join(name);
-    write_picture(&render_text(&text, overrides), &path).expect("the picture is written");
+    write_picture(&render_text(&text, overrides), &path, &Default::default())
+        .expect("the picture is written");
     let picture = image::open(&path).expect("the picture is read");
     std::fs::remove_file(path).expect("the picture is removed");
     picture

@@ -125,3 +125,31 @@ fn pixels_are_read_at_their_place_in_the_frame() {
     let codes = folder.alhazen(&["image", "info", "a.png", "--pixel", "8,0", "--json"]).expect(0).json();
     assert_eq!((&codes["codes"]["R"], &codes["values"]["R"]), (&255.into(), &1.0.into()));
 }
+
+#[test]
+fn a_view_acts_on_files_for_displays_and_is_named_in_them() {
+    let folder = Folder::with_scene("view");
+    folder.alhazen(&["render", "scene.pbrt", "--quiet", "-o", "a.exr"]).expect(0);
+    let convert = |output: &str, options: &[&str]| {
+        folder.alhazen(&[&["image", "convert", "a.exr", output][..], options].concat())
+    };
+    let mut shown = Vec::new();
+    for view in ["standard", "agx", "aces", "khronos-neutral", "filmic"] {
+        let name = format!("{view}.png");
+        convert(&name, &["--view", view, "--exposure", "-1", "--white-balance", "5000"]).expect(0);
+        let bytes = std::fs::read(folder.path().join(&name)).unwrap();
+        let text = format!("tEXtView\0{view}");
+        assert!(bytes.windows(text.len()).any(|window| window == text.as_bytes()), "{view}");
+        shown.push(folder.image(&name).rgb(12, 12));
+    }
+    assert!((1..5).all(|i| (0..i).all(|j| shown[i] != shown[j])), "{shown:?}");
+    // The same by the render itself.
+    let options = ["--view", "aces", "--exposure", "-1", "--white-balance", "5000"];
+    folder.alhazen(&[&["render", "scene.pbrt", "--quiet", "-o", "b.png"][..], &options].concat()).expect(0);
+    let close = |c: usize| (folder.image("b.png").rgb(12, 12)[c] - shown[2][c]).abs() < 0.01;
+    assert!((0..3).all(close));
+    let refused = convert("b.exr", &["--view", "agx"]).expect(2).err;
+    assert!(refused.contains("other files stay linear"), "{refused}");
+    let unknown = convert("c.png", &["--view", "srgb"]).expect(2).err;
+    assert!(unknown.contains("standard, agx, aces, khronos-neutral, filmic"), "{unknown}");
+}

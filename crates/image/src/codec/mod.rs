@@ -66,6 +66,14 @@ impl Format {
         }
     }
 
+    /// Whether it holds codes for a display, in the encoding of sRGB, rather than linear values.
+    pub fn is_for_display(self) -> bool {
+        match self {
+            Self::Png | Self::Jpeg | Self::Tga | Self::Bmp | Self::Qoi => true,
+            Self::Exr | Self::Hdr | Self::Pfm | Self::Tiff => false,
+        }
+    }
+
     /// The format of a name's extension, whatever its case.
     pub fn from_name(name: &str) -> Option<Self> {
         let extension = Path::new(name).extension()?.to_str()?.to_ascii_lowercase();

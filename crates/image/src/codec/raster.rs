@@ -14,6 +14,7 @@ use crate::{
     error::ImageError,
     image::{Image, Pixels},
     memory::{collected, filled, reserved},
+    metadata::{Attribute, ImageMetadata},
     source::{PixelSource, alpha_channel, color_channels},
 };
 
@@ -126,9 +127,47 @@ pub fn encode(
     let mut output = BufWriter::new(output);
     match format {
         Format::Jpeg => buffer.write_with_encoder(JpegEncoder::new_with_quality(&mut output, JPEG_QUALITY)),
+        Format::Png => return write_png(&buffer, picture, &mut output),
         _ => buffer.write_to(&mut output, library_format(format)?),
     }
     .map_err(from_library)?;
+    Ok(output.flush()?)
+}
+
+/// Writes a PNG, with the name of its view as text if it has one.
+fn write_png(
+    buffer: &DynamicImage,
+    picture: &dyn PixelSource,
+    output: &mut impl Write,
+) -> Result<(), ImageError> {
+    let failed = |error: png::EncodingError| match error {
+        png::EncodingError::IoError(error) => ImageError::Io(error),
+        error => ImageError::Invalid(error.to_string()),
+    };
+    let color = buffer.color();
+    let mut encoder = png::Encoder::new(&mut *output, buffer.width(), buffer.height());
+    encoder.set_color(match color.channel_count() {
+        1 => png::ColorType::Grayscale,
+        2 => png::ColorType::GrayscaleAlpha,
+        3 => png::ColorType::Rgb,
+        _ => png::ColorType::Rgba,
+    });
+    encoder.set_compression(png::Compression::Fast);
+    if let Some(Attribute::Text(view)) = picture.metadata().get(ImageMetadata::VIEW) {
+        encoder.add_text_chunk("View".into(), view.clone()).map_err(failed)?;
+    }
+    let is_wide = color.bytes_per_pixel() > color.channel_count();
+    encoder.set_depth(if is_wide { png::BitDepth::Sixteen } else { png::BitDepth::Eight });
+    let mut writer = encoder.write_header().map_err(failed)?;
+    if is_wide {
+        // Of big-endian numbers.
+        let codes = buffer.as_bytes().as_chunks().0.iter().map(|&code| u16::from_ne_bytes(code));
+        let bytes = collected(buffer.as_bytes().len(), codes.flat_map(u16::to_be_bytes))?;
+        writer.write_image_data(&bytes).map_err(failed)?;
+    } else {
+        writer.write_image_data(buffer.as_bytes()).map_err(failed)?;
+    }
+    writer.finish().map_err(failed)?;
     Ok(output.flush()?)
 }
 
