@@ -21,7 +21,7 @@ settings! {
         SimplePath(SimplePathDesc) = "simple-path" | "simplepath",
         /// Path tracing with next-event estimation and multiple importance sampling.
         Path(PathDesc) = "path",
-        /// Like `path`, but interfaces between media do not occlude point lights: the format's
+        /// Path tracing through participating media; without media, like `path`: the format's
         /// default.
         VolPath(PathDesc) = "vol-path" | "volpath",
         /// Paths from lights, each vertex connected to the camera.
@@ -38,11 +38,35 @@ settings! {
         Vcm(VcmDesc) = "vcm",
         /// Radiosity by progressive shooting.
         Radiosity(RadiosityDesc) = "radiosity",
-        /// Paths through media, without next-event estimation.
-        SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath" (not drawn),
+        /// Path tracing through participating media, without next-event estimation.
+        SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath",
         /// The integral of an analytic function over the unit square instead of a scene, for the
         /// study of samplers.
         Function(FunctionDesc) = "function" (not drawn),
+    }
+}
+
+impl IntegratorDesc {
+    /// Whether the algorithm draws participating media.
+    pub fn knows_media(&self) -> bool {
+        match self {
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::VolPath(_)
+            | Self::LightTracing(_)
+            | Self::Bdpt(_)
+            | Self::Mlt(_)
+            | Self::PhotonMapping(_)
+            | Self::Sppm(_)
+            | Self::Vcm(_)
+            | Self::SimpleVolPath(_) => true,
+            Self::AmbientOcclusion(_)
+            | Self::RandomWalk(_)
+            | Self::SimplePath(_)
+            | Self::Path(_)
+            | Self::Radiosity(_)
+            | Self::Function(_) => false,
+        }
     }
 }
 

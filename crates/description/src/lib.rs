@@ -28,6 +28,7 @@ mod scene;
 pub mod schema;
 mod shape;
 mod source;
+mod substance;
 mod texture;
 mod transform;
 mod voxels;
@@ -53,7 +54,9 @@ pub use material::{
     CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, HairColor, LayersDesc,
     MaterialDesc, MaterialKind, MaterialType, RoughnessDesc, SubsurfaceScattering,
 };
-pub use medium::{CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, TemperatureDesc};
+pub use medium::{
+    CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, MediumType, TemperatureDesc,
+};
 pub use options::{Engine, OptionsDesc, RenderSpace};
 pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;
@@ -62,6 +65,7 @@ pub use shape::{
     ShapeDesc, ShapeKind, ShapeTraits, ShapeType, SolidOperation, SpheresDesc,
 };
 pub use source::{FileId, Position, SourceMap, Span, Spanned};
+pub use substance::Substance;
 pub use texture::{
     EncodingDesc, FloatParameter, FloatTextureDesc, ImageChannel, ImageTextureDesc, MappingDesc, Parameter,
     SpectrumParameter, SpectrumTextureDesc, TextureDesc, TextureFilter, TextureKind, WrapMode,

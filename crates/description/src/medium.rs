@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use math::Point3;
 
+use crate::names::names;
 use crate::{ColorSpaceDesc, Handle, SpectrumDesc, TransformDesc, VoxelsDesc};
 
 /// A medium.
@@ -141,7 +142,7 @@ pub enum MediumKind {
         /// Frequency of the noise.
         frequency: f32,
     },
-    /// Densities on a sparse grid.
+    /// Densities on sparse voxels, from a NanoVDB file.
     NanoVdb {
         /// Densities.
         density: VoxelsDesc,
@@ -154,4 +155,15 @@ pub enum MediumKind {
         /// Factor on the emission.
         le_scale: f32,
     },
+}
+
+names! {
+    /// The names of media.
+    MediumType of MediumKind {
+        Homogeneous = "homogeneous",
+        UniformGrid = "uniformgrid",
+        RgbGrid = "rgbgrid",
+        Cloud = "cloud",
+        NanoVdb = "nanovdb",
+    }
 }

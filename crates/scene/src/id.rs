@@ -12,3 +12,7 @@ pub struct LightId(pub u32);
 /// Index of an emission in [`Scene::emissions`](crate::Scene::emissions).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EmissionId(pub u32);
+
+/// Index of a medium in [`Scene::media`](crate::Scene::media).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MediumId(pub u32);

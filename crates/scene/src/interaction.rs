@@ -6,6 +6,7 @@
 use crate::footprint::Footprint;
 use crate::id::{LightId, MaterialId};
 use crate::light::LightSampleContext;
+use crate::medium::{MediumId, MediumInterface};
 use crate::texture::TextureContext;
 use crate::view::View;
 use geometry::SurfacePoint;
@@ -19,6 +20,8 @@ pub struct SurfaceInteraction {
     pub surface: SurfacePoint,
     /// Its material.
     pub material: MaterialId,
+    /// The media on its two sides, if they differ.
+    pub media: Option<MediumInterface>,
     /// The area light of the surface, if it emits.
     pub area_light: Option<LightId>,
     /// The footprint of the pixel; zero until [`SurfaceInteraction::compute_footprint`].
@@ -55,6 +58,12 @@ impl SurfaceInteraction {
         let s = &self.surface;
         let across = view.pixel_on_plane(ray.differentials.as_ref().map(|d| (d, true)), s.p.p, s.n, s.time);
         self.footprint = Footprint::new(across, [s.dpdu, s.dpdv]);
+    }
+
+    /// The medium of a ray that leaves along `w`, if the ray that arrived was in `medium`.
+    #[inline]
+    pub fn medium_towards(&self, w: Vector3, medium: Option<MediumId>) -> Option<MediumId> {
+        self.media.map_or(medium, |media| media.towards(w, self.surface.n))
     }
 
     /// The ray that leaves along `d`.

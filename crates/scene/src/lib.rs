@@ -11,6 +11,7 @@ mod interaction;
 pub mod light;
 pub mod light_sampler;
 pub mod material;
+pub mod medium;
 mod names;
 mod scene;
 pub mod texture;

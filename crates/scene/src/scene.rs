@@ -9,6 +9,7 @@ use crate::light::{
 };
 use crate::light_sampler::LightSampler;
 use crate::material::{Material, MaterialEntry, MaterialId, resolve};
+use crate::medium::{Medium, MediumInterface};
 use crate::names::Names;
 use crate::texture::{FloatTextureId, TextureContext, Textures};
 use crate::traits::SceneTraits;
@@ -32,6 +33,8 @@ pub struct GeometryEntry {
     /// an offset from the first light of the group that holds the geometry: the id is its sum with
     /// the [`InstanceEntry::first_light`] of all instances on the path to the geometry.
     pub first_light: Option<u32>,
+    /// The media on its two sides, if its author said so.
+    pub media: Option<MediumInterface>,
 }
 
 /// Lights of one instance of the world.
@@ -52,15 +55,6 @@ pub enum Interfaces {
     Pass,
 }
 
-impl Interfaces {
-    /// Whether they occlude `light` where media are not supported. pbrt-v4's path tracer treats
-    /// interfaces as surfaces that shadow rays hit, and finds lights behind them by BSDF sampling
-    /// alone: delta lights therefore cast the shadows of interfaces, and other lights do not.
-    pub fn before(light: LightRef) -> Self {
-        if light.is_delta() { Self::Stop } else { Self::Pass }
-    }
-}
-
 /// Everything that is rendered, from any [`View`]. Immutable once compiled.
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -69,6 +63,7 @@ pub struct Scene {
     pub(crate) sphere: SceneSphere,
     pub(crate) entries: Vec<GeometryEntry>,
     pub(crate) materials: Vec<MaterialEntry>,
+    pub(crate) media: Vec<Medium>,
     pub(crate) textures: Textures,
     pub(crate) instances: Vec<InstanceEntry>,
     pub(crate) lights: LightTable,
@@ -105,6 +100,11 @@ impl Scene {
     /// a part of itself.
     pub fn materials(&self) -> &[MaterialEntry] {
         &self.materials
+    }
+
+    /// The participating media, by [`MediumId`](crate::medium::MediumId).
+    pub fn media(&self) -> &[Medium] {
+        &self.media
     }
 
     /// The names of objects and materials.
@@ -194,6 +194,7 @@ impl Scene {
         SurfaceInteraction {
             surface,
             material: entry.material,
+            media: entry.media.filter(MediumInterface::is_transition),
             area_light: entry.first_light.map(|first| {
                 let instances = hit.instance.ids().iter().map(|id| self.instances[id.0 as usize]);
                 let offset: u32 = instances.map(|instance| instance.first_light).sum();
@@ -339,7 +340,7 @@ impl Scene {
         let sample = light.sample_le(u_position, u_direction, time, lambda)?;
         if sample.p.is_none() && (self.world.is_unbounded() || light.emits_within_scene()) {
             let way_back = Ray { d: -sample.ray.d, ..sample.ray };
-            if self.occluded(&way_back, f32::INFINITY, Interfaces::before(light), stats) {
+            if self.occluded(&way_back, f32::INFINITY, Interfaces::Pass, stats) {
                 return None;
             }
         }

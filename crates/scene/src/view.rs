@@ -4,6 +4,8 @@
 //! samples or a preview in larger pixels needs a new view, but no new scene.
 
 use crate::camera::{self, Camera};
+use crate::compile::media::medium_id;
+use crate::medium::MediumId;
 use description::{Diagnostic, FilmKind, IntegratorDesc, SamplerKind, SceneDesc};
 use math::DMat4;
 
@@ -25,6 +27,8 @@ pub struct ViewOptions {
 pub struct View {
     /// The camera, placed in the scene's render space.
     pub camera: Camera,
+    /// The medium around the camera, of the scene that was compiled from the same description.
+    pub medium: Option<MediumId>,
     /// Samples per pixel, at least 1. The more samples, the smaller the footprint by which textures
     /// are filtered.
     pub samples_per_pixel: u32,
@@ -60,11 +64,12 @@ impl View {
             disable_texture_filtering: desc.options.disable_texture_filtering,
             force_diffuse: desc.options.force_diffuse,
         };
+        let medium = medium_id(desc.camera.medium);
         let wavelengths = match desc.film.kind {
             FilmKind::Spectral { lambda_min, lambda_max, .. } => Some([lambda_min, lambda_max]),
             FilmKind::Rgb | FilmKind::GBuffer { .. } => None,
         };
-        let view = Self { camera, samples_per_pixel: samples_per_pixel(desc), options, wavelengths };
+        let view = Self { camera, medium, samples_per_pixel: samples_per_pixel(desc), options, wavelengths };
         Ok(CompiledView { view, warnings: diagnostics })
     }
 

@@ -1,13 +1,10 @@
 //! Names of the format, and the replacements of names of its older versions.
 
-/// Substances whose scattering was measured.
-pub(crate) const SUBSTANCES: &str = include_str!("../../data/substances.txt");
-
 /// Lines `set | name | what replaced it` for names of versions 1 to 3.
 const REPLACED: &str = include_str!("../../data/replaced-names.txt");
 
 /// The lines of a table, without comments.
-pub(crate) fn lines(table: &'static str) -> impl Iterator<Item = &'static str> + Clone {
+fn lines(table: &'static str) -> impl Iterator<Item = &'static str> + Clone {
     table.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'))
 }
 

@@ -6,6 +6,7 @@
 use super::Compiler;
 use crate::light::{AreaEmission, AreaLight, EmissionId, Light, LightTable, SceneSphere};
 use crate::material::Material;
+use crate::medium::MediumInterface;
 use crate::scene::InstanceEntry;
 use crate::texture::FloatTextureId;
 use description::{AreaLightDesc, Origin, ShapeDesc, Span, Stated};
@@ -158,8 +159,8 @@ impl Compiler<'_> {
         });
         let mut table = LightTable::new(emissions.collect());
         self.add_rows(GroupId::TOP, InstancePath::TOP, world, &mut table);
-        for light in self.lights(sphere) {
-            table.push(light, 1);
+        for (light, medium) in self.lights(sphere) {
+            table.push(light, 1, MediumInterface { inside: medium, outside: medium });
         }
         table
     }
@@ -185,7 +186,8 @@ impl Compiler<'_> {
                         };
                         (0..primitives).map(scale).collect()
                     });
-                    table.push(Light::Area(light), primitives);
+                    let media = self.entries[geometry.0 as usize].media.unwrap_or_default();
+                    table.push(Light::Area(light), primitives, media);
                 }
             }
         }

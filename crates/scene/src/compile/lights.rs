@@ -2,12 +2,14 @@
 
 use super::Compiler;
 use super::emission::upward_illuminance;
+use super::media::medium_id;
 use crate::light::{
     DistantLight, Emission, EmissionImage, GoniometricLight, ImageInfiniteLight, Light, PointLight, Portal,
     PortalInfiniteLight, PortalRadiance, ProjectionLight, RectifiedImage, SceneSphere, Slide, SpotLight,
     UniformInfiniteLight,
 };
-use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc};
+use crate::medium::MediumId;
+use description::{Handle, ImageDesc, InfiniteRadiance, LightDesc, LightKind, Origin, SpectrumDesc, Stated};
 use image::{Projection, require_memory};
 use math::{AnimatedTransform, DMat4, Point3, Transform, Vec3, Vector3};
 use spectrum::Rgb;
@@ -25,11 +27,14 @@ fn seen_through(portal: Portal, radiance: PortalRadiance) -> Light {
 }
 
 impl Compiler<'_> {
-    /// Compiles all lights without a surface. `scene` bounds all surfaces.
-    pub(super) fn lights(&mut self, scene: SceneSphere) -> Vec<Light> {
+    /// Compiles all lights without a surface, each with its medium. `scene` bounds all surfaces.
+    pub(super) fn lights(&mut self, scene: SceneSphere) -> Vec<(Light, Option<MediumId>)> {
         let desc = self.desc;
         let lights = desc.lights.iter();
-        lights.filter_map(|(_, light)| self.light(&light.value, &light.origin, scene)).collect()
+        let compile = |(_, desc): (_, &Stated<LightDesc>)| {
+            Some((self.light(&desc.value, &desc.origin, scene)?, medium_id(desc.medium)))
+        };
+        lights.filter_map(compile).collect()
     }
 
     fn light(&mut self, desc: &LightDesc, origin: &Origin, scene: SceneSphere) -> Option<Light> {

@@ -8,6 +8,7 @@ mod curves;
 mod emission;
 mod lights;
 mod materials;
+pub(crate) mod media;
 mod objects;
 mod shapes;
 mod solids;
@@ -16,6 +17,7 @@ mod tessellation;
 
 use crate::light::{AreaEmission, LightTable, SceneSphere};
 use crate::material::MaterialEntry;
+use crate::medium::Medium;
 use crate::names::Names;
 use crate::scene::{GeometryEntry, InstanceEntry, Scene};
 use crate::texture::{FloatTextureId, SpectrumTextureId, SpectrumType, TextureCompiler};
@@ -72,17 +74,18 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         names,
         instances: Vec::new(),
         materials: Vec::new(),
+        media: Vec::new(),
         area_emissions: Vec::new(),
         last_spectrum: None,
         emitters: vec![Emitters::default()],
         traits: SceneTraits::default(),
     };
     compiler.materials();
+    compiler.media();
     compiler.area_emissions();
     compiler.shapes(&shapes);
     compiler.instances(&instances);
     compiler.material_traits();
-    compiler.media();
     drop((shapes, instances, take(&mut compiler.objects)));
     let world = take(&mut compiler.world).build();
     let sphere = SceneSphere::around(&world.bounds());
@@ -90,7 +93,8 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
     if !compiler.diagnostics.iter().any(Diagnostic::is_error) {
         compiler.warn_of_darkness(&lights);
     }
-    let Compiler { diagnostics, textures, entries, names, instances, materials, traits, .. } = compiler;
+    let Compiler { diagnostics, textures, entries, names, instances, materials, media, traits, .. } =
+        compiler;
     if diagnostics.iter().any(Diagnostic::is_error) {
         return Err(diagnostics);
     }
@@ -104,6 +108,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         entries,
         instances,
         materials,
+        media,
         textures,
         lights,
         uses_footprints,
@@ -127,6 +132,7 @@ struct Compiler<'a> {
     entries: Vec<GeometryEntry>,
     names: Names,
     materials: Vec<MaterialEntry>,
+    media: Vec<Medium>,
     instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
     /// The last light's spectrum, which lights of the same description share.
@@ -143,14 +149,6 @@ impl Compiler<'_> {
 
     fn warn(&mut self, code: &'static str, message: impl Into<String>, span: Span) {
         self.diagnostics.push(Diagnostic::warning(code, message, span));
-    }
-
-    /// Warns of each medium.
-    fn media(&mut self) {
-        for (_, medium) in self.desc.media.iter() {
-            let message = "participating media are not drawn yet; left out";
-            self.warn("not-drawn", message, medium.origin.span);
-        }
     }
 
     /// Warns if the picture will be black.

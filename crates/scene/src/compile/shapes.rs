@@ -63,6 +63,7 @@ impl Compiler<'_> {
     pub(super) fn resting(&mut self, run: &[&Stated<ShapeDesc>], group: GroupId, transform: &Transform) {
         let shape = run[0];
         let (material, alpha) = (self.material_id(shape.material), self.alpha(shape));
+        let media = self.medium_interface(shape.medium_interface.as_ref());
         let geometries = self.geometries(run, transform);
         self.primitives += geometries.iter().map(Geometry::len).sum::<usize>();
         let bytes = self.primitives.saturating_mul(self.world.bytes_per_primitive());
@@ -78,7 +79,7 @@ impl Compiler<'_> {
             let id = self.world.add_geometry(group, geometry);
             let span = shape.origin.span;
             let first_light = emitter.and_then(|emitter| self.add_emitter(group, id, emitter, span));
-            self.entries.push(GeometryEntry { material, alpha, first_light });
+            self.entries.push(GeometryEntry { material, alpha, first_light, media });
         }
     }
 

@@ -7,6 +7,7 @@ use super::{
     AreaEmission, EmissionId, Light, LightBounds, LightId, LightLeSample, LightLiSample, LightModel,
     LightSampleContext, each_light,
 };
+use crate::medium::{MediumId, MediumInterface};
 use crate::texture::Textures;
 use geometry::World;
 use math::{Normal3, Point2, Point3, Ray, Vector3};
@@ -20,6 +21,8 @@ pub(crate) struct LightTable {
     first: Vec<u32>,
     /// The row of each light.
     row: Vec<u32>,
+    /// The media around each row.
+    media: Vec<MediumInterface>,
     emissions: Vec<AreaEmission>,
     infinite: Vec<LightId>,
 }
@@ -30,14 +33,16 @@ impl LightTable {
         Self { emissions, ..Self::default() }
     }
 
-    /// Adds a row of `count` lights.
-    pub fn push(&mut self, light: Light, count: u32) {
+    /// Adds a row of `count` lights. The media are those on the sides of its surface; without one,
+    /// it is in the outer.
+    pub fn push(&mut self, light: Light, count: u32, media: MediumInterface) {
         if each_light!(&light, light => light.is_infinite()) {
             self.infinite.push(LightId(self.row.len() as u32));
         }
         self.first.push(self.row.len() as u32);
         self.row.resize(self.row.len() + count as usize, self.rows.len() as u32);
         self.rows.push(light);
+        self.media.push(media);
     }
 
     /// Whether there is no light.
@@ -157,6 +162,14 @@ impl<'a> LightRef<'a> {
     /// The row of the table that it belongs to.
     pub fn row(&self) -> &'a Light {
         self.light
+    }
+
+    /// The medium of the light that leaves it along `w`, where its surface has the normal `n`, zero
+    /// without a surface.
+    pub fn medium_towards(&self, w: Vector3, n: Normal3) -> Option<MediumId> {
+        let LightTable { row, media, .. } = self.part.lights.table;
+        let media = media[row[self.id.0 as usize] as usize];
+        if n == Normal3::ZERO { media.outside } else { media.towards(w, n) }
     }
 
     /// See [`LightModel::is_delta`].

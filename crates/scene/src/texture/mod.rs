@@ -52,6 +52,7 @@ pub use graph::{MAX_OPERATIONS, MAX_TOTAL_OPERATIONS};
 pub use imagemap::{ImageLookup, SpectrumImage};
 pub use mapping::{Mapping2d, Mapping3d, TexCoord2d, TexCoord3d};
 pub use marble::Marble;
+pub(crate) use noise::noise;
 pub use program::{Code, MAX_SLOTS, Operation, Program, Textures};
 pub use spectrum_type::{SpectrumType, color_space, compile_spectrum};
 

@@ -27,7 +27,7 @@ use math::{Point3, Vec3, Vector3, lerp};
 
 /// The noise at a point, in (−1, 1).
 #[inline(always)]
-pub(super) fn noise<R: Real>(p: Point3<R>) -> R {
+pub(crate) fn noise<R: Real>(p: Point3<R>) -> R {
     let cell = Vec3::new(p.x.floor(), p.y.floor(), p.z.floor());
     let from_low = p - cell;
     let from_high = from_low - Vec3::splat(R::one());

@@ -11,6 +11,7 @@ mod light_samplers;
 mod light_table;
 mod light_totals;
 mod materials;
+mod media;
 mod motion;
 mod solids;
 mod spheres;

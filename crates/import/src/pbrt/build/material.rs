@@ -3,12 +3,11 @@
 use description::{
     Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
     FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, RoughnessDesc,
-    Spanned, SpectrumDesc, SubsurfaceScattering,
+    Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
 };
 
 use super::Builder;
 use super::reader::Reader;
-use crate::pbrt::names;
 use crate::pbrt::statement::MaterialStatement;
 use crate::suggest::did_you_mean;
 
@@ -251,12 +250,12 @@ fn subsurface(reader: &mut Reader) -> Option<MaterialKind> {
 
 /// The name of a substance, checked.
 pub(super) fn substance(reader: &mut Reader, name: Spanned<String>) -> Option<String> {
-    if names::lines(names::SUBSTANCES).any(|known| known == name.value) {
+    if Substance::named(&name.value).is_some() {
         return Some(name.value);
     }
     let message = format!("there is no measured substance `{}`", name.value);
     reader.builder.report.push(Diagnostic {
-        help: did_you_mean(&name.value, names::lines(names::SUBSTANCES)),
+        help: did_you_mean(&name.value, Substance::names()),
         ..Diagnostic::error("unknown-choice", message, name.span)
     });
     None

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use description::{
-    CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, Spanned, Stated, TemperatureDesc,
+    CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, MediumType, Spanned, Stated,
+    TemperatureDesc,
 };
 use math::Vec3;
 
@@ -12,8 +13,6 @@ use super::material::substance;
 use super::reader::Reader;
 use super::volume::GridName;
 use crate::pbrt::statement::MediumStatement;
-
-const TYPES: [&str; 5] = ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"];
 
 impl Builder<'_> {
     /// Builds a medium; one that cannot be read is replaced by a homogeneous one.
@@ -40,26 +39,26 @@ impl Builder<'_> {
 }
 
 fn kind(reader: &mut Reader) -> Option<MediumKind> {
-    Some(match reader.kind.value.as_str() {
-        "homogeneous" => MediumKind::Homogeneous {
+    let Some(medium) = MediumType::named(&reader.kind.value) else {
+        reader.unknown_type("medium", "medium", MediumType::NAMES);
+        return None;
+    };
+    Some(match medium {
+        MediumType::Homogeneous => MediumKind::Homogeneous {
             coefficients: coefficients(reader),
             le: reader.spectrum("Le"),
             le_scale: reader.float("Lescale", 1.0),
         },
-        "uniformgrid" => uniform_grid(reader)?,
-        "rgbgrid" => rgb_grid(reader)?,
-        "cloud" => MediumKind::Cloud {
+        MediumType::UniformGrid => uniform_grid(reader)?,
+        MediumType::RgbGrid => rgb_grid(reader)?,
+        MediumType::Cloud => MediumKind::Cloud {
             bounds: bounds(reader),
             coefficients: coefficients(reader),
             density: reader.float("density", 1.0),
             wispiness: reader.float("wispiness", 1.0),
             frequency: reader.float("frequency", 5.0),
         },
-        "nanovdb" => nano_vdb(reader)?,
-        _ => {
-            reader.unknown_type("medium", "medium", &TYPES);
-            return None;
-        }
+        MediumType::NanoVdb => nano_vdb(reader)?,
     })
 }
 

@@ -2,9 +2,7 @@
 
 use super::*;
 use alhazen_scene::{Occurrence, SceneTraits};
-use description::{
-    CoefficientsDesc, ConductorDesc, Handle, MediumDesc, MediumKind, RoughnessDesc, SolidOperation, Spanned,
-};
+use description::{ConductorDesc, Handle, RoughnessDesc, SolidOperation, Spanned};
 
 fn traits(desc: &SceneDesc) -> SceneTraits {
     compile(desc.clone()).expect("a scene").scene.traits().clone()
@@ -70,16 +68,4 @@ fn light_from_infinity_is_recorded() {
     let (from, to) = (Vec3::ZERO, Vec3::Z);
     desc.lights.push(LightKind::Distant { radiance: 1.0.into(), illuminance: None, from, to }.into());
     assert!(traits(&desc).is_lit_from_infinity);
-}
-
-#[test]
-fn media_are_left_out_with_a_warning() {
-    let medium = MediumDesc {
-        name: "fog".into(),
-        kind: MediumKind::Homogeneous { coefficients: CoefficientsDesc::default(), le: None, le_scale: 1.0 },
-        world_from_medium: TransformDesc::default(),
-        g: 0.0,
-    };
-    let desc = with(|desc| desc.media.push_stated(stated(medium, 4)));
-    warns(&desc, "participating media are not drawn yet; left out", 4);
 }
