@@ -13,8 +13,8 @@ use scene::texture::color_space;
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
     AmbientOcclusion, Bdpt, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping, PixelLoop,
-    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, WaveIntegrator, Wavefront,
-    Whitted,
+    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, VolPath, WaveIntegrator,
+    Wavefront, Whitted,
 };
 
 /// The result of [`build`].
@@ -35,6 +35,7 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     }
     let sampler = builder.sampler();
     let integrator = builder.integrator(sampler);
+    builder.media();
     builder.connections_to_lens();
     let diagnostics = builder.diagnostics;
     if diagnostics.iter().any(Diagnostic::is_error) {
@@ -83,6 +84,18 @@ impl Builder<'_> {
         }
     }
 
+    /// Warns if there are media, but the algorithm does not know them.
+    fn media(&mut self) {
+        let integrator = &self.desc.integrator;
+        if self.desc.media.is_empty() || integrator.knows_media() {
+            return;
+        }
+        let message =
+            format!("integrator `{}` does not know participating media; left out", integrator.name());
+        let warning = Diagnostic::warning("no-media", message, integrator.origin.span);
+        self.diagnostics.push(warning.with_help("`vol-path` draws them"));
+    }
+
     /// The sampler of light paths, independent of that of camera paths.
     fn light_sampler(&self, of_camera: &Sampler) -> Sampler {
         const LIGHTS: u32 = 0x6c69_6768;
@@ -101,8 +114,8 @@ impl Builder<'_> {
     fn integrator(&mut self, sampler: Sampler) -> Box<dyn Integrator> {
         let color_space = color_space(self.desc.film.color_space);
         match self.desc.integrator.value.clone() {
-            IntegratorDesc::RayCasting => self.waves(RayCasting, sampler),
-            IntegratorDesc::Whitted(desc) => self.waves(Whitted(desc), sampler),
+            IntegratorDesc::RayCasting => self.waves_in_media(RayCasting, sampler),
+            IntegratorDesc::Whitted(desc) => self.waves_in_media(Whitted(desc), sampler),
             IntegratorDesc::AmbientOcclusion(desc) => {
                 self.waves(AmbientOcclusion::new(desc, color_space), sampler)
             }
@@ -110,7 +123,7 @@ impl Builder<'_> {
             IntegratorDesc::SimplePath(desc) => pixels(SimplePath(desc), sampler),
             IntegratorDesc::Path(desc) => self.path(desc, Interfaces::Stop, sampler),
             IntegratorDesc::VolPath(desc) => self.path(desc, Interfaces::Pass, sampler),
-            IntegratorDesc::SimpleVolPath(desc) => self.instead(desc.max_depth, sampler),
+            IntegratorDesc::SimpleVolPath(desc) => pixels(VolPath::simple(desc.max_depth), sampler),
             IntegratorDesc::LightTracing(desc) => {
                 let light_sampler = self.light_sampler(&sampler);
                 Box::new(LightTracing::new(desc, sampler, light_sampler))
@@ -201,6 +214,11 @@ impl Builder<'_> {
         self.path(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass, sampler)
     }
 
+    /// An algorithm that both engines have, and that knows media in the scalar one.
+    fn waves_in_media(&self, rays: impl WaveIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
+        if self.desc.media.is_empty() { self.waves(rays, sampler) } else { pixels(rays, sampler) }
+    }
+
     /// An algorithm that both engines have.
     fn waves(&self, rays: impl WaveIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
         match self.desc.options.engine {
@@ -214,6 +232,9 @@ impl Builder<'_> {
             let message = "light sampler `exhaustive` is not drawn yet; drawn with `bvh`";
             let span = self.desc.integrator.origin.parameter("lightsampler");
             self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
+        }
+        if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
+            return pixels(VolPath::new(desc), sampler);
         }
         self.waves(Path::new(desc, interfaces), sampler)
     }

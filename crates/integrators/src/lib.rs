@@ -14,6 +14,7 @@
 //! | [`RandomWalk`] | paths in uniform directions, without next-event estimation |
 //! | [`SimplePath`] | paths by light sampling and BSDF sampling, each optional |
 //! | [`Path`] | paths by both with multiple importance sampling, and Russian roulette |
+//! | [`VolPath`] | the same through participating media |
 //! | [`LightTracing`] | paths from the lights, each vertex connected to the camera |
 //! | [`Bdpt`] | paths from both ends, connected at all pairs of vertices |
 //! | [`Mlt`] | Markov chains of paths, distributed in proportion to their contribution |
@@ -42,7 +43,7 @@ mod wavefront;
 pub use bidirectional::Bdpt;
 pub use build::{Built, build};
 pub use camera_paths::{
-    AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, Whitted,
+    AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, VolPath, Whitted,
 };
 pub use control::{Cancelled, Clock, Control, PassError};
 pub use integrator::{Integrator, OutputFile};

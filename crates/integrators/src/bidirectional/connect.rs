@@ -4,10 +4,9 @@ use film::Splatter;
 use math::{Bounds2, Normal3, Point2, Point3Error, Ray};
 use scene::camera::{CameraWiSample, FilmPositions};
 use scene::light::LightId;
-use scene::{Interfaces, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Bidirectional, LightVertex, Merges, Vertex, Walk, hero_only};
+use super::{Bidirectional, Interaction, LightVertex, Merges, Vertex, Walk, hero_only};
 use crate::transport::Tracer;
 
 /// The contribution of a strategy.
@@ -48,16 +47,19 @@ impl OnFilm {
 
 impl Bidirectional<'_> {
     /// s = 0: the camera subpath, whose last vertex is `before`, has hit a surface that may emit.
-    pub fn emitted(
-        &self,
-        walk: &Walk,
-        surface: &SurfaceInteraction,
-        before: Option<&Vertex>,
-    ) -> Option<Found> {
+    pub fn emitted(&self, walk: &Walk, interaction: &Interaction, before: Option<&Vertex>) -> Option<Found> {
+        let Interaction::Surface(surface) = interaction else { return None };
         let light = surface.area_light?;
         let l = walk.beta * self.scene.emitted(surface, surface.surface.wo, &walk.lambda);
         let s = &surface.surface;
         (!l.is_black()).then(|| self.met(walk, l, light, before, Some((s.p.p, s.n))))
+    }
+
+    /// s = 0: media have emitted light along the last ray of the camera subpath. No other strategy
+    /// finds it.
+    pub fn emitted_on_the_way(&self, walk: &mut Walk) -> Option<Found> {
+        let l = std::mem::replace(&mut walk.emitted, SampledSpectrum::ZERO);
+        (!l.is_black()).then(|| self.found(l, walk.lambda.secondary_terminated(), 1.0, 0, walk.depth + 2))
     }
 
     /// s = 0: the camera subpath has left the scene.
@@ -107,9 +109,7 @@ impl Bidirectional<'_> {
             Some(p) => (vertex.ray_to(p, sample.n), Ray::SHADOW_END),
             None => (Ray::spawn(vertex.p, vertex.n, wi, vertex.time), f32::INFINITY),
         };
-        if tracer.occluded(&ray, end, Interfaces::before(self.scene.light(light))) {
-            return None;
-        }
+        let l = l * self.passage(vertex, (&ray, end), &l, lambda, tracer)?;
         let point = sample.p.map(|p| (p.p, sample.n));
         let direct = match point {
             Some((p, Normal3::ZERO)) => pmf * vertex.p.p.distance_squared(p),
@@ -126,15 +126,23 @@ impl Bidirectional<'_> {
         Some(self.found(l, vertex.hero_only, weight(by_chance, from_light * back), 1, vertex.depth + 1))
     }
 
-    /// s, t ≥ 2: two surface vertices are connected.
-    pub fn connect(&self, camera: &Vertex, light: &Vertex, tracer: &mut Tracer) -> Option<Found> {
+    /// s, t ≥ 2: two vertices are connected.
+    pub fn connect(
+        &self,
+        camera: &Vertex,
+        light: &Vertex,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> Option<Found> {
         let way = light.p.p - camera.p.p;
         let distance_squared = way.length_squared();
         let wi = way / distance_squared.sqrt();
         let l = camera.scattered(wi) * light.scattered(-wi) / distance_squared;
-        if l.is_black() || !l.is_finite() || !self.visible(camera, light.p, light.n, tracer) {
+        if l.is_black() || !l.is_finite() {
             return None;
         }
+        let way = camera.ray_to(light.p, light.n);
+        let l = l * self.passage(camera, (&way, Ray::SHADOW_END), &l, lambda, tracer)?;
         let to_light = camera.pdf(wi) * light.cos_theta(wi) / distance_squared;
         let to_camera = light.pdf(-wi) * camera.cos_theta(wi) / distance_squared;
         let of_light = light.merges().only_if(camera.can_merge() && !camera.is_diffuse());
@@ -153,6 +161,7 @@ impl Bidirectional<'_> {
         vertex: &Vertex,
         u: Point2,
         reach: Bounds2,
+        lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> Option<OnFilm> {
         let camera = &self.view.camera;
@@ -161,9 +170,11 @@ impl Bidirectional<'_> {
         let places = camera.film_positions(film);
         places.within(reach).next()?;
         let l = vertex.scattered(wi) * (we / pdf);
-        if l.is_black() || !self.visible(vertex, Point3Error::exact(p), n, tracer) {
+        if l.is_black() {
             return None;
         }
+        let way = vertex.ray_to(Point3Error::exact(p), n);
+        let l = l * self.passage(vertex, (&way, Ray::SHADOW_END), &l, lambda, tracer)?;
         let (pdf_position, pdf_direction) = camera.pdf_we(&Ray::new(p, -wi, vertex.time));
         let pdf_area =
             if camera.is_parallel() { pdf_position } else { pdf_direction / vertex.p.p.distance_squared(p) }
@@ -173,7 +184,16 @@ impl Bidirectional<'_> {
         Some(OnFilm { places, found: self.found(l, vertex.hero_only, weight, vertex.depth + 1, 1) })
     }
 
-    /// s, t ≥ 2: a photon near the vertex is merged with it, as if it had arrived there.
+    /// Whether a photon near the vertex may be merged with it: both lie on surfaces or both in
+    /// media, and the path is not too long.
+    #[inline]
+    pub fn may_merge(&self, camera: &Vertex, photon: &LightVertex) -> bool {
+        let depth = camera.depth + u32::from(photon.depth) - 1;
+        depth <= self.max_depth && camera.is_in_medium() == photon.is_in_medium
+    }
+
+    /// s, t ≥ 2: a photon near the vertex, on a surface like it or in a medium like it, is merged
+    /// with it, as if it had arrived there.
     pub fn merge(&self, camera: &Vertex, photon: &LightVertex) -> Found {
         let wi = photon.wo;
         let l = self.merged(camera, photon);
@@ -193,8 +213,9 @@ impl Bidirectional<'_> {
         // normal.
         let cos_theta = camera.cos_theta(wi);
         let cosines = if cos_theta == 0.0 { 0.0 } else { camera.cosine(wi) / cos_theta };
-        let f = camera.bsdf.f(camera.wo, wi, camera.mode);
-        let l = camera.beta * photon.beta * f * (cosines / self.balance.merging);
+        let f = camera.law.f(camera.wo, wi, camera.mode);
+        let length = if photon.is_in_medium { self.balance.merging_length() } else { 1.0 };
+        let l = camera.beta * photon.beta * f * (cosines / (self.balance.merging * length));
         if camera.hero_only || photon.hero_only { hero_only(l) } else { l }
     }
 
@@ -202,8 +223,18 @@ impl Bidirectional<'_> {
         Found { l: if hero { hero_only(l) } else { l }, weight, s, t }
     }
 
-    fn visible(&self, from: &Vertex, p: Point3Error, n: Normal3, tracer: &mut Tracer) -> bool {
-        !tracer.occluded(&from.ray_to(p, n), Ray::SHADOW_END, Interfaces::Pass)
+    /// The transmittance of a ray from a vertex up to its end; `None` if a surface occludes it. `l`
+    /// is what it would carry through empty space.
+    fn passage(
+        &self,
+        from: &Vertex,
+        (ray, end): (&Ray, f32),
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> Option<SampledSpectrum> {
+        let medium = from.medium_towards(ray.d);
+        tracer.transmittance_for(ray, end, medium, l, lambda)
     }
 }
 

@@ -12,7 +12,8 @@ pub(crate) struct LightVertex {
     pub p: Point3,
     /// Unit direction to the previous vertex.
     pub wo: Vector3,
-    /// Power that arrives along `wo`, over the density of the subpath and over alpha.
+    /// Power that arrives along `wo`, over the density of the subpath and over alpha (in a medium,
+    /// σ_s).
     pub beta: SampledSpectrum,
     /// Partial MIS weights.
     pub partial: Partial,
@@ -20,12 +21,14 @@ pub(crate) struct LightVertex {
     pub depth: u16,
     /// Whether all wavelengths but the first are terminated.
     pub hero_only: bool,
+    /// Whether it lies in a medium.
+    pub is_in_medium: bool,
 }
 
 impl From<&Vertex<'_>> for LightVertex {
     fn from(vertex: &Vertex) -> Self {
         let &Vertex { p, wo, partial, depth, hero_only, .. } = vertex;
         let (beta, depth) = (vertex.photon_beta(), depth.min(u16::MAX.into()) as u16);
-        Self { p: p.p, wo, beta, partial, depth, hero_only }
+        Self { p: p.p, wo, beta, partial, depth, hero_only, is_in_medium: vertex.is_in_medium() }
     }
 }

@@ -10,11 +10,18 @@
 //! | 0, t | the camera subpath hits a light |
 //! | 1, t | next-event estimation: a point on a light is sampled for the end of the camera subpath |
 //! | s, 1 | the end of the light subpath is connected to a point on the lens |
-//! | s, t | two surface vertices are connected |
+//! | s, t | two vertices are connected |
 //!
 //! Vertices of the light subpath can also be *merged* with nearby vertices of camera subpaths:
 //! photon mapping. Every path is found by all strategies, so each is weighted by multiple
 //! importance sampling; [`Partial`] holds a subpath's part of the weights.
+//!
+//! Vertices lie on surfaces or in participating media. In a medium the phase function takes the
+//! place of the BSDF, and cosines are 1. The throughput of a vertex there includes the coefficient
+//! of scattering σ_s over the density of the collision. For the weights the density of a collision
+//! per length is σ_t, without the transmittance before it: all strategies sample a vertex with the
+//! same factor σ_t, which cancels except where merging is involved, and weights may be functions of
+//! the vertices alone.
 //!
 //! A [`Walk`] samples vertex after vertex, from either end; [`Bidirectional`] builds paths from the
 //! vertices. The depth of a vertex is the number of scattering events on its subpath, its own
@@ -32,8 +39,10 @@
 
 mod bdpt;
 mod connect;
+mod interaction;
 mod light_end;
 mod light_vertex;
+mod medium_emission;
 mod partial;
 mod paths;
 mod subpaths;
@@ -45,9 +54,10 @@ mod walk;
 pub use bdpt::Bdpt;
 pub(crate) use bdpt::techniques;
 pub(crate) use connect::Found;
+pub(crate) use interaction::{Interaction, Law, MediumInteraction};
 pub(crate) use light_vertex::LightVertex;
 pub(crate) use partial::{Balance, Merges, Partial};
 pub(crate) use paths::{Bidirectional, Lights, hero_only};
 pub(crate) use subpaths::Encounter;
 pub(crate) use vertex::Vertex;
-pub(crate) use walk::Walk;
+pub(crate) use walk::{Arrival, Walk};

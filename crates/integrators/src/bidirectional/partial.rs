@@ -22,12 +22,14 @@
 //! over merges: m is the α of a vertex that can be merged, else 0, and k is 1 where merges further
 //! back count. α is the probability with which a ray hits the surface, 1 without an alpha texture.
 //! All strategies have it once for each vertex, so that it cancels; but merging has it twice for
-//! the merged vertex, which both subpaths have hit. Direct light is not merged, because next-event
-//! estimation finds it with less noise (m = 0 next to a light). Nor are vertices beyond a diffuse
-//! surface merged, seen from the camera ([`vcm`](crate::photons::vcm) says why): behind one a
-//! camera subpath has m = 0, and at one a light subpath has k = 0 ([`Merges`]). Specular vertices
-//! can be neither connected nor merged: their d_vcm is 0 and the sums lose those terms. Between two
-//! vertices a [`Partial`] lacks the factors of the next vertex, which [`Partial::arrive`] supplies.
+//! the merged vertex, which both subpaths have hit. In a medium the ball of volume 4πr³/3 takes the
+//! place of the disk, and α is σ_t·4r/3, the probability of a collision over the length by which
+//! the two differ. Direct light is not merged, because next-event estimation finds it with less
+//! noise (m = 0 next to a light). Nor are vertices beyond a diffuse surface merged, seen from the
+//! camera ([`vcm`](crate::photons::vcm) says why): behind one a camera subpath has m = 0, and at
+//! one a light subpath has k = 0 ([`Merges`]). Specular vertices can be neither connected nor
+//! merged: their d_vcm is 0 and the sums lose those terms. Between two vertices a [`Partial`] lacks
+//! the factors of the next vertex, which [`Partial::arrive`] supplies.
 
 use std::f32::consts::PI;
 
@@ -77,6 +79,8 @@ pub(crate) struct Balance {
     pub light_paths: f32,
     /// η: merging counts so much more than connecting; 0 without merging.
     pub merging: f32,
+    /// The radius of merging.
+    pub radius: f32,
     /// 1; 0 if light subpaths are not connected to anything, so that camera subpaths find light by
     /// chance or by choice alone.
     pub connecting: f32,
@@ -85,20 +89,26 @@ pub(crate) struct Balance {
 impl Balance {
     /// For `light_paths` light subpaths, without merging.
     pub fn connecting(light_paths: f32) -> Self {
-        Self { light_paths, merging: 0.0, connecting: 1.0 }
+        Self { light_paths, merging: 0.0, radius: 0.0, connecting: 1.0 }
     }
 
     /// For `light_paths` light subpaths that are connected and `photon_paths` that are merged
     /// within a radius.
     pub fn merging(light_paths: usize, photon_paths: usize, radius: f32) -> Self {
         let merging = photon_paths as f32 * (PI * radius * radius);
-        Self { merging, ..Self::connecting(light_paths as f32) }
+        Self { merging, radius, ..Self::connecting(light_paths as f32) }
     }
 
     /// For merging within a radius at the ends of camera subpaths, which before their end sample
     /// lights by next-event estimation and by BSDF sampling.
     pub fn at_the_end(photon_paths: usize, radius: f32) -> Self {
         Self { connecting: 0.0, ..Self::merging(photon_paths, photon_paths, radius) }
+    }
+
+    /// The length of a medium that has the volume of the merging ball over the area of the merging
+    /// disk: 4r/3.
+    pub fn merging_length(&self) -> f32 {
+        self.radius * (4.0 / 3.0)
     }
 
     /// The initial value of a camera subpath whose first direction has the density `pdf` on the

@@ -5,6 +5,7 @@ use scene::light_sampler::{LightSampler, PowerLightSampler};
 use scene::{Scene, View};
 use spectrum::SampledSpectrum;
 
+use super::medium_emission::MediumEmission;
 use super::partial::Balance;
 use crate::{Cancelled, Control};
 
@@ -15,18 +16,26 @@ pub(crate) struct Lights {
     pub seen_from: LightSampler,
     /// For the first vertices of light subpaths.
     pub emitting: PowerLightSampler,
+    /// Media where light subpaths start, too.
+    pub media: Option<MediumEmission>,
 }
 
 impl Lights {
     /// Samplers of no lights.
     pub fn none() -> Self {
-        Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default() }
+        Self { seen_from: LightSampler::default(), emitting: PowerLightSampler::default(), media: None }
     }
 
     /// Samplers of the lights of a scene.
     pub fn of(scene: &Scene, control: &Control) -> Result<Self, Cancelled> {
         let seen_from = scene.light_sampler(LightSamplerDesc::Bvh, &control.cancel).ok_or(Cancelled)?;
-        Ok(Self { seen_from, emitting: PowerLightSampler::new(scene.lights()) })
+        Ok(Self { seen_from, emitting: PowerLightSampler::new(scene.lights()), media: None })
+    }
+
+    /// The same, with media that emit: for algorithms that do not find all of their light along
+    /// camera paths.
+    pub fn and_media(scene: &Scene, view: &View, control: &Control) -> Result<Self, Cancelled> {
+        Ok(Self { media: MediumEmission::new(scene, view, control)?, ..Self::of(scene, control)? })
     }
 }
 

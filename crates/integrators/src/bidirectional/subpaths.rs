@@ -4,7 +4,7 @@
 use scene::camera::CameraRayDifferential;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use super::{Bidirectional, Found, Vertex, Walk};
+use super::{Arrival, Bidirectional, Found, Vertex, Walk};
 use crate::transport::Tracer;
 
 /// A vertex or light that a camera subpath hits.
@@ -27,12 +27,12 @@ impl Bidirectional<'_> {
     ) {
         let Some(mut walk) = Walk::from_light(self, time, *lambda, tracer) else { return };
         while walk.depth < self.max_depth {
-            let Some(mut surface) = walk.intersect(tracer) else { return };
-            let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
+            let Arrival::At(mut interaction) = walk.intersect(tracer) else { return };
+            let Some(vertex) = walk.arrive(&mut interaction, tracer) else { continue };
             if vertex.is_connectible() {
                 visit(&vertex, tracer);
             }
-            if !walk.leave(&vertex, &surface, tracer.sampler) {
+            if !walk.leave(&vertex, &interaction, tracer.sampler) {
                 return;
             }
         }
@@ -61,21 +61,29 @@ impl Bidirectional<'_> {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut before: Option<Vertex> = None;
         loop {
-            let Some(mut surface) = walk.intersect(tracer) else {
-                for found in self.escaped(&walk, before.as_ref()) {
-                    visit(Encounter::Light(found), tracer);
-                }
-                return;
-            };
-            if let Some(found) = self.emitted(&walk, &surface, before.as_ref()) {
+            let arrival = walk.intersect(tracer);
+            if let Some(found) = self.emitted_on_the_way(&mut walk) {
                 visit(Encounter::Light(found), tracer);
             }
-            let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
+            let mut interaction = match arrival {
+                Arrival::At(interaction) => interaction,
+                Arrival::Escaped => {
+                    for found in self.escaped(&walk, before.as_ref()) {
+                        visit(Encounter::Light(found), tracer);
+                    }
+                    return;
+                }
+                Arrival::Lost => return,
+            };
+            if let Some(found) = self.emitted(&walk, &interaction, before.as_ref()) {
+                visit(Encounter::Light(found), tracer);
+            }
+            let Some(vertex) = walk.arrive(&mut interaction, tracer) else { continue };
             if vertex.depth > self.max_depth {
                 return;
             }
             visit(Encounter::Vertex(&vertex), tracer);
-            if is_end(&vertex) || !walk.leave(&vertex, &surface, tracer.sampler) {
+            if is_end(&vertex) || !walk.leave(&vertex, &interaction, tracer.sampler) {
                 return;
             }
             before = Some(vertex);
@@ -117,19 +125,26 @@ impl Bidirectional<'_> {
     ) -> SampledSpectrum {
         let mut walk = Walk::from_camera(self, camera_ray, *lambda);
         let mut l = SampledSpectrum::ZERO;
-        let Some((vertex, surface)) = walk.follow_to(depth, tracer) else { return l };
-        if !walk.scatter(&vertex, &surface, tracer.sampler) {
+        let Some((vertex, interaction)) = walk.follow_to(depth, tracer) else { return l };
+        if !walk.scatter(&vertex, &interaction, tracer.sampler) {
             return l;
         }
+        walk.emitted = SampledSpectrum::ZERO;
         loop {
-            let Some(mut surface) = walk.intersect(tracer) else {
-                let escaped = self.escaped(&walk, Some(&vertex)).map(|found| found.weighted());
-                return l + escaped.sum::<SampledSpectrum>();
+            let arrival = walk.intersect(tracer);
+            l += self.emitted_on_the_way(&mut walk).map_or(SampledSpectrum::ZERO, |found| found.weighted());
+            let mut interaction = match arrival {
+                Arrival::At(interaction) => interaction,
+                Arrival::Escaped => {
+                    let escaped = self.escaped(&walk, Some(&vertex)).map(|found| found.weighted());
+                    return l + escaped.sum::<SampledSpectrum>();
+                }
+                Arrival::Lost => return l,
             };
-            if let Some(found) = self.emitted(&walk, &surface, Some(&vertex)) {
+            if let Some(found) = self.emitted(&walk, &interaction, Some(&vertex)) {
                 l += found.weighted();
             }
-            if walk.arrive(&mut surface, tracer).is_some() {
+            if walk.arrive(&mut interaction, tracer).is_some() {
                 return l;
             }
         }

@@ -10,13 +10,13 @@ use geometry::RayStats;
 use math::{Bounds2, Normal3, Point2, Point3, Vec2, Vec3};
 use sampling::Sampler;
 use sampling::sampler::Independent;
-use scattering::{Directions, TransportMode};
+use scattering::TransportMode;
 use scene::camera::{CameraRayDifferential, CameraSample};
 use scene::light::LightId;
 use scene::{Scene, View};
 use spectrum::SampledWavelengths;
 
-use super::{Balance, Bidirectional, LightVertex, Lights, Vertex, Walk};
+use super::{Arrival, Balance, Bidirectional, Interaction, LightVertex, Lights, Vertex, Walk};
 use crate::{Control, Tracer};
 
 const LIGHT_PATHS: usize = 37;
@@ -88,7 +88,7 @@ impl Path<'_> {
     fn scattered(&self, index: usize, from: Point3, to: (Point3, Normal3), mode: TransportMode) -> f64 {
         let vertex = self.surfaces[index];
         let (wo, wi) = ((from - vertex.p.p).normalize(), (to.0 - vertex.p.p).normalize());
-        per_area(vertex.bsdf.pdf(wo, wi, mode, Directions::All), vertex.p.p, to.0, to.1)
+        per_area(vertex.law.pdf(wo, wi, mode), vertex.p.p, to.0, to.1)
     }
 
     /// The position of the vertex before or after a surface, seen from the light: index 0 is the
@@ -246,7 +246,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         for (i, vertex) in light_subpath.iter().enumerate() {
             let surfaces = light_subpath[..=i].iter().collect();
-            if let Some(found) = paths.connect_to_camera(vertex, Vec2::ZERO, everywhere, tracer) {
+            if let Some(found) = paths.connect_to_camera(vertex, Vec2::ZERO, everywhere, &lambda, tracer) {
                 check(
                     &Path { light: start, surfaces, camera },
                     connect(found.found.s),
@@ -258,10 +258,11 @@ fn assert_weights(balance: Balance, expected: Balance) {
 
         let mut walk = Walk::from_camera(&paths, &ray, lambda);
         let mut camera_subpath: Vec<Vertex> = Vec::new();
-        while let Some(mut surface) = walk.intersect(tracer) {
+        while let Arrival::At(mut interaction) = walk.intersect(tracer) {
             let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
-            if let Some(found) = paths.emitted(&walk, &surface, camera_subpath.last())
+            if let Some(found) = paths.emitted(&walk, &interaction, camera_subpath.last())
                 && !camera_subpath.is_empty()
+                && let Interaction::Surface(surface) = &interaction
             {
                 let light = (surface.area_light.expect("a light"), surface.p(), surface.surface.n);
                 let surfaces = from_light(camera_subpath.len());
@@ -270,7 +271,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
             if walk.depth == paths.max_depth {
                 break;
             }
-            let vertex = walk.arrive(&mut surface, tracer).expect("no interfaces here");
+            let vertex = walk.arrive(&mut interaction, tracer).expect("no interfaces here");
             camera_subpath.push(vertex);
             let from_light = |count: usize| camera_subpath[..count].iter().rev().collect::<Vec<_>>();
 
@@ -285,7 +286,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                 check(&Path { light, surfaces, camera }, connect(found.s), found.weight, 2);
             }
             for (i, light) in light_subpath.iter().enumerate() {
-                if let Some(found) = paths.connect(&vertex, light, tracer) {
+                if let Some(found) = paths.connect(&vertex, light, &lambda, tracer) {
                     let mut surfaces: Vec<_> = light_subpath[..=i].iter().collect();
                     surfaces.extend(from_light(camera_subpath.len()));
                     let path = Path { light: start, surfaces, camera };
@@ -299,7 +300,7 @@ fn assert_weights(balance: Balance, expected: Balance) {
                     }
                 }
             }
-            if !walk.leave(&vertex, &surface, tracer.sampler) {
+            if !walk.leave(&vertex, &interaction, tracer.sampler) {
                 break;
             }
         }

@@ -1,28 +1,37 @@
 //! Vertices of subpaths.
 
 use math::{Normal3, Point3Error, Ray, Vector3};
-use scattering::{Bsdf, Bxdf, TransportMode};
+use scattering::{BxdfFlags, TransportMode};
 use scene::light::LightSampleContext;
+use scene::medium::{MediumId, MediumInterface};
 use spectrum::SampledSpectrum;
 
-use super::{Merges, Partial};
+use super::{Law, Merges, Partial};
 use crate::transport::direct::on_its_side;
 
-/// A vertex of a subpath on a surface.
+/// A vertex of a subpath.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex<'a> {
     /// Position.
     pub p: Point3Error,
-    /// Geometric normal.
+    /// Geometric normal; zero in a medium.
     pub n: Normal3,
     /// Unit direction to the previous vertex.
     pub wo: Vector3,
     /// Time, in the scene's units.
     pub time: f32,
-    /// The BSDF.
-    pub bsdf: Bsdf<Bxdf<'a>>,
-    /// The probability with which a ray hits the surface there.
+    /// How it scatters.
+    pub law: Law<'a>,
+    /// The medium in which the subpath arrived.
+    pub medium: Option<MediumId>,
+    /// The media on the two sides of the surface, if they differ.
+    pub media: Option<MediumInterface>,
+    /// The probability with which a ray hits the surface there; in a medium, that of a collision
+    /// over the length of the merging ball, 4r/3.
     pub alpha: f32,
+    /// The factor that the throughput has from there being a surface or a collision at all: `alpha`
+    /// of a surface, or the coefficient of scattering.
+    pub presence: SampledSpectrum,
     /// Throughput: importance (from the camera) or power (from a light) that arrives along `wo`,
     /// over the density of the subpath.
     pub beta: SampledSpectrum,
@@ -34,38 +43,68 @@ pub(crate) struct Vertex<'a> {
     pub depth: u32,
     /// Whether an earlier vertex of the subpath is diffuse.
     pub after_diffuse: bool,
+    /// Whether the subpath began in a medium that emits.
+    pub begins_in_medium: bool,
     /// Whether the subpath carries radiance or importance.
     pub mode: TransportMode,
 }
 
 impl Vertex<'_> {
+    /// The lobes of its law.
+    #[inline]
+    pub fn flags(&self) -> BxdfFlags {
+        self.law.flags()
+    }
+
+    /// The shading normal; zero in a medium.
+    #[inline]
+    fn ns(&self) -> Normal3 {
+        match &self.law {
+            Law::Surface(bsdf) => bsdf.frame.z,
+            Law::Medium(_) => Normal3::ZERO,
+        }
+    }
+
+    /// Whether it lies in a medium.
+    #[inline]
+    pub fn is_in_medium(&self) -> bool {
+        matches!(self.law, Law::Medium(_))
+    }
+
+    /// The medium of a ray that leaves along `w`.
+    #[inline]
+    pub fn medium_towards(&self, w: Vector3) -> Option<MediumId> {
+        self.media.map_or(self.medium, |media| media.towards(w, self.n))
+    }
+
     /// The context for sampling lights from it.
     #[inline]
     pub fn light_context(&self) -> LightSampleContext {
-        let context = LightSampleContext { p: self.p, n: self.n, ns: self.bsdf.frame.z, time: self.time };
-        on_its_side(context, self.wo, self.bsdf.flags())
+        let context = LightSampleContext { p: self.p, n: self.n, ns: self.ns(), time: self.time };
+        on_its_side(context, self.wo, self.flags())
     }
 
     /// Whether other vertices can be connected to it.
     #[inline]
     pub fn is_connectible(&self) -> bool {
-        self.bsdf.flags().is_non_specular()
+        self.flags().is_non_specular()
     }
 
     /// Whether it can be merged with a vertex of the other kind of subpath: not the first vertex of
-    /// a light subpath, nor those of a camera subpath beyond a diffuse surface.
+    /// a light subpath from a light, nor those of a camera subpath beyond a diffuse surface.
     #[inline]
     pub fn can_merge(&self) -> bool {
         match self.mode {
             TransportMode::Radiance => !self.after_diffuse,
-            TransportMode::Importance => self.depth > 1,
+            TransportMode::Importance => self.depth > 1 || self.begins_in_medium,
         }
     }
 
-    /// Whether it has a diffuse lobe and no specular one: camera subpaths merge no further.
+    /// Whether it has a diffuse lobe and no specular one, or lies in a medium: camera subpaths
+    /// merge no further.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
-        let flags = self.bsdf.flags();
+        let flags = self.flags();
         flags.is_diffuse() && !flags.is_specular()
     }
 
@@ -76,26 +115,27 @@ impl Vertex<'_> {
         Merges { here: if self.can_merge() { self.alpha } else { 0.0 }, before }
     }
 
-    /// The power of the photon of a light subpath, divided by `alpha`: only the share `alpha` of
-    /// light subpaths hits the surface, but the camera subpath with which the photon is merged has
-    /// hit it already.
+    /// The power of the photon of a light subpath, divided by `presence`: only the share `alpha` of
+    /// light subpaths hits the surface, or σ_s per length is scattered, but the camera subpath with
+    /// which the photon is merged has been there already.
     #[inline]
     pub fn photon_beta(&self) -> SampledSpectrum {
-        self.beta / self.alpha
+        self.beta.safe_div(self.presence)
     }
 
-    /// `beta` times the BSDF and its cosine: the throughput that leaves along `wi`, per solid
+    /// `beta` times the law and its cosine: the throughput that leaves along `wi`, per solid
     /// angle.
     #[inline]
     pub fn scattered(&self, wi: Vector3) -> SampledSpectrum {
-        self.beta * self.bsdf.f(self.wo, wi, self.mode) * self.cosine(wi)
+        self.beta * self.law.f(self.wo, wi, self.mode) * self.cosine(wi)
     }
 
     /// The cosine that scattering towards `wi` is multiplied by: with the shading normal, and for
-    /// light with the correction that keeps its energy ([Veach 1997 §5.3.2]).
+    /// light with the correction that keeps its energy ([Veach 1997 §5.3.2]); 1 in a medium.
     #[inline]
     pub fn cosine(&self, wi: Vector3) -> f32 {
-        let ns = self.bsdf.frame.z;
+        let Law::Surface(bsdf) = &self.law else { return 1.0 };
+        let ns = bsdf.frame.z;
         match self.mode {
             TransportMode::Radiance => wi.dot(ns).abs(),
             TransportMode::Importance => {
@@ -108,20 +148,20 @@ impl Vertex<'_> {
     /// Density per solid angle with which this subpath continues along `wi`.
     #[inline]
     pub fn pdf(&self, wi: Vector3) -> f32 {
-        self.bsdf.pdf(self.wo, wi, self.mode, scattering::Directions::All)
+        self.law.pdf(self.wo, wi, self.mode)
     }
 
     /// Density per solid angle with which a subpath of the other kind that comes from `wi`
     /// continues along `wo`.
     #[inline]
     pub fn pdf_back(&self, wi: Vector3) -> f32 {
-        self.bsdf.pdf(wi, self.wo, !self.mode, scattering::Directions::All)
+        self.law.pdf(wi, self.wo, !self.mode)
     }
 
-    /// |cos| of a direction to the geometric normal.
+    /// |cos| of a direction to the geometric normal; 1 in a medium.
     #[inline]
     pub fn cos_theta(&self, w: Vector3) -> f32 {
-        self.n.dot(w).abs()
+        if self.is_in_medium() { 1.0 } else { self.n.dot(w).abs() }
     }
 
     /// The ray to another point, with the normal of its surface if there is one; to be traced up to

@@ -1,33 +1,35 @@
 //! Samples subpaths, vertex by vertex, from the camera or from a light.
 //!
-//! A walk traces its ray to a surface ([`Walk::intersect`]), which is a vertex ([`Walk::arrive`])
-//! unless the ray passes it, and leaves the vertex along a direction of its BSDF ([`Walk::leave`]).
-//! From the second vertex on it ends with probability 1 − q by Russian roulette, where q is the
-//! throughput relative to the initial one, at most 1; the MIS weights ignore it, which costs a
-//! little efficiency. A walk to a vertex of a given depth has no roulette ([`Walk::follow_to`]).
+//! A walk traces its ray to a surface or to a collision in a medium ([`Walk::intersect`]), which is
+//! a vertex ([`Walk::arrive`]) unless the ray passes it, and leaves the vertex along a direction of
+//! its BSDF or phase function ([`Walk::leave`]). From the second vertex on it ends with probability
+//! 1 − q by Russian roulette, where q is the throughput relative to the initial one, at most 1; the
+//! MIS weights ignore it, which costs a little efficiency. A walk to a vertex of a given depth has
+//! no roulette ([`Walk::follow_to`]).
 
-use math::RayDifferential;
+use math::{Normal3, ONE_MINUS_EPSILON, Point3Error, Ray, RayDifferential, Vector3};
 use sampling::Sampler;
-use scattering::{Directions, TransportMode};
+use scattering::TransportMode;
 use scene::camera::CameraRayDifferential;
 use scene::light::LightId;
-use scene::{Interfaces, SurfaceInteraction};
+use scene::medium::{MediumId, MediumInterface};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::light_end::LightPoint;
-use super::{Bidirectional, Partial, Vertex};
+use super::{Bidirectional, Interaction, Law, MediumInteraction, Partial, Vertex};
+use crate::transport::media::{FlightEnd, Heroes, Throughput};
 use crate::transport::path_state::pass_through;
 use crate::transport::{Tracer, roulette};
 
-/// A subpath between two surfaces.
+/// A subpath between two vertices.
 #[derive(Clone)]
 pub(crate) struct Walk<'a> {
     paths: &'a Bidirectional<'a>,
-    /// The ray to the next surface.
+    /// The ray to the next vertex.
     pub ray: RayDifferential,
     /// Path throughput: importance or power along the ray, over the density of the subpath.
     pub beta: SampledSpectrum,
-    /// Partial MIS weights, without the factors of the next surface.
+    /// Partial MIS weights, without the factors of the next vertex.
     pub partial: Partial,
     /// The wavelengths, of which dispersion may have terminated all but the first.
     pub lambda: SampledWavelengths,
@@ -35,16 +37,31 @@ pub(crate) struct Walk<'a> {
     pub depth: u32,
     /// Throughput relative to the start of the subpath, without the η² of refractions.
     share: SampledSpectrum,
+    /// The medium of the ray.
+    medium: Option<MediumId>,
+    /// Light that media emitted along the rays so far, not yet taken.
+    pub emitted: SampledSpectrum,
+    /// Whether it is a light subpath that began in a medium.
+    begins_in_medium: bool,
     /// Distance from the previous vertex.
     distance: f32,
     /// Alpha of the surface that was hit.
     alpha: f32,
     rough_before: bool,
     after_diffuse: bool,
-    /// Whether it was ended by an interface.
-    is_stopped: bool,
     origin: Origin,
     mode: TransportMode,
+}
+
+/// The end of a ray of a subpath.
+#[expect(clippy::large_enum_variant, reason = "it lives for one vertex, and a box is an allocation")]
+pub(crate) enum Arrival {
+    /// It interacts with the scene.
+    At(Interaction),
+    /// It leaves the scene.
+    Escaped,
+    /// A medium absorbed it.
+    Lost,
 }
 
 /// The origin of the ray.
@@ -79,7 +96,14 @@ impl<'a> Walk<'a> {
         let beta = SampledSpectrum::splat(camera_ray.weight);
         let origin = if parallel { Origin::Direction } else { Origin::Point };
         let partial = paths.balance.at_camera(pdf);
-        Self::new(paths, camera_ray.ray, (beta, partial), lambda, (origin, TransportMode::Radiance))
+        Self::new(
+            paths,
+            camera_ray.ray,
+            (beta, partial),
+            lambda,
+            (origin, TransportMode::Radiance),
+            paths.view.medium,
+        )
     }
 
     /// Starts at a light, chosen by power; `None` if the sampled ray has no radiance.
@@ -90,13 +114,48 @@ impl<'a> Walk<'a> {
         tracer: &mut Tracer,
     ) -> Option<Self> {
         let sampler = &mut *tracer.sampler;
-        let (u, u_position, u_direction) = (sampler.get_1d(), sampler.get_2d(), sampler.get_2d());
+        let mut u = sampler.get_1d();
+        let mut of_lights = 1.0;
+        if let Some(media) = &paths.lights.media {
+            if u < media.share {
+                return Self::from_medium(paths, u / media.share, time, lambda, tracer);
+            }
+            of_lights -= media.share;
+            u = ((u - media.share) / of_lights).min(ONE_MINUS_EPSILON);
+        }
+        let (u_position, u_direction) = (sampler.get_2d(), sampler.get_2d());
         let (light, pmf) = paths.lights.emitting.sample(u)?;
         let sample =
             paths.scene.sample_emission(light, u_position, u_direction, time, &lambda, tracer.stats)?;
-        let start = (sample.beta() / pmf, Partial::default());
+        let source = paths.scene.light(light);
+        let medium = source.medium_towards(sample.ray.d, sample.n);
+        let mut beta = sample.beta() / (pmf * of_lights);
+        if sample.p.is_none() && medium.is_some() {
+            // The medium that the light comes through before it reaches the scene.
+            let way_back = Ray { d: -sample.ray.d, ..sample.ray };
+            beta *= tracer.transmittance_for(&way_back, f32::INFINITY, medium, &beta, &lambda)?;
+        }
         let origin = (Origin::Light(light, sample.p.map(|p| (p.p, sample.n))), TransportMode::Importance);
-        Some(Self::new(paths, sample.ray.into(), start, lambda, origin))
+        Some(Self::new(paths, sample.ray.into(), (beta, Partial::default()), lambda, origin, medium))
+    }
+
+    /// Starts in a medium that emits; `u` chooses where.
+    fn from_medium(
+        paths: &'a Bidirectional,
+        u: f32,
+        time: f32,
+        lambda: SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> Option<Self> {
+        let media = paths.lights.media.as_ref()?;
+        let (place, direction) =
+            (tracer.sampler.get_2d().extend(tracer.sampler.get_1d()), tracer.sampler.get_2d());
+        let start = media.sample(paths.scene, u, place, direction, time, &lambda)?;
+        let beta = start.beta / media.share;
+        let origin = (Origin::Point, TransportMode::Importance);
+        let medium = Some(start.medium);
+        let walk = Self::new(paths, start.ray.into(), (beta, Partial::default()), lambda, origin, medium);
+        Some(Self { begins_in_medium: true, ..walk })
     }
 
     fn new(
@@ -105,6 +164,7 @@ impl<'a> Walk<'a> {
         (beta, partial): (SampledSpectrum, Partial),
         lambda: SampledWavelengths,
         (origin, mode): (Origin, TransportMode),
+        medium: Option<MediumId>,
     ) -> Self {
         Self {
             paths,
@@ -114,60 +174,75 @@ impl<'a> Walk<'a> {
             lambda,
             depth: 0,
             share: SampledSpectrum::ONE,
+            medium,
+            emitted: SampledSpectrum::ZERO,
+            begins_in_medium: false,
             distance: 0.0,
             alpha: 1.0,
             rough_before: false,
             after_diffuse: false,
-            is_stopped: false,
             origin,
             mode,
         }
     }
 
-    /// The surface that the ray hits; `None` if it leaves the scene, or an interface ended the
-    /// subpath.
-    pub fn intersect(&mut self, tracer: &mut Tracer) -> Option<SurfaceInteraction> {
-        if self.is_stopped {
-            return None;
-        }
+    /// Where the ray interacts next, or how it ends.
+    pub fn intersect(&mut self, tracer: &mut Tracer) -> Arrival {
         let scene = self.paths.scene;
-        let hit = tracer.hit(&self.ray.ray)?;
+        let hit = tracer.hit(&self.ray.ray);
+        let t_max = hit.as_ref().map_or(f32::INFINITY, |hit| hit.t);
+        match self.fly(t_max, tracer) {
+            FlightEnd::Passed => (),
+            FlightEnd::Absorbed => return Arrival::Lost,
+            FlightEnd::Scattered { p, sigma_s, sigma_t, phase } => {
+                self.distance += self.ray.ray.o.distance(p);
+                let length = self.paths.balance.merging_length();
+                self.alpha = if length > 0.0 { sigma_t.average() * length } else { 1.0 };
+                return Arrival::At(Interaction::Medium(MediumInteraction { p, sigma_s, phase }));
+            }
+        }
+        let Some(hit) = hit else { return Arrival::Escaped };
         let surface = scene.world().surface(&self.ray.ray, &hit);
         self.distance += hit.t;
         self.alpha = scene.coverage(&hit, &surface);
-        Some(scene.interaction(&hit, surface))
+        Arrival::At(Interaction::Surface(scene.interaction(&hit, surface)))
     }
 
-    /// The vertex at a surface that was hit; `None` if the ray passes it and has to be traced
+    /// Flies through the medium of the ray up to the surface at `t_max`.
+    fn fly(&mut self, t_max: f32, tracer: &mut Tracer) -> FlightEnd {
+        let Some(medium) = self.medium else { return FlightEnd::Passed };
+        let first_only = self.lambda.secondary_terminated();
+        let heroes = Heroes::by_throughput(self.beta, first_only, tracer.sampler.get_1d());
+        let mut path = Throughput { beta: self.beta, ..Throughput::ONE };
+        let flight = tracer.fly(medium, &self.ray.ray, t_max, &self.lambda, &heroes, &mut path);
+        self.emitted += flight.emitted;
+        let beta = path.beta / heroes.mean(path.r_u);
+        self.share *= beta.safe_div(self.beta);
+        self.beta = beta;
+        flight.end
+    }
+
+    /// The vertex of an interaction; `None` if the ray passes the surface and has to be traced
     /// further.
-    pub fn arrive(&mut self, surface: &mut SurfaceInteraction, tracer: &mut Tracer) -> Option<Vertex<'a>> {
+    pub fn arrive(&mut self, interaction: &mut Interaction, tracer: &mut Tracer) -> Option<Vertex<'a>> {
         let (scene, view) = (self.paths.scene, self.paths.view);
-        let Some(mut bsdf) = scene.bsdf(view, surface, &self.ray, &mut self.lambda, tracer.sampler) else {
-            let t = self.ray.ray.o.distance(surface.p());
-            self.ray = pass_through(&self.ray, surface, t);
-            if let Origin::Light(light, _) = self.origin
-                && Interfaces::before(self.paths.scene.light(light)) == Interfaces::Stop
-            {
-                self.is_stopped = true;
+        let mut vertex = match interaction {
+            Interaction::Surface(surface) => {
+                let Some(mut bsdf) = scene.bsdf(view, surface, &self.ray, &mut self.lambda, tracer.sampler)
+                else {
+                    let t = self.ray.ray.o.distance(surface.p());
+                    self.medium = surface.medium_towards(self.ray.ray.d, self.medium);
+                    self.ray = pass_through(&self.ray, surface, t);
+                    return None;
+                };
+                bsdf.regularize(self.paths.regularize && self.rough_before);
+                let (s, presence) = (&surface.surface, SampledSpectrum::splat(self.alpha));
+                self.vertex((s.p, s.n, s.wo), Law::Surface(bsdf), presence, surface.media)
             }
-            return None;
-        };
-        bsdf.regularize(self.paths.regularize && self.rough_before);
-        self.depth += 1;
-        let s = &surface.surface;
-        let mut vertex = Vertex {
-            p: s.p,
-            n: s.n,
-            wo: s.wo,
-            time: s.time,
-            bsdf,
-            alpha: self.alpha,
-            beta: self.beta,
-            hero_only: self.lambda.secondary_terminated(),
-            partial: Partial::default(),
-            depth: self.depth,
-            after_diffuse: self.after_diffuse,
-            mode: self.mode,
+            Interaction::Medium(MediumInteraction { p, sigma_s, phase }) => {
+                let (p, n, wo) = (Point3Error::exact(*p), Normal3::ZERO, -self.ray.ray.d);
+                self.vertex((p, n, wo), Law::Medium(*phase), *sigma_s, None)
+            }
         };
         let cos_theta = vertex.cos_theta(vertex.wo);
         vertex.partial = match &self.origin {
@@ -183,31 +258,60 @@ impl<'a> Walk<'a> {
         Some(vertex)
     }
 
-    /// Leaves a vertex along a direction of its BSDF; `false` if the subpath ends there, perhaps by
-    /// Russian roulette.
-    pub fn leave(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
-        self.scatter(vertex, surface, sampler) && self.survive(sampler)
+    /// The next vertex, without its weights.
+    fn vertex(
+        &mut self,
+        (p, n, wo): (Point3Error, Normal3, Vector3),
+        law: Law<'a>,
+        presence: SampledSpectrum,
+        media: Option<MediumInterface>,
+    ) -> Vertex<'a> {
+        self.depth += 1;
+        Vertex {
+            p,
+            n,
+            wo,
+            time: self.ray.ray.time,
+            law,
+            medium: self.medium,
+            media,
+            alpha: self.alpha,
+            presence,
+            beta: self.beta,
+            hero_only: self.lambda.secondary_terminated(),
+            partial: Partial::default(),
+            depth: self.depth,
+            after_diffuse: self.after_diffuse,
+            begins_in_medium: self.begins_in_medium,
+            mode: self.mode,
+        }
+    }
+
+    /// Leaves a vertex along a direction that it scatters to; `false` if the subpath ends there,
+    /// perhaps by Russian roulette.
+    pub fn leave(&mut self, vertex: &Vertex, interaction: &Interaction, sampler: &mut Sampler) -> bool {
+        self.scatter(vertex, interaction, sampler) && self.survive(sampler)
     }
 
     /// Samples up to the vertex of a depth, without Russian roulette; `None` if the subpath ends
     /// before.
-    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex<'a>, SurfaceInteraction)> {
+    pub fn follow_to(&mut self, depth: u32, tracer: &mut Tracer) -> Option<(Vertex<'a>, Interaction)> {
         loop {
-            let mut surface = self.intersect(tracer)?;
-            let Some(vertex) = self.arrive(&mut surface, tracer) else { continue };
+            let Arrival::At(mut interaction) = self.intersect(tracer) else { return None };
+            let Some(vertex) = self.arrive(&mut interaction, tracer) else { continue };
             if vertex.depth == depth {
-                return Some((vertex, surface));
+                return Some((vertex, interaction));
             }
-            if !self.scatter(&vertex, &surface, tracer.sampler) {
+            if !self.scatter(&vertex, &interaction, tracer.sampler) {
                 return None;
             }
         }
     }
 
-    /// Leaves a vertex along a direction of its BSDF; `false` if it has none.
-    pub fn scatter(&mut self, vertex: &Vertex, surface: &SurfaceInteraction, sampler: &mut Sampler) -> bool {
+    /// Leaves a vertex along a direction that it scatters to; `false` if it has none.
+    pub fn scatter(&mut self, vertex: &Vertex, interaction: &Interaction, sampler: &mut Sampler) -> bool {
         let (uc, u) = (sampler.get_1d(), sampler.get_2d());
-        let Some(sample) = vertex.bsdf.sample_f(vertex.wo, uc, u, vertex.mode, Directions::All) else {
+        let Some(sample) = vertex.law.sample_f(vertex.wo, uc, u, vertex.mode) else {
             return false;
         };
         let scale = sample.f * (vertex.cosine(sample.wi) / sample.pdf);
@@ -228,7 +332,8 @@ impl<'a> Walk<'a> {
         }
         self.origin = Origin::Point;
         self.distance = 0.0;
-        self.ray = surface.spawn_scattered(&self.ray, &sample);
+        self.medium = vertex.medium_towards(sample.wi);
+        self.ray = interaction.spawn_scattered(&self.ray, &sample);
         !self.beta.is_black()
     }
 

@@ -2,17 +2,21 @@
 
 mod ambient_occlusion;
 mod path;
+mod paths_from;
 mod pixel_loop;
 mod random_walk;
 mod ray_casting;
 mod simple_path;
+mod vol_path;
 mod whitted;
 
 pub use ambient_occlusion::AmbientOcclusion;
 pub use path::Path;
+pub(crate) use paths_from::PathsFrom;
 pub use pixel_loop::{PixelLoop, RayIntegrator};
 pub use random_walk::RandomWalk;
 pub use ray_casting::RayCasting;
 pub use simple_path::SimplePath;
+pub use vol_path::VolPath;
 pub(crate) use whitted::Node;
 pub use whitted::Whitted;

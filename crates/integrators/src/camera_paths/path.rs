@@ -13,6 +13,7 @@ use scattering::{Bsdf, each_bxdf};
 use scene::{Interfaces, Scene, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
+use super::PathsFrom;
 use crate::transport::direct::{DirectLighting, light_context};
 use crate::transport::path_state::{PathState, Scattered};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
@@ -29,11 +30,12 @@ impl Path {
     /// Has no lights before [`prepare`](RayIntegrator::prepare). `interfaces` says whether
     /// interfaces occlude delta lights.
     pub fn new(settings: PathDesc, interfaces: Interfaces) -> Self {
-        Self { settings, interfaces, direct: DirectLighting::none() }
+        Self { settings, interfaces, direct: DirectLighting::none(interfaces) }
     }
+}
 
-    /// The radiance along the ray of paths that scatter at least `min_depth` times.
-    pub(crate) fn li_from(
+impl PathsFrom for Path {
+    fn li_from(
         &self,
         min_depth: u32,
         tracer: &mut Tracer,

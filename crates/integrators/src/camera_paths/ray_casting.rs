@@ -11,6 +11,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::transport::direct::connect_all;
 use crate::transport::path_state::pass_through;
+use crate::transport::single_scattering::Scattering;
 use crate::{RayIntegrator, Tracer};
 
 /// Ray casting. It has no settings.
@@ -24,21 +25,34 @@ impl RayIntegrator for RayCasting {
         mut ray: RayDifferential,
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum {
-        let mut l = SampledSpectrum::ZERO;
+        let (mut l, mut beta) = (SampledSpectrum::ZERO, SampledSpectrum::ONE);
+        let mut medium = tracer.view.medium;
         loop {
-            let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
-                return l + tracer.scene.escaped(&ray.ray, lambda);
+            let hit = tracer.intersect(&ray.ray);
+            if let Some(medium) = medium {
+                let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
+                l += beta * tracer.single_scattering(medium, &ray.ray, t_max, Scattering::Unshadowed, lambda);
+                let Some(passed) = tracer.attenuation(medium, &ray.ray, t_max, &beta, lambda) else {
+                    return l;
+                };
+                beta *= passed;
+            }
+            let Some((mut surface, t)) = hit else {
+                return l + beta * tracer.scene.escaped(&ray.ray, lambda);
             };
-            l += tracer.scene.emitted(&surface, surface.surface.wo, lambda);
+            l += beta * tracer.scene.emitted(&surface, surface.surface.wo, lambda);
             match tracer.bsdf(&mut surface, &ray, lambda) {
                 Some(bsdf) => {
                     let mut sum = SampledSpectrum::ZERO;
                     connect_all(tracer.scene, tracer.sampler, &surface, &bsdf, lambda, |light| {
                         sum += light.l
                     });
-                    return l + sum;
+                    return l + beta * sum;
                 }
-                None => ray = pass_through(&ray, &surface, t),
+                None => {
+                    medium = surface.medium_towards(ray.ray.d, medium);
+                    ray = pass_through(&ray, &surface, t);
+                }
             }
         }
     }

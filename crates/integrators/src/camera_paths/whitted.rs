@@ -13,10 +13,12 @@ use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Bsdf, Bxdf, Directions, TransportMode};
 use scene::SurfaceInteraction;
+use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
-use crate::transport::direct::{Connection, connect_all};
+use crate::transport::direct::connect_all;
 use crate::transport::path_state::{pass_through, throughput};
+use crate::transport::single_scattering::Scattering;
 use crate::{RayIntegrator, Tracer};
 
 /// Whitted's ray tracing.
@@ -26,6 +28,8 @@ pub struct Whitted(pub WhittedDesc);
 /// A ray to be traced: a node of the tree.
 pub(crate) struct Node {
     pub ray: RayDifferential,
+    /// The medium of the ray.
+    pub medium: Option<MediumId>,
     /// Path throughput.
     pub beta: SampledSpectrum,
     /// Scattering events so far.
@@ -49,6 +53,7 @@ impl Node {
             let sample = bsdf.sample_f(surface.surface.wo, uc, u, TransportMode::Radiance, directions)?;
             sample.flags.is_specular().then(|| Self {
                 ray: surface.spawn_scattered(&self.ray, &sample),
+                medium: surface.medium_towards(sample.wi, self.medium),
                 beta: self.beta * throughput(surface, &sample),
                 depth: self.depth + 1,
             })
@@ -64,17 +69,31 @@ impl RayIntegrator for Whitted {
         lambda: &mut SampledWavelengths,
     ) -> SampledSpectrum {
         let mut l = SampledSpectrum::ZERO;
-        let mut next = Some(Node { ray, beta: SampledSpectrum::ONE, depth: 0 });
+        let medium = tracer.view.medium;
+        let mut next = Some(Node { ray, medium, beta: SampledSpectrum::ONE, depth: 0 });
         let (mut rest, mut connections) = (Vec::new(), Vec::new());
-        while let Some(node) = next.take().or_else(|| rest.pop()) {
-            let Node { ray, beta, depth } = node;
-            let Some((mut surface, t)) = tracer.intersect(&ray.ray) else {
+        while let Some(mut node) = next.take().or_else(|| rest.pop()) {
+            let hit = tracer.intersect(&node.ray.ray);
+            if let Some(medium) = node.medium {
+                let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
+                let is_last = node.depth == self.0.max_depth;
+                let scattering = if is_last { Scattering::None } else { Scattering::Shadowed };
+                l += node.beta * tracer.single_scattering(medium, &node.ray.ray, t_max, scattering, lambda);
+                let Some(passed) = tracer.attenuation(medium, &node.ray.ray, t_max, &node.beta, lambda)
+                else {
+                    continue;
+                };
+                node.beta *= passed;
+            }
+            let Node { ray, medium, beta, depth } = node;
+            let Some((mut surface, t)) = hit else {
                 l += beta * tracer.scene.escaped(&ray.ray, lambda);
                 continue;
             };
             l += beta * tracer.scene.emitted(&surface, surface.surface.wo, lambda);
             let Some(bsdf) = tracer.bsdf(&mut surface, &ray, lambda) else {
-                next = Some(Node { ray: pass_through(&ray, &surface, t), ..node });
+                let medium = surface.medium_towards(ray.ray.d, medium);
+                next = Some(Node { ray: pass_through(&ray, &surface, t), medium, ..node });
                 continue;
             };
             if depth == self.0.max_depth {
@@ -83,10 +102,9 @@ impl RayIntegrator for Whitted {
             let (scene, sampler) = (tracer.scene, &mut *tracer.sampler);
             connect_all(scene, sampler, &surface, &bsdf, lambda, |light| connections.push(light));
             let mut sum = SampledSpectrum::ZERO;
-            for Connection { ray, t_max, interfaces, l } in connections.drain(..) {
-                if !tracer.occluded(&ray, t_max, interfaces) {
-                    sum += l;
-                }
+            for light in connections.drain(..) {
+                let medium = surface.medium_towards(light.ray.d, medium);
+                sum += light.arriving(medium, lambda, tracer);
             }
             l += beta * sum;
             let [reflected, refracted] = node.children(&surface, &bsdf, tracer.sampler);

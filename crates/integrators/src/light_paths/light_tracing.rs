@@ -70,8 +70,8 @@ impl Integrator for LightTracing {
         unbounded::warnings(scene, "light-tracing")
     }
 
-    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene, control)?;
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.lights = Lights::and_media(scene, view, control)?;
         Ok(())
     }
 
@@ -103,7 +103,7 @@ impl Integrator for LightTracing {
             tracer.with_sampler(&mut light_sampler, |tracer| {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
                     let u = tracer.sampler.get_2d();
-                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), tracer) {
+                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), lambda, tracer) {
                         seen.splat(&splatter, &seen.found.l, lambda);
                         reached += 1;
                     }

@@ -56,8 +56,9 @@ use chains::{Chains, Targeted};
 use target::{CameraPaths, ConnectedPaths, FilmDomain, Target};
 
 use crate::bidirectional::{Balance, Bidirectional, Lights};
+use crate::camera_paths::PathsFrom;
 use crate::transport::pixel_samples::PixelSamples;
-use crate::{Cancelled, Control, Integrator, PassError, Path, RayIntegrator};
+use crate::{Cancelled, Control, Integrator, PassError, Path, VolPath};
 
 /// Metropolis light transport.
 #[derive(Debug)]
@@ -66,7 +67,7 @@ pub struct Mlt {
     /// For the camera rays of directly visible lights.
     sampler: Sampler,
     /// Path tracing of depth 0, for directly visible lights.
-    seen: Path,
+    seen: Box<dyn PathsFrom>,
     technique: Technique,
     chains: Chains,
 }
@@ -74,22 +75,30 @@ pub struct Mlt {
 /// The algorithm that samples paths, prepared for the scene.
 #[derive(Debug)]
 enum Technique {
-    Path(Path),
+    Path(Box<dyn PathsFrom>),
     Bdpt(Lights),
+}
+
+/// Path tracing up to a depth.
+fn paths(settings: &MltDesc, max_depth: u32, has_media: bool) -> Box<dyn PathsFrom> {
+    let settings = PathDesc { max_depth, regularize: settings.regularize, ..PathDesc::default() };
+    if has_media { Box::new(VolPath::new(settings)) } else { Box::new(Path::new(settings, Interfaces::Pass)) }
 }
 
 impl Mlt {
     /// `sampler` is for the camera rays of directly visible lights.
     pub fn new(settings: MltDesc, sampler: Sampler, seed: u32) -> Self {
-        let path = |max_depth| {
-            let regularize = settings.regularize;
-            Path::new(PathDesc { max_depth, regularize, ..PathDesc::default() }, Interfaces::Stop)
-        };
         let technique = match settings.technique {
-            MltTechnique::Path => Technique::Path(path(settings.max_depth)),
+            MltTechnique::Path => Technique::Path(paths(&settings, settings.max_depth, false)),
             MltTechnique::Bdpt => Technique::Bdpt(Lights::none()),
         };
-        Self { settings, sampler, seen: path(0), technique, chains: Chains::new(settings, seed) }
+        Self {
+            settings,
+            sampler,
+            seen: paths(&settings, 0, false),
+            technique,
+            chains: Chains::new(settings, seed),
+        }
     }
 }
 
@@ -103,8 +112,13 @@ impl Integrator for Mlt {
     }
 
     fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        let has_media = !scene.media().is_empty();
+        self.seen = paths(&self.settings, 0, has_media);
         match &mut self.technique {
-            Technique::Path(path) => path.prepare(scene, view, control)?,
+            Technique::Path(path) => {
+                *path = paths(&self.settings, self.settings.max_depth, has_media);
+                path.prepare(scene, view, control)?;
+            }
             Technique::Bdpt(lights) => *lights = Lights::of(scene, control)?,
         }
         Ok(())
@@ -133,7 +147,7 @@ impl Integrator for Mlt {
             return Ok(stats);
         }
         let target: &dyn Target = match &self.technique {
-            Technique::Path(path) => &CameraPaths { film: domain, path },
+            Technique::Path(path) => &CameraPaths { film: domain, path: &**path },
             Technique::Bdpt(lights) => {
                 let balance = Balance::connecting(domain.area());
                 let paths = Bidirectional { scene, view, lights, balance, max_depth, regularize };

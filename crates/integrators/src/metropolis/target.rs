@@ -6,8 +6,8 @@ use sampling::Sampler;
 use scene::camera::{CameraRayDifferential, CameraSample, FilmPositions};
 use spectrum::{SampledSpectrum, SampledWavelengths, xyz_from};
 
-use crate::Path;
 use crate::bidirectional::Bidirectional;
+use crate::camera_paths::PathsFrom;
 use crate::transport::Tracer;
 use crate::transport::pixel_samples::camera_ray;
 use crate::transport::shutter_sample::ShutterSample;
@@ -95,7 +95,7 @@ pub(super) trait Target: Sync {
 /// Path tracing: a camera path with all its contributions.
 pub(super) struct CameraPaths<'a> {
     pub film: FilmDomain,
-    pub path: &'a Path,
+    pub path: &'a dyn PathsFrom,
 }
 
 impl Target for CameraPaths<'_> {
@@ -154,7 +154,8 @@ impl ConnectedPaths<'_> {
         };
         if t == 1 {
             let vertex = light_vertex(tracer)?;
-            let on_film = paths.connect_to_camera(&vertex, connection.get_2d(), self.film.0, tracer)?;
+            let on_film =
+                paths.connect_to_camera(&vertex, connection.get_2d(), self.film.0, lambda, tracer)?;
             return Some((on_film.places, on_film.found.weighted()));
         }
         let camera_ray = end.camera_ray.as_ref()?;
@@ -167,7 +168,7 @@ impl ConnectedPaths<'_> {
             }
             let found = match s {
                 1 => tracer.with_sampler(connection, |tracer| paths.direct(&vertex, lambda, tracer))?,
-                _ => paths.connect(&vertex, &light_vertex(tracer)?, tracer)?,
+                _ => paths.connect(&vertex, &light_vertex(tracer)?, lambda, tracer)?,
             };
             found.weighted()
         };

@@ -1,4 +1,4 @@
-//! A photon: the power of a light subpath that arrives at a surface.
+//! A photon: the power of a light subpath that arrives at a surface or at a point in a medium.
 //!
 //! The photons and the camera paths of a pass share one time and the same wavelengths.
 
@@ -7,17 +7,17 @@ use spectrum::SampledSpectrum;
 
 use crate::bidirectional::Vertex;
 
-/// Power that has arrived at a surface.
+/// Power that has arrived at a surface or at a point in a medium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Photon {
     /// Position.
     pub p: Point3,
-    /// Geometric normal there.
+    /// Geometric normal there; zero in a medium.
     pub n: Normal3,
     /// Unit direction to the previous vertex.
     pub wi: Vector3,
-    /// Power, over the density of the subpath and over alpha; to be divided by the number of
-    /// subpaths.
+    /// Power, over the density of the subpath and over alpha (in a medium, the coefficient of
+    /// scattering); to be divided by the number of subpaths.
     pub beta: SampledSpectrum,
     /// Scattering events on the subpath, this one included.
     pub depth: u32,

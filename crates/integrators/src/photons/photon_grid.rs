@@ -126,6 +126,7 @@ mod tests {
             partial: Partial::default(),
             depth: i as u16,
             hero_only: false,
+            is_in_medium: false,
         };
         places.iter().enumerate().map(photon).collect()
     }

@@ -76,8 +76,8 @@ impl Integrator for Sppm {
         unbounded::warnings(scene, "sppm")
     }
 
-    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene, control)?;
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.lights = Lights::and_media(scene, view, control)?;
         Ok(())
     }
 
@@ -133,9 +133,8 @@ impl Integrator for Sppm {
                             return;
                         }
                         l += direct.map_or(SampledSpectrum::ZERO, |found| found.l);
-                        let depths = paths.max_depth - vertex.depth;
                         photons.within(vertex.p.p, |photon| {
-                            if u32::from(photon.depth) <= depths + 1 {
+                            if paths.may_merge(vertex, photon) {
                                 l += paths.merged(vertex, photon);
                             }
                         });

@@ -169,7 +169,7 @@ impl Integrator for Vcm {
                 &made
             });
             for (vertex, u) in light_subpath {
-                if let Some(seen) = paths.connect_to_camera(vertex, *u, splatter.reach(), tracer) {
+                if let Some(seen) = paths.connect_to_camera(vertex, *u, splatter.reach(), lambda, tracer) {
                     seen.splat(&splatter, &seen.found.weighted(), lambda);
                 }
             }
@@ -191,13 +191,13 @@ impl Integrator for Vcm {
                         }
                         let lights = light_subpath.iter().map(|(light, _)| light);
                         for light in lights.filter(|light| light.depth <= depths) {
-                            if let Some(found) = paths.connect(vertex, light, tracer) {
+                            if let Some(found) = paths.connect(vertex, light, lambda, tracer) {
                                 l += found.weighted();
                             }
                         }
                         if vertex.can_merge() {
                             photons.within(vertex.p.p, |photon| {
-                                if u32::from(photon.depth) <= depths + 1 {
+                                if paths.may_merge(vertex, photon) {
                                     l += paths.merge(vertex, photon).weighted();
                                 }
                             });

@@ -34,7 +34,7 @@ pub(crate) fn from_light(
     for i in 0..strata * strata {
         let u = (Vec2::new((i % strata) as f32, (i / strata) as f32) + shift) / strata as f32;
         let Some((l, sample)) = sample_light(scene, wavelengths, light, context, u) else { continue };
-        if arrives(scene, light, context, &sample, stats) {
+        if arrives(scene, context, &sample, stats) {
             let cos_theta = sample.wi.dot(context.n);
             sides[usize::from(cos_theta < 0.0)] +=
                 l * (cos_theta.abs() / (sample.pdf * (strata * strata) as f32));
@@ -66,7 +66,6 @@ pub(crate) fn sample_light(
 /// Whether the sample of a light is visible from a point.
 pub(crate) fn arrives(
     scene: &Scene,
-    light: LightId,
     context: &LightSampleContext,
     sample: &LightLiSample,
     stats: &mut RayStats,
@@ -75,5 +74,5 @@ pub(crate) fn arrives(
         Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
         None => (context.spawn_ray(sample.wi), f32::INFINITY),
     };
-    !scene.occluded(&ray, end, Interfaces::before(scene.light(light)), stats)
+    !scene.occluded(&ray, end, Interfaces::Pass, stats)
 }

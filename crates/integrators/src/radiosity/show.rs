@@ -189,8 +189,7 @@ impl SolutionRadiance<'_> {
         let cos_theta = sample.wi.dot(s.shading.n);
         let same_side = (cos_theta > 0.0) == (s.wo.dot(s.shading.n) > 0.0);
         let share = if same_side { albedo.reflectance } else { albedo.transmittance };
-        if share.is_black() || l.is_black() || !arrives(tracer.scene, light, &context, &sample, tracer.stats)
-        {
+        if share.is_black() || l.is_black() || !arrives(tracer.scene, &context, &sample, tracer.stats) {
             return Bands::ZERO;
         }
         share * l * (cos_theta.abs() * FRAC_1_PI / (pmf * sample.pdf))

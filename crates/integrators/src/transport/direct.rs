@@ -9,11 +9,12 @@
 
 use description::LightSamplerDesc;
 use lanes::Real;
-use math::{Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
+use math::{Normal3, Point3, Point3Error, Ray, RayDifferential, Vector3, offset_ray_origin};
 use sampling::Sampler;
-use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, Scatter, TransportMode, each_bxdf};
+use scattering::{Bsdf, Bxdf, BxdfFlags, Directions, HenyeyGreenstein, Scatter, TransportMode, each_bxdf};
 use scene::light::{LightId, LightLiSample, LightRef, LightSampleContext};
 use scene::light_sampler::LightSampler;
+use scene::medium::MediumId;
 use scene::{Interfaces, Scene, SurfaceInteraction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -30,7 +31,9 @@ pub(crate) struct DirectLighting {
 
 impl DirectLighting {
     /// For the lights of a scene. `interfaces` says whether surfaces of material `interface`
-    /// occlude delta lights; they do not occlude other lights.
+    /// occlude delta lights; they do not occlude other lights. pbrt-v4's path tracer, which does
+    /// not know media, treats interfaces as surfaces that shadow rays hit, and finds lights behind
+    /// them by BSDF sampling alone: delta lights therefore cast the shadows of interfaces.
     pub fn new(
         scene: &Scene,
         desc: LightSamplerDesc,
@@ -42,8 +45,8 @@ impl DirectLighting {
     }
 
     /// For no lights.
-    pub fn none() -> Self {
-        Self { lights: LightSampler::default(), interfaces: Interfaces::Stop }
+    pub fn none(interfaces: Interfaces) -> Self {
+        Self { lights: LightSampler::default(), interfaces }
     }
 
     /// The choice of lights.
@@ -54,8 +57,8 @@ impl DirectLighting {
     /// Whether interfaces occlude a light.
     pub fn interfaces(&self, light: LightRef) -> Interfaces {
         match self.interfaces {
-            Interfaces::Stop => Interfaces::before(light),
-            Interfaces::Pass => Interfaces::Pass,
+            Interfaces::Stop if light.is_delta() => Interfaces::Stop,
+            Interfaces::Stop | Interfaces::Pass => Interfaces::Pass,
         }
     }
 
@@ -110,6 +113,26 @@ impl DirectLighting {
         }
     }
 
+    /// Next-event estimation in a medium, before its shadow ray is traced; `None` if no light
+    /// arrives.
+    pub fn connect_medium(
+        &self,
+        scene: &Scene,
+        sampler: &mut Sampler,
+        vertex: &MediumVertex,
+        lambda: &SampledWavelengths,
+    ) -> Option<Connection> {
+        let (u, u_light) = (sampler.get_1d(), sampler.get_2d());
+        let (light, pmf) = self.lights.sample(&vertex.context, u)?;
+        let sample = scene.sample_light(light, &vertex.context, u_light, lambda, true)?;
+        let (p_l, p) = (pmf * sample.pdf, vertex.phase.p(vertex.wo, sample.wi));
+        let light = scene.light(light);
+        let weight = if light.is_delta() { 1.0 } else { power_heuristic(p_l, p) };
+        let (ray, t_max) = vertex.shadow_ray(&sample);
+        let l = sample.l * (p * weight / p_l);
+        (!l.is_black()).then_some(Connection { ray, t_max, interfaces: self.interfaces(light), l })
+    }
+
     /// [`sample`](Self::sample) before its shadow ray is traced; `None` if no light arrives.
     pub fn connect<B: Scatter>(
         &self,
@@ -139,6 +162,34 @@ impl DirectLighting {
     }
 }
 
+/// A point in a medium that scatters light.
+#[derive(Clone, Copy)]
+pub(crate) struct MediumVertex {
+    /// The point.
+    pub context: LightSampleContext,
+    /// Unit direction back along the path.
+    pub wo: Vector3,
+    /// How it scatters.
+    pub phase: HenyeyGreenstein,
+}
+
+impl MediumVertex {
+    /// A point at which the flight along `ray` was scattered.
+    pub fn new(p: Point3, ray: &Ray, phase: HenyeyGreenstein) -> Self {
+        let (p, n) = (Point3Error::exact(p), Normal3::ZERO);
+        Self { context: LightSampleContext { p, n, ns: n, time: ray.time }, wo: -ray.d, phase }
+    }
+
+    /// The shadow ray to a light sample, and its end.
+    pub fn shadow_ray(&self, sample: &LightLiSample) -> (Ray, f32) {
+        let context = &self.context;
+        match sample.p {
+            Some(p) => (Ray::between(context.p, context.n, p, sample.n, context.time), Ray::SHADOW_END),
+            None => (context.spawn_ray(sample.wi), f32::INFINITY),
+        }
+    }
+}
+
 /// A vertex connected to a point on a light.
 pub(crate) struct Connection {
     /// The shadow ray.
@@ -150,6 +201,39 @@ pub(crate) struct Connection {
     /// The light that the vertex scatters if nothing occludes the ray, over its density and
     /// weighted.
     pub l: SampledSpectrum,
+}
+
+impl Connection {
+    /// The light that arrives through media, if the shadow ray starts in `medium`.
+    pub fn arriving(
+        self,
+        medium: Option<MediumId>,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> SampledSpectrum {
+        let passed = tracer.transmittance_for(&self.ray, self.t_max, medium, &self.l, lambda);
+        passed.map_or(SampledSpectrum::ZERO, |passed| self.l * passed)
+    }
+}
+
+/// Connects a point in a medium to one point of every light, and calls `connect` where light
+/// arrives there. It is not weighted against sampling of the phase function.
+pub(crate) fn connect_all_in_medium(
+    scene: &Scene,
+    sampler: &mut Sampler,
+    vertex: &MediumVertex,
+    lambda: &SampledWavelengths,
+    mut connect: impl FnMut(Connection),
+) {
+    for light in (0..scene.lights().len() as u32).map(LightId) {
+        let u = sampler.get_2d();
+        let Some(sample) = scene.sample_light(light, &vertex.context, u, lambda, false) else { continue };
+        let l = sample.l * (vertex.phase.p(vertex.wo, sample.wi) / sample.pdf);
+        if !l.is_black() {
+            let (ray, t_max) = vertex.shadow_ray(&sample);
+            connect(Connection { ray, t_max, interfaces: Interfaces::Pass, l });
+        }
+    }
 }
 
 /// Connects a surface to one point of every light, and calls `connect` where light arrives there.
@@ -169,12 +253,12 @@ pub(crate) fn connect_all(
     each_bxdf!(bsdf.bxdf, bxdf => {
         let bsdf = Bsdf { bxdf, frame: bsdf.frame };
         for light in (0..scene.lights().len() as u32).map(LightId) {
-            let (u, interfaces) = (sampler.get_2d(), Interfaces::before(scene.light(light)));
+            let u = sampler.get_2d();
             let Some(sample) = scene.sample_light(light, &context, u, lambda, false) else { continue };
             let l = scattered(surface, &bsdf, &sample);
             if !l.is_black() {
                 let (ray, t_max) = sample.shadow_ray(&surface.surface);
-                connect(Connection { ray, t_max, interfaces, l: l / sample.pdf });
+                connect(Connection { ray, t_max, interfaces: Interfaces::Pass, l: l / sample.pdf });
             }
         }
     })

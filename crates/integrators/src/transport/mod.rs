@@ -9,15 +9,19 @@
 //! | `shutter_sample` | wavelengths and time of a sample |
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |
+//! | `media` | flights through participating media, and their transmittance |
+//! | `single_scattering` | what a medium adds to a ray by one scattering event |
 //! | `roulette` | Russian roulette |
 //! | `visibility` | shadow rays |
 
 pub(crate) mod direct;
 pub(crate) mod first_hit;
+pub(crate) mod media;
 pub(crate) mod path_state;
 pub(crate) mod pixel_samples;
 pub(crate) mod roulette;
 pub(crate) mod shutter_sample;
+pub(crate) mod single_scattering;
 mod tracer;
 mod visibility;
 

@@ -5,6 +5,7 @@ use sampling::Sampler;
 use scattering::{Bsdf, BsdfSample, Directions, Scatter, TransportMode};
 use scene::SurfaceInteraction;
 use scene::light::LightSampleContext;
+use scene::medium::MediumId;
 use spectrum::SampledSpectrum;
 
 use super::roulette;
@@ -19,6 +20,8 @@ pub(crate) struct PathState {
     pub depth: u32,
     /// The last scattering event, unless it was specular.
     pub origin: Option<Origin>,
+    /// The medium of the ray, for algorithms that know media.
+    pub medium: Option<MediumId>,
     /// The product of η² over the refractions: β times this is without the scaling of radiance by
     /// refraction.
     pub eta_scale: f32,
@@ -62,11 +65,12 @@ impl Scattered {
 impl PathState {
     /// A path of throughput 1 whose ray leaves scattering event number `depth`; 0 is the camera.
     pub fn new(ray: RayDifferential, depth: u32) -> Self {
-        Self { ray, beta: SampledSpectrum::ONE, depth, origin: None, eta_scale: 1.0 }
+        Self { ray, beta: SampledSpectrum::ONE, depth, origin: None, medium: None, eta_scale: 1.0 }
     }
 
     /// Passes a surface at distance `t` that does not scatter.
     pub fn pass_through(&mut self, surface: &SurfaceInteraction, t: f32) {
+        self.medium = surface.medium_towards(self.ray.ray.d, self.medium);
         self.ray = pass_through(&self.ray, surface, t);
     }
 
@@ -82,6 +86,7 @@ impl PathState {
         if sample.flags.is_transmissive() {
             self.eta_scale *= sample.eta * sample.eta;
         }
+        self.medium = surface.medium_towards(sample.wi, self.medium);
         self.ray = surface.spawn_scattered(&self.ray, sample);
     }
 

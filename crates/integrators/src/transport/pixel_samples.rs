@@ -104,7 +104,7 @@ impl PixelSamples<'_> {
     ) -> Option<FirstHit> {
         let camera_ray = sample.camera_ray.as_ref().filter(|_| tile.wants_first_hit())?;
         let neighbours = tile.wants_slopes().then(|| {
-            let mut ray = self.view.camera.ray_differential(&sample.camera_sample);
+            let mut ray = self.view.camera.generate_ray_differential(&sample.camera_sample)?.ray;
             ray.scale(differential_scale(self.view.samples_per_pixel));
             ray.differentials
         });

@@ -3,6 +3,7 @@
 use geometry::PatchPoints;
 use lanes::{Int, Mask, Real};
 use scattering::{Bsdf, Scatter, TransportMode};
+use scene::Interfaces;
 use scene::light::{LightId, LightSampleContext};
 use scene::material::MaterialModel;
 use spectrum::SampledSpectrum;
@@ -23,7 +24,7 @@ pub(super) struct AllLights {
 impl AllLights {
     /// With shadows or without.
     pub fn new(casts_shadows: bool) -> Self {
-        Self { casts_shadows, direct: DirectLighting::none() }
+        Self { casts_shadows, direct: DirectLighting::none(Interfaces::Pass) }
     }
 
     /// Light that rays find, which counts fully.

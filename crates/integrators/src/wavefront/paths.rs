@@ -183,6 +183,7 @@ impl Paths {
         let context = LightSampleContext { p: Point3Error::new(p, error), n, ns, time: self.time[row] };
         let pdf = self.pdf[row];
         PathState {
+            medium: None,
             ray: RayDifferential { ray: self.ray(row), differentials },
             beta: SampledSpectrum(self.beta.row(row)),
             depth: self.depth[row],

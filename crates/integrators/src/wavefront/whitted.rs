@@ -38,8 +38,8 @@ impl Whitted {
                 let queue = &mut queues.shadows[(interfaces == Interfaces::Pass) as usize];
                 queue.push(path, beta * l, &ray, t_max);
             });
-            let children = Node { ray, beta, depth }.children(&surface, &bsdf, sampler);
-            for Node { ray, beta, depth } in children.into_iter().rev().flatten() {
+            let children = Node { ray, medium: None, beta, depth }.children(&surface, &bsdf, sampler);
+            for Node { ray, beta, depth, .. } in children.into_iter().rev().flatten() {
                 queues.wait(path, PathState { beta, ..PathState::new(ray, depth) });
             }
         }

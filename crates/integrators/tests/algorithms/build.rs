@@ -3,11 +3,11 @@
 use alhazen_integrators::build;
 use description::schema::Settings;
 use description::{
-    AmbientOcclusionDesc, BdptDesc, CameraKind, Diagnostic, Handle, InstanceDesc, IntegratorDesc,
-    LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, ObjectDesc, Origin, PathDesc,
+    AmbientOcclusionDesc, BdptDesc, CameraKind, Diagnostic, FunctionDesc, Handle, InstanceDesc,
+    IntegratorDesc, LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, ObjectDesc, Origin, PathDesc,
     PhotonMappingDesc, RadiosityDesc, RandomWalkDesc, RealisticCameraDesc, SamplerDesc, SamplerKind,
-    SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc, SimpleVolPathDesc, SolidOperation, Span, Spanned,
-    SppmDesc, Stated, TransformDesc, VcmDesc, WhittedDesc,
+    SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc, SolidOperation, Span, Spanned, SppmDesc, Stated,
+    TransformDesc, VcmDesc, WhittedDesc,
 };
 
 use crate::support::{compile, diffuse, glass, mirror, sphere, white_sky};
@@ -43,8 +43,8 @@ fn supported_algorithms_build_without_warnings() {
 
 #[test]
 fn unsupported_algorithms_are_replaced_with_a_warning() {
-    let found = warnings(IntegratorDesc::SimpleVolPath(SimpleVolPathDesc { max_depth: 5 }));
-    assert_eq!(messages(&found), ["integrator `simple-vol-path` is not drawn yet; drawn as `path`"]);
+    let found = warnings(IntegratorDesc::Function(FunctionDesc::default()));
+    assert_eq!(messages(&found), ["integrator `function` is not drawn yet; drawn as `path`"]);
     let light_sampler = LightSamplerDesc::Exhaustive;
     let found = warnings(IntegratorDesc::Path(PathDesc { max_depth: 5, regularize: false, light_sampler }));
     assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);

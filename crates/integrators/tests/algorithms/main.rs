@@ -10,6 +10,7 @@ mod cancellation;
 mod direct_light;
 mod furnace;
 mod layers;
+mod media;
 mod merging;
 mod mlt;
 mod photon_mapping;

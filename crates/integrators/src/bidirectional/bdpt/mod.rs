@@ -102,7 +102,7 @@ impl Integrator for Bdpt {
             tracer.with_sampler(&mut light_sampler, |tracer| {
                 paths.light_subpath(sample.time, lambda, tracer, |vertex, tracer| {
                     let u = tracer.sampler.get_2d();
-                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), tracer) {
+                    if let Some(seen) = paths.connect_to_camera(vertex, u, splatter.reach(), lambda, tracer) {
                         seen.splat(&splatter, &seen.found.weighted(), lambda);
                         techniques.add(&seen.found, |splatter, l| seen.splat(splatter, l, lambda));
                     }
@@ -128,7 +128,7 @@ impl Integrator for Bdpt {
                         }
                         for light in &light_subpath {
                             if vertex.depth + light.depth <= paths.max_depth
-                                && let Some(found) = paths.connect(vertex, light, tracer)
+                                && let Some(found) = paths.connect(vertex, light, lambda, tracer)
                             {
                                 add(&found);
                             }

@@ -6,9 +6,9 @@
 //! 1/n Σ K(dᵢ/r)/r² · βᵢ
 //! ```
 //!
-//! over the photons i at the distances dᵢ < r, K being a [`PhotonKernel`]. The radius r is the
-//! distance of the photon after the `nearest` nearest ones, so that the blur is small where photons
-//! are dense; it is at most `radius`.
+//! (in a medium, of the volume: K(dᵢ/r)/r³) over the photons i at the distances dᵢ < r, K being a
+//! [`PhotonKernel`]. The radius r is the distance of the photon after the `nearest` nearest ones,
+//! so that the blur is small where photons are dense; it is at most `radius`.
 //!
 //! The estimate is biased: it is exact for a linear density on a plane, and elsewhere the bias is
 //! proportional to r². At edges the disk extends beyond the surface, which darkens corners within
@@ -29,6 +29,7 @@ use spectrum::SampledSpectrum;
 use crate::photons::photon::Photon;
 use crate::{Cancelled, Control};
 use kd_tree::{KdTree, Neighbour};
+pub(crate) use kernel::Space;
 
 /// Photons of one kind.
 #[derive(Debug, Default)]
@@ -70,12 +71,14 @@ impl PhotonMap {
         self.tree.memory() + size_of_val(&*self.photons)
     }
 
-    /// The density at `p` of the values `weigh` of the photons for which `accept` is true, and the
-    /// radius of the estimate; `None` if there are none, or all of them are at one point.
+    /// The density per area or volume at `p` of the values `weigh` of the photons for which
+    /// `accept` is true, and the radius of the estimate; `None` if there are none, or all of them
+    /// are at one point.
     pub fn density(
         &self,
         p: Point3,
         neighbourhood: &Neighbourhood,
+        space: Space,
         accept: impl Fn(&Photon) -> bool,
         weigh: impl Fn(&Photon) -> SampledSpectrum,
     ) -> Option<(SampledSpectrum, f32)> {
@@ -90,10 +93,12 @@ impl PhotonMap {
             .iter()
             .map(|&Neighbour { distance_squared, index }| {
                 weigh(&self.photons[index as usize])
-                    * kernel::evaluate(kernel, distance_squared / radius_squared)
+                    * kernel::evaluate(kernel, space, distance_squared / radius_squared)
             })
             .sum();
-        Some((sum / (radius_squared * self.paths as f32), radius_squared.sqrt()))
+        let radius = radius_squared.sqrt();
+        let size = if space == Space::Disk { radius_squared } else { radius_squared * radius };
+        Some((sum / (size * self.paths as f32), radius))
     }
 }
 
@@ -121,7 +126,7 @@ mod tests {
     }
 
     fn density(map: &PhotonMap, neighbourhood: &Neighbourhood) -> f64 {
-        map.density(Point3::ZERO, neighbourhood, |_| true, |photon| photon.beta)
+        map.density(Point3::ZERO, neighbourhood, Space::Disk, |_| true, |photon| photon.beta)
             .map_or(0.0, |(density, _)| density[0].into())
     }
 

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use sampling::sampler::PaddedSobol;
 use sampling::{Randomize, Sampler};
 
-use crate::bidirectional::{Bidirectional, Vertex, Walk};
+use crate::bidirectional::{Arrival, Bidirectional, Vertex, Walk};
 use crate::transport::Tracer;
 use crate::transport::shutter_sample::ShutterSample;
 use crate::{Cancelled, Control, PassError};
@@ -22,9 +22,9 @@ const CHUNK: u32 = 2048;
 /// The photons that a map stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Those scattered by specular surfaces only, at least one.
+    /// Those from lights that are scattered by specular surfaces only, at least one.
     Caustic,
-    /// Those scattered by a surface that is not specular.
+    /// Those scattered by a surface that is not specular, or from media.
     Indirect,
     /// All.
     All,
@@ -34,8 +34,8 @@ impl Kind {
     /// Whether to keep a photon, the first of its subpath or not.
     fn keeps(self, vertex: &Vertex, first: bool) -> bool {
         match self {
-            Self::Caustic => first && vertex.depth > 1,
-            Self::Indirect => !first,
+            Self::Caustic => first && vertex.depth > 1 && !vertex.begins_in_medium,
+            Self::Indirect => !first || vertex.begins_in_medium,
             Self::All => true,
         }
     }
@@ -106,8 +106,8 @@ impl Emission<'_> {
         };
         let mut first = true;
         while walk.depth < self.paths.max_depth {
-            let Some(mut surface) = walk.intersect(tracer) else { return };
-            let Some(vertex) = walk.arrive(&mut surface, tracer) else { continue };
+            let Arrival::At(mut interaction) = walk.intersect(tracer) else { return };
+            let Some(vertex) = walk.arrive(&mut interaction, tracer) else { continue };
             if vertex.is_connectible() {
                 if kind.keeps(&vertex, first) {
                     visit(&vertex, tracer);
@@ -117,7 +117,7 @@ impl Emission<'_> {
                 }
                 first = false;
             }
-            if !walk.leave(&vertex, &surface, tracer.sampler) {
+            if !walk.leave(&vertex, &interaction, tracer.sampler) {
                 return;
             }
         }

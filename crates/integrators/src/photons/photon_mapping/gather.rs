@@ -13,6 +13,9 @@
 //! one everything but lights behind specular surfaces; after a specular one the same as before. So
 //! each light path is counted once.
 //!
+//! A point in a medium that scatters the path is treated as a diffuse surface is, with photons in
+//! the ball around it and the phase function in place of the BSDF.
+//!
 //! With a final gather, the global map holds photons of all kinds and is looked up one surface
 //! later: rays leave the diffuse surface along directions of its BSDF, and at the next surface that
 //! is not purely specular the map estimates all reflected radiance.
@@ -20,17 +23,19 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use description::PhotonMappingDesc;
-use math::{RayDifferential, Vec2};
+use math::{Normal3, RayDifferential, Vec2};
 use scattering::{Bsdf, Bxdf, Directions, TransportMode, each_bxdf};
 use scene::SurfaceInteraction;
+use scene::medium::MediumId;
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use crate::bidirectional::hero_only;
 use crate::photons::photon::Photon;
-use crate::photons::photon_map::{Neighbourhood, PhotonMap};
+use crate::photons::photon_map::{Neighbourhood, PhotonMap, Space};
 use crate::transport::Tracer;
-use crate::transport::direct::{DirectLighting, light_context};
-use crate::transport::path_state::{PathState, Scattered, throughput};
+use crate::transport::direct::{DirectLighting, MediumVertex, light_context};
+use crate::transport::media::{FlightEnd, Heroes, Throughput};
+use crate::transport::path_state::{Origin, PathState, Scattered, throughput};
 
 /// Photons count if the cosine between their normal and that of the gather point is at least this.
 const SAME_SURFACE: f32 = 0.7;
@@ -108,25 +113,62 @@ impl Gather<'_> {
         lambda: &SampledWavelengths,
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
-        self.follow(ray, *lambda, (Sought::Radiance, 0), tracer)
+        let medium = tracer.view.medium;
+        self.follow((ray, medium), *lambda, (Sought::Radiance, 0), tracer)
     }
 
-    /// The radiance along a ray that leaves scattering event number `depth`.
+    /// The radiance along a ray in a medium that leaves scattering event number `depth`.
     fn follow(
         &self,
-        ray: RayDifferential,
+        (ray, medium): (RayDifferential, Option<MediumId>),
         mut lambda: SampledWavelengths,
         (mut sought, depth): (Sought, u32),
         tracer: &mut Tracer,
     ) -> SampledSpectrum {
         let (scene, direct) = (tracer.scene, self.direct);
         let mut l = SampledSpectrum::ZERO;
-        let mut path = PathState::new(ray, depth);
+        let mut path = PathState { medium, ..PathState::new(ray, depth) };
         // Whether the caustic map has the emission that the ray finds beyond specular surfaces.
         let mut emission_is_known = sought == Sought::Reflected;
         loop {
             let counts_emission = !emission_is_known || path.origin.is_some();
-            let Some((mut surface, t)) = tracer.intersect(&path.ray.ray) else {
+            let hit = tracer.intersect(&path.ray.ray);
+            if let Some(id) = path.medium {
+                let first_only = lambda.secondary_terminated();
+                let heroes = Heroes::by_throughput(path.beta, first_only, tracer.sampler.get_1d());
+                let mut flown = Throughput { beta: path.beta, ..Throughput::ONE };
+                let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
+                let flight = tracer.fly(id, &path.ray.ray, t_max, &lambda, &heroes, &mut flown);
+                // At a diffuse surface the photon maps have the light that media emit.
+                if sought != Sought::Emission {
+                    l += known(flight.emitted, &lambda);
+                }
+                path.beta = flown.beta / heroes.mean(flown.r_u);
+                match flight.end {
+                    FlightEnd::Passed => (),
+                    FlightEnd::Absorbed => return l,
+                    FlightEnd::Scattered { p, phase, .. } => {
+                        if sought == Sought::Emission || path.depth == self.settings.max_depth {
+                            return l;
+                        }
+                        path.depth += 1;
+                        let vertex = MediumVertex::new(p, &path.ray.ray, phase);
+                        if sought == Sought::Reflected {
+                            let scattered = self.scattered(&self.maps.global, &vertex, path.depth, &lambda);
+                            return l + path.beta * scattered;
+                        }
+                        l += self.medium_vertex(&vertex, &path, &lambda, tracer);
+                        // The scattered ray finds emission, as behind a diffuse surface.
+                        sought = Sought::Emission;
+                        emission_is_known = true;
+                        let (wi, pdf) = phase.sample_p(vertex.wo, tracer.sampler.get_2d());
+                        path.ray = vertex.context.spawn_ray(wi).into();
+                        path.origin = Some(Origin { context: vertex.context, pdf });
+                        continue;
+                    }
+                }
+            }
+            let Some((mut surface, t)) = hit else {
                 if counts_emission {
                     let escaped = direct.escaped(scene, &path.ray, path.origin.as_ref(), &lambda);
                     l += known(path.beta * escaped, &lambda);
@@ -151,8 +193,11 @@ impl Gather<'_> {
             let scattered = each_bxdf!(bsdf.bxdf, bxdf => {
                 let bsdf = Bsdf { bxdf, frame: bsdf.frame };
                 if sought == Sought::Radiance && flags.is_non_specular() {
-                    let direct = direct.sample(tracer, (&surface, &context), &bsdf, &lambda);
-                    l += known(path.beta * direct, &lambda);
+                    let vertex = (&surface, &context);
+                    if let Some(light) = direct.connect(scene, tracer.sampler, vertex, &bsdf, &lambda) {
+                        let medium = surface.medium_towards(light.ray.d, path.medium);
+                        l += known(path.beta * light.arriving(medium, &lambda, tracer), &lambda);
+                    }
                 }
                 Scattered::sample(&surface, &bsdf, tracer.sampler)
             });
@@ -164,7 +209,7 @@ impl Gather<'_> {
                 } else {
                     l += path.beta * self.reflected(&self.maps.caustic, &point);
                     if flags.is_diffuse() {
-                        l += path.beta * self.indirect(&path.ray, &point, tracer);
+                        l += path.beta * self.indirect(&path, &point, tracer);
                     }
                 }
             }
@@ -189,8 +234,62 @@ impl Gather<'_> {
         }
     }
 
+    /// The light that a point in a medium scatters along the path, except emission that the
+    /// scattered ray finds.
+    fn medium_vertex(
+        &self,
+        vertex: &MediumVertex,
+        path: &PathState,
+        lambda: &SampledWavelengths,
+        tracer: &mut Tracer,
+    ) -> SampledSpectrum {
+        let mut l = SampledSpectrum::ZERO;
+        if let Some(light) = self.direct.connect_medium(tracer.scene, tracer.sampler, vertex, lambda) {
+            l += known(path.beta * light.arriving(path.medium, lambda, tracer), lambda);
+        }
+        l += path.beta * self.scattered(&self.maps.caustic, vertex, path.depth, lambda);
+        let count = self.settings.gather;
+        if path.depth == self.settings.max_depth {
+            return l;
+        }
+        if count == 0 {
+            return l + path.beta * self.scattered(&self.maps.global, vertex, path.depth, lambda);
+        }
+        let u = tracer.sampler.get_2d();
+        let mut sum = SampledSpectrum::ZERO;
+        for i in 0..count {
+            let (wi, _) = vertex.phase.sample_p(vertex.wo, lattice_point(i, count, u));
+            let ray = vertex.context.spawn_ray(wi).into();
+            sum += self.follow((ray, path.medium), *lambda, (Sought::Reflected, path.depth), tracer);
+        }
+        l + path.beta * sum / count as f32
+    }
+
+    /// Light of the photons of a map that a point in a medium scatters.
+    fn scattered(
+        &self,
+        map: &PhotonMap,
+        vertex: &MediumVertex,
+        depth: u32,
+        lambda: &SampledWavelengths,
+    ) -> SampledSpectrum {
+        let deepest = self.settings.max_depth + 1 - depth;
+        let accept = |photon: &Photon| photon.depth <= deepest && photon.n == Normal3::ZERO;
+        let terminated = lambda.secondary_terminated();
+        let weigh = |photon: &Photon| {
+            let l = photon.beta * vertex.phase.p(vertex.wo, photon.wi);
+            if terminated || photon.hero_only { hero_only(l) } else { l }
+        };
+        let p = vertex.context.p.p;
+        let Some((l, radius)) = map.density(p, &self.neighbourhood, Space::Ball, accept, weigh) else {
+            return SampledSpectrum::ZERO;
+        };
+        self.mean_radius.add(radius);
+        l
+    }
+
     /// Reflected indirect light.
-    fn indirect(&self, ray: &RayDifferential, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
+    fn indirect(&self, path: &PathState, point: &GatherPoint, tracer: &mut Tracer) -> SampledSpectrum {
         let count = self.settings.gather;
         if point.depth == self.settings.max_depth {
             return SampledSpectrum::ZERO;
@@ -202,10 +301,8 @@ impl Gather<'_> {
         let (uc, u) = (tracer.sampler.get_1d(), tracer.sampler.get_2d());
         let mut sum = SampledSpectrum::ZERO;
         for i in 0..count {
-            // A randomly shifted rank-1 lattice.
-            let step = i as f32 * GOLDEN;
-            let u = Vec2::new((i as f32 + u.x) / count as f32, (u.y + step).fract());
-            let uc = (uc + step).fract();
+            let u = lattice_point(i, count, u);
+            let uc = (uc + i as f32 * GOLDEN).fract();
             let wo = surface.surface.wo;
             let Some(sample) = bsdf.sample_f(wo, uc, u, TransportMode::Radiance, Directions::All) else {
                 continue;
@@ -213,8 +310,9 @@ impl Gather<'_> {
             if sample.flags.is_specular() {
                 continue;
             }
-            let ray = surface.spawn_scattered(ray, &sample);
-            let l = self.follow(ray, *lambda, (Sought::Reflected, depth), tracer);
+            let ray = surface.spawn_scattered(&path.ray, &sample);
+            let medium = surface.medium_towards(sample.wi, path.medium);
+            let l = self.follow((ray, medium), *lambda, (Sought::Reflected, depth), tracer);
             sum += throughput(surface, &sample) * l;
         }
         sum / count as f32
@@ -240,7 +338,7 @@ impl Gather<'_> {
             let l = bsdf.f(s.wo, photon.wi, TransportMode::Radiance) * photon.beta * cosines;
             if terminated || photon.hero_only { hero_only(l) } else { l }
         };
-        let Some((l, radius)) = map.density(s.p.p, &self.neighbourhood, accept, weigh) else {
+        let Some((l, radius)) = map.density(s.p.p, &self.neighbourhood, Space::Disk, accept, weigh) else {
             return SampledSpectrum::ZERO;
         };
         self.mean_radius.add(radius);
@@ -250,6 +348,11 @@ impl Gather<'_> {
 
 /// The fractional part of the golden ratio.
 const GOLDEN: f32 = 0.618_034;
+
+/// Point `i` of `count` of a rank-1 lattice shifted by `u`.
+fn lattice_point(i: u32, count: u32, u: Vec2) -> Vec2 {
+    Vec2::new((i as f32 + u.x) / count as f32, (u.y + i as f32 * GOLDEN).fract())
+}
 
 /// Radiance at all wavelengths that the ray began with, of which dispersion may have terminated all
 /// but the first.

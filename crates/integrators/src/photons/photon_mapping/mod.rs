@@ -96,7 +96,7 @@ impl AddAssign for Tally {
 impl PhotonMapping {
     /// `sampler` is for camera rays, `photon_seed` for photons.
     pub fn new(settings: PhotonMappingDesc, sampler: Sampler, photon_seed: u32) -> Self {
-        let (lights, direct) = (Lights::none(), DirectLighting::none());
+        let (lights, direct) = (Lights::none(), DirectLighting::none(Interfaces::Pass));
         let (tally, mean_radius) = (Tally::default(), MeanRadius::new(1.0));
         Self { settings, sampler, photon_seed, lights, direct, radius: 1.0, tally, mean_radius }
     }
@@ -133,7 +133,13 @@ impl PhotonMapping {
         let (_, splatter) = film.tiles_and_splatter()?;
         let dot = |vertex: &Vertex, tracer: &mut Tracer| {
             let lens = tracer.sampler.get_2d();
-            if let Some(seen) = emission.paths.connect_to_camera(vertex, lens, splatter.reach(), tracer) {
+            if let Some(seen) = emission.paths.connect_to_camera(
+                vertex,
+                lens,
+                splatter.reach(),
+                &emission.shutter.lambda,
+                tracer,
+            ) {
                 let l = vertex.beta * white;
                 let l = if vertex.hero_only { hero_only(l) } else { l };
                 seen.splat(&splatter, &l, &emission.shutter.lambda);
@@ -162,9 +168,9 @@ impl Integrator for PhotonMapping {
         unbounded::warnings(scene, "photon-mapping")
     }
 
-    fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        self.lights = Lights::of(scene, control)?;
-        self.direct = DirectLighting::new(scene, LightSamplerDesc::Bvh, Interfaces::Stop, control)?;
+    fn prepare(&mut self, scene: &Scene, view: &View, control: &Control) -> Result<(), Cancelled> {
+        self.lights = Lights::and_media(scene, view, control)?;
+        self.direct = DirectLighting::new(scene, LightSamplerDesc::Bvh, Interfaces::Pass, control)?;
         self.radius = self.settings.radius.unwrap_or(0.03 * scene.sphere().radius);
         self.mean_radius = MeanRadius::new(self.radius);
         Ok(())

@@ -1,0 +1,173 @@
+//! The transmittance of shadow rays.
+
+use math::Ray;
+use sampling::warp;
+use scene::Interfaces;
+use scene::medium::{Medium, MediumId};
+use spectrum::{SampledSpectrum, SampledWavelengths};
+
+use super::{Heroes, attenuation};
+use crate::transport::Tracer;
+
+/// The transmittance below which ratio tracking ends at random.
+const FAINT: f32 = 0.05;
+
+/// The transmittance of a shadow ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Passage {
+    /// Transmittance over the density of ratio tracking of the hero.
+    pub t: SampledSpectrum,
+    /// The density of a flight along the ray over the same.
+    pub r_u: SampledSpectrum,
+    /// The density of ratio tracking at each wavelength over the same.
+    pub r_l: SampledSpectrum,
+}
+
+impl Passage {
+    /// Through nothing.
+    const CLEAR: Self =
+        Self { t: SampledSpectrum::ONE, r_u: SampledSpectrum::ONE, r_l: SampledSpectrum::ONE };
+
+    /// The transmittance, weighted over the wavelengths that could have chosen the collisions.
+    pub fn estimate(&self, heroes: &Heroes) -> SampledSpectrum {
+        self.t / heroes.mean(self.r_l)
+    }
+
+    /// Passes null collisions or empty distance: `null` is the factor of flights, `all` that of
+    /// ratio tracking.
+    fn scale(&mut self, null: SampledSpectrum, all: SampledSpectrum) {
+        self.t *= null;
+        self.r_u *= null;
+        self.r_l *= all;
+    }
+}
+
+impl Tracer<'_> {
+    /// The transmittance of a ray that leaves `medium` along 0 < t < `t_max`, through all media and
+    /// interfaces; `None` if a surface occludes it.
+    pub(crate) fn transmittance(
+        &mut self,
+        ray: &Ray,
+        t_max: f32,
+        mut medium: Option<MediumId>,
+        lambda: &SampledWavelengths,
+        heroes: &Heroes,
+    ) -> Option<Passage> {
+        let mut passage = Passage::CLEAR;
+        if self.scene.media().is_empty() {
+            let is_clear = !self.occluded(ray, t_max, Interfaces::Pass);
+            return is_clear.then_some(passage);
+        }
+        let (mut ray, mut t_max) = (*ray, t_max);
+        // The length of the direction, which is a difference of points for lights at a distance.
+        let scale = ray.d.length();
+        loop {
+            if !self.may_trace() {
+                return None;
+            }
+            let hit = self.scene.hit(&ray, t_max, self.stats);
+            if hit.as_ref().is_some_and(|hit| !self.scene.is_interface(hit, &ray)) {
+                return None;
+            }
+            let end = hit.as_ref().map_or(t_max, |hit| hit.t);
+            if let Some(medium) = medium {
+                let unit = Ray { d: ray.d / scale, ..ray };
+                let medium = &self.scene.media()[medium.0 as usize];
+                self.attenuate(medium, &unit, end * scale, lambda, heroes, &mut passage)?;
+            }
+            let Some(hit) = hit else { return Some(passage) };
+            let surface = self.scene.interaction(&hit, self.scene.world().surface(&ray, &hit));
+            medium = surface.medium_towards(ray.d, medium);
+            t_max -= hit.t;
+            ray = surface.spawn_ray(ray.d);
+            if t_max <= 0.0 {
+                return Some(passage);
+            }
+        }
+    }
+
+    /// The same as an estimate for a ray that would carry `l` through empty space.
+    pub(crate) fn transmittance_for(
+        &mut self,
+        ray: &Ray,
+        t_max: f32,
+        medium: Option<MediumId>,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+    ) -> Option<SampledSpectrum> {
+        if self.scene.media().is_empty() {
+            return (!self.occluded(ray, t_max, Interfaces::Pass)).then_some(SampledSpectrum::ONE);
+        }
+        let heroes = Heroes::by_throughput(*l, lambda.secondary_terminated(), self.sampler.get_1d());
+        let passage = self.transmittance(ray, t_max, medium, lambda, &heroes)?;
+        Some(passage.estimate(&heroes))
+    }
+
+    /// The transmittance of one medium along a ray of unit direction that carries `l`; `None` if
+    /// nothing is left.
+    pub(crate) fn attenuation(
+        &mut self,
+        medium: MediumId,
+        ray: &Ray,
+        t_max: f32,
+        l: &SampledSpectrum,
+        lambda: &SampledWavelengths,
+    ) -> Option<SampledSpectrum> {
+        let heroes = Heroes::by_throughput(*l, lambda.secondary_terminated(), self.sampler.get_1d());
+        let mut passage = Passage::CLEAR;
+        let medium = &self.scene.media()[medium.0 as usize];
+        self.attenuate(medium, ray, t_max, lambda, &heroes, &mut passage)?;
+        Some(passage.estimate(&heroes))
+    }
+
+    /// Multiplies the transmittance of a part of a ray; `None` if nothing is left.
+    fn attenuate(
+        &mut self,
+        medium: &Medium,
+        ray: &Ray,
+        t_max: f32,
+        lambda: &SampledWavelengths,
+        heroes: &Heroes,
+        passage: &mut Passage,
+    ) -> Option<()> {
+        let hero = heroes.hero;
+        if let Some(properties) = medium.homogeneous(lambda) {
+            let passed = attenuation(properties.sigma_t(), t_max.min(f32::MAX));
+            passage.t *= passed;
+            passage.r_u *= passed;
+            return (!passage.t.is_black()).then_some(());
+        }
+        let (mut u, mut rng) = self.collisions();
+        for segment in medium.majorants(ray, t_max, lambda) {
+            let [mut t, end] = segment.t;
+            let majorant = segment.majorant;
+            loop {
+                let next =
+                    if majorant[hero] == 0.0 { end } else { t + warp::sample_exponential(u, majorant[hero]) };
+                u = rng.uniform_f32();
+                let passed = attenuation(majorant, next.min(end) - t);
+                let passed = passed / passed[hero];
+                if next >= end {
+                    passage.scale(passed, passed);
+                    break;
+                }
+                t = next;
+                let sigma_t = medium.at(ray.at(t), lambda).sigma_t();
+                let passed = passed / majorant[hero];
+                passage.scale((majorant - sigma_t).clamp_zero() * passed, majorant * passed);
+                if !self.may_trace() {
+                    return None;
+                }
+                let left = passage.estimate(heroes).max_component();
+                if left < FAINT {
+                    // An end at random that keeps the mean.
+                    if left == 0.0 || rng.uniform_f32() < 0.75 {
+                        return None;
+                    }
+                    passage.t *= 4.0;
+                }
+            }
+        }
+        Some(())
+    }
+}
