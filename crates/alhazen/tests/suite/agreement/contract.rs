@@ -110,6 +110,7 @@ impl Member {
             Self::exact("simple-path", &[]),
             Self::exact("path", &[]),
             Self::exact("vol-path", &[]),
+            Self::exact("simple-vol-path", &[]),
             Self::exact("light-tracing", &[]),
             Self::exact("bdpt", &[]),
             Self::exact("mlt", &[("technique", "path"), ("mutationsperpixel", "64")]),

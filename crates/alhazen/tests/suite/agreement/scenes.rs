@@ -25,8 +25,14 @@ impl Scene {
     }
 }
 
+macro_rules! above {
+    () => {
+        "LookAt 0 -4 3  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40"
+    };
+}
+
 const IN_A_BOX: &str = "LookAt 0 -0.95 0  0 0 -0.1  0 0 1 Camera \"perspective\" \"float fov\" 80";
-const ABOVE: &str = "LookAt 0 -4 3  0 0 0.3  0 0 1 Camera \"perspective\" \"float fov\" 40";
+const ABOVE: &str = above!();
 
 macro_rules! walls {
     () => {
@@ -350,6 +356,140 @@ pub const SCENES: [Scene; 20] = [
             Shape "bilinearmesh" "point3 P" [-1 0.8 0  1 0.8 0  -1 0.8 1  1 0.8 1]
             Material "diffuse" "rgb reflectance" [0.8 0.3 0.3]
             Translate 0.3 0 0.2 Shape "sphere" "float radius" 0.5"#,
+    },
+];
+
+/// Scenes with participating media.
+pub const MEDIA: [Scene; 8] = [
+    Scene {
+        name: "a lamp in fog",
+        max_depth: 6,
+        path_samples: 32,
+        is_hidden_from_light: false,
+        camera: concat!(
+            r#"MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.05 0.1 0.2]
+            "rgb sigma_s" [0.4 0.3 0.2] "float g" 0.4 MediumInterface "" "fog" "#,
+            above!()
+        ),
+        world: concat!(
+            r#"MediumInterface "fog" "fog" "#,
+            floor!(),
+            r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [8 8 8] Translate 0.3 0.2 1.5
+            Shape "sphere" "float radius" 0.2 AttributeEnd
+            LightSource "point" "point3 from" [-0.9 -0.9 2] "rgb I" [2 2 4]
+            Material "diffuse" Translate -0.5 0 0.4 Shape "sphere" "float radius" 0.4"#
+        ),
+    },
+    Scene {
+        name: "a cloud",
+        max_depth: 6,
+        path_samples: 32,
+        is_hidden_from_light: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "distant" "point3 from" [1 -1 2] "point3 to" [0 0 0] "rgb L" [2 1.8 1.5]
+            LightSource "infinite" "rgb L" [0.3 0.4 0.6]
+            AttributeBegin Translate -1 1 0.2 Rotate 90 1 0 0 Scale 2 1 2
+            MakeNamedMedium "cloud" "string type" "cloud" "rgb sigma_a" [0.2 0.4 0.8] "rgb sigma_s" [4 4 4]
+            "float density" 3 "float g" 0.5 AttributeEnd
+            MediumInterface "cloud" "" Material "interface" Translate 0 0 0.8 Shape "sphere" "float radius" 0.75"#
+        ),
+    },
+    Scene {
+        name: "smoke that glows",
+        max_depth: 4,
+        path_samples: 64,
+        is_hidden_from_light: false,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "infinite" "rgb L" [0.1 0.1 0.1]
+            AttributeBegin Translate -0.6 -0.6 0 Scale 1.2 1.2 1.5
+            MakeNamedMedium "smoke" "string type" "uniformgrid" "integer nx" 2 "integer ny" 2 "integer nz" 4
+            "float density" [1 2 2 1 2 4 3 2 4 3 2 4 1 0 0 2] "rgb sigma_a" [1 1.2 2] "rgb sigma_s" [1 0.8 0.5]
+            "rgb Le" [3 1.5 0.5] "float Lescale" [1 1 2 2 1 1 0 0 0 0 0.5 1 1 0 0 0.2] AttributeEnd
+            MediumInterface "smoke" "" Material "interface" Translate 0 0 0.8 Shape "sphere" "float radius" 0.75"#
+        ),
+    },
+    Scene {
+        name: "a coloured liquid",
+        max_depth: 6,
+        path_samples: 128,
+        is_hidden_from_light: true,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "infinite" "rgb L" [1 1 1]
+            MakeNamedMedium "juice" "string type" "homogeneous" "rgb sigma_a" [0.2 1 3] "rgb sigma_s" [0.6 0.3 0.1]
+            MediumInterface "juice" "" Material "dielectric" "float eta" 1.33 Translate 0 0 0.7
+            Shape "sphere" "float radius" 0.7"#
+        ),
+    },
+    Scene {
+        name: "a caustic in fog",
+        max_depth: 5,
+        path_samples: 512,
+        is_hidden_from_light: true,
+        camera: concat!(
+            r#"MakeNamedMedium "fog" "string type" "homogeneous" "rgb sigma_a" [0.05 0.05 0.05]
+            "rgb sigma_s" [0.4 0.4 0.4] MediumInterface "" "fog" "#,
+            above!()
+        ),
+        world: concat!(
+            r#"MediumInterface "fog" "fog" "#,
+            floor!(),
+            r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [8 8 8] Translate 0 0 2.6 ReverseOrientation
+            Shape "disk" "float radius" 0.5 AttributeEnd
+            MediumInterface "" "fog" Material "dielectric" Translate 0 0 1.3 Shape "sphere" "float radius" 0.5"#
+        ),
+    },
+    Scene {
+        name: "a translucent slab",
+        max_depth: 12,
+        path_samples: 64,
+        is_hidden_from_light: true,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "infinite" "rgb L" [0.6 0.6 0.6]
+            MakeNamedMedium "wax" "string type" "homogeneous" "rgb sigma_a" [0.05 0.2 0.5] "rgb sigma_s" [8 6 4]
+            MediumInterface "wax" "" Material "dielectric" "float roughness" 0.3 "float eta" 1.3
+            Translate 0 0 0.5 Scale 1 1 0.3 Shape "sphere" "float radius" 1"#
+        ),
+    },
+    Scene {
+        name: "a camera in a dense medium",
+        max_depth: 8,
+        path_samples: 64,
+        is_hidden_from_light: false,
+        camera: r#"Translate 0 0 1 MakeNamedMedium "grid" "string type" "rgbgrid" "point3 p0" [-2 -2 -2]
+            "point3 p1" [2 2 2] "integer nx" 2 "integer ny" 1 "integer nz" 1 "rgb sigma_a" [0.1 0.1 0.3 0.4 0.1 0.1]
+            "rgb sigma_s" [2 1 0.5 0.5 1 2] Identity
+            MediumInterface "" "grid" LookAt 0 -0.9 1  0 0 1  0 0 1 Camera "perspective" "float fov" 80"#,
+        world: concat!(
+            r#"MediumInterface "grid" "grid" "#,
+            floor!(),
+            r#"AttributeBegin AreaLightSource "diffuse" "rgb L" [6 6 6] Translate 0.3 0.6 1.5
+            Shape "sphere" "float radius" 0.3 AttributeEnd
+            LightSource "infinite" "rgb L" [0.2 0.3 0.5]"#
+        ),
+    },
+    Scene {
+        name: "a liquid in glass",
+        max_depth: 8,
+        path_samples: 256,
+        is_hidden_from_light: true,
+        camera: ABOVE,
+        world: concat!(
+            floor!(),
+            r#"LightSource "infinite" "rgb L" [1 1 1]
+            MakeNamedMedium "milk" "string type" "homogeneous" "rgb sigma_a" [0.1 0.2 0.4] "rgb sigma_s" [3 3 2]
+            MakeNamedMedium "tint" "string type" "homogeneous" "rgb sigma_a" [0.5 0.2 0.4] "rgb sigma_s" [0 0 0]
+            Translate 0 0 0.8 MediumInterface "tint" "" Material "dielectric" "float eta" 1.5
+            Shape "sphere" "float radius" 0.8
+            MediumInterface "milk" "tint" Material "dielectric" "float eta" 0.9 Shape "sphere" "float radius" 0.6"#
+        ),
     },
 ];
 
