@@ -1,12 +1,11 @@
 //! Display views: from the linear colours of a scene, which have no upper limit, to what a display
 //! shows.
 //!
-//! A view is a pure function of one colour. It takes linear colour in its own [`input`] space, on
-//! which exposure and white balance have acted before, and gives linear sRGB in [0, 1]; the codes
-//! of a file are that in the encoding of sRGB. [`standard`] is the identity. The others compress
-//! bright and saturated light, so that it does not end in flat patches of clipped colour.
-//!
-//! [`input`]: DisplayView::input
+//! A view is a pure function of one colour. It takes linear colour in its own space
+//! ([`DisplayInput`]), on which exposure and white balance have acted before, and gives linear sRGB
+//! in [0, 1]; the codes of a file are that in the encoding of sRGB. [`standard`] is the identity.
+//! The others compress bright and saturated light, so that it does not end in flat patches of
+//! clipped colour.
 
 pub mod aces;
 pub mod agx;
