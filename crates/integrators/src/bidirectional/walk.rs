@@ -17,7 +17,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::light_end::LightPoint;
 use super::{Bidirectional, Interaction, Law, MediumInteraction, Partial, Vertex};
-use crate::transport::media::{FlightEnd, Heroes, Throughput};
+use crate::transport::media::FlightEnd;
 use crate::transport::path_state::pass_through;
 use crate::transport::{Tracer, roulette};
 
@@ -211,14 +211,10 @@ impl<'a> Walk<'a> {
     /// Flies through the medium of the ray up to the surface at `t_max`.
     fn fly(&mut self, t_max: f32, tracer: &mut Tracer) -> FlightEnd {
         let Some(medium) = self.medium else { return FlightEnd::Passed };
-        let first_only = self.lambda.secondary_terminated();
-        let heroes = Heroes::by_throughput(self.beta, first_only, tracer.sampler.get_1d());
-        let mut path = Throughput { beta: self.beta, ..Throughput::ONE };
-        let flight = tracer.fly(medium, &self.ray.ray, t_max, &self.lambda, &heroes, &mut path);
+        let before = self.beta;
+        let flight = tracer.fly_alone(medium, &self.ray.ray, t_max, &self.lambda, &mut self.beta);
         self.emitted += flight.emitted;
-        let beta = path.beta / heroes.mean(path.r_u);
-        self.share *= beta.safe_div(self.beta);
-        self.beta = beta;
+        self.share *= self.beta.safe_div(before);
         flight.end
     }
 

@@ -10,7 +10,7 @@ use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::Tracer;
 use super::direct::{MediumVertex, connect_all_in_medium};
-use super::media::{FlightEnd, Heroes, Throughput};
+use super::media::FlightEnd;
 
 /// What single scattering takes into account.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,10 +33,8 @@ impl Tracer<'_> {
         scattering: Scattering,
         lambda: &SampledWavelengths,
     ) -> SampledSpectrum {
-        let first_only = lambda.secondary_terminated();
-        let heroes = Heroes::by_throughput(SampledSpectrum::ONE, first_only, self.sampler.get_1d());
-        let mut path = Throughput::ONE;
-        let flight = self.fly(medium, ray, t_max, lambda, &heroes, &mut path);
+        let mut beta = SampledSpectrum::ONE;
+        let flight = self.fly_alone(medium, ray, t_max, lambda, &mut beta);
         let FlightEnd::Scattered { p, phase, .. } = flight.end else { return flight.emitted };
         if scattering == Scattering::None {
             return flight.emitted;
@@ -52,6 +50,6 @@ impl Tracer<'_> {
                 _ => light.l,
             };
         }
-        flight.emitted + path.estimate(sum, &heroes)
+        flight.emitted + beta * sum
     }
 }

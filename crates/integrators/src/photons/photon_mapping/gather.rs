@@ -34,7 +34,7 @@ use crate::photons::photon::Photon;
 use crate::photons::photon_map::{Neighbourhood, PhotonMap, Space};
 use crate::transport::Tracer;
 use crate::transport::direct::{DirectLighting, MediumVertex, light_context};
-use crate::transport::media::{FlightEnd, Heroes, Throughput};
+use crate::transport::media::FlightEnd;
 use crate::transport::path_state::{Origin, PathState, Scattered, throughput};
 
 /// Photons count if the cosine between their normal and that of the gather point is at least this.
@@ -134,16 +134,12 @@ impl Gather<'_> {
             let counts_emission = !emission_is_known || path.origin.is_some();
             let hit = tracer.intersect(&path.ray.ray);
             if let Some(id) = path.medium {
-                let first_only = lambda.secondary_terminated();
-                let heroes = Heroes::by_throughput(path.beta, first_only, tracer.sampler.get_1d());
-                let mut flown = Throughput { beta: path.beta, ..Throughput::ONE };
                 let t_max = hit.as_ref().map_or(f32::INFINITY, |(_, t)| *t);
-                let flight = tracer.fly(id, &path.ray.ray, t_max, &lambda, &heroes, &mut flown);
+                let flight = tracer.fly_alone(id, &path.ray.ray, t_max, &lambda, &mut path.beta);
                 // At a diffuse surface the photon maps have the light that media emit.
                 if sought != Sought::Emission {
                     l += known(flight.emitted, &lambda);
                 }
-                path.beta = flown.beta / heroes.mean(flown.r_u);
                 match flight.end {
                     FlightEnd::Passed => (),
                     FlightEnd::Absorbed => return l,

@@ -37,6 +37,23 @@ pub(crate) struct Flight {
 }
 
 impl Tracer<'_> {
+    /// A flight with its own hero, chosen in proportion to `beta`, which becomes the throughput at
+    /// its end.
+    pub(crate) fn fly_alone(
+        &mut self,
+        medium: MediumId,
+        ray: &Ray,
+        t_max: f32,
+        lambda: &SampledWavelengths,
+        beta: &mut SampledSpectrum,
+    ) -> Flight {
+        let heroes = Heroes::by_throughput(*beta, lambda.secondary_terminated(), self.sampler.get_1d());
+        let mut path = Throughput { beta: *beta, ..Throughput::ONE };
+        let flight = self.fly(medium, ray, t_max, lambda, &heroes, &mut path);
+        *beta = path.beta / heroes.mean(path.r_u);
+        flight
+    }
+
     /// Flies along a ray of unit direction up to `t_max`, which may be infinite.
     #[doc(alias = "SampleT_maj")]
     pub(crate) fn fly(
