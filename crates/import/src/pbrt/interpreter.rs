@@ -28,7 +28,7 @@ pub(super) type Step<T = ()> = Result<T, Abandoned>;
 
 /// The section of a scene in which a directive is allowed.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Section {
+pub(super) enum Section {
     /// Before `WorldBegin`.
     Options,
     /// After it.
@@ -37,7 +37,7 @@ enum Section {
 }
 
 /// All directives and where they are allowed.
-const DIRECTIVES: [(&str, Section); 40] = [
+pub(super) const DIRECTIVES: [(&str, Section); 40] = [
     ("Accelerator", Section::Options),
     ("ActiveTransform", Section::Anywhere),
     ("AreaLightSource", Section::World),

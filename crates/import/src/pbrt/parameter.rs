@@ -27,7 +27,7 @@ pub(crate) enum ParameterType {
 }
 
 impl ParameterType {
-    const ALL: [(Self, &str); 13] = [
+    pub(super) const ALL: [(Self, &str); 13] = [
         (Self::Integer, "integer"),
         (Self::Float, "float"),
         (Self::Bool, "bool"),

@@ -27,7 +27,9 @@ impl Builder<'_> {
 
 /// The colour of a light: white if it is not given.
 fn color(reader: &mut Reader, name: &'static str) -> SpectrumDesc {
-    reader.spectrum(name).unwrap_or(SpectrumDesc::Illuminant(reader.color_space))
+    let color = reader.spectrum(name);
+    reader.note("white", "");
+    color.unwrap_or(SpectrumDesc::Illuminant(reader.color_space))
 }
 
 /// A factor of the light's brightness.

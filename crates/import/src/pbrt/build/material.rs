@@ -63,15 +63,16 @@ impl Builder<'_> {
 }
 
 fn material(reader: &mut Reader) -> Option<MaterialDesc> {
-    let kind = kind(reader)?;
-    let mut desc = MaterialDesc::from(kind);
-    if !matches!(desc.kind, MaterialKind::Mix { .. } | MaterialKind::Interface) {
-        desc.displacement = reader.optional_float_parameter("displacement");
-        desc.normal_map = reader.image("normalmap", Some(description::EncodingDesc::Linear));
-        if desc.normal_map.is_some() && desc.displacement.is_some() {
-            reader.ignored("displacement", "`displacement` has no effect beside `normalmap`");
-            desc.displacement = None;
-        }
+    let mut surface = (None, None);
+    if !matches!(reader.kind.value.as_str(), "mix" | "interface" | "" | "none") {
+        let displacement = reader.optional_float_parameter("displacement");
+        surface = (displacement, reader.image("normalmap", Some(description::EncodingDesc::Linear)));
+    }
+    let mut desc = MaterialDesc::from(kind(reader)?);
+    (desc.displacement, desc.normal_map) = surface;
+    if desc.normal_map.is_some() && desc.displacement.is_some() {
+        reader.ignored("displacement", "`displacement` has no effect beside `normalmap`");
+        desc.displacement = None;
     }
     Some(desc)
 }

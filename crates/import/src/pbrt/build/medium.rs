@@ -18,8 +18,8 @@ impl Builder<'_> {
     /// Builds a medium; one that cannot be read is replaced by a homogeneous one.
     pub(super) fn medium(&mut self, medium: MediumStatement) -> Stated<MediumDesc> {
         let (read, origin) = self.read(medium.statement, |reader| {
-            let kind = kind(reader)?;
-            Some((kind, reader.float("g", 0.0)))
+            let g = reader.float("g", 0.0);
+            Some((kind(reader)?, g))
         });
         let coefficients = CoefficientsDesc::default();
         let (kind, g) =
@@ -158,7 +158,7 @@ fn rgb_grid(reader: &mut Reader) -> Option<MediumKind> {
         grid(reader, name, resolution, values)
     });
     if !reader.has("sigma_a") && !reader.has("sigma_s") {
-        reader.missing("sigma_s");
+        reader.missing("sigma_a` or `sigma_s");
         return None;
     }
     if le.is_some() && sigma_a.is_none() {

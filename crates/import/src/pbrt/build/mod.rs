@@ -1,12 +1,15 @@
 //! From statements to descriptions: a file for each family of statements; this file resolves names
 //! and files for all of them.
 
+mod asked;
 mod camera;
 mod files;
 mod light;
 mod material;
 mod medium;
 mod reader;
+#[cfg(test)]
+mod reference;
 mod settings;
 mod shape;
 mod texture;
@@ -165,7 +168,10 @@ impl<'a> Builder<'a> {
         read: impl FnOnce(&mut Reader<'_, 'a>) -> Option<T>,
     ) -> (Option<T>, Origin) {
         let mut reader = Reader::new(self, statement);
-        match read(&mut reader) {
+        let value = read(&mut reader);
+        #[cfg(test)]
+        reference::record(&reader);
+        match value {
             Some(value) => (Some(value), reader.finish()),
             None => (None, reader.abandon()),
         }

@@ -2,6 +2,7 @@
 //! up: a parameter that was not is an error, and the recorded names are the candidates for its
 //! correction.
 
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -13,6 +14,7 @@ use description::{
 use math::{Vec2, Vec3};
 
 use super::Builder;
+use super::asked::{Asked, Listed, Numbers, Within};
 use crate::pbrt::names;
 use crate::pbrt::parameter::{ParameterType, RawParameter, Values};
 use crate::pbrt::statement::Statement;
@@ -25,7 +27,7 @@ pub(crate) struct Reader<'b, 'a> {
     pub(crate) kind: Spanned<String>,
     pub(crate) color_space: ColorSpaceDesc,
     given: Vec<Given>,
-    asked: Vec<&'static str>,
+    pub(super) asked: Vec<Asked>,
     origin: Origin,
 }
 
@@ -69,7 +71,7 @@ impl<'b, 'a> Reader<'b, 'a> {
             }
             let name = parameter.name.as_str();
             let message = format!("`{}` has no parameter `{name}`", self.kind.value);
-            let known = self.asked.iter().copied();
+            let known = self.asked.iter().map(|asked| asked.name);
             let diagnostic = match (closest(name, known.clone()), names::replaced("parameter", name)) {
                 (None, Some(replacement)) => Diagnostic::error("old-name", message, parameter.declaration)
                     .with_help(format!("`{name}` {replacement}")),
@@ -104,7 +106,7 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// The index of the parameter of a name, if it is given with one of the types; any other type
     /// is reported.
     fn find(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<usize> {
-        self.asked.push(name);
+        self.asked.push(Asked::new(name, types));
         let index = self.given.iter().position(|given| given.parameter.name == name)?;
         let given = &mut self.given[index];
         let already = std::mem::replace(&mut given.used, true);
@@ -182,8 +184,14 @@ impl<'b, 'a> Reader<'b, 'a> {
         self.builder.report.warning("ignored", message, span);
     }
 
+    /// Notes the default and the allowed values of the parameter that was looked up last.
+    pub(crate) fn note(&mut self, default: impl Display, values: impl Display) {
+        self.asked.last_mut().into_iter().for_each(|asked| asked.note(&default, &values));
+    }
+
     /// Reports that a required parameter is missing.
     pub(crate) fn missing(&mut self, name: &str) {
+        self.asked.iter_mut().filter(|asked| asked.name == name).for_each(Asked::require);
         let message = format!("`{}` needs the parameter `{name}`", self.kind.value);
         self.builder.report.error("missing-parameter", message, self.kind.span);
     }
@@ -213,7 +221,9 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// Reads those settings that are given.
     pub(crate) fn settings(&mut self, desc: &mut impl Settings) {
         desc.visit(&mut |field, slot| {
-            let Some(value) = self.setting(field, slot.kind()) else { return };
+            let value = self.setting(field, slot.kind());
+            self.asked.last_mut().into_iter().for_each(|asked| asked.note_setting(field, slot));
+            let Some(value) = value else { return };
             // In the format, a number that counts nothing leaves a count to the renderer.
             let is_count = slot.kind() == Kind::Count && slot.get() == Value::Automatic;
             if is_count && matches!(value, Value::Integer(..=0)) {
@@ -275,12 +285,15 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// A number.
     pub(crate) fn float(&mut self, name: &'static str, default: f32) -> f32 {
-        self.optional_float(name).unwrap_or(default)
+        let value = self.optional_float(name).unwrap_or(default);
+        self.note(default, "");
+        value
     }
 
     /// A number above zero.
     pub(crate) fn positive(&mut self, name: &'static str, default: f32) -> f32 {
         let value = self.float(name, default);
+        self.note(default, "above 0");
         if value > 0.0 {
             return value;
         }
@@ -312,14 +325,12 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// An integer in a range.
     pub(crate) fn integer(&mut self, name: &'static str, default: i32, range: RangeInclusive<i32>) -> i32 {
         let value = self.optional_integer(name).unwrap_or(default);
-        if range.contains(&value) {
+        let allowed = Within(range);
+        self.note(default, &allowed);
+        if allowed.0.contains(&value) {
             return value;
         }
-        let message = match (*range.start(), *range.end()) {
-            (start, i32::MAX) => format!("`{name}` must be at least {start}"),
-            (start, end) => format!("`{name}` must lie between {start} and {end}"),
-        };
-        self.refuse(name, message);
+        self.refuse(name, format!("`{name}` must be {allowed}"));
         default
     }
 
@@ -339,7 +350,9 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// A Boolean.
     pub(crate) fn boolean(&mut self, name: &'static str, default: bool) -> bool {
-        self.optional_boolean(name).unwrap_or(default)
+        let value = self.optional_boolean(name).unwrap_or(default);
+        self.note(default, "");
+        value
     }
 
     /// Strings with their spans.
@@ -361,15 +374,25 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// One of some values that have names.
-    pub(crate) fn choice<T: Copy>(&mut self, name: &'static str, default: T, known: &[(&str, T)]) -> T {
+    pub(crate) fn choice<T: Copy + PartialEq>(
+        &mut self,
+        name: &'static str,
+        default: T,
+        known: &[(&str, T)],
+    ) -> T {
         let names: Vec<&str> = known.iter().map(|&(choice, _)| choice).collect();
-        let Some(given) = self.name_of(name, &names) else { return default };
+        let given = self.name_of(name, &names);
+        let usual = known.iter().find(|(_, value)| *value == default).map_or("", |(choice, _)| choice);
+        self.note(usual, Listed(&names));
+        let Some(given) = given else { return default };
         known.iter().find(|(choice, _)| *choice == given).map_or(default, |&(_, value)| value)
     }
 
     /// One of some names.
     fn name_of(&mut self, name: &'static str, known: &[&str]) -> Option<String> {
-        let given = self.string(name)?;
+        let given = self.string(name);
+        self.note("", Listed(known));
+        let given = given?;
         if known.contains(&given.value.as_str()) {
             return Some(given.value);
         }
@@ -429,12 +452,14 @@ impl<'b, 'a> Reader<'b, 'a> {
     /// A point.
     pub(crate) fn point3(&mut self, name: &'static str, default: Vec3) -> Vec3 {
         let values = self.points3(name);
+        self.note(Numbers(default), "");
         self.one(name, values, default)
     }
 
     /// A vector.
     pub(crate) fn vector3(&mut self, name: &'static str, default: Vec3) -> Vec3 {
         let values = self.vectors3(name);
+        self.note(Numbers(default), "");
         self.one(name, values, default)
     }
 
@@ -455,7 +480,9 @@ impl<'b, 'a> Reader<'b, 'a> {
     pub(crate) fn index_of_refraction(&mut self, name: &'static str, default: f32) -> SpectrumDesc {
         const TYPES: &[ParameterType] =
             &[ParameterType::Float, ParameterType::Spectrum, ParameterType::Rgb, ParameterType::Blackbody];
-        self.spectrum_of(name, TYPES).unwrap_or(default.into())
+        let value = self.spectrum_of(name, TYPES).unwrap_or(default.into());
+        self.note(default, "");
+        value
     }
 
     fn spectrum_of(&mut self, name: &'static str, types: &'static [ParameterType]) -> Option<SpectrumDesc> {
@@ -530,7 +557,9 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// A number or a texture of numbers.
     pub(crate) fn float_parameter(&mut self, name: &'static str, default: f32) -> FloatParameter {
-        self.optional_float_parameter(name).unwrap_or(FloatParameter::Value(default))
+        let value = self.optional_float_parameter(name).unwrap_or(FloatParameter::Value(default));
+        self.note(default, "");
+        value
     }
 
     /// A spectrum or a texture of spectra, which may be absent.
@@ -554,12 +583,10 @@ impl<'b, 'a> Reader<'b, 'a> {
     }
 
     /// A spectrum or a texture of spectra.
-    pub(crate) fn spectrum_parameter(
-        &mut self,
-        name: &'static str,
-        default: impl Into<SpectrumDesc>,
-    ) -> SpectrumParameter {
-        self.optional_spectrum_parameter(name).unwrap_or_else(|| SpectrumParameter::Value(default.into()))
+    pub(crate) fn spectrum_parameter(&mut self, name: &'static str, default: f32) -> SpectrumParameter {
+        let value = self.optional_spectrum_parameter(name);
+        self.note(default, "");
+        value.unwrap_or_else(|| SpectrumParameter::Value(default.into()))
     }
 
     /// An image file that may be absent.

@@ -224,11 +224,10 @@ fn solid(reader: &mut Reader) -> Option<ShapeKind> {
     ];
     let operation = reader.choice("operation", SolidOperation::Union, &known);
     let names = reader.strings("operands").unwrap_or_default();
-    for name in ["operation", "operands"] {
-        if !reader.has(name) {
-            reader.missing(name);
-            return None;
-        }
+    let absent: Vec<_> = ["operation", "operands"].into_iter().filter(|name| !reader.has(name)).collect();
+    if !absent.is_empty() {
+        absent.into_iter().for_each(|name| reader.missing(name));
+        return None;
     }
     if names.len() < 2 {
         reader.refuse("operands", "a solid is made of two objects or more");

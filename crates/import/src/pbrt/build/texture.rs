@@ -11,7 +11,7 @@ use super::reader::Reader;
 use crate::pbrt::statement::{Statements, TextureStatement};
 
 /// The differences between textures of numbers and of spectra.
-trait TextureValue: Clone {
+pub(super) trait TextureValue: Clone {
     /// The types of texture that give such values.
     const TYPES: &'static [&'static str];
 
@@ -97,7 +97,9 @@ impl TextureValue for SpectrumDesc {
     }
 
     fn value(reader: &mut Reader, name: &'static str, default: f32) -> Self {
-        reader.spectrum(name).unwrap_or(default.into())
+        let value = reader.spectrum(name);
+        reader.note(default, "");
+        value.unwrap_or(default.into())
     }
 
     fn parameter(reader: &mut Reader, name: &'static str, default: f32) -> Parameter<Self> {
