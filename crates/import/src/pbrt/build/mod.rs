@@ -41,41 +41,7 @@ pub(crate) fn build(
     assets: &dyn AssetSource,
 ) -> (SceneDesc, Report) {
     let mut builder = Builder::new(&statements, report, sources, assets);
-    let mut desc = SceneDesc { options: builder.options(&mut statements), ..SceneDesc::default() };
-    if let Some(film) = statements.film.take() {
-        desc.film = builder.film(film);
-    }
-    if let Some(filter) = statements.filter.take() {
-        desc.filter = builder.filter(filter);
-    }
-    if let Some(sampler) = statements.sampler.take() {
-        desc.sampler = builder.sampler(sampler);
-    }
-    if let Some(integrator) = statements.integrator.take() {
-        desc.integrator = builder.integrator(integrator);
-    }
-    if let Some(accelerator) = statements.accelerator.take() {
-        desc.accelerator = builder.accelerator(accelerator);
-    }
-    if let Some(camera) = statements.camera.take() {
-        desc.camera = builder.camera(camera, statements.transform_times.unwrap_or([0.0, 1.0]));
-    }
-    builder.textures(&mut statements, &mut desc);
-    desc.media = statements.media.drain(..).map(|medium| builder.medium(medium)).collect();
-    desc.materials = builder.materials(std::mem::take(&mut statements.materials));
-    desc.lights = statements.lights.drain(..).filter_map(|light| builder.light(light)).collect();
-    desc.area_lights = statements.area_lights.drain(..).map(|light| builder.area_light(light)).collect();
-    builder.load_meshes(&statements);
-    builder.objects = builder.table("object", &statements.objects, |object| Some(&object.name));
-    builder.complete_objects = statements.objects.len();
-    for shape in statements.shapes.drain(..) {
-        if let Some(shape) = builder.shape(shape) {
-            desc.shapes.push_stated(shape);
-        }
-    }
-    builder.objects(&mut statements, &mut desc);
-    desc.images = builder.decode_images();
-    builder.unused_attributes(&statements);
+    let desc = builder.scene(&mut statements);
     (desc, builder.report)
 }
 
@@ -101,6 +67,9 @@ pub(crate) struct Builder<'a> {
     objects: HashMap<String, Handle<ObjectDesc>>,
     /// The number of objects that are complete, and may be operands of a solid.
     complete_objects: usize,
+    /// Types of the statements that were read, with the parameters that they looked up.
+    #[cfg(test)]
+    recorded: Vec<(String, Vec<asked::Asked>)>,
 }
 
 impl<'a> Builder<'a> {
@@ -126,6 +95,8 @@ impl<'a> Builder<'a> {
             grids: HashMap::new(),
             objects: HashMap::new(),
             complete_objects: 0,
+            #[cfg(test)]
+            recorded: Vec::new(),
         };
         builder.materials =
             builder.table("material", &statements.materials, |material: &MaterialStatement| {
@@ -134,6 +105,46 @@ impl<'a> Builder<'a> {
         builder.media =
             builder.table("medium", &statements.media, |medium: &MediumStatement| Some(&medium.name));
         builder
+    }
+
+    /// The description of all statements.
+    fn scene(&mut self, statements: &mut Statements) -> SceneDesc {
+        let mut desc = SceneDesc { options: self.options(statements), ..SceneDesc::default() };
+        if let Some(film) = statements.film.take() {
+            desc.film = self.film(film);
+        }
+        if let Some(filter) = statements.filter.take() {
+            desc.filter = self.filter(filter);
+        }
+        if let Some(sampler) = statements.sampler.take() {
+            desc.sampler = self.sampler(sampler);
+        }
+        if let Some(integrator) = statements.integrator.take() {
+            desc.integrator = self.integrator(integrator);
+        }
+        if let Some(accelerator) = statements.accelerator.take() {
+            desc.accelerator = self.accelerator(accelerator);
+        }
+        if let Some(camera) = statements.camera.take() {
+            desc.camera = self.camera(camera, statements.transform_times.unwrap_or([0.0, 1.0]));
+        }
+        self.textures(statements, &mut desc);
+        desc.media = statements.media.drain(..).map(|medium| self.medium(medium)).collect();
+        desc.materials = self.materials(std::mem::take(&mut statements.materials));
+        desc.lights = statements.lights.drain(..).filter_map(|light| self.light(light)).collect();
+        desc.area_lights = statements.area_lights.drain(..).map(|light| self.area_light(light)).collect();
+        self.load_meshes(statements);
+        self.objects = self.table("object", &statements.objects, |object| Some(&object.name));
+        self.complete_objects = statements.objects.len();
+        for shape in statements.shapes.drain(..) {
+            if let Some(shape) = self.shape(shape) {
+                desc.shapes.push_stated(shape);
+            }
+        }
+        self.objects(statements, &mut desc);
+        desc.images = self.decode_images();
+        self.unused_attributes(statements);
+        desc
     }
 
     /// The handles of all named statements of a kind. Of several with the same name the first wins.
@@ -170,7 +181,7 @@ impl<'a> Builder<'a> {
         let mut reader = Reader::new(self, statement);
         let value = read(&mut reader);
         #[cfg(test)]
-        reference::record(&reader);
+        reader.builder.recorded.push((reader.kind.value.clone(), reader.asked.clone()));
         match value {
             Some(value) => (Some(value), reader.finish()),
             None => (None, reader.abandon()),

@@ -390,9 +390,7 @@ impl<'b, 'a> Reader<'b, 'a> {
 
     /// One of some names.
     fn name_of(&mut self, name: &'static str, known: &[&str]) -> Option<String> {
-        let given = self.string(name);
-        self.note("", Listed(known));
-        let given = given?;
+        let given = self.string(name)?;
         if known.contains(&given.value.as_str()) {
             return Some(given.value);
         }

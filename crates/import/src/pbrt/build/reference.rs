@@ -2,7 +2,6 @@
 //! read, and its table made of the parameters that were looked up. Their meaning, unless the schema
 //! of settings has it, is in `data/meanings.txt`.
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
@@ -13,14 +12,16 @@ use description::{
     SamplerDesc, ShapeType, SpectrumDesc, Substance,
 };
 
-use super::asked::Reference;
-use super::reader::Reader;
+use super::Builder;
+use super::asked::{Asked, Reference};
 use super::texture::TextureValue;
 use crate::MemoryAssets;
-use crate::pbrt::interpreter::{DIRECTIVES, Section};
+use crate::pbrt::interpreter::{DIRECTIVES, Interpreter, Section};
 use crate::pbrt::parameter::ParameterType;
 
 const MEANINGS: &str = include_str!("../../../data/meanings.txt");
+const PAGE: &str = include_str!("../../../../../docs/formats/pbrt-v4.md");
+/// A file of one triangle.
 const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
     property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
     0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
@@ -34,23 +35,6 @@ struct Row {
     condition: String,
 }
 
-thread_local! {
-    /// Types of the statements that were read, with their parameters.
-    static RECORDED: RefCell<Vec<(String, Vec<Row>)>> = const { RefCell::new(Vec::new()) };
-}
-
-/// Keeps what was looked up in a statement.
-pub(super) fn record(reader: &Reader) {
-    let mut rows: Vec<Row> = Vec::new();
-    for asked in &reader.asked {
-        if rows.iter().all(|row| row.name != asked.name) {
-            let (reference, condition) = (asked.reference.clone(), String::new());
-            rows.push(Row { name: asked.name, types: type_names(reference.types), reference, condition });
-        }
-    }
-    RECORDED.with_borrow_mut(|all| all.push((reader.kind.value.clone(), rows)));
-}
-
 /// What a statement looks up, with parameters in the syntax of the format.
 fn lookups(statement: &str, kind: &str, parameters: &str) -> Vec<Row> {
     let directive = statement.split(' ').next();
@@ -62,11 +46,21 @@ fn lookups(statement: &str, kind: &str, parameters: &str) -> Vec<Row> {
         }
         Some(_) => format!("WorldBegin ObjectBegin \"a\" ObjectEnd {statement} \"{kind}\" {parameters}"),
     };
-    RECORDED.with_borrow_mut(Vec::clear);
     let assets = MemoryAssets::default().with("a.pbrt", text.as_bytes()).with("a.ply", PLY.as_bytes());
-    crate::import(Path::new("a.pbrt"), &assets);
-    let recorded = RECORDED.with_borrow(|all| all.iter().rev().find(|(name, _)| name == kind).cloned());
-    recorded.unwrap_or_else(|| panic!("no statement was read: {text}")).1
+    let mut interpreter = Interpreter::new(&assets);
+    interpreter.run(Path::new("a.pbrt"));
+    let Interpreter { report, sources, mut statements, .. } = interpreter;
+    let mut builder = Builder::new(&statements, report, &sources, &assets);
+    builder.scene(&mut statements);
+    let recorded = builder.recorded.into_iter().rev().find(|(name, _)| name == kind);
+    let (_, asked) = recorded.unwrap_or_else(|| panic!("no statement was read: {text}"));
+    let mut rows: Vec<Row> = Vec::new();
+    for Asked { name, reference } in asked {
+        if rows.iter().all(|row| row.name != name) {
+            rows.push(Row { name, types: type_names(reference.types), reference, condition: String::new() });
+        }
+    }
+    rows
 }
 
 /// Parameters that a statement needs; and another one, of a type and name, with values by which the
@@ -289,19 +283,15 @@ fn tables() -> String {
 
 #[test]
 fn the_page_about_the_format_has_the_tables_of_the_parser() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/formats/pbrt-v4.md");
-    let page = std::fs::read_to_string(page).expect("the page can be read");
     let (begin, end) = ("## Directives\n", "\n## Where alhazen differs from pbrt-v4\n");
-    let at = page.find(begin).zip(page.find(end)).expect("the page has its two headings");
-    let (found, expected) = (&page[at.0..at.1], tables());
-    if found != expected {
-        let right = std::env::temp_dir().join("pbrt-v4.md");
-        let text = format!("{}{expected}{}", &page[..at.0], &page[at.1..]);
-        std::fs::write(&right, text).expect("the temporary folder can be written");
-        let line = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
-        let right = right.display();
-        panic!("docs/formats/pbrt-v4.md differs from the parser; copy {right} there. First: {line:#?}");
-    }
+    let at = PAGE.find(begin).zip(PAGE.find(end)).expect("the page has its two headings");
+    let (found, expected) = (&PAGE[at.0..at.1], tables());
+    let differs = |(found, expected): &(&str, &str)| found != expected;
+    let first = found.lines().zip(expected.lines()).find(differs);
+    assert!(
+        found == expected,
+        "docs/formats/pbrt-v4.md differs, first in {first:#?}. Between these headings it has to be\n{expected}"
+    );
 }
 
 #[test]
