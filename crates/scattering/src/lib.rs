@@ -10,6 +10,7 @@
 //! Random numbers lie in [0, 1): `uc` chooses among lobes, `u` a direction.
 
 mod bsdf;
+mod bssrdf;
 mod bxdf;
 mod flags;
 mod fresnel;
@@ -17,9 +18,11 @@ mod microfacet;
 mod phase;
 
 pub use bsdf::Bsdf;
+pub use bssrdf::{Bssrdf, BssrdfTable, Probe};
 pub use bxdf::{
     BsdfSample, Bxdf, CoatedBase, Conductor, Dielectric, Diffuse, DiffuseTransmission, Hair, Layered,
-    Measured, MeasuredData, MeasuredGrid, MeasuredTable, Scatter, ThinDielectric, inner_reflectance,
+    Measured, MeasuredData, MeasuredGrid, MeasuredTable, NormalizedFresnel, Scatter, Subsurface,
+    ThinDielectric, inner_reflectance,
 };
 pub use flags::{BxdfFlags, Directions, TransportMode};
 pub use fresnel::{fr_complex, fr_conductor, fr_dielectric, reflect, refract};

@@ -28,7 +28,7 @@ impl<R: Real> HenyeyGreenstein<R> {
     }
 
     #[inline(always)]
-    fn p_of_cos(&self, cos_theta: R) -> R {
+    pub(crate) fn p_of_cos(&self, cos_theta: R) -> R {
         let [one, two] = [1.0, 2.0].each(R::splat);
         let square = (one + sqr(self.g) + two * self.g * cos_theta).max(R::splat(1e-12));
         R::splat(0.25 * FRAC_1_PI) * (one - sqr(self.g)) / (square * square.sqrt())

@@ -10,7 +10,9 @@ mod diffuse_transmission;
 mod hair;
 mod layered;
 mod measured;
+mod normalized_fresnel;
 mod scatter;
+mod subsurface;
 mod thin_dielectric;
 
 pub use conductor::Conductor;
@@ -20,7 +22,9 @@ pub use diffuse_transmission::DiffuseTransmission;
 pub use hair::Hair;
 pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
+pub use normalized_fresnel::NormalizedFresnel;
 pub use scatter::{BsdfSample, Scatter};
+pub use subsurface::Subsurface;
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};
@@ -48,6 +52,10 @@ pub enum Bxdf<'a> {
     Hair(Hair),
     /// A measured surface.
     Measured(Measured<'a>),
+    /// A body that scatters light under its surface.
+    Subsurface(Subsurface<'a>),
+    /// Light that enters such a body.
+    NormalizedFresnel(NormalizedFresnel),
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
@@ -72,6 +80,8 @@ macro_rules! each_bxdf {
             $crate::Bxdf::CoatedConductor($member) => $body,
             $crate::Bxdf::Hair($member) => $body,
             $crate::Bxdf::Measured($member) => $body,
+            $crate::Bxdf::Subsurface($member) => $body,
+            $crate::Bxdf::NormalizedFresnel($member) => $body,
         }
     };
 }
@@ -137,4 +147,6 @@ into_bxdf! {
     CoatedConductor(Layered<Conductor>)
     Hair(Hair)
     Measured(Measured<'a>)
+    Subsurface(Subsurface<'a>)
+    NormalizedFresnel(NormalizedFresnel)
 }

@@ -1,0 +1,100 @@
+//! A table of diffusion profiles over albedo and radius.
+
+use super::diffusion::HalfSpace;
+use super::spline::{self, Weights};
+use std::f32::consts::TAU;
+use std::fmt;
+
+/// Albedos, more closely spaced towards 1, where the profile changes fast.
+const ALBEDOS: usize = 100;
+/// Radii in a geometric progression, after 0.
+const RADII: usize = 64;
+
+/// The radial profiles of all media of one asymmetry and index of refraction, in mean free paths.
+#[derive(Clone)]
+#[doc(alias = "BSSRDFTable")]
+pub struct BssrdfTable {
+    eta: f32,
+    exit_norm: f32,
+    albedos: Vec<f32>,
+    radii: Vec<f32>,
+    /// 2πr times the profile, which is its density over r; a row for each albedo.
+    profile: Vec<f32>,
+    /// The running integrals of the rows.
+    cdf: Vec<f32>,
+    /// The integrals of the rows.
+    effective_albedos: Vec<f32>,
+}
+
+impl BssrdfTable {
+    /// For the asymmetry `g`, in (−1, 1), and the relative index of refraction `eta`, > 0.
+    pub fn new(g: f32, eta: f32) -> Self {
+        let medium = HalfSpace::new(f64::from(g), f64::from(eta));
+        let spacing = |i: usize| 1.0 - (-8.0 * i as f64 / (ALBEDOS - 1) as f64).exp();
+        let albedos: Vec<f32> = (0..ALBEDOS).map(|i| (spacing(i) / spacing(ALBEDOS - 1)) as f32).collect();
+        let progression = (0..RADII - 1).map(|i| (2.5e-3 * 1.2f64.powi(i as i32)) as f32);
+        let radii: Vec<f32> = std::iter::once(0.0).chain(progression).collect();
+        let mut table = Self {
+            eta,
+            exit_norm: 1.0 / medium.transmitted_from_outside() as f32,
+            profile: Vec::with_capacity(ALBEDOS * RADII),
+            cdf: Vec::with_capacity(ALBEDOS * RADII),
+            effective_albedos: Vec::with_capacity(ALBEDOS),
+            albedos,
+            radii,
+        };
+        for &albedo in &table.albedos {
+            let density = |&r: &f32| TAU * r * medium.profile(f64::from(albedo), f64::from(r)) as f32;
+            let row: Vec<f32> = table.radii.iter().map(density).collect();
+            let cdf = spline::integrate(&table.radii, &row);
+            table.effective_albedos.push(cdf[RADII - 1]);
+            table.profile.extend(row);
+            table.cdf.extend(cdf);
+        }
+        table
+    }
+
+    /// The relative index of refraction, below over above.
+    pub fn eta(&self) -> f32 {
+        self.eta
+    }
+
+    /// One over the share of uniform light from outside that the surface lets in.
+    pub(crate) fn exit_norm(&self) -> f32 {
+        self.exit_norm
+    }
+
+    /// The share of the light that entered which leaves again, of a medium with an albedo in [0, 1].
+    pub fn effective_albedo(&self, albedo: f32) -> f32 {
+        Weights::at(&self.albedos, albedo).map_or(0.0, |at| at.sum(|i| self.effective_albedos[i])).max(0.0)
+    }
+
+    /// The albedo of a medium with an effective albedo, or with the nearest there is.
+    pub fn albedo(&self, effective_albedo: f32) -> f32 {
+        spline::invert(&self.albedos, &self.effective_albedos, effective_albedo)
+    }
+
+    /// The profile at a radius, per area, of a medium with an albedo in [0, 1], and its density,
+    /// which has the integral 1 over the plane.
+    pub(super) fn profile(&self, albedo: f32, r: f32) -> (f32, f32) {
+        let at = (Weights::at(&self.albedos, albedo), Weights::at(&self.radii, r));
+        let (Some(at_albedo), Some(at_radius)) = at else { return (0.0, 0.0) };
+        let profile = at_albedo.sum(|row| at_radius.sum(|i| self.profile[row * RADII + i]));
+        let profile = (profile / (TAU * if r > 0.0 { r } else { 1.0 })).max(0.0);
+        let total = at_albedo.sum(|i| self.effective_albedos[i]);
+        (profile, if total > 0.0 { profile / total } else { 0.0 })
+    }
+
+    /// A radius with the density of the profile; `None` if the profile is zero.
+    pub(super) fn sample_radius(&self, albedo: f32, u: f32) -> Option<f32> {
+        let at = Weights::at(&self.albedos, albedo)?;
+        let column = |table: &[f32], i: usize| at.sum(|row| table[row * RADII + i]);
+        spline::sample(&self.radii, |i| column(&self.profile, i), |i| column(&self.cdf, i), u)
+    }
+}
+
+impl fmt::Debug for BssrdfTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BssrdfTable").field("eta", &self.eta).finish_non_exhaustive()
+    }
+}
