@@ -68,6 +68,26 @@ impl IntegratorDesc {
             | Self::Function(_) => false,
         }
     }
+
+    /// Whether the algorithm draws scattering under surfaces.
+    pub fn knows_subsurface(&self) -> bool {
+        match self {
+            // Path tracing takes the place of functions.
+            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::Function(_) => true,
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::AmbientOcclusion(_)
+            | Self::RandomWalk(_)
+            | Self::SimplePath(_)
+            | Self::LightTracing(_)
+            | Self::Bdpt(_)
+            | Self::Mlt(_)
+            | Self::PhotonMapping(_)
+            | Self::Sppm(_)
+            | Self::Vcm(_)
+            | Self::Radiosity(_) => false,
+        }
+    }
 }
 
 settings! {

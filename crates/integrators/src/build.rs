@@ -3,7 +3,7 @@
 use description::schema::Settings;
 use description::{
     BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc,
-    MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc,
+    MaterialKind, MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc,
 };
 use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
@@ -36,6 +36,7 @@ pub fn build(desc: &SceneDesc) -> Result<Built, Vec<Diagnostic>> {
     let sampler = builder.sampler();
     let integrator = builder.integrator(sampler);
     builder.media();
+    builder.subsurface();
     builder.connections_to_lens();
     let diagnostics = builder.diagnostics;
     if diagnostics.iter().any(Diagnostic::is_error) {
@@ -94,6 +95,27 @@ impl Builder<'_> {
             format!("integrator `{}` does not know participating media; left out", integrator.name());
         let warning = Diagnostic::warning("no-media", message, integrator.origin.span);
         self.diagnostics.push(warning.with_help("`vol-path` draws them"));
+    }
+
+    /// Whether a material scatters under its surface.
+    fn has_subsurface(&self) -> bool {
+        let mut materials = self.desc.materials.iter();
+        materials.any(|(_, material)| matches!(material.kind, MaterialKind::Subsurface { .. }))
+    }
+
+    /// Warns if there are materials that scatter under their surface, but the algorithm does not
+    /// know them.
+    fn subsurface(&mut self) {
+        let integrator = &self.desc.integrator;
+        if integrator.knows_subsurface() || !self.has_subsurface() {
+            return;
+        }
+        let message = format!(
+            "integrator `{}` does not know scattering under surfaces; `subsurface` is drawn as a diffuse surface of its effective albedo under a boundary",
+            integrator.name()
+        );
+        let warning = Diagnostic::warning("no-subsurface", message, integrator.origin.span);
+        self.diagnostics.push(warning.with_help("`path` and `vol-path` draw it"));
     }
 
     /// The sampler of light paths, independent of that of camera paths.
@@ -235,6 +257,9 @@ impl Builder<'_> {
         }
         if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
             return pixels(VolPath::new(desc), sampler);
+        }
+        if self.has_subsurface() {
+            return pixels(Path::new(desc, interfaces), sampler);
         }
         self.waves(Path::new(desc, interfaces), sampler)
     }

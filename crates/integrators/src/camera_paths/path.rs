@@ -4,18 +4,23 @@
 //! the power heuristic (`transport/direct.rs`); from the second vertex on Russian roulette ends
 //! paths of low throughput (`transport/roulette.rs`).
 //!
+//! Paths that enter a body of material `subsurface` go on from another point of its surface
+//! (`transport/subsurface.rs`).
+//!
 //! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
 //! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
 
 use description::PathDesc;
 use math::RayDifferential;
-use scattering::{Bsdf, each_bxdf};
-use scene::{Interfaces, Scene, View};
+use scattering::{Bsdf, Bssrdf, each_bxdf};
+use scene::{Interfaces, Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
 use super::PathsFrom;
 use crate::transport::direct::{DirectLighting, light_context};
+use crate::transport::media::Heroes;
 use crate::transport::path_state::{PathState, Scattered};
+use crate::transport::subsurface::{enters, under_surface};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Path tracing.
@@ -31,6 +36,31 @@ impl Path {
     /// interfaces occlude delta lights.
     pub fn new(settings: PathDesc, interfaces: Interfaces) -> Self {
         Self { settings, interfaces, direct: DirectLighting::none(interfaces) }
+    }
+
+    /// Leads a path that has entered a body at `entry` out of it again; returns the direct light
+    /// where it leaves, and whether it goes on.
+    fn under_surface(
+        &self,
+        tracer: &mut Tracer,
+        path: &mut PathState,
+        (entry, bssrdf): (&SurfaceInteraction, &Bssrdf),
+        lambda: &SampledWavelengths,
+    ) -> (SampledSpectrum, bool) {
+        let u = tracer.sampler.get_1d();
+        let heroes = Heroes::by_throughput(path.beta, lambda.secondary_terminated(), u);
+        let Some(exit) = tracer.exit(entry, bssrdf, heroes.hero) else {
+            return (SampledSpectrum::ZERO, false);
+        };
+        path.beta *= exit.profile / heroes.mean(exit.density);
+        path.eta_scale /= bssrdf.eta() * bssrdf.eta();
+        let context = light_context(&exit.surface, exit.bsdf.flags());
+        let l = path.beta * self.direct.sample(tracer, (&exit.surface, &context), &exit.bsdf, lambda);
+        let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
+        if let Some(scattered) = &scattered {
+            path.scatter(&exit.surface, context, scattered);
+        }
+        (l, scattered.is_some())
     }
 }
 
@@ -64,6 +94,7 @@ impl PathsFrom for Path {
                 return l;
             }
             path.depth += 1;
+            let bssrdf = under_surface(&mut bsdf);
             bsdf.regularize(self.settings.regularize && rough_before);
 
             let context = light_context(&surface, bsdf.flags());
@@ -77,6 +108,14 @@ impl PathsFrom for Path {
             let Some(scattered) = scattered else { return l };
             rough_before |= !scattered.sample.flags.is_specular();
             path.scatter(&surface, context, &scattered);
+            if let Some(bssrdf) = bssrdf.filter(|_| enters(&surface, &scattered.sample)) {
+                let (left, goes_on) = self.under_surface(tracer, &mut path, (&surface, &bssrdf), lambda);
+                l += left;
+                if !goes_on {
+                    return l;
+                }
+                rough_before = true;
+            }
             if !path.survives(tracer.sampler) {
                 return l;
             }

@@ -7,6 +7,9 @@
 //! have been sampled (spectral MIS). From the second vertex on Russian roulette ends paths of low
 //! throughput.
 //!
+//! Paths that enter a body of material `subsurface` go on from another point of its surface
+//! (`transport/subsurface.rs`).
+//!
 //! Emission of media counts along every flight, that of paths of `max_depth` scattering events
 //! included. Without light sampling (`simple-vol-path`), light is found by scattering alone.
 //!
@@ -15,7 +18,7 @@
 use description::{LightSamplerDesc, PathDesc};
 use math::RayDifferential;
 use sampling::Sampler;
-use scattering::{Bsdf, Bxdf, Directions, TransportMode};
+use scattering::{Bsdf, Bssrdf, Bxdf, Directions, TransportMode};
 use scene::light::{LightId, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
@@ -27,6 +30,7 @@ use crate::transport::direct::{MediumVertex, light_context};
 use crate::transport::media::{FlightEnd, Heroes, Throughput};
 use crate::transport::path_state::{Origin, Scattered, pass_through, throughput};
 use crate::transport::roulette;
+use crate::transport::subsurface::{enters, under_surface};
 use crate::{Cancelled, Control, RayIntegrator, Tracer};
 
 /// Path tracing through media.
@@ -172,6 +176,30 @@ impl VolPath {
         let by_scattering = if scene.light(light).is_delta() { black } else { r_u * passage.r_u * pdf };
         beta * l * passage.t / path.heroes.mean(by_light + by_scattering)
     }
+
+    /// Leads a path that enters a body at `entry`, from the side of its medium, out of it again;
+    /// returns the direct light where it leaves, and whether it goes on.
+    fn under_surface(
+        &self,
+        tracer: &mut Tracer,
+        path: &mut Path,
+        (entry, bssrdf): (&SurfaceInteraction, &Bssrdf),
+        lambda: &SampledWavelengths,
+    ) -> (SampledSpectrum, bool) {
+        let hero = path.heroes.hero;
+        let Some(exit) = tracer.exit(entry, bssrdf, hero) else { return (SampledSpectrum::ZERO, false) };
+        path.throughput.beta *= exit.profile / exit.density[hero];
+        path.throughput.r_u *= exit.density / exit.density[hero];
+        let l = self.direct(tracer, path, Vertex::Surface(&exit.surface, &exit.bsdf), lambda);
+        let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
+        if let Some(Scattered { sample, pdf }) = &scattered {
+            path.throughput.beta *= throughput(&exit.surface, sample);
+            let context = light_context(&exit.surface, exit.bsdf.flags());
+            path.medium = exit.surface.medium_towards(sample.wi, path.medium);
+            path.leave(exit.surface.spawn_scattered(&path.ray, sample), *pdf, Some(context));
+        }
+        (l, scattered.is_some())
+    }
 }
 
 impl PathsFrom for VolPath {
@@ -235,6 +263,7 @@ impl PathsFrom for VolPath {
             if lambda.secondary_terminated() {
                 path.throughput.keep_first(&mut path.heroes);
             }
+            let bssrdf = under_surface(&mut bsdf);
             bsdf.regularize(self.settings.regularize && path.rough_before);
             if bsdf.flags().is_non_specular() {
                 l += self.direct(tracer, &path, Vertex::Surface(&surface, &bsdf), lambda);
@@ -243,12 +272,20 @@ impl PathsFrom for VolPath {
                 return l;
             };
             path.throughput.beta *= throughput(&surface, &sample);
-            if sample.flags.is_transmissive() {
-                path.eta_scale *= sample.eta * sample.eta;
+            if let Some(bssrdf) = bssrdf.filter(|_| enters(&surface, &sample)) {
+                let (left, goes_on) = self.under_surface(tracer, &mut path, (&surface, &bssrdf), lambda);
+                l += left;
+                if !goes_on {
+                    return l;
+                }
+            } else {
+                if sample.flags.is_transmissive() {
+                    path.eta_scale *= sample.eta * sample.eta;
+                }
+                let context = (!sample.flags.is_specular()).then(|| light_context(&surface, bsdf.flags()));
+                path.medium = surface.medium_towards(sample.wi, path.medium);
+                path.leave(surface.spawn_scattered(&path.ray, &sample), pdf, context);
             }
-            let context = (!sample.flags.is_specular()).then(|| light_context(&surface, bsdf.flags()));
-            path.medium = surface.medium_towards(sample.wi, path.medium);
-            path.leave(surface.spawn_scattered(&path.ray, &sample), pdf, context);
             if !path.survives(tracer.sampler) {
                 return l;
             }

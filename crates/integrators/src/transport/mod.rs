@@ -10,6 +10,7 @@
 //! | `path_state` | a path from the camera between two vertices |
 //! | `direct` | next-event estimation and its weights |
 //! | `media` | flights through participating media, and their transmittance |
+//! | `subsurface` | paths under the surface of bodies |
 //! | `single_scattering` | what a medium adds to a ray by one scattering event |
 //! | `roulette` | Russian roulette |
 //! | `visibility` | shadow rays |
@@ -22,6 +23,7 @@ pub(crate) mod pixel_samples;
 pub(crate) mod roulette;
 pub(crate) mod shutter_sample;
 pub(crate) mod single_scattering;
+pub(crate) mod subsurface;
 mod tracer;
 mod visibility;
 

@@ -179,7 +179,11 @@ impl<'a> Batch<'a> {
                 Material::CoatedConductor(material) => {
                     self.dispatch(algorithm, (id, material), turns, rows);
                 }
-                Material::Hair(_) | Material::Measured(_) | Material::Mix(_) | Material::Interface => {
+                Material::Hair(_)
+                | Material::Measured(_)
+                | Material::Subsurface(_)
+                | Material::Mix(_)
+                | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")
                 }
             }

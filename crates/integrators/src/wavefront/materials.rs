@@ -40,9 +40,11 @@ impl LaneMaterials {
                 | Material::CoatedDiffuse(_)
                 | Material::CoatedConductor(_) => (true, false),
                 // Curves, which hair is on, are not in lanes; nor are lookups in large tables.
-                Material::Hair(_) | Material::Measured(_) | Material::Mix(_) | Material::Interface => {
-                    (false, false)
-                }
+                Material::Hair(_)
+                | Material::Measured(_)
+                | Material::Subsurface(_)
+                | Material::Mix(_)
+                | Material::Interface => (false, false),
             };
             let may_be_specular = entry.material.may_be_specular(textures);
             let shading = match (is_plain && is_in_lanes, with_footprints && !is_constant) {

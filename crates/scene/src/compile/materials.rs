@@ -1,10 +1,11 @@
-//! Materials, and the replacements of those that are not supported yet.
+//! Materials.
 
 use super::Compiler;
 use crate::material::{
     BumpMap, Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
     DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
-    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, Roughness, ThinDielectricMaterial,
+    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, Roughness, SubsurfaceMaterial,
+    ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
@@ -157,26 +158,18 @@ impl Compiler<'_> {
                     alpha: self.float_texture(alpha, origin.parameter("alpha")),
                 })
             }
-            MaterialKind::Subsurface { scattering, .. } => {
-                self.not_drawn(kind.name(), "diffuse", origin);
-                match scattering {
-                    SubsurfaceScattering::Reflectance { reflectance, .. } => {
-                        self.diffuse(reflectance, origin)
-                    }
-                    SubsurfaceScattering::Named(_) | SubsurfaceScattering::Coefficients { .. } => {
-                        self.diffuse(&0.5.into(), origin)
-                    }
-                }
+            MaterialKind::Subsurface { scattering, scale, eta, g, roughness } => {
+                let inside = self.subsurface_inside(scattering, *scale, origin);
+                let g = if matches!(scattering, SubsurfaceScattering::Named(_)) { 0.0 } else { *g };
+                let table = self.bssrdf_table(g, *eta, origin);
+                let roughness = self.roughness(roughness, "", origin);
+                Material::Subsurface(SubsurfaceMaterial { table, inside, roughness })
             }
             MaterialKind::Measured { table } => Material::Measured(MeasuredMaterial { table: table.clone() }),
         }
     }
 
-    fn not_drawn(&mut self, name: &str, instead: &str, origin: &Origin) {
-        self.warn("not-drawn", format!("`{name}` is not drawn yet; drawn as {instead}"), origin.span);
-    }
-
-    fn albedo(
+    pub(super) fn albedo(
         &mut self,
         parameter: &SpectrumParameter,
         name: &str,

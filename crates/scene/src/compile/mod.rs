@@ -13,6 +13,7 @@ mod objects;
 mod shapes;
 mod solids;
 mod spheres;
+mod subsurface;
 mod tessellation;
 
 use crate::light::{AreaEmission, LightTable, SceneSphere};
@@ -30,6 +31,7 @@ use description::{
 };
 use geometry::{BuildQuality, World, WorldBuilder};
 use math::DMat4;
+use scattering::BssrdfTable;
 use spectrum::Spectrum;
 use std::mem::take;
 use std::sync::Arc;
@@ -74,6 +76,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         names,
         instances: Vec::new(),
         materials: Vec::new(),
+        bssrdf_tables: Vec::new(),
         media: Vec::new(),
         area_emissions: Vec::new(),
         last_spectrum: None,
@@ -132,6 +135,8 @@ struct Compiler<'a> {
     entries: Vec<GeometryEntry>,
     names: Names,
     materials: Vec<MaterialEntry>,
+    /// By asymmetry and index of refraction.
+    bssrdf_tables: Vec<([f32; 2], Arc<BssrdfTable>)>,
     media: Vec<Medium>,
     instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,

@@ -17,6 +17,7 @@ mod measured;
 mod mix;
 mod normal_map;
 mod roughness;
+mod subsurface;
 mod thin_dielectric;
 
 pub use crate::id::MaterialId;
@@ -33,6 +34,7 @@ pub use measured::MeasuredMaterial;
 pub use mix::MixMaterial;
 pub use normal_map::NormalMap;
 pub use roughness::Roughness;
+pub use subsurface::{SubsurfaceInside, SubsurfaceMaterial};
 pub use thin_dielectric::ThinDielectricMaterial;
 
 use crate::interaction::SurfaceInteraction;
@@ -77,6 +79,8 @@ pub enum Material {
     Hair(HairMaterial),
     /// See [`MeasuredMaterial`].
     Measured(MeasuredMaterial),
+    /// See [`SubsurfaceMaterial`].
+    Subsurface(SubsurfaceMaterial),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
     /// Rays pass through; only the medium changes.
@@ -103,6 +107,7 @@ impl Material {
             Self::CoatedConductor(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Hair(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Measured(m) => Some(m.bxdf(lambda).into()),
+            Self::Subsurface(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Mix(_) | Self::Interface => None,
         }
     }
@@ -112,6 +117,7 @@ impl Material {
         match self {
             Self::Diffuse(_) | Self::DiffuseTransmission(_) | Self::Hair(_) | Self::Measured(_) => false,
             Self::Conductor(m) => m.roughness.may_be_smooth(textures),
+            Self::Subsurface(m) => m.roughness.may_be_smooth(textures),
             Self::CoatedDiffuse(m) => m.coat.roughness.may_be_smooth(textures),
             Self::CoatedConductor(m) => m.coat.roughness.may_be_smooth(textures),
             Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Mix(_) | Self::Interface => true,
@@ -126,7 +132,8 @@ impl Material {
             | Self::DiffuseTransmission(_)
             | Self::Conductor(_)
             | Self::Hair(_)
-            | Self::Measured(_) => true,
+            | Self::Measured(_)
+            | Self::Subsurface(_) => true,
             Self::Dielectric(m) => !is_dispersive(&m.eta),
             Self::ThinDielectric(m) => !is_dispersive(&m.eta),
             Self::CoatedDiffuse(m) => !m.coat.is_dispersive(),

@@ -52,7 +52,7 @@ pub(crate) struct Heroes {
     /// The probability of each to be the hero.
     probabilities: SampledSpectrum,
     /// The hero.
-    pub(super) hero: usize,
+    pub hero: usize,
 }
 
 impl Heroes {
