@@ -69,19 +69,19 @@ impl IntegratorDesc {
         }
     }
 
-    /// Whether the algorithm draws scattering under surfaces.
+    /// Whether the algorithm draws scattering under surfaces, or no scattering at all.
     pub fn knows_subsurface(&self) -> bool {
         match self {
+            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::AmbientOcclusion(_) => true,
             // Path tracing takes the place of functions.
-            Self::Path(_) | Self::VolPath(_) | Self::SimpleVolPath(_) | Self::Function(_) => true,
+            Self::Function(_) => true,
+            Self::Mlt(desc) => desc.technique == MltTechnique::Path,
             Self::RayCasting
             | Self::Whitted(_)
-            | Self::AmbientOcclusion(_)
             | Self::RandomWalk(_)
             | Self::SimplePath(_)
             | Self::LightTracing(_)
             | Self::Bdpt(_)
-            | Self::Mlt(_)
             | Self::PhotonMapping(_)
             | Self::Sppm(_)
             | Self::Vcm(_)

@@ -7,7 +7,7 @@
 //!
 //! The throughput is multiplied by the profile over its density. As the distance has the profile of
 //! one wavelength, the hero, the others are weighted by spectral MIS as flights are
-//! ([`media`](super::media)). Sources: [King 2013], [Pharr 2018 §15.4].
+//! ([`media`](super::media)). Sources: [King 2013], [Pharr 2016 §15.4].
 
 use math::Ray;
 use sampling::{WeightedReservoir, hash};

@@ -16,4 +16,5 @@ mod mlt;
 mod photon_mapping;
 
 mod session;
+mod subsurface;
 mod support;

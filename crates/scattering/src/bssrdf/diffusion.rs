@@ -19,7 +19,7 @@
 //! κ = 1 − exp(−2σt' (dr + zr)) close to the beam. F₁, F₂ are moments of the Fresnel reflectance.
 //! All lengths are in mean free paths, σt = 1.
 //!
-//! Sources: [Habel 2013], [dEon 2011b], [Pharr 2018 §15.5].
+//! Sources: [Habel 2013], [dEon 2011a], [Pharr 2016 §15.5].
 
 use crate::{HenyeyGreenstein, fr_dielectric};
 use std::f64::consts::PI;

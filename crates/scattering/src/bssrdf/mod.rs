@@ -16,7 +16,7 @@
 //! axis, the density is the sum. The profile differs between wavelengths; one of them, the hero,
 //! chooses the distance.
 //!
-//! Sources: [Jensen 2001], [Habel 2013], [King 2013], [Pharr 2018 §11.4, §15.4, §15.5].
+//! Sources: [Jensen 2001], [Habel 2013], [King 2013], [Pharr 2016 §11.4, §15.4, §15.5].
 
 mod diffusion;
 mod spline;

@@ -1,7 +1,7 @@
 //! Cubic splines through values at nodes of any distance, after Catmull and Rom: the slope at a
 //! node is that of the line through its neighbours, and at an end that of the last line.
 //!
-//! Source: [Pharr 2018 §8.6.1, §13.3.3].
+//! Source: [Pharr 2016 §8.6.1, §13.3.3].
 
 use math::find_interval;
 

@@ -45,8 +45,11 @@ impl BssrdfTable {
         };
         for &albedo in &table.albedos {
             let density = |&r: &f32| TAU * r * medium.profile(f64::from(albedo), f64::from(r)) as f32;
-            let row: Vec<f32> = table.radii.iter().map(density).collect();
-            let cdf = spline::integrate(&table.radii, &row);
+            let mut row: Vec<f32> = table.radii.iter().map(density).collect();
+            let mut cdf = spline::integrate(&table.radii, &row);
+            // Diffusion overestimates media that hardly absorb: no more light leaves than entered.
+            let excess = cdf[RADII - 1].max(1.0);
+            row.iter_mut().chain(&mut cdf).for_each(|value| *value /= excess);
             table.effective_albedos.push(cdf[RADII - 1]);
             table.profile.extend(row);
             table.cdf.extend(cdf);

@@ -2,7 +2,7 @@
 //! above the surface, where ∫ f cos θ dω = 1.
 //!
 //! It is one half of scattering between two points ([`Bssrdf`](crate::Bssrdf)), and therefore not
-//! reciprocal by itself; it does not depend on `wo`. Source: [Pharr 2018 §11.4.2].
+//! reciprocal by itself; it does not depend on `wo`. Source: [Pharr 2016 §11.4.2].
 
 use super::{BsdfSample, Scatter};
 use crate::{BssrdfTable, BxdfFlags, Directions, TransportMode, fr_dielectric};

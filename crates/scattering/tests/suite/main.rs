@@ -5,3 +5,4 @@ mod hair;
 mod layers;
 mod measured;
 mod microfacets;
+mod subsurface;

@@ -1,0 +1,117 @@
+//! Scattering under surfaces against closed forms, and between algorithms.
+
+use alhazen_integrators::{Path, RayIntegrator, SimplePath, VolPath, build};
+use description::{
+    BdptDesc, IntegratorDesc, LightKind, MaterialKind, MltDesc, MltTechnique, PathDesc, RoughnessDesc,
+    SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc, SubsurfaceScattering,
+};
+use math::Point3;
+use scattering::fr_dielectric;
+use scene::{Interfaces, Scene};
+use testkit::{Moments, welch_test};
+
+use crate::support::{assert_mean, compile, quad, radiance, sphere, v, white_sky};
+
+const ETA: f32 = 1.33;
+
+fn body(reflectance: f32, mfp: f32, roughness: f32) -> MaterialKind {
+    let scattering = SubsurfaceScattering::Reflectance { reflectance: reflectance.into(), mfp: mfp.into() };
+    let roughness = RoughnessDesc::isotropic(roughness);
+    MaterialKind::Subsurface { scattering, scale: 1.0, eta: ETA, g: 0.0, roughness }
+}
+
+fn scene(light: impl Fn(&mut SceneDesc), shape: ShapeKind, material: MaterialKind) -> Scene {
+    let mut desc = SceneDesc::default();
+    light(&mut desc);
+    let material = Some(desc.materials.push(material.into()));
+    desc.shapes.push(ShapeDesc { material, ..shape.into() });
+    compile(&desc)
+}
+
+fn sun(desc: &mut SceneDesc) {
+    let (from, to) = (v(1.0, 2.0, 3.0), Point3::ZERO);
+    desc.lights.push(LightKind::Distant { radiance: 1.0.into(), illuminance: None, from, to }.into());
+}
+
+fn path(max_depth: u32) -> Path {
+    Path::new(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass)
+}
+
+fn vol_path(max_depth: u32) -> VolPath {
+    VolPath::new(PathDesc { max_depth, ..PathDesc::default() })
+}
+
+/// The boundary reflects its Fresnel reflectance, and the effective albedo of the rest leaves again,
+/// but for the thousandth that probes do not reach.
+#[test]
+fn a_plane_under_a_white_sky_shows_its_effective_albedo() {
+    let plane = quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));
+    let scene = scene(white_sky, plane, body(0.6, 0.1, 0.0));
+    let (o, d) = (v(3.0, 0.0, 2.0), v(-1.5, 0.5, -2.0));
+    let reflected = f64::from(fr_dielectric(-d.normalize().z, ETA));
+    let expected = reflected + (1.0 - reflected) * 0.6 * 0.999;
+    for depth in [1, 5] {
+        assert_mean(&radiance(&mut path(depth), &scene, o, d, 20_000), expected, 6, "path");
+        assert_mean(&radiance(&mut vol_path(depth), &scene, o, d, 20_000), expected, 6, "vol-path");
+        let mut simple = VolPath::simple(depth);
+        assert_mean(&radiance(&mut simple, &scene, o, d, 20_000), expected, 6, "simple-vol-path");
+    }
+}
+
+/// The radiance along a ray to a ball.
+fn of_ball(rays: &mut impl RayIntegrator, scene: &Scene, count: usize) -> Moments {
+    radiance(rays, scene, v(0.3, -3.0, 0.4), v(0.0, 1.0, 0.0), count)
+}
+
+#[test]
+fn algorithms_agree_on_a_ball_in_the_sun() {
+    let scene = scene(sun, sphere(1.0), body(0.8, 0.3, 0.3));
+    let of_path = of_ball(&mut path(6), &scene, 60_000);
+    welch_test(&of_path, &of_ball(&mut vol_path(6), &scene, 60_000), 1).unwrap();
+    assert!(of_path.mean > 0.0);
+}
+
+/// Where light hardly moves under the surface, it is a diffuse base under the boundary.
+#[test]
+fn a_short_mean_free_path_gives_the_local_surface() {
+    let scene = scene(sun, sphere(1.0), body(0.7, 2e-4, 0.0));
+    let local = SimplePath(SimplePathDesc { max_depth: 1, sample_lights: true, sample_bsdf: true });
+    let expected = of_ball(&mut { local }, &scene, 20_000);
+    let found = of_ball(&mut path(1), &scene, 60_000);
+    let error = (found.variance_of_mean() + expected.variance_of_mean()).sqrt();
+    assert!(
+        (found.mean - expected.mean).abs() < 4.0 * error + 0.01 * expected.mean,
+        "{found:?} {expected:?}"
+    );
+}
+
+#[test]
+fn a_body_that_hardly_absorbs_gains_no_light() {
+    let scene = scene(white_sky, sphere(1.0), body(0.95, 0.05, 0.2));
+    let found = of_ball(&mut path(20), &scene, 20_000);
+    assert!((0.85..1.0).contains(&found.mean), "{found:?}");
+}
+
+#[test]
+fn algorithms_without_a_bssrdf_warn() {
+    let warnings = |integrator: IntegratorDesc| {
+        let mut desc = SceneDesc { integrator: integrator.into(), ..SceneDesc::default() };
+        desc.materials.push(body(0.5, 1.0, 0.0).into());
+        build(&desc).ok().unwrap().warnings
+    };
+    let path = PathDesc::default();
+    let over_paths = MltDesc { technique: MltTechnique::Path, ..MltDesc::default() };
+    for knows in [IntegratorDesc::Path(path), IntegratorDesc::VolPath(path), IntegratorDesc::Mlt(over_paths)]
+    {
+        assert_eq!(warnings(knows), []);
+    }
+    for (name, lacks) in [
+        ("bdpt", IntegratorDesc::Bdpt(BdptDesc::default())),
+        ("mlt", IntegratorDesc::Mlt(MltDesc::default())),
+        ("ray-casting", IntegratorDesc::RayCasting),
+    ] {
+        let [warning] = &warnings(lacks)[..] else { panic!("one warning for `{name}`") };
+        let start = format!("integrator `{name}` does not know scattering under surfaces");
+        assert!(warning.message.starts_with(&start), "{}", warning.message);
+    }
+}

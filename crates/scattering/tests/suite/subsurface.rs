@@ -1,0 +1,167 @@
+//! Scattering under surfaces: tables against integration, samples against their densities.
+
+use alhazen_scattering::{
+    Bssrdf, BssrdfTable, Bxdf, Dielectric, Directions, NormalizedFresnel, Scatter, Subsurface, TransportMode,
+    TrowbridgeReitz,
+};
+use math::{Vec2, Vec3, Vector3, spherical_direction};
+use spectrum::SampledSpectrum;
+use std::f32::consts::TAU;
+use std::sync::LazyLock;
+use testkit::{Chi2, Moments, Random, integrate};
+
+static WATER: LazyLock<BssrdfTable> = LazyLock::new(|| BssrdfTable::new(0.0, 1.33));
+static DENSE: LazyLock<BssrdfTable> = LazyLock::new(|| BssrdfTable::new(0.6, 2.1));
+
+/// Of four wavelengths, from absorbing almost all to scattering all.
+fn bssrdf(table: &'static BssrdfTable) -> Bssrdf<'static> {
+    let sigma_s = SampledSpectrum::new([0.4, 2.0, 5.0, 8.0]);
+    Bssrdf::new(table, SampledSpectrum::new([3.0, 0.5, 0.1, 0.0]), sigma_s)
+}
+
+fn body(table: &'static BssrdfTable, alpha: f32) -> Bxdf<'static> {
+    let boundary = Dielectric { eta: table.eta(), distribution: TrowbridgeReitz::new(alpha, alpha) };
+    Subsurface { boundary, bssrdf: bssrdf(table) }.into()
+}
+
+/// Bodies with smooth and rough boundaries.
+pub fn members() -> Vec<Bxdf<'static>> {
+    vec![body(&WATER, 0.0), body(&WATER, 0.4), body(&DENSE, 0.1)]
+}
+
+#[test]
+fn effective_albedos_are_inverted() {
+    for table in [&*WATER, &*DENSE] {
+        let mut last = -1.0;
+        for i in 0..=200 {
+            let albedo = i as f32 / 200.0;
+            let effective = table.effective_albedo(albedo);
+            assert!(effective >= last && effective <= 1.001, "{albedo}: {effective}");
+            last = effective;
+            let found = table.albedo(effective);
+            assert!((table.effective_albedo(found) - effective).abs() < 1e-4, "{albedo}: {found}");
+        }
+        assert_eq!([table.albedo(-0.5), table.albedo(2.0)], [0.0, 1.0]);
+        assert!((0.97..=1.0).contains(&table.effective_albedo(1.0)));
+    }
+}
+
+/// ∫ Sp 2πr dr, in steps of equal ratio.
+#[test]
+fn effective_albedos_are_the_integrals_of_profiles() {
+    for table in [&*WATER, &*DENSE] {
+        let bssrdf = bssrdf(table);
+        let mut sum = SampledSpectrum::ZERO;
+        let (mut r, ratio) = (1e-6f32, 1.002f32);
+        while r < 100.0 {
+            let (middle, width) = (r * ratio.sqrt(), r * (ratio - 1.0));
+            sum += bssrdf.profile(middle) * (TAU * middle * width);
+            r *= ratio;
+        }
+        let found = bssrdf.effective_albedo();
+        for i in 0..4 {
+            assert!((sum[i] - found[i]).abs() < 0.003 * found[i], "{sum:?} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_mean_free_path_scales_the_profile() {
+    let given = SampledSpectrum::new([0.1, 0.3, 0.6, 0.7]);
+    let of = |mfp: f32| Bssrdf::from_reflectance(&WATER, given, SampledSpectrum::splat(mfp));
+    let (short, long) = (of(0.5), of(2.0));
+    for r in [0.01, 0.2, 1.0, 3.0] {
+        let (a, b) = (short.profile(r), long.profile(4.0 * r) * 16.0);
+        for i in 0..4 {
+            assert!((a[i] - b[i]).abs() <= 1e-4 * a[i], "{a:?} {b:?}");
+            assert!((short.effective_albedo()[i] - given[i]).abs() < 1e-3);
+        }
+    }
+}
+
+#[test]
+fn radii_have_the_density_of_the_profile() {
+    let cases: Vec<_> = [&*WATER, &*DENSE].into_iter().flat_map(|t| [0, 1, 2, 3].map(|i| (t, i))).collect();
+    let test = Chi2 { bins: [8, 16], samples: 100_000, tests: cases.len(), ..Chi2::default() };
+    for (table, hero) in cases {
+        let bssrdf = bssrdf(table);
+        let albedo = bssrdf.effective_albedo()[hero];
+        let density = |r: f32| f64::from(TAU * r * bssrdf.profile(r)[hero] / albedo);
+        let end = [0.3, 1.0, 1.0, 0.6][hero];
+        let sample = |u| bssrdf.sample_radius(hero, u).filter(|r| *r < end);
+        if let Err(difference) = test.interval([0.0, end], sample, density) {
+            panic!("{table:?} {hero}: {difference}");
+        }
+    }
+}
+
+/// On a plane at an angle to all three axes, in polar coordinates.
+#[test]
+fn probes_have_their_density() {
+    let n = Vec3::new(0.36, 0.48, 0.8);
+    let frame = math::Frame::from_z(n);
+    let met = frame.from_local(Vec3::new(0.48, 0.6, 0.64));
+    let plane = math::Frame::from_z(met);
+    let point = |r: f32, phi: f32| plane.from_local(Vec3::new(r * phi.cos(), r * phi.sin(), 0.0));
+    let test = Chi2 { bins: [12, 12], samples: 100_000, tests: 2, ..Chi2::default() };
+    for hero in [1, 2] {
+        let bssrdf = bssrdf(&WATER);
+        let mut random = Random::new(3);
+        let sample = |u: [f32; 2]| {
+            let probe = bssrdf.sample_probe(n, hero, random.get_1d(), u.into())?;
+            let t = -probe.start.dot(met) / probe.direction.dot(met);
+            let d = plane.to_local(probe.start + probe.direction * t);
+            let (r, phi) = (d.x.hypot(d.y), d.y.atan2(d.x).rem_euclid(TAU));
+            ((0.0..=probe.length).contains(&t) && r < 1.0).then_some([r, phi])
+        };
+        let density = |[r, phi]: [f32; 2]| f64::from(r * bssrdf.probe_pdf(n, point(r, phi), met)[hero]);
+        if let Err(difference) = test.rectangle([[0.0, 1.0], [0.0, TAU]], sample, density) {
+            panic!("{hero}: {difference}");
+        }
+    }
+}
+
+#[test]
+fn nothing_leaves_a_body_that_does_not_scatter() {
+    let black = Bssrdf::new(&WATER, SampledSpectrum::ONE, SampledSpectrum::ZERO);
+    assert!(black.effective_albedo().is_black() && black.profile(0.3).is_black());
+    assert!(black.sample_probe(Vec3::Z, 0, 0.7, Vec2::splat(0.5)).is_none());
+    let empty = Bssrdf::new(&WATER, SampledSpectrum::ZERO, SampledSpectrum::ZERO);
+    assert!(empty.profile(0.0).is_black() && empty.sample_probe(Vec3::Z, 0, 0.7, Vec2::ZERO).is_none());
+}
+
+#[test]
+fn the_exit_lobe_is_normalized() {
+    for table in [&*WATER, &*DENSE, &BssrdfTable::new(0.0, 0.8)] {
+        let lobe = NormalizedFresnel::new(table);
+        let density = |cos: f64, _: f64| {
+            let wi = spherical_direction((1.0 - cos * cos).sqrt() as f32, cos as f32, 0.0);
+            f64::from(lobe.f(Vec3::Z, wi, TransportMode::Radiance)[0]) * cos
+        };
+        let total = integrate(&density, [[0.0, 1.0], [0.0, std::f64::consts::TAU]], 1e-6);
+        assert!((total - 1.0).abs() < 1e-3, "{total}");
+        let mut random = Random::new(5);
+        let weights: Moments = (0..20_000)
+            .map(|_| {
+                let (u, mode) = (random.get_2d().into(), TransportMode::Radiance);
+                let sample = lobe.sample_f(Vec3::Z, 0.0, u, mode, Directions::All);
+                f64::from(sample.f[0] * sample.wi.z / sample.pdf)
+            })
+            .collect();
+        assert!((weights.mean - 1.0).abs() < 5.0 * weights.variance_of_mean().sqrt() + 1e-3);
+    }
+}
+
+/// The albedo of body and boundary stays below 1 from everywhere.
+#[test]
+fn bodies_conserve_energy() {
+    let mut random = Random::new(6);
+    for bxdf in members() {
+        for theta in [0.0f32, 0.5, 1.0, 1.3, 1.5] {
+            let wo: Vector3 = spherical_direction(theta.sin(), theta.cos(), 0.3);
+            let samples = (0..20_000).map(|_| (random.get_1d(), random.get_2d().into()));
+            let albedo = bxdf.rho_hd(wo, samples);
+            assert!(albedo.max_component() < 1.01, "{bxdf:?} from {wo}: {albedo:?}");
+        }
+    }
+}
