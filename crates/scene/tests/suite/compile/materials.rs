@@ -96,17 +96,66 @@ fn an_interface_does_not_emit() {
 }
 
 #[test]
-fn unsupported_materials_are_replaced_with_a_warning() {
-    let skin = MaterialKind::Subsurface {
-        scattering: SubsurfaceScattering::Named("Skin1".into()),
-        scale: 1.0,
-        eta: 1.33,
-        g: 0.0,
-        roughness: RoughnessDesc::default(),
-    };
-    let message = "`subsurface` is not drawn yet; drawn as diffuse";
-    warns(&with(|desc| desc.materials.push_stated(stated(skin.into(), 4))), message, 4);
+fn a_displacement_must_be_a_number() {
     let bumpy = MaterialDesc { displacement: Some(f32::NAN.into()), ..MaterialDesc::default() };
     let desc = with(|desc| desc.materials.push_stated(with_parameter(bumpy, "displacement", 6)));
     check(&desc, Severity::Error, "invalid-value", "NaN is not a valid value for a texture", 6);
+}
+
+fn subsurface(scattering: SubsurfaceScattering, [scale, eta, g]: [f32; 3]) -> MaterialKind {
+    MaterialKind::Subsurface { scattering, scale, eta, g, roughness: RoughnessDesc::default() }
+}
+
+#[test]
+fn wrong_values_of_subsurface_materials_are_errors() {
+    let white = || SubsurfaceScattering::Reflectance { reflectance: 1.0.into(), mfp: 1.0.into() };
+    let potion = SubsurfaceScattering::Named("potion".into());
+    for (scattering, numbers, name, message) in [
+        (white(), [-1.0, 1.33, 0.0], "scale", "scattering cannot be scaled by -1"),
+        (white(), [1.0, 0.0, 0.0], "eta", "an index of refraction must be finite and above 0, as 0 is not"),
+        (white(), [1.0, 1.33, 1.0], "g", "an asymmetry lies between −1 and 1, as 1 does not"),
+        (potion, [1.0, 1.33, 0.0], "name", "there is no measured substance `potion`"),
+    ] {
+        let material = with_parameter(subsurface(scattering, numbers).into(), name, 6);
+        let desc = with(|desc| desc.materials.push_stated(material));
+        check(&desc, Severity::Error, "invalid-value", message, 6);
+    }
+}
+
+/// A substance is its coefficients; materials of one index of refraction share a table, whatever the
+/// asymmetry that a substance is given.
+#[test]
+fn subsurface_materials_scatter_by_their_parameters() {
+    let substance = description::Substance::named("Skin1").unwrap();
+    let rgb = |[r, g, b]: [f32; 3]| SpectrumDesc::rgb(r, g, b).into();
+    let given = SubsurfaceScattering::Coefficients {
+        sigma_a: rgb(substance.sigma_a),
+        sigma_s: rgb(substance.sigma_s),
+    };
+    let desc = with(|desc| {
+        let named = SubsurfaceScattering::Named("Skin1".into());
+        for kind in [subsurface(named, [2.0, 1.4, 0.5]), subsurface(given, [2.0, 1.4, 0.0])] {
+            desc.materials.push(kind.into());
+        }
+        let reflectance =
+            SubsurfaceScattering::Reflectance { reflectance: 0.4.into(), mfp: 0.25.into() };
+        desc.materials.push(subsurface(reflectance, [2.0, 1.4, 0.0]).into());
+    });
+    let scene = compile(desc).unwrap().scene;
+    let bodies: Vec<_> = scene.materials()[..3]
+        .iter()
+        .map(|entry| {
+            let Material::Subsurface(body) = &entry.material else { panic!("{entry:?}") };
+            body
+        })
+        .collect();
+    assert!(bodies.iter().all(|body| std::sync::Arc::ptr_eq(&body.table, &bodies[0].table)));
+    let [skin, same, grey] =
+        [0, 1, 2].map(|i| bodies[i].bxdf(scene.textures(), &Default::default(), &lambda()).bssrdf);
+    assert_eq!(skin.profile(0.1), same.profile(0.1));
+    assert!(skin.profile(0.1).min_component() > 0.0);
+    assert!((grey.effective_albedo()[0] - 0.4).abs() < 1e-3);
+    let ones = spectrum::SampledSpectrum::ONE;
+    let expected = scattering::Bssrdf::from_reflectance(&bodies[0].table, ones * 0.4, ones * 0.5);
+    assert!((grey.profile(0.2) - expected.profile(0.2)).max_component() < 1e-3);
 }
