@@ -1,6 +1,6 @@
 //! Compilation of materials: errors and warnings.
 
-use super::{check, stated, warns, with, with_parameter};
+use super::{check, stated, with, with_parameter};
 use crate::common::*;
 use alhazen_scene::material::{Material, MaterialId};
 use alhazen_scene::{Scene, compile};
@@ -137,8 +137,7 @@ fn subsurface_materials_scatter_by_their_parameters() {
         for kind in [subsurface(named, [2.0, 1.4, 0.5]), subsurface(given, [2.0, 1.4, 0.0])] {
             desc.materials.push(kind.into());
         }
-        let reflectance =
-            SubsurfaceScattering::Reflectance { reflectance: 0.4.into(), mfp: 0.25.into() };
+        let reflectance = SubsurfaceScattering::Reflectance { reflectance: 0.4.into(), mfp: 0.25.into() };
         desc.materials.push(subsurface(reflectance, [2.0, 1.4, 0.0]).into());
     });
     let scene = compile(desc).unwrap().scene;
