@@ -91,7 +91,7 @@ pub(super) fn integrate(nodes: &[f32], values: &[f32]) -> Vec<f32> {
 /// Where a spline through ascending `values` has the value `y`; the nearest end if nowhere.
 pub(super) fn invert(nodes: &[f32], values: &[f32], y: f32) -> f32 {
     let last = nodes.len() - 1;
-    if !(y > values[0]) {
+    if y.is_nan() || y <= values[0] {
         return nodes[0];
     }
     if y >= values[last] {
@@ -110,7 +110,7 @@ pub(super) fn sample(
     u: f32,
 ) -> Option<f32> {
     let total = cdf(nodes.len() - 1);
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return None;
     }
     let u = u * total;
