@@ -41,8 +41,8 @@ fn vol_path(max_depth: u32) -> VolPath {
     VolPath::new(PathDesc { max_depth, ..PathDesc::default() })
 }
 
-/// The boundary reflects its Fresnel reflectance, and the effective albedo of the rest leaves again,
-/// but for the thousandth that probes do not reach.
+/// The boundary reflects its Fresnel reflectance, and the effective albedo of the rest leaves
+/// again, but for the thousandth that probes do not reach.
 #[test]
 fn a_plane_under_a_white_sky_shows_its_effective_albedo() {
     let plane = quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));

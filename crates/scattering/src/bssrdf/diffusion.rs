@@ -15,9 +15,9 @@
 //!
 //! with the reduced coefficients σs' = σs (1 − g), σt' = σa + σs' and α' = σs'/σt'; Grosjean's D =
 //! (2σa + σs')/(3σt'²), σtr² = σa/D; the depths zr = t and zv = 2ze − t of both sources, whose
-//! mirror lies at ze = −2D (1 + 3F₂)/(1 − 2F₁); Cφ = (1 − 2F₁)/4, CE = (1 − 3F₂)/2; and a correction
-//! κ = 1 − exp(−2σt' (dr + zr)) close to the beam. F₁, F₂ are moments of the Fresnel reflectance.
-//! All lengths are in mean free paths, σt = 1.
+//! mirror lies at ze = −2D (1 + 3F₂)/(1 − 2F₁); Cφ = (1 − 2F₁)/4, CE = (1 − 3F₂)/2; and a
+//! correction κ = 1 − exp(−2σt' (dr + zr)) close to the beam. F₁, F₂ are moments of the Fresnel
+//! reflectance. All lengths are in mean free paths, σt = 1.
 //!
 //! Sources: [Habel 2013], [dEon 2011a], [Pharr 2016 §15.5].
 

@@ -67,7 +67,7 @@ impl BssrdfTable {
         self.exit_norm
     }
 
-    /// The share of the light that entered which leaves again, of a medium with an albedo in [0, 1].
+    /// The share of the light that entered which leaves again, for an albedo in [0, 1].
     pub fn effective_albedo(&self, albedo: f32) -> f32 {
         Weights::at(&self.albedos, albedo).map_or(0.0, |at| at.sum(|i| self.effective_albedos[i])).max(0.0)
     }

@@ -48,7 +48,7 @@ impl Compiler<'_> {
     /// The profiles of an asymmetry and an index of refraction, which materials share.
     pub(super) fn bssrdf_table(&mut self, g: f32, eta: f32, origin: &Origin) -> Arc<BssrdfTable> {
         let mut key = [g, eta];
-        if !(g.abs() < 1.0) {
+        if !(-1.0..=1.0).contains(&g) || g.abs() == 1.0 {
             let message = format!("an asymmetry lies between −1 and 1, as {g} does not");
             self.error("invalid-value", message, origin.parameter("g"));
             key[0] = 0.0;

@@ -122,8 +122,8 @@ fn wrong_values_of_subsurface_materials_are_errors() {
     }
 }
 
-/// A substance is its coefficients; materials of one index of refraction share a table, whatever the
-/// asymmetry that a substance is given.
+/// A substance is its coefficients; materials of one index of refraction share a table, whatever
+/// the asymmetry that a substance is given.
 #[test]
 fn subsurface_materials_scatter_by_their_parameters() {
     let substance = description::Substance::named("Skin1").unwrap();
