@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use scattering::MeasuredTable;
+use scattering::{MeasuredTable, SubsurfaceMethod};
 
 use crate::names::names;
 use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
@@ -140,6 +140,8 @@ pub enum MaterialKind {
         g: f32,
         /// Roughness of the interface.
         roughness: RoughnessDesc,
+        /// How light is followed.
+        method: SubsurfaceMethod,
     },
     /// A measured surface.
     Measured {

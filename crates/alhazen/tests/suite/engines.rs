@@ -4,7 +4,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use alhazen::description::{AmbientOcclusionDesc, IntegratorDesc, PathDesc, SceneDesc};
+use alhazen::description::{
+    AmbientOcclusionDesc, IntegratorDesc, MaterialDesc, MaterialKind, PathDesc, SceneDesc,
+};
 use alhazen::geometry::InstructionSet;
 use alhazen::import::{AssetSource, Files, import};
 use alhazen::integrators::{
@@ -109,15 +111,20 @@ Translate 0.2 0.1 0.1
 ObjectInstance "slab"
 "#;
 
-/// The scenes of the folder without media, which the wavefront leaves to the scalar engine, and
-/// those above, made small, with their names.
+/// The scenes of the folder without media and scattering under surfaces, which the wavefront leaves
+/// to the scalar engine, and those above, made small, with their names.
 fn cases() -> impl Iterator<Item = (SceneDesc, String)> {
     let texts = [(LIGHTS, "lights"), (SURFACES, "surfaces")].map(|(text, name)| {
         let (path, assets) = scene_text(text);
         (small(path, &assets), name.to_string())
     });
     let scenes = scenes().into_iter().map(|(path, name)| (small(&path, &Files), name));
-    scenes.filter(|(desc, _)| desc.media.is_empty()).chain(texts)
+    scenes.filter(|(desc, _)| wavefront_draws(desc)).chain(texts)
+}
+
+fn wavefront_draws(desc: &SceneDesc) -> bool {
+    let is_subsurface = |material: &MaterialDesc| matches!(material.kind, MaterialKind::Subsurface { .. });
+    desc.media.is_empty() && !desc.materials.iter().any(|(_, material)| is_subsurface(material))
 }
 
 fn small(path: &Path, assets: &dyn AssetSource) -> SceneDesc {

@@ -5,14 +5,14 @@
 //! paths of low throughput (`transport/roulette.rs`).
 //!
 //! Paths that enter a body of material `subsurface` go on from another point of its surface
-//! (`transport/subsurface.rs`).
+//! (`transport/subsurface/`).
 //!
 //! Unbiased up to `max_depth`, except with `regularize`, which roughens surfaces after the first
 //! rough bounce to find caustics with less noise. Source: [Pharr 2023 §13.4].
 
 use description::PathDesc;
 use math::RayDifferential;
-use scattering::{Bsdf, Bssrdf, each_bxdf};
+use scattering::{Bsdf, BsdfSample, Subsurface, each_bxdf};
 use scene::{Interfaces, Scene, SurfaceInteraction, View};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 
@@ -44,16 +44,17 @@ impl Path {
         &self,
         tracer: &mut Tracer,
         path: &mut PathState,
-        (entry, bssrdf): (&SurfaceInteraction, &Bssrdf),
+        entry: &SurfaceInteraction,
+        (body, sample): (&Subsurface, &BsdfSample),
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         let u = tracer.sampler.get_1d();
         let heroes = Heroes::by_throughput(path.beta, lambda.secondary_terminated(), u);
-        let Some(exit) = tracer.exit(entry, bssrdf, heroes.hero) else {
+        let Some(exit) = tracer.exit(entry, body, sample, &heroes) else {
             return (SampledSpectrum::ZERO, false);
         };
-        path.beta *= exit.profile / heroes.mean(exit.density);
-        path.eta_scale /= bssrdf.eta() * bssrdf.eta();
+        path.beta *= exit.value / heroes.mean(exit.density);
+        path.eta_scale /= body.boundary.eta * body.boundary.eta;
         let context = light_context(&exit.surface, exit.bsdf.flags());
         let l = path.beta * self.direct.sample(tracer, (&exit.surface, &context), &exit.bsdf, lambda);
         let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
@@ -94,7 +95,7 @@ impl PathsFrom for Path {
                 return l;
             }
             path.depth += 1;
-            let bssrdf = under_surface(&mut bsdf);
+            let body = under_surface(&mut bsdf);
             bsdf.regularize(self.settings.regularize && rough_before);
 
             let context = light_context(&surface, bsdf.flags());
@@ -108,8 +109,9 @@ impl PathsFrom for Path {
             let Some(scattered) = scattered else { return l };
             rough_before |= !scattered.sample.flags.is_specular();
             path.scatter(&surface, context, &scattered);
-            if let Some(bssrdf) = bssrdf.filter(|_| enters(&surface, &scattered.sample)) {
-                let (left, goes_on) = self.under_surface(tracer, &mut path, (&surface, &bssrdf), lambda);
+            if let Some(body) = body.filter(|_| enters(&surface, &scattered.sample)) {
+                let entered = (&body, &scattered.sample);
+                let (left, goes_on) = self.under_surface(tracer, &mut path, &surface, entered, lambda);
                 l += left;
                 if !goes_on {
                     return l;

@@ -8,7 +8,7 @@
 //! throughput.
 //!
 //! Paths that enter a body of material `subsurface` go on from another point of its surface
-//! (`transport/subsurface.rs`).
+//! (`transport/subsurface/`).
 //!
 //! Emission of media counts along every flight, that of paths of `max_depth` scattering events
 //! included. Without light sampling (`simple-vol-path`), light is found by scattering alone.
@@ -18,7 +18,7 @@
 use description::{LightSamplerDesc, PathDesc};
 use math::RayDifferential;
 use sampling::Sampler;
-use scattering::{Bsdf, Bssrdf, Bxdf, Directions, TransportMode};
+use scattering::{Bsdf, BsdfSample, Bxdf, Directions, Subsurface, TransportMode};
 use scene::light::{LightId, LightSampleContext};
 use scene::light_sampler::LightSampler;
 use scene::medium::MediumId;
@@ -183,12 +183,15 @@ impl VolPath {
         &self,
         tracer: &mut Tracer,
         path: &mut Path,
-        (entry, bssrdf): (&SurfaceInteraction, &Bssrdf),
+        entry: &SurfaceInteraction,
+        (body, sample): (&Subsurface, &BsdfSample),
         lambda: &SampledWavelengths,
     ) -> (SampledSpectrum, bool) {
         let hero = path.heroes.hero;
-        let Some(exit) = tracer.exit(entry, bssrdf, hero) else { return (SampledSpectrum::ZERO, false) };
-        path.throughput.beta *= exit.profile / exit.density[hero];
+        let Some(exit) = tracer.exit(entry, body, sample, &path.heroes) else {
+            return (SampledSpectrum::ZERO, false);
+        };
+        path.throughput.beta *= exit.value / exit.density[hero];
         path.throughput.r_u *= exit.density / exit.density[hero];
         let l = self.direct(tracer, path, Vertex::Surface(&exit.surface, &exit.bsdf), lambda);
         let scattered = Scattered::sample(&exit.surface, &exit.bsdf, tracer.sampler);
@@ -263,7 +266,7 @@ impl PathsFrom for VolPath {
             if lambda.secondary_terminated() {
                 path.throughput.keep_first(&mut path.heroes);
             }
-            let bssrdf = under_surface(&mut bsdf);
+            let body = under_surface(&mut bsdf);
             bsdf.regularize(self.settings.regularize && path.rough_before);
             if bsdf.flags().is_non_specular() {
                 l += self.direct(tracer, &path, Vertex::Surface(&surface, &bsdf), lambda);
@@ -272,8 +275,9 @@ impl PathsFrom for VolPath {
                 return l;
             };
             path.throughput.beta *= throughput(&surface, &sample);
-            if let Some(bssrdf) = bssrdf.filter(|_| enters(&surface, &sample)) {
-                let (left, goes_on) = self.under_surface(tracer, &mut path, (&surface, &bssrdf), lambda);
+            if let Some(body) = body.filter(|_| enters(&surface, &sample)) {
+                let (left, goes_on) =
+                    self.under_surface(tracer, &mut path, &surface, (&body, &sample), lambda);
                 l += left;
                 if !goes_on {
                     return l;

@@ -2,11 +2,13 @@
 
 use alhazen_integrators::{Path, RayIntegrator, SimplePath, VolPath, build};
 use description::{
-    BdptDesc, IntegratorDesc, LightKind, MaterialKind, MltDesc, MltTechnique, PathDesc, RoughnessDesc,
-    SceneDesc, ShapeDesc, ShapeKind, SimplePathDesc, SubsurfaceScattering,
+    BdptDesc, CoefficientsDesc, IntegratorDesc, LightKind, MaterialKind, MediumDesc, MediumInterface,
+    MediumKind, MltDesc, MltTechnique, PathDesc, RoughnessDesc, SceneDesc, ShapeDesc, ShapeKind,
+    SimplePathDesc, SubsurfaceScattering,
 };
 use math::Point3;
-use scattering::fr_dielectric;
+use scattering::SubsurfaceMethod::{Diffusion, RandomWalk};
+use scattering::{BssrdfTable, fr_dielectric};
 use scene::{Interfaces, Scene};
 use testkit::{Moments, welch_test};
 
@@ -17,7 +19,7 @@ const ETA: f32 = 1.33;
 fn body(reflectance: f32, mfp: f32, roughness: f32) -> MaterialKind {
     let scattering = SubsurfaceScattering::Reflectance { reflectance: reflectance.into(), mfp: mfp.into() };
     let roughness = RoughnessDesc::isotropic(roughness);
-    MaterialKind::Subsurface { scattering, scale: 1.0, eta: ETA, g: 0.0, roughness }
+    MaterialKind::Subsurface { scattering, scale: 1.0, eta: ETA, g: 0.0, roughness, method: Diffusion }
 }
 
 fn scene(light: impl Fn(&mut SceneDesc), shape: ShapeKind, material: MaterialKind) -> Scene {
@@ -29,7 +31,7 @@ fn scene(light: impl Fn(&mut SceneDesc), shape: ShapeKind, material: MaterialKin
 }
 
 fn sun(desc: &mut SceneDesc) {
-    let (from, to) = (v(1.0, 2.0, 3.0), Point3::ZERO);
+    let (from, to) = (v(1.0, -2.0, 3.0), Point3::ZERO);
     desc.lights.push(LightKind::Distant { radiance: 1.0.into(), illuminance: None, from, to }.into());
 }
 
@@ -83,6 +85,60 @@ fn a_short_mean_free_path_gives_the_local_surface() {
         (found.mean - expected.mean).abs() < 4.0 * error + 0.01 * expected.mean,
         "{found:?} {expected:?}"
     );
+}
+
+/// A body with given coefficients in which light walks.
+fn walk([sigma_a, sigma_s]: [f32; 2], g: f32, roughness: f32) -> MaterialKind {
+    let scattering = SubsurfaceScattering::Coefficients { sigma_a: sigma_a.into(), sigma_s: sigma_s.into() };
+    let roughness = RoughnessDesc::isotropic(roughness);
+    MaterialKind::Subsurface { scattering, scale: 1.0, eta: ETA, g, roughness, method: RandomWalk }
+}
+
+/// Under a uniform sky the direction in which light leaves does not matter, so that a walk is a
+/// path through a medium within a dielectric boundary.
+#[test]
+fn a_walk_in_a_ball_is_a_path_through_its_medium() {
+    let ([sigma_a, sigma_s], g) = ([0.1, 2.0], 0.4);
+    let walked = scene(white_sky, sphere(1.0), walk([sigma_a, sigma_s], g, 0.0));
+    let mut desc = SceneDesc::default();
+    white_sky(&mut desc);
+    let coefficients =
+        CoefficientsDesc::Given { sigma_a: sigma_a.into(), sigma_s: sigma_s.into(), scale: 1.0 };
+    let kind = MediumKind::Homogeneous { coefficients, le: None, le_scale: 1.0 };
+    let medium = MediumDesc { name: "m".into(), kind, world_from_medium: Default::default(), g };
+    let inside = Some(desc.media.push(medium));
+    let boundary = MaterialKind::Dielectric { eta: ETA.into(), roughness: RoughnessDesc::default() };
+    let material = Some(desc.materials.push(boundary.into()));
+    let medium_interface = Some(MediumInterface { inside, outside: None });
+    desc.shapes.push(ShapeDesc { material, medium_interface, ..sphere(1.0).into() });
+    let exact = of_ball(&mut vol_path(400), &compile(&desc), 40_000);
+    for found in [of_ball(&mut path(3), &walked, 40_000), of_ball(&mut vol_path(3), &walked, 40_000)] {
+        welch_test(&found, &exact, 2).unwrap();
+    }
+}
+
+#[test]
+fn algorithms_agree_on_a_walk_in_the_sun() {
+    let scene = scene(sun, sphere(1.0), walk([0.5, 3.0], 0.0, 0.3));
+    let of_path = of_ball(&mut path(6), &scene, 60_000);
+    welch_test(&of_path, &of_ball(&mut vol_path(6), &scene, 60_000), 1).unwrap();
+    assert!(of_path.mean > 0.0);
+}
+
+/// Diffusion is an approximation, which gains light; the less, the less is absorbed.
+#[test]
+fn diffusion_is_near_to_a_walk_in_a_half_space() {
+    let table = BssrdfTable::new(0.0, ETA);
+    for (albedo, excess) in [(0.5, 0.105), (0.8, 0.065), (0.95, 0.055), (0.99, 0.04)] {
+        let plane = quad(v(-1e3, -1e3, 0.0), v(2e3, 0.0, 0.0), v(0.0, 2e3, 0.0));
+        let scene = scene(white_sky, plane, walk([1.0 - albedo, albedo], 0.0, 0.0));
+        let found = radiance(&mut path(1), &scene, v(0.0, 0.0, 1.0), v(0.0, 0.0, -1.0), 50_000);
+        let reflected = f64::from(fr_dielectric(1.0, ETA));
+        let walked = (found.mean - reflected) / (1.0 - reflected);
+        let error = found.variance_of_mean().sqrt() / walked;
+        let diffused = f64::from(table.effective_albedo(albedo)) / walked;
+        assert!((diffused - 1.0 - excess).abs() < 4.0 * error + 0.01, "{albedo}: {diffused}");
+    }
 }
 
 #[test]

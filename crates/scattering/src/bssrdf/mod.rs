@@ -24,7 +24,7 @@ mod table;
 
 pub use table::BssrdfTable;
 
-use crate::NormalizedFresnel;
+use crate::{HenyeyGreenstein, NormalizedFresnel};
 use math::{Frame, Normal3, Vec2, Vector3, safe_sqrt, sqr};
 use spectrum::{N, SampledSpectrum};
 use std::f32::consts::TAU;
@@ -77,6 +77,21 @@ impl<'a> Bssrdf<'a> {
     /// The relative index of refraction, below over above.
     pub fn eta(&self) -> f32 {
         self.table.eta()
+    }
+
+    /// The coefficient of extinction.
+    pub fn sigma_t(&self) -> SampledSpectrum {
+        self.sigma_t
+    }
+
+    /// The coefficient of scattering.
+    pub fn sigma_s(&self) -> SampledSpectrum {
+        self.albedo * self.sigma_t
+    }
+
+    /// The phase function of the medium.
+    pub fn phase(&self) -> HenyeyGreenstein {
+        HenyeyGreenstein { g: self.table.g() }
     }
 
     /// The lobe by which light that leaves the body has entered it.

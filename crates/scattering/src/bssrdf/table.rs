@@ -14,6 +14,7 @@ const RADII: usize = 64;
 #[derive(Clone)]
 #[doc(alias = "BSSRDFTable")]
 pub struct BssrdfTable {
+    g: f32,
     eta: f32,
     exit_norm: f32,
     albedos: Vec<f32>,
@@ -35,6 +36,7 @@ impl BssrdfTable {
         let progression = (0..RADII - 1).map(|i| (2.5e-3 * 1.2f64.powi(i as i32)) as f32);
         let radii: Vec<f32> = std::iter::once(0.0).chain(progression).collect();
         let mut table = Self {
+            g,
             eta,
             exit_norm: 1.0 / medium.transmitted_from_outside() as f32,
             profile: Vec::with_capacity(ALBEDOS * RADII),
@@ -55,6 +57,11 @@ impl BssrdfTable {
             table.cdf.extend(cdf);
         }
         table
+    }
+
+    /// The asymmetry.
+    pub fn g(&self) -> f32 {
+        self.g
     }
 
     /// The relative index of refraction, below over above.

@@ -24,7 +24,7 @@ pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use normalized_fresnel::NormalizedFresnel;
 pub use scatter::{BsdfSample, Scatter};
-pub use subsurface::Subsurface;
+pub use subsurface::{Subsurface, SubsurfaceMethod};
 pub use thin_dielectric::ThinDielectric;
 
 use crate::{BxdfFlags, Directions, TransportMode};

@@ -14,6 +14,16 @@ use math::{Vec2, Vector3};
 use sampling::warp::{cosine_hemisphere_pdf, sample_cosine_hemisphere};
 use spectrum::SampledSpectrum;
 
+/// How light is followed under a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SubsurfaceMethod {
+    /// By the diffusion profile of a half space.
+    #[default]
+    Diffusion,
+    /// By a random walk.
+    RandomWalk,
+}
+
 /// A boundary and what is under it.
 #[derive(Clone, Copy, Debug)]
 pub struct Subsurface<'a> {
@@ -21,6 +31,8 @@ pub struct Subsurface<'a> {
     pub boundary: Dielectric,
     /// Scattering under it, of a medium with the boundary's index of refraction.
     pub bssrdf: Bssrdf<'a>,
+    /// How light is followed under it.
+    pub method: SubsurfaceMethod,
 }
 
 impl Subsurface<'_> {

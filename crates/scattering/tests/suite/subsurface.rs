@@ -1,8 +1,8 @@
 //! Scattering under surfaces: tables against integration, samples against their densities.
 
 use alhazen_scattering::{
-    Bssrdf, BssrdfTable, Bxdf, Dielectric, Directions, NormalizedFresnel, Scatter, Subsurface, TransportMode,
-    TrowbridgeReitz,
+    Bssrdf, BssrdfTable, Bxdf, Dielectric, Directions, NormalizedFresnel, Scatter, Subsurface,
+    SubsurfaceMethod, TransportMode, TrowbridgeReitz,
 };
 use math::{Vec2, Vec3, Vector3, spherical_direction};
 use spectrum::SampledSpectrum;
@@ -21,7 +21,7 @@ fn bssrdf(table: &'static BssrdfTable) -> Bssrdf<'static> {
 
 fn body(table: &'static BssrdfTable, alpha: f32) -> Bxdf<'static> {
     let boundary = Dielectric { eta: table.eta(), distribution: TrowbridgeReitz::new(alpha, alpha) };
-    Subsurface { boundary, bssrdf: bssrdf(table) }.into()
+    Subsurface { boundary, bssrdf: bssrdf(table), method: SubsurfaceMethod::Diffusion }.into()
 }
 
 /// Bodies with smooth and rough boundaries.

@@ -158,12 +158,12 @@ impl Compiler<'_> {
                     alpha: self.float_texture(alpha, origin.parameter("alpha")),
                 })
             }
-            MaterialKind::Subsurface { scattering, scale, eta, g, roughness } => {
+            MaterialKind::Subsurface { scattering, scale, eta, g, roughness, method } => {
                 let inside = self.subsurface_inside(scattering, *scale, origin);
                 let g = if matches!(scattering, SubsurfaceScattering::Named(_)) { 0.0 } else { *g };
                 let table = self.bssrdf_table(g, *eta, origin);
                 let roughness = self.roughness(roughness, "", origin);
-                Material::Subsurface(SubsurfaceMaterial { table, inside, roughness })
+                Material::Subsurface(SubsurfaceMaterial { table, inside, roughness, method: *method })
             }
             MaterialKind::Measured { table } => Material::Measured(MeasuredMaterial { table: table.clone() }),
         }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use super::Roughness;
 use crate::texture::{SpectrumTextureId, TextureContext, Textures};
-use scattering::{Bssrdf, BssrdfTable, Dielectric, Subsurface};
+use scattering::{Bssrdf, BssrdfTable, Dielectric, Subsurface, SubsurfaceMethod};
 use spectrum::SampledWavelengths;
 
 /// A body that scatters light under its surface.
@@ -24,6 +24,8 @@ pub struct SubsurfaceMaterial {
     pub inside: SubsurfaceInside,
     /// Roughness of the boundary.
     pub roughness: Roughness,
+    /// How light is followed.
+    pub method: SubsurfaceMethod,
 }
 
 /// How the scattering under a surface is given.
@@ -70,6 +72,10 @@ impl SubsurfaceMaterial {
             }
         };
         let distribution = self.roughness.distribution(textures, context);
-        Subsurface { boundary: Dielectric { eta: self.table.eta(), distribution }, bssrdf }
+        Subsurface {
+            boundary: Dielectric { eta: self.table.eta(), distribution },
+            bssrdf,
+            method: self.method,
+        }
     }
 }

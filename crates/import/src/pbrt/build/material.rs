@@ -5,6 +5,7 @@ use description::{
     FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, RoughnessDesc,
     Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
 };
+use scattering::SubsurfaceMethod;
 
 use super::Builder;
 use super::reader::Reader;
@@ -215,6 +216,7 @@ fn hair(reader: &mut Reader) -> MaterialKind {
 }
 
 fn subsurface(reader: &mut Reader) -> Option<MaterialKind> {
+    use SubsurfaceMethod::{Diffusion, RandomWalk};
     let name = reader.string("name");
     let sigma_a = reader.optional_spectrum_parameter("sigma_a");
     let sigma_s = reader.optional_spectrum_parameter("sigma_s");
@@ -246,6 +248,7 @@ fn subsurface(reader: &mut Reader) -> Option<MaterialKind> {
         eta: reader.float("eta", 1.33),
         g: reader.float("g", 0.0),
         roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
+        method: reader.choice("method", Diffusion, &[("diffusion", Diffusion), ("random-walk", RandomWalk)]),
     })
 }
 

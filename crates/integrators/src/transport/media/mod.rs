@@ -39,13 +39,13 @@ use super::Tracer;
 impl Tracer<'_> {
     /// The random numbers of a flight or shadow ray: the first is a coordinate of the sample, the
     /// others follow from it.
-    fn collisions(&mut self) -> (f32, Rng) {
+    pub(super) fn collisions(&mut self) -> (f32, Rng) {
         let (first, seed) = (self.sampler.get_1d(), self.sampler.get_1d());
         (first, Rng::from_sequence(hash(&[first.to_bits(), seed.to_bits()])))
     }
 }
 
 /// exp(−σ·d).
-fn attenuation(sigma: SampledSpectrum, distance: f32) -> SampledSpectrum {
+pub(super) fn attenuation(sigma: SampledSpectrum, distance: f32) -> SampledSpectrum {
     sigma.map(|sigma| exp(-sigma * distance))
 }

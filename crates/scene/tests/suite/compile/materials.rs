@@ -8,6 +8,7 @@ use description::{
     AreaLightDesc, ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, Severity, ShapeDesc,
     SpectrumDesc, SubsurfaceScattering,
 };
+use scattering::SubsurfaceMethod;
 
 #[test]
 fn a_mix_of_itself_is_an_error() {
@@ -103,7 +104,8 @@ fn a_displacement_must_be_a_number() {
 }
 
 fn subsurface(scattering: SubsurfaceScattering, [scale, eta, g]: [f32; 3]) -> MaterialKind {
-    MaterialKind::Subsurface { scattering, scale, eta, g, roughness: RoughnessDesc::default() }
+    let (roughness, method) = (RoughnessDesc::default(), SubsurfaceMethod::Diffusion);
+    MaterialKind::Subsurface { scattering, scale, eta, g, roughness, method }
 }
 
 #[test]

@@ -1,0 +1,45 @@
+//! Where light leaves a body, by its diffusion profile.
+//!
+//! A probe of the [`Bssrdf`] may meet the body several times; if n, one of the points is chosen
+//! with probability 1/n.
+
+use math::Ray;
+use sampling::{WeightedReservoir, hash};
+use scattering::Bssrdf;
+use scene::SurfaceInteraction;
+use spectrum::SampledSpectrum;
+
+use crate::transport::Tracer;
+
+impl Tracer<'_> {
+    /// A point by the profile of wavelength number `hero`, the profile of all there, and its
+    /// density per area, for each wavelength as the hero.
+    pub(super) fn probe(
+        &mut self,
+        entry: &SurfaceInteraction,
+        bssrdf: &Bssrdf,
+        hero: usize,
+    ) -> Option<(SurfaceInteraction, SampledSpectrum, SampledSpectrum)> {
+        let (uc, u, seed) = (self.sampler.get_1d(), self.sampler.get_2d(), self.sampler.get_1d());
+        let (p, n) = (entry.p(), entry.surface.shading.n);
+        let probe = bssrdf.sample_probe(n, hero, uc, u)?;
+        let mut ray = Ray::new(p + probe.start, probe.direction, entry.surface.time);
+        let end = ray.at(probe.length);
+        let mut met = WeightedReservoir::new(hash(&[seed.to_bits()]));
+        loop {
+            let rest = (end - ray.o).dot(probe.direction);
+            if !(rest > 0.0 && self.may_trace()) {
+                break;
+            }
+            let Some((surface, _)) = self.scene.intersect(&ray, rest, self.stats) else { break };
+            ray = surface.spawn_ray(probe.direction);
+            if surface.material == entry.material {
+                met.add(surface, 1.0);
+            }
+        }
+        let surface = met.sample()?.clone();
+        let d = surface.p() - p;
+        let density = bssrdf.probe_pdf(n, d, surface.surface.n) * met.sample_probability();
+        Some((surface, bssrdf.profile(d.length()), density))
+    }
+}
