@@ -1,13 +1,15 @@
 //! Test scenes of Mitsuba and Ignis, converted, against their reference pictures or means by
 //! Mitsuba.
 //!
-//! The references are RGB, our pictures spectral: for light reflected once both agree.
+//! References are RGB where light is reflected once, for which spectral pictures agree with them,
+//! and spectral elsewhere.
 
 use std::path::Path;
 
 use crate::common::{Estimate, data, render_text, shape, shrunk};
 use alhazen::Overrides;
 use alhazen::image::{self, Image};
+use alhazen::spectrum::{RgbAlbedoSpectrum, RgbColorSpace};
 
 fn reference(path: &Path) -> Image {
     image::open(path).expect("the reference is readable")
@@ -121,4 +123,112 @@ fn cornell_box() {
         + "AreaLightSource \"diffuse\" \"rgb L\" [18.387 10.9873 2.75357] Translate 0 -0.5 0\n"
         + &shape(&folder.join("cbox_luminaire.obj")));
     estimate(&text, 4).assert_mean([0.20809, 0.10230, 0.02506], 2e-3, 1, "cornell box");
+}
+
+/// A picture of the sky around, with +y up.
+fn museum(folder: &Path) -> String {
+    let file = folder.join("common/textures/museum.exr");
+    format!(
+        "AttributeBegin Transform [0 0 -1 0  1 0 0 0  0 1 0 0  0 0 0 1]\n\
+         LightSource \"infinite\" \"string filename\" \"{}\" AttributeEnd\n",
+        file.display()
+    )
+}
+
+/// A spectrum in the syntax of the format, by two colours between 0 and 1.
+fn spectrum([a, b]: [[f32; 3]; 2], value: impl Fn(f32, f32) -> f32) -> String {
+    let [a, b] = [a, b].map(|colour| RgbAlbedoSpectrum::new(RgbColorSpace::srgb(), colour));
+    let at = |lambda: f32| value(a.at(lambda), b.at(lambda));
+    (360..=830).step_by(5).map(|lambda| format!("{lambda} {} ", at(lambda as f32))).collect()
+}
+
+/// The parameters of a medium with an extinction and an albedo.
+fn medium(extinction: [f32; 3], albedo: [f32; 3], scale: f32) -> String {
+    let colours = [extinction, albedo];
+    let scattering = spectrum(colours, |sigma_t, albedo| scale * sigma_t * albedo);
+    let absorption = spectrum(colours, |sigma_t, albedo| scale * sigma_t * (1.0 - albedo));
+    format!("\"spectrum sigma_s\" [{scattering}] \"spectrum sigma_a\" [{absorption}]\n")
+}
+
+/// Media before a corner of checks under a picture of the sky. Mitsuba interpolates that picture's
+/// spectra instead of its colours, which makes red brighter and blue darker by half a percent.
+fn compare_in_media(folder: &Path, name: &str, text: &str) {
+    let scene = folder.join("tests/scenes/participating_media");
+    let text = head("0 0.5 4  0 -0.5 0  0 1 0", 34.0227, 48, 5, 64).replace("\"path\"", "\"volpath\"")
+        + &museum(folder)
+        + "Texture \"checks\" \"spectrum\" \"checkerboard\" \"float uscale\" 32 \"float vscale\" 32\n\
+           \"rgb tex1\" [0.4 0.4 0.4] \"rgb tex2\" [0.2 0.2 0.2]\n\
+           AttributeBegin Material \"diffuse\" \"texture reflectance\" \"checks\"\n"
+        + &shape(&scene.join("meshes/background.obj"))
+        + "AttributeEnd\n"
+        + text;
+    let expected = reference(&scene.join(format!("refs/test_{name}_ref_spectral.exr")));
+    estimate(&text, 4).assert_parts(&expected, 12, 6e-3, 3, name);
+}
+
+/// A ball and its base, of a medium of coloured albedo, and of coloured extinction.
+#[test]
+fn homogeneous_media() {
+    let Some(folder) = data("mitsuba-tests") else { return };
+    let scene = folder.join("tests/scenes/participating_media/meshes");
+    let (white, pale) = ([1.0; 3], [0.99, 0.5, 0.5]);
+    for (name, parameters) in [
+        ("homo_null_envmap", medium(white, pale, 3.0)),
+        ("homo_spectral_sigmat", medium([1.0, 0.2, 1.0], [0.5, 0.5, 0.99], 10.0)),
+    ] {
+        let text = format!("MakeNamedMedium \"m\" \"string type\" \"homogeneous\" {parameters}")
+            + "Material \"interface\" MediumInterface \"m\" \"\"\n"
+            + &shape(&scene.join("sphere_tiny.obj"))
+            + &shape(&scene.join("sphere_base.obj"));
+        compare_in_media(&folder, name, &text);
+    }
+}
+
+/// A grid of densities.
+#[test]
+fn a_grid_medium() {
+    let Some(folder) = data("mitsuba-tests") else { return };
+    let scene = folder.join("tests/scenes/participating_media");
+    let bytes = std::fs::read(scene.join("textures/sigmat.vol")).expect("the volume is readable");
+    // A header of 48 bytes is followed by 16³ floats.
+    let densities = bytes[48..].chunks_exact(4).map(|value| f32::from_le_bytes(value.try_into().unwrap()));
+    let densities: String = densities.map(|density| format!("{density} ")).collect();
+    let text = "AttributeBegin Translate -0.5 -0.5 -0.5 Scale 1.5 1.5 1.5\n\
+                MakeNamedMedium \"m\" \"string type\" \"uniformgrid\"\n\
+                \"integer nx\" 16 \"integer ny\" 16 \"integer nz\" 16 \"float density\" ["
+        .to_owned()
+        + &densities
+        + "]\n"
+        + &medium([1.0; 3], [0.99, 0.5, 0.5], 5.0)
+        + "AttributeEnd\nAttributeBegin Scale 1.5 1.5 1.5\n\
+           Material \"interface\" MediumInterface \"m\" \"\"\n"
+        + &shape(&scene.join("meshes/unit_cube_centered.obj"))
+        + "AttributeEnd\n"
+        + &diffuse("0.5 0.5 0.5")
+        + &shape(&scene.join("meshes/sphere_base.obj"));
+    compare_in_media(&folder, "hetero_sigmat", &text);
+}
+
+/// A textured ball, lit by the sky, a point and a lamp.
+#[test]
+fn a_textured_ball() {
+    let Some(folder) = data("mitsuba-tests") else { return };
+    // The format divides a spectrum by its Y, which is the lamp's scale here.
+    let text = head("-4 0 0  0 0 0  0 0 1", 34.0227, 48, 1, 64)
+        + "AttributeBegin Translate -4 0 6 Scale 2 2 2 Rotate 120 0 1 0\n\
+           Material \"diffuse\" \"rgb reflectance\" [0.78 0.78 0.78]\n\
+           AreaLightSource \"diffuse\" \"spectrum L\" [400 0 500 8 600 15.6 700 18.4] \"float scale\" 12.36854\n"
+        + &shape(&folder.join("common/meshes/rectangle.obj"))
+        + "AttributeEnd\n"
+        + &museum(&folder)
+        + "LightSource \"point\" \"rgb I\" [300 300 300] \"point3 from\" [-4 0 -6]\n"
+        + &format!(
+            "Texture \"wood\" \"spectrum\" \"imagemap\" \"string filename\" \"{}\"\n\
+             Material \"diffuse\" \"texture reflectance\" \"wood\"\n",
+            folder.join("common/textures/wood.jpg").display()
+        )
+        + &shape(&folder.join("common/meshes/sphere.obj"));
+    let refs = folder.join("tests/scenes/bsdf_spheres/refs");
+    let expected = reference(&refs.join("test_textured_diffuse_ref_spectral.exr"));
+    estimate(&text, 4).assert_parts(&expected, 12, 6e-3, 1, "textured ball");
 }

@@ -84,6 +84,10 @@ pub fn shape(path: &Path) -> String {
         text += "] \"normal N\" [";
         mesh.normals.iter().for_each(|n| write!(text, "{} {} {} ", n.x, n.y, n.z).unwrap());
     }
+    if !mesh.uvs.is_empty() {
+        text += "] \"point2 uv\" [";
+        mesh.uvs.iter().for_each(|uv| write!(text, "{} {} ", uv.x, uv.y).unwrap());
+    }
     text += "] \"integer indices\" [";
     let halves = mesh.quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
     for [a, b, c] in mesh.triangles.iter().copied().chain(halves) {
