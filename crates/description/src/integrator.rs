@@ -42,7 +42,7 @@ settings! {
         SimpleVolPath(SimpleVolPathDesc) = "simple-vol-path" | "simplevolpath",
         /// The integral of an analytic function over the unit square instead of a scene, for the
         /// study of samplers.
-        Function(FunctionDesc) = "function" (not drawn),
+        Function(FunctionDesc) = "function",
     }
 }
 
@@ -143,7 +143,7 @@ choices! {
         /// By a tree of bounds on emission.
         #[default]
         Bvh = "bvh",
-        /// Every light is sampled.
+        /// By a bound on what each light contributes, evaluated for all of them.
         Exhaustive = "exhaustive",
     }
 }
@@ -346,15 +346,37 @@ settings! {
     }
 }
 
+choices! {
+    /// A function over the unit square, whose integral is 1.
+    pub enum FunctionKind {
+        /// 2 in the left half.
+        #[default]
+        Step = "step",
+        /// 2 below the diagonal x + y = 1.
+        Diagonal = "diagonal",
+        /// 4/π in the disk that touches the sides.
+        Disk = "disk",
+        /// 2 in half of 10 × 10 squares.
+        Checkerboard = "checkerboard",
+        /// The squares of the same size, turned by 45° around the origin.
+        RotatedCheckerboard = "rotatedcheckerboard",
+        /// A Gaussian around the centre with the standard deviation 1/4.
+        Gaussian = "gaussian",
+    }
+}
+
 settings! {
     /// Settings of the integration of a function.
     #[derive(Clone, Debug, PartialEq)]
     pub struct FunctionDesc {
-        /// The function's name.
-        function: String = "step".to_owned() => ["function"];
-        /// Omit sample counts that the sampler does not support.
+        /// The function.
+        function: FunctionKind = FunctionKind::Step => ["function"];
+        /// A text file for the mean square error of the pixels after each number of samples. If
+        /// absent, the function's name with `-mse.txt`.
+        filename: Option<String> = None => ["filename"];
+        /// Leave out the error after numbers of samples that the sampler does not stratify.
         skip_bad: bool = true => ["skipbad"];
-        /// An image to integrate instead.
+        /// A picture file for the function itself, at the film's resolution.
         image_filename: Option<String> = None => ["imagefilename"];
     }
 }

@@ -45,9 +45,10 @@ pub use diagnostic::{Diagnostic, DiagnosticList, Severity};
 pub use film::{FilmDesc, FilmKind, GBufferSpace, SensorDesc};
 pub use filter::FilterDesc;
 pub use integrator::{
-    AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, IntegratorDesc, LightSamplerDesc,
-    LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc, PhotonMappingShow,
-    RadiosityDesc, RandomWalkDesc, SimplePathDesc, SimpleVolPathDesc, SppmDesc, VcmDesc, WhittedDesc,
+    AmbientOcclusionDesc, BdptDesc, FormFactorsDesc, FunctionDesc, FunctionKind, IntegratorDesc,
+    LightSamplerDesc, LightTracingDesc, MltDesc, MltTechnique, PathDesc, PhotonKernel, PhotonMappingDesc,
+    PhotonMappingShow, RadiosityDesc, RandomWalkDesc, SimplePathDesc, SimpleVolPathDesc, SppmDesc, VcmDesc,
+    WhittedDesc,
 };
 pub use light::{AreaLightDesc, InfiniteRadiance, LightDesc, LightKind, LightType};
 pub use material::{

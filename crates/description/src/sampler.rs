@@ -86,7 +86,7 @@ settings! {
             randomization: Randomization = Randomization::FastOwen => ["randomization"];
         },
         /// Progressive multi-jittered points with blue noise.
-        Pmj02Bn = "pmj02bn" (not drawn) {
+        Pmj02Bn = "pmj02bn" {
             /// Samples per pixel.
             pixel_samples: u32 = 16 => ["pixelsamples": at_least(1.0)];
         },

@@ -2,19 +2,19 @@
 
 use description::schema::Settings;
 use description::{
-    BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, LightSamplerDesc,
-    MaterialKind, MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc,
+    BdptDesc, CameraKind, Diagnostic, Engine, HaltonRandomization, IntegratorDesc, MaterialKind,
+    MltTechnique, PathDesc, Randomization, SamplerKind, SceneDesc,
 };
-use sampling::sampler::{Halton, Independent, PaddedSobol, Sobol, Stratified, ZSobol};
+use sampling::sampler::{Halton, Independent, PaddedSobol, Pmj02Bn, Sobol, Stratified, ZSobol};
 use sampling::{Randomize, Sampler, hash};
 use scene::Interfaces;
 use scene::texture::color_space;
 
 use crate::bidirectional::techniques::{MAX_BYTES, MAX_DEPTH};
 use crate::{
-    AmbientOcclusion, Bdpt, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping, PixelLoop,
-    Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, VolPath, WaveIntegrator,
-    Wavefront, Whitted,
+    AmbientOcclusion, Bdpt, Function, Integrator, LightTracing, MAX_PHOTON_PATHS, Mlt, Path, PhotonMapping,
+    PixelLoop, Radiosity, RandomWalk, RayCasting, RayIntegrator, SimplePath, Sppm, Vcm, VolPath,
+    WaveIntegrator, Wavefront, Whitted,
 };
 
 /// The result of [`build`].
@@ -51,7 +51,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn sampler(&mut self) -> Sampler {
+    fn sampler(&self) -> Sampler {
         let desc = &self.desc.sampler;
         let seed = desc.seed.unwrap_or(self.desc.options.seed) as u32;
         let (samples, resolution) = (desc.kind.samples_per_pixel(), self.desc.film.resolution);
@@ -77,11 +77,7 @@ impl Builder<'_> {
             SamplerKind::ZSobol { randomization, .. } => {
                 Sampler::ZSobol(ZSobol::new(samples, resolution, randomize(randomization), seed))
             }
-            SamplerKind::Pmj02Bn { .. } => {
-                let message = "sampler `pmj02bn` is not drawn yet; drawn with `zsobol`";
-                self.diagnostics.push(Diagnostic::warning("not-drawn", message, desc.origin.span));
-                Sampler::ZSobol(ZSobol::new(samples, resolution, Randomize::FastOwen, seed))
-            }
+            SamplerKind::Pmj02Bn { .. } => Sampler::Pmj02Bn(Pmj02Bn::new(samples, seed)),
         }
     }
 
@@ -170,7 +166,10 @@ impl Builder<'_> {
             }
             IntegratorDesc::Sppm(desc) => Box::new(Sppm::new(desc, sampler, self.photon_seed(desc.seed))),
             IntegratorDesc::Radiosity(desc) => Box::new(Radiosity::new(desc, sampler, color_space)),
-            IntegratorDesc::Function(_) => self.instead(PathDesc::default().max_depth, sampler),
+            IntegratorDesc::Function(desc) => {
+                self.diagnostics.extend(Function::unwritable(&desc, &self.desc.integrator.origin));
+                Box::new(Function::new(desc, sampler, color_space))
+            }
         }
     }
 
@@ -227,15 +226,6 @@ impl Builder<'_> {
         }
     }
 
-    /// Path tracing in place of an unsupported integrator.
-    fn instead(&mut self, max_depth: u32, sampler: Sampler) -> Box<dyn Integrator> {
-        let name = self.desc.integrator.name();
-        let message = format!("integrator `{name}` is not drawn yet; drawn as `path`");
-        let span = self.desc.integrator.origin.span;
-        self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
-        self.path(PathDesc { max_depth, ..PathDesc::default() }, Interfaces::Pass, sampler)
-    }
-
     /// An algorithm that both engines have, and that knows media in the scalar one.
     fn waves_in_media(&self, rays: impl WaveIntegrator + 'static, sampler: Sampler) -> Box<dyn Integrator> {
         if self.desc.media.is_empty() { self.waves(rays, sampler) } else { pixels(rays, sampler) }
@@ -249,12 +239,7 @@ impl Builder<'_> {
         }
     }
 
-    fn path(&mut self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
-        if desc.light_sampler == LightSamplerDesc::Exhaustive {
-            let message = "light sampler `exhaustive` is not drawn yet; drawn with `bvh`";
-            let span = self.desc.integrator.origin.parameter("lightsampler");
-            self.diagnostics.push(Diagnostic::warning("not-drawn", message, span));
-        }
+    fn path(&self, desc: PathDesc, interfaces: Interfaces, sampler: Sampler) -> Box<dyn Integrator> {
         if interfaces == Interfaces::Pass && !self.desc.media.is_empty() {
             return pixels(VolPath::new(desc), sampler);
         }

@@ -22,6 +22,7 @@
 //! | [`Sppm`] | paths to the first diffuse surface, and the photons there |
 //! | [`Vcm`] | paths from both ends, connected and merged |
 //! | [`Radiosity`] | light between diffuse patches, the brightest shooting first |
+//! | [`Function`] | nothing: it integrates a function of the sampler's points |
 //!
 //! Everywhere, L is the radiance that arrives at the camera along the ray, β (`beta`) the path
 //! throughput, and the depth of a path the number of its scattering events: depth 0 is emission,
@@ -31,6 +32,7 @@ mod bidirectional;
 mod build;
 mod camera_paths;
 mod control;
+mod function;
 mod integrator;
 mod light_paths;
 mod metropolis;
@@ -46,6 +48,7 @@ pub use camera_paths::{
     AmbientOcclusion, Path, PixelLoop, RandomWalk, RayCasting, RayIntegrator, SimplePath, VolPath, Whitted,
 };
 pub use control::{Cancelled, Clock, Control, PassError};
+pub use function::Function;
 pub use integrator::{Integrator, OutputFile};
 pub use light_paths::LightTracing;
 pub use metropolis::Mlt;

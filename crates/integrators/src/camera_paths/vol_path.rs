@@ -15,7 +15,7 @@
 //!
 //! Unbiased up to `max_depth`. Sources: [Miller 2019]; [Pharr 2023 §14.2].
 
-use description::{LightSamplerDesc, PathDesc};
+use description::PathDesc;
 use math::RayDifferential;
 use sampling::Sampler;
 use scattering::{Bsdf, BsdfSample, Bxdf, Directions, Subsurface, TransportMode};
@@ -299,8 +299,10 @@ impl PathsFrom for VolPath {
 
 impl RayIntegrator for VolPath {
     fn prepare(&mut self, scene: &Scene, _view: &View, control: &Control) -> Result<(), Cancelled> {
-        let desc = if self.sample_lights { self.settings.light_sampler } else { LightSamplerDesc::Uniform };
-        self.lights = scene.light_sampler(desc, &control.cancel).ok_or(Cancelled)?;
+        if self.sample_lights {
+            let lights = scene.light_sampler(self.settings.light_sampler, &control.cancel);
+            self.lights = lights.ok_or(Cancelled)?;
+        }
         Ok(())
     }
 

@@ -23,7 +23,7 @@ fn warnings(integrator: IntegratorDesc) -> Vec<Diagnostic> {
 
 #[test]
 fn supported_algorithms_build_without_warnings() {
-    let light_sampler = LightSamplerDesc::Power;
+    let light_sampler = LightSamplerDesc::Exhaustive;
     for integrator in [
         IntegratorDesc::RayCasting,
         IntegratorDesc::Whitted(WhittedDesc { max_depth: 0 }),
@@ -36,18 +36,10 @@ fn supported_algorithms_build_without_warnings() {
         IntegratorDesc::PhotonMapping(PhotonMappingDesc::default()),
         IntegratorDesc::Sppm(SppmDesc::default()),
         IntegratorDesc::Vcm(VcmDesc::default()),
+        IntegratorDesc::Function(FunctionDesc::default()),
     ] {
         assert_eq!(warnings(integrator), []);
     }
-}
-
-#[test]
-fn unsupported_algorithms_are_replaced_with_a_warning() {
-    let found = warnings(IntegratorDesc::Function(FunctionDesc::default()));
-    assert_eq!(messages(&found), ["integrator `function` is not drawn yet; drawn as `path`"]);
-    let light_sampler = LightSamplerDesc::Exhaustive;
-    let found = warnings(IntegratorDesc::Path(PathDesc { max_depth: 5, regularize: false, light_sampler }));
-    assert_eq!(messages(&found), ["light sampler `exhaustive` is not drawn yet; drawn with `bvh`"]);
 }
 
 #[test]
@@ -188,10 +180,9 @@ fn the_sampler_determines_the_number_of_passes() {
             SamplerKind::Sobol { .. } | SamplerKind::ZSobol { .. } | SamplerKind::Pmj02Bn { .. } => 8,
             _ => 6,
         };
-        let is_drawn = kind.member().is_some_and(|member| member.is_drawn);
         let built = build(&with_sampler(kind.clone())).ok().unwrap();
         assert_eq!(built.integrator.passes(), passes, "{kind:?}");
-        assert_eq!(built.warnings.len(), usize::from(!is_drawn), "{kind:?}");
+        assert_eq!(built.warnings, [], "{kind:?}");
     }
 }
 

@@ -8,6 +8,7 @@ mod border;
 mod build;
 mod cancellation;
 mod direct_light;
+mod function;
 mod furnace;
 mod layers;
 mod media;

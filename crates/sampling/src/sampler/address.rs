@@ -42,6 +42,22 @@ impl<I: Int> Address<I> {
     }
 }
 
+/// The lower 16 bits of `x` at the even places and those of `y` at the odd ones: a Morton code.
+#[inline(always)]
+pub(super) fn interleaved<I: Int>(x: I, y: I) -> I {
+    spread(x) | spread(y).shl(1)
+}
+
+/// The lower 16 bits at the even places.
+#[inline(always)]
+fn spread<I: Int>(x: I) -> I {
+    let mut spread = x & I::splat(0xffff);
+    for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
+        spread = (spread | spread.shl(shift)) & I::splat(mask);
+    }
+    spread
+}
+
 /// Addresses, lane by lane.
 pub(super) struct AddressArrays {
     pub pixel: [[u32; MAX_LANES]; 2],

@@ -14,6 +14,7 @@ mod address;
 mod halton;
 mod independent;
 mod padded_sobol;
+mod pmj02bn;
 mod primary_sample;
 mod randomize;
 mod sobol;
@@ -24,6 +25,7 @@ pub use address::Address;
 pub use halton::Halton;
 pub use independent::Independent;
 pub use padded_sobol::PaddedSobol;
+pub use pmj02bn::Pmj02Bn;
 pub use primary_sample::PrimarySample;
 pub use randomize::Randomize;
 pub use sobol::Sobol;
@@ -50,6 +52,9 @@ pub enum Sampler {
     /// Two-dimensional Sobol' points, distributed over pixels along a Z-order curve, which gives
     /// blue-noise error.
     ZSobol(ZSobol),
+    /// Progressive multi-jittered (0, 2) points, distributed over pixels in the order of a Z-order
+    /// curve, which gives blue-noise error.
+    Pmj02Bn(Pmj02Bn),
     /// Uniform random numbers that can be mutated: primary sample space.
     PrimarySample(PrimarySample),
 }
@@ -63,6 +68,7 @@ macro_rules! each_sampler {
             Sampler::PaddedSobol($sampler) => $result,
             Sampler::Sobol($sampler) => $result,
             Sampler::ZSobol($sampler) => $result,
+            Sampler::Pmj02Bn($sampler) => $result,
             Sampler::PrimarySample($sampler) => $result,
         }
     };
@@ -106,6 +112,7 @@ impl Sampler {
             Self::Independent(sampler) => sampler.at_1d(address),
             Self::Sobol(sampler) => sampler.at_1d(address),
             Self::ZSobol(sampler) => sampler.at_1d(address),
+            Self::Pmj02Bn(sampler) => sampler.at_1d(address),
             _ => {
                 let one = |sampler: &mut Self| Vec2::new(sampler.get_1d(), 0.0);
                 R::load(&self.each_lane(&address.to_arrays(), R::LANES, one)[0])
@@ -120,6 +127,7 @@ impl Sampler {
             Self::Independent(sampler) => sampler.at_2d(address),
             Self::Sobol(sampler) => sampler.at_2d(address),
             Self::ZSobol(sampler) => sampler.at_2d(address),
+            Self::Pmj02Bn(sampler) => sampler.at_2d(address),
             _ => self.each_lane(&address.to_arrays(), R::LANES, Self::get_2d).each(|u| R::load(&u)),
         }
     }

@@ -7,7 +7,7 @@
 //! power of two is rounded up to one. Beyond it, each further round has scrambles and permutations
 //! of its own. All hashes are of 32 bits, so that lanes of a vector can each compute a coordinate.
 
-use super::address::Address;
+use super::address::{Address, interleaved};
 use super::randomize::Randomize;
 use crate::low_discrepancy::pascal_digits;
 use crate::mix_word;
@@ -114,7 +114,6 @@ impl ZSobol {
     fn code<I: Int>(&self, address: &Address<I>) -> [I; 2] {
         let kept = I::splat(if self.log2_side < 32 { (1 << self.log2_side) - 1 } else { u32::MAX });
         let [x, y] = address.pixel.each(|x| x & kept);
-        let interleaved = |x: I, y: I| spread(x) | spread(y).shl(1);
         let [low, high] = [interleaved(x, y), interleaved(x.shr(16), y.shr(16))];
         let log2 = self.log2_samples;
         let index = I::splat(address.index & (self.samples_per_pixel() - 1));
@@ -192,16 +191,6 @@ fn shifted_right<I: Int>([low, high]: [I; 2], shift: u32) -> [I; 2] {
         33..64 => [high.shr(shift - 32), zero],
         _ => [zero; 2],
     }
-}
-
-/// The lower 16 bits at the even places.
-#[inline(always)]
-fn spread<I: Int>(x: I) -> I {
-    let mut spread = x & I::splat(0xffff);
-    for (shift, mask) in [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)] {
-        spread = (spread | spread.shl(shift)) & I::splat(mask);
-    }
-    spread
 }
 
 /// The base-4 digit in the low two bits under one of the 24 permutations. Permutations of four

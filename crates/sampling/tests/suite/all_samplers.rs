@@ -32,6 +32,7 @@ fn makers() -> Vec<(String, Make)> {
     ];
     let primary: Make = Box::new(|spp, seed| Sampler::PrimarySample(PrimarySample::new(spp, 0.01, seed)));
     makers.push((PRIMARY.into(), primary));
+    makers.push(("pmj02bn".into(), Box::new(|n, seed| Sampler::Pmj02Bn(Pmj02Bn::new(n, seed)))));
     let halton: Make = Box::new(|n, seed| Sampler::Halton(Halton::new(n, Randomize::None, seed)));
     makers.push(("halton None".into(), halton));
     for r in EACH_RANDOMIZE {
@@ -142,7 +143,7 @@ fn positions_in_a_pixel_of_different_seeds_are_uncorrelated() {
 #[test]
 fn sample_counts_are_as_requested_or_rounded_up() {
     for (name, sampler) in random_samplers(12, 0) {
-        let rounds_up = name.starts_with("sobol") || name.starts_with("zsobol");
+        let rounds_up = ["sobol", "zsobol", "pmj02bn"].iter().any(|start| name.starts_with(start));
         assert_eq!(sampler.samples_per_pixel(), if rounds_up { 16 } else { 12 }, "{name}");
     }
 }
@@ -201,13 +202,14 @@ fn stratified_and_low_discrepancy_samples_have_less_variance() {
 }
 
 /// Pixels that share points or scrambles err alike, so that the mean square error of a picture
-/// varies more from seed to seed than that of independent pixels. [`Sobol`] and [`ZSobol`]
-/// distribute their points over all pixels.
+/// varies more from seed to seed than that of independent pixels. [`Sobol`], [`ZSobol`] and
+/// [`Pmj02Bn`] distribute their points over all pixels.
 #[test]
 fn errors_of_pixels_are_independent() {
     const SEEDS: u32 = 400;
     const PIXELS: i32 = 64;
-    let shares_points = |name: &str| name.starts_with("sobol") || name.starts_with("zsobol");
+    let shares_points =
+        |name: &str| ["sobol", "zsobol", "pmj02bn"].iter().any(|start| name.starts_with(start));
     for (name, make) in makers().iter().filter(|(name, _)| !shares_points(name)) {
         let (mut of_pixels, mut of_pictures) = (Moments::default(), Moments::default());
         for seed in 0..SEEDS {
@@ -275,7 +277,7 @@ fn points(sampler: &mut Sampler, indices: std::ops::Range<u32>, skipped: usize) 
 #[test]
 fn sobol_points_stratify_elementary_intervals() {
     for (name, mut sampler) in all_samplers(64, 9) {
-        if name.starts_with("padded") || name.starts_with("zsobol") {
+        if ["padded", "zsobol", "pmj02bn"].iter().any(|start| name.starts_with(start)) {
             for skipped in [0, 1, 4] {
                 assert!(fill_elementary_intervals(&points(&mut sampler, 0..64, skipped)), "{name}");
                 assert!(
@@ -286,6 +288,105 @@ fn sobol_points_stratify_elementary_intervals() {
         }
         if name == "independent" {
             assert!(!fill_elementary_intervals(&points(&mut sampler, 0..64, 0)));
+        }
+    }
+}
+
+#[test]
+fn every_prefix_of_pmj02bn_stratifies_elementary_intervals() {
+    for (seed, spp) in [(0, 256), (1, 64), (2, 1 << 20)] {
+        let mut sampler = Sampler::Pmj02Bn(Pmj02Bn::new(spp, seed));
+        for (skipped, k) in [0, 1, 4].into_iter().flat_map(|skipped| (0..=8).map(move |k| (skipped, k))) {
+            // Each aligned block of samples, too.
+            for block in (0..4).filter(|block| (block + 1) << k <= spp) {
+                let indices = block << k..(block + 1) << k;
+                assert!(
+                    fill_elementary_intervals(&points(&mut sampler, indices.clone(), skipped)),
+                    "{indices:?}"
+                );
+            }
+        }
+    }
+}
+
+/// The first samples of the pixels of squares along a Z-order curve.
+#[test]
+fn squares_of_pixels_of_pmj02bn_stratify_elementary_intervals() {
+    let mut sampler = Sampler::Pmj02Bn(Pmj02Bn::new(16, 4));
+    for (corner, side) in [([6, 4], 2), ([-8, 16], 4)] {
+        let pixels = (0..side * side).map(|i| [corner[0] + i % side, corner[1] + i / side]);
+        let samples = pixels.flat_map(|pixel| (0..16).map(move |index| (pixel, index)));
+        let draw = |(pixel, index)| {
+            sampler.start_pixel_sample(pixel, index, 3);
+            sampler.get_2d()
+        };
+        assert!(fill_elementary_intervals(&samples.map(draw).collect::<Vec<_>>()));
+    }
+}
+
+/// The mean over `spp` samples of a pixel of functions of the unit square: a smooth one, and one
+/// with an edge. Both integrals are 1.
+fn plane_estimates(sampler: &mut Sampler, pixel: [i32; 2], spp: u32) -> [f64; 2] {
+    let mut sums = [0.0; 2];
+    for index in 0..spp {
+        sampler.start_pixel_sample(pixel, index, 0);
+        let p = sampler.get_pixel_2d().as_dvec2();
+        let is_in_disk = (p - 0.5).length_squared() < 0.25;
+        sums[0] += 4.0 * p.x * p.y;
+        sums[1] += if is_in_disk { 8.0 / TAU } else { 0.0 };
+    }
+    sums.map(|sum| sum / f64::from(spp))
+}
+
+/// The mean square error of a picture of [`plane_estimates`], and the mean power of the error at up
+/// to four periods along a side of 64 pixels, as a share of that of white noise.
+fn plane_errors(make: &Make, spp: u32) -> [[f64; 2]; 2] {
+    const SIDE: i32 = 64;
+    let frequencies: Vec<_> =
+        (-4..=4).flat_map(|u| (-4..=4).map(move |v| [u, v])).filter(|&f| f != [0, 0]).collect();
+    let (mut squares, mut powers) = ([0.0; 2], [0.0; 2]);
+    for seed in 0..4 {
+        let mut sampler = make(spp, seed);
+        let mut waves = vec![[[0.0; 2]; 2]; frequencies.len()];
+        for [x, y] in (0..SIDE * SIDE).map(|i| [i % SIDE, i / SIDE]) {
+            // Off the corners of the squares that share points.
+            let errors = plane_estimates(&mut sampler, [x + 5, y + 3], spp).map(|estimate| estimate - 1.0);
+            for (function, error) in errors.into_iter().enumerate() {
+                squares[function] += error * error;
+                for ([u, v], wave) in frequencies.iter().zip(&mut waves) {
+                    let (sin, cos) = (TAU * f64::from(u * x + v * y) / f64::from(SIDE)).sin_cos();
+                    wave[function][0] += error * cos;
+                    wave[function][1] += error * sin;
+                }
+            }
+        }
+        for (wave, function) in waves.iter().flat_map(|wave| [(wave[0], 0), (wave[1], 1)]) {
+            powers[function] += (wave[0] * wave[0] + wave[1] * wave[1]) / frequencies.len() as f64;
+        }
+    }
+    [0, 1].map(|function| {
+        [squares[function] / f64::from(4 * SIDE * SIDE), powers[function] / squares[function]]
+    })
+}
+
+/// The shares are 0.1 and 0.3 to 0.4.
+#[test]
+fn low_frequencies_of_the_error_of_pmj02bn_are_weak() {
+    let makers = makers();
+    let errors = |name: &str, spp: u32| {
+        let (_, make) = makers.iter().find(|(member, _)| member == name).expect("a member");
+        plane_errors(make, spp)
+    };
+    for spp in [1, 4, 16, 64] {
+        let [smooth, edge] = errors("pmj02bn", spp);
+        assert!(smooth[1] < 0.15 && edge[1] < 0.5, "{spp} samples: {smooth:?}, {edge:?}");
+        let [other_smooth, other_edge] = errors("stratified", spp);
+        assert!(other_smooth[1] > 0.75 && other_edge[1] > 0.75, "{spp} samples, stratified");
+        if spp > 1 {
+            assert!(smooth[0] < 0.7 * other_smooth[0] && edge[0] < 0.9 * other_edge[0], "{spp} samples");
+        }
+        if spp > 4 {
+            assert!(smooth[0] < 0.25 * other_smooth[0], "{spp} samples");
         }
     }
 }

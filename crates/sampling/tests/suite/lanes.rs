@@ -117,6 +117,9 @@ fn samplers_do_not_depend_on_the_number_of_lanes() {
         let large = ZSobol::new(1 << 20, [1 << 14; 2], Randomize::FastOwen, 5);
         lanes_agree(&Draws(Sampler::ZSobol(large), index), 3, 50);
         lanes_agree(&Draws(Sampler::Independent(Independent::new(16, 5)), index), 3, 50);
+        for spp in [1, 32, 1 << 31] {
+            lanes_agree(&Draws(Sampler::Pmj02Bn(Pmj02Bn::new(spp, 5)), index), 3, 50);
+        }
         for r in [Randomize::None, Randomize::PermuteDigits, Randomize::FastOwen, Randomize::Owen] {
             lanes_agree(&Draws(Sampler::Sobol(Sobol::new(16, resolution, r, 5)), index), 3, 50);
             lanes_agree(&Draws(Sampler::ZSobol(ZSobol::new(32, resolution, r, 5)), index), 3, 50);

@@ -80,8 +80,8 @@ impl LightModel for GoniometricLight {
         let render_from_light = self.render_from_light.at(context.time);
         let p = render_from_light.point(Vec3::ZERO);
         let light_from_render = render_from_light.inverse();
-        sample_point(p, context, |w| {
-            self.mean_intensity.sample(lambda) * self.relative_intensity(w, &light_from_render)
+        sample_point(p, context, |w, distance2| {
+            self.mean_intensity.sample(lambda) * self.relative_intensity(w, &light_from_render) / distance2
         })
     }
 

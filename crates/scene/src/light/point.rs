@@ -33,12 +33,12 @@ pub(super) fn reach(p: Point3, motion: Option<&AnimatedTransform>) -> Bounds3 {
     motion.map_or(here, |motion| motion.motion_bounds(&here))
 }
 
-/// Light from the point `p` whose radiant intensity along a direction away from it is `intensity`;
-/// `None` if it is zero.
+/// Light from the point `p`: what arrives along a direction away from it at the square of a
+/// distance is `l`; `None` if it is zero.
 pub(super) fn sample_point(
     p: Point3,
     context: &LightSampleContext,
-    intensity: impl FnOnce(Vector3) -> SampledSpectrum,
+    l: impl FnOnce(Vector3, f32) -> SampledSpectrum,
 ) -> Option<LightLiSample> {
     let to_light = p - context.p.p;
     let distance2 = to_light.length_squared();
@@ -46,7 +46,7 @@ pub(super) fn sample_point(
         return None;
     }
     let wi = to_light / distance2.sqrt();
-    let l = intensity(-wi) / distance2;
+    let l = l(-wi, distance2);
     (!l.is_black()).then(|| LightLiSample { l, wi, pdf: 1.0, p: Some(Point3Error::exact(p)), n: Vec3::ZERO })
 }
 
@@ -67,16 +67,8 @@ impl LightModel for PointLight {
         lambda: &SampledWavelengths,
         _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
-        let p = self.position(context.time);
-        let to_light = p - context.p.p;
-        let distance2 = to_light.length_squared();
-        (distance2 > 0.0).then(|| LightLiSample {
-            l: self.intensity.sample(lambda) / distance2,
-            wi: to_light / distance2.sqrt(),
-            pdf: 1.0,
-            p: Some(Point3Error::exact(p)),
-            n: Vec3::ZERO,
-        })
+        let l = |_, distance2| self.intensity.sample(lambda) / distance2;
+        sample_point(self.position(context.time), context, l)
     }
 
     fn sample_le(

@@ -148,8 +148,8 @@ impl LightModel for ProjectionLight {
         let render_from_light = self.render_from_light.at(context.time);
         let p = render_from_light.point(Vec3::ZERO);
         let light_from_render = render_from_light.inverse();
-        sample_point(p, context, |w| match self.slide.position(light_from_render.vector(w)) {
-            Some(st) => self.intensity(st, lambda),
+        sample_point(p, context, |w, distance2| match self.slide.position(light_from_render.vector(w)) {
+            Some(st) => self.intensity(st, lambda) / distance2,
             None => SampledSpectrum::ZERO,
         })
     }

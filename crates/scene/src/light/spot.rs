@@ -5,7 +5,7 @@
 //! intensity itself, p_direction = s(cos θ)·I/Φ: uniform in the inner cone, and by the smooth step
 //! of cos θ around it; each ray carries all of Φ. Sources: [Pharr 2023 §12.2.1].
 
-use super::point::reach;
+use super::point::{reach, sample_point};
 use super::{Emission, LightBounds, LightLeSample, LightLiSample, LightModel, LightPart, LightSampleContext};
 use math::{
     AnimatedTransform, Frame, Normal3, Point2, Point3, Point3Error, Ray, Vec2, Vec3, Vector3, safe_acos,
@@ -81,19 +81,8 @@ impl LightModel for SpotLight {
         _allow_incomplete: bool,
     ) -> Option<LightLiSample> {
         let (p, axis) = self.placement(context.time);
-        let to_light = p - context.p.p;
-        let distance2 = to_light.length_squared();
-        if distance2 == 0.0 {
-            return None;
-        }
-        let wi = to_light / distance2.sqrt();
-        let falloff = self.falloff((-wi).dot(axis));
-        (falloff > 0.0).then(|| LightLiSample {
-            l: self.intensity.sample(lambda) * (falloff / distance2),
-            wi,
-            pdf: 1.0,
-            p: Some(Point3Error::exact(p)),
-            n: Vec3::ZERO,
+        sample_point(p, context, |w, distance2| {
+            self.intensity.sample(lambda) * (self.falloff(w.dot(axis)) / distance2)
         })
     }
 

@@ -12,6 +12,7 @@
 //! & Kulla 2018]; [Pharr 2023 §12.6.3].
 
 use super::cluster::{Cluster, NUMBERS};
+use super::infinite::{InfiniteLights, separated};
 use crate::light::{LightBounds, LightId, LightSampleContext, Lights};
 use lanes::{Int, Mask, Real};
 use math::{Bounds3, ONE_MINUS_EPSILON, safe_acos, safe_sqrt};
@@ -25,8 +26,7 @@ pub struct BvhLightSampler {
     clusters: Vec<[f32; NUMBERS]>,
     /// By node: [`LEAF`] and the id of its light, or the right child of an interior node.
     kinds: Vec<u32>,
-    /// The ids of the lights infinitely far away.
-    infinite: Vec<u32>,
+    infinite: InfiniteLights,
     /// By light.
     trails: Trails,
 }
@@ -69,23 +69,9 @@ impl BvhLightSampler {
     /// If there are more than [`MAX_LIGHTS`](Self::MAX_LIGHTS).
     pub fn new(lights: Lights, cancel: &AtomicBool) -> Option<Self> {
         assert!(lights.len() <= Self::MAX_LIGHTS, "too many lights for a tree");
-        let mut infinite = Vec::new();
-        let mut bounded = Vec::new();
+        let (infinite, mut bounded) = separated(lights, cancel)?;
         let mut trails = Trails([Trails::NOWHERE, Trails::ELSEWHERE].map(|word| vec![word; lights.len()]));
-        for light in lights.iter() {
-            if cancel.load(Ordering::Relaxed) {
-                return None;
-            }
-            let id = light.id();
-            match light.bounds() {
-                None => {
-                    infinite.push(id.0);
-                    trails.set(id.0, [Trails::INFINITE, Trails::ELSEWHERE]);
-                }
-                Some(bounds) if bounds.phi > 0.0 => bounded.push((id, bounds)),
-                Some(_) => {}
-            }
-        }
+        infinite.ids().iter().for_each(|&id| trails.set(id, [Trails::INFINITE, Trails::ELSEWHERE]));
         let count = (2 * bounded.len()).saturating_sub(1);
         let (mut clusters, mut kinds) = (vec![[0.0; NUMBERS]; count], vec![0; count]);
         if count > 0 {
@@ -110,14 +96,6 @@ impl BvhLightSampler {
         }
     }
 
-    /// Probability of choosing among the infinite lights.
-    #[inline(always)]
-    fn infinite_probability(&self) -> f32 {
-        let infinite = self.infinite.len() as f32;
-        let tree = if self.kinds.is_empty() { 0.0 } else { 1.0 };
-        if infinite == 0.0 { 0.0 } else { infinite / (infinite + tree) }
-    }
-
     #[inline(always)]
     fn importance<R: Real>(&self, nodes: R::Int, context: &LightSampleContext<R>) -> R {
         Cluster::<R>::gather(self.clusters.as_flattened(), nodes).importance(context.p.p, context.ns)
@@ -126,7 +104,7 @@ impl BvhLightSampler {
     /// Probability of choosing the tree: zero if its root is a leaf of importance zero.
     #[inline(always)]
     fn tree_probability<R: Real>(&self, context: &LightSampleContext<R>) -> R {
-        let probability = R::splat(1.0 - self.infinite_probability());
+        let probability = R::splat(1.0 - self.infinite.probability());
         // Below an interior root the descent finds importances of zero.
         match self.kinds.first() {
             Some(&kind) if kind >= LEAF => {
@@ -145,20 +123,14 @@ impl BvhLightSampler {
         u: R,
         active: R::Mask,
     ) -> (R::Int, R, R::Mask) {
-        let share = self.infinite_probability();
-        let is_infinite = u.lt(R::splat(share)) & active;
+        let is_infinite = u.lt(R::splat(self.infinite.probability())) & active;
         let (mut lights, mut pmf, mut valid) = (R::Int::splat(0), R::zero(), is_infinite);
         if is_infinite.any() {
-            let count = self.infinite.len();
-            let place = (u / R::splat(share) * R::splat(count as f32)).to_int();
-            let last = R::Int::splat(count as u32 - 1);
-            lights = R::Int::gather(&self.infinite, R::Int::select(place.lt(last), place, last));
-            pmf = R::splat(share / count as f32);
+            (lights, pmf) = (self.infinite.choose(u), R::splat(self.infinite.pmf()));
         }
         let in_tree = active & !is_infinite;
         if in_tree.any() && !self.kinds.is_empty() {
-            let u = (u - R::splat(share)) / R::splat(1.0 - share);
-            let chosen = self.descend(context, u.min(R::splat(ONE_MINUS_EPSILON)), in_tree);
+            let chosen = self.descend(context, self.infinite.rest(u), in_tree);
             lights = R::Int::select(in_tree, chosen.0, lights);
             pmf = R::select(in_tree, chosen.1, pmf);
             valid = valid | chosen.2;
@@ -221,8 +193,7 @@ impl BvhLightSampler {
             [R::Int::gather(&self.trails.0[0], lights), R::Int::gather(&self.trails.0[1], lights)];
         let in_tree = active & high.lt(R::Int::splat(Trails::ELSEWHERE));
         let is_infinite = low.eq(R::Int::splat(Trails::INFINITE));
-        let share = self.infinite_probability() / self.infinite.len().max(1) as f32;
-        let mut pmf = R::select(is_infinite, R::splat(share), zero);
+        let mut pmf = R::select(is_infinite, R::splat(self.infinite.pmf()), zero);
         if !in_tree.any() {
             return pmf;
         }

@@ -6,10 +6,13 @@
 
 mod bvh;
 mod cluster;
+mod exhaustive;
+mod infinite;
 mod power;
 mod uniform;
 
 pub use bvh::BvhLightSampler;
+pub use exhaustive::ExhaustiveLightSampler;
 pub use power::PowerLightSampler;
 pub use uniform::UniformLightSampler;
 
@@ -27,6 +30,8 @@ pub enum LightSampler {
     Power(PowerLightSampler),
     /// See [`BvhLightSampler`].
     Bvh(BvhLightSampler),
+    /// See [`ExhaustiveLightSampler`].
+    Exhaustive(ExhaustiveLightSampler),
 }
 
 impl Default for LightSampler {
@@ -37,20 +42,16 @@ impl Default for LightSampler {
 }
 
 impl LightSampler {
-    /// A sampler of these lights, as described; `None` if `cancel` is set while a tree is built.
-    /// The description's sampling of every light is not supported; the tree replaces it. More
+    /// A sampler of these lights, as described; `None` if `cancel` is set while it is built. More
     /// lights than a tree can hold are chosen by their power.
     pub fn new(desc: LightSamplerDesc, lights: Lights, cancel: &AtomicBool) -> Option<Self> {
         Some(match desc {
             LightSamplerDesc::Uniform => Self::Uniform(UniformLightSampler::new(lights)),
-            LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive
-                if lights.len() <= BvhLightSampler::MAX_LIGHTS =>
-            {
+            LightSamplerDesc::Bvh if lights.len() <= BvhLightSampler::MAX_LIGHTS => {
                 Self::Bvh(BvhLightSampler::new(lights, cancel)?)
             }
-            LightSamplerDesc::Power | LightSamplerDesc::Bvh | LightSamplerDesc::Exhaustive => {
-                Self::Power(PowerLightSampler::new(lights))
-            }
+            LightSamplerDesc::Power | LightSamplerDesc::Bvh => Self::Power(PowerLightSampler::new(lights)),
+            LightSamplerDesc::Exhaustive => Self::Exhaustive(ExhaustiveLightSampler::new(lights, cancel)?),
         })
     }
 
@@ -61,6 +62,7 @@ impl LightSampler {
             Self::Uniform(s) => s.sample(u),
             Self::Power(s) => s.sample(u),
             Self::Bvh(s) => s.sample(context, u),
+            Self::Exhaustive(s) => s.sample(context, u),
         }
     }
 
@@ -77,6 +79,7 @@ impl LightSampler {
             Self::Uniform(s) => s.sample_lanes(u, active),
             Self::Power(s) => s.sample_lanes(u, active),
             Self::Bvh(s) => s.sample_lanes(context, u, active),
+            Self::Exhaustive(s) => s.sample_lanes(context, u, active),
         }
     }
 
@@ -93,6 +96,7 @@ impl LightSampler {
             Self::Uniform(s) => R::splat(s.pmf()),
             Self::Power(s) => s.pmf_lanes(lights, active),
             Self::Bvh(s) => s.pmf_lanes(context, lights, active),
+            Self::Exhaustive(s) => s.pmf_lanes(context, lights, active),
         }
     }
 }

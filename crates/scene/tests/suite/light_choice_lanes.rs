@@ -106,7 +106,8 @@ fn lanes_choose_as_each_alone() {
         (u[1], u[2]) = (0.0, math::ONE_MINUS_EPSILON);
         let count = scene.lights().len() as f32;
         let given: Vec<u32> = contexts.iter().map(|_| (random.get_1d() * count) as u32).collect();
-        for kind in [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh] {
+        use LightSamplerDesc::{Bvh, Exhaustive, Power, Uniform};
+        for kind in [Uniform, Power, Bvh, Exhaustive] {
             let sampler = scene.light_sampler(kind, &AtomicBool::new(false)).expect("nobody cancels it");
             let active = 0xbe7f;
             let alone: Vec<Choice> = (0..u.len())

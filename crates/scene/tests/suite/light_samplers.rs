@@ -12,8 +12,8 @@ use math::{DMat4, DVec3, Vec3};
 use std::sync::atomic::AtomicBool;
 use testkit::{Chi2, Moments, Random, welch_test};
 
-const KINDS: [LightSamplerDesc; 3] =
-    [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh];
+const KINDS: [LightSamplerDesc; 4] =
+    [LightSamplerDesc::Uniform, LightSamplerDesc::Power, LightSamplerDesc::Bvh, LightSamplerDesc::Exhaustive];
 
 fn sampler(scene: &Scene, desc: LightSamplerDesc) -> LightSampler {
     scene.light_sampler(desc, &AtomicBool::new(false)).expect("nobody cancels it")
@@ -133,7 +133,7 @@ fn choices_have_their_probability() {
                 let pmfs = pmfs(&sampler, scene, from);
                 let total: f64 = pmfs.iter().sum();
                 assert!(total < 1.0 + 1e-5, "{name}, {kind:?}: {total}");
-                if kind != LightSamplerDesc::Bvh {
+                if matches!(kind, LightSamplerDesc::Uniform | LightSamplerDesc::Power) {
                     assert!(total > 1.0 - 1e-5, "{name}, {kind:?}: {total}");
                 }
                 let count = 10_000;
@@ -255,6 +255,45 @@ fn the_light_bvh_prefers_near_and_facing_lights() {
     let pmfs = pmfs(&sampler(&scene, LightSamplerDesc::Bvh), &scene, &context(Vec3::ZERO, Vec3::Z));
     assert!(pmfs[0] > 4.0 * pmfs[2] && pmfs[2] > 0.0, "{pmfs:?}");
     assert_eq!(pmfs[1], 0.0);
+}
+
+/// Among all, two lights are chosen in the proportion in which the tree of these two alone, whose
+/// leaves are their bounds, chooses them.
+#[test]
+fn exhaustive_choices_are_in_proportion_to_importance() {
+    let mut desc = mixed();
+    desc.shapes = Default::default();
+    desc.shapes.push(sphere(0.01).into());
+    let of = |lights: &[usize]| {
+        let mut part = desc.clone();
+        part.lights = Default::default();
+        for (i, (_, light)) in desc.lights.iter().enumerate() {
+            if lights.contains(&i) {
+                part.lights.push(light.value.clone());
+            }
+        }
+        scene(&with_infinite(part))
+    };
+    let count = 10;
+    let all = of(&Vec::from_iter(0..count));
+    let exhaustive = sampler(&all, LightSamplerDesc::Exhaustive);
+    let references = references();
+    let of_all: Vec<_> = references.iter().map(|from| pmfs(&exhaustive, &all, from)).collect();
+    let mut compared = 0;
+    for (i, j) in (0..count).flat_map(|i| (0..i).map(move |j| (j, i))) {
+        let pair = of(&[i, j]);
+        let samplers = [LightSamplerDesc::Bvh, LightSamplerDesc::Exhaustive].map(|kind| sampler(&pair, kind));
+        for (from, of_all) in references.iter().zip(&of_all) {
+            let [by_tree, alone] = samplers.each_ref().map(|sampler| pmfs(sampler, &pair, from));
+            let same = |a: f64, b: f64| (a - b).abs() <= 1e-5 * b;
+            assert!(by_tree.iter().zip(&alone).all(|(&a, &b)| same(a, b)), "{by_tree:?}, {alone:?}");
+            let proportion = |of: &[f64], i: usize, j: usize| of[i] / (of[i] + of[j]);
+            let [few, many] = [proportion(&by_tree, 0, 1), proportion(of_all, i, j)];
+            assert!(same(few, many) || (few.is_nan() && many.is_nan()), "lights {i} and {j}: {few}, {many}");
+            compared += u32::from(few > 0.0 && few < 1.0);
+        }
+    }
+    assert!(compared > 50, "{compared}");
 }
 
 #[test]
