@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn integrators_are_called_by_all_their_names() {
-        assert!(integrator_names().contains(&"photon-mapping") && !integrator_names().contains(&"function"));
+        assert!(integrator_names().contains(&"photon-mapping") && !integrator_names().contains(&"lightpath"));
         for (name, shown) in [
             ("vol-path", "vol-path"),
             ("volpath", "vol-path"),
@@ -198,7 +198,7 @@ mod tests {
         ] {
             assert_eq!(integrator_called(name, &IntegratorDesc::RayCasting).unwrap().name(), shown);
         }
-        assert_eq!(integrator_called("function", &IntegratorDesc::RayCasting), None);
+        assert_eq!(integrator_called("functions", &IntegratorDesc::RayCasting), None);
     }
 
     #[test]

@@ -7,7 +7,6 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use alhazen::description::schema::Settings;
-use alhazen::description::{IntegratorDesc, RadiosityDesc};
 use alhazen::image::DisplaySettings;
 use alhazen::import::{AssetSource, Imported, import};
 use alhazen::integrators::{Control, Limits, PassError, Session};
@@ -59,10 +58,8 @@ impl Prepared {
             return Err(scene_failure(imported));
         }
         overrides.apply(&mut imported.desc).map_err(|error| Failure::Usage(error.to_string()))?;
-        if let IntegratorDesc::Radiosity(RadiosityDesc { mesh_out: Some(file), .. }) =
-            &imported.desc.integrator.value
-        {
-            output::check_place(Path::new(file)).map_err(Failure::Input)?;
+        for file in imported.desc.integrator.files() {
+            output::check_place(Path::new(&file)).map_err(Failure::Input)?;
         }
         Ok(Self { imported, overrides, begin, imported_at: Instant::now() })
     }

@@ -3,7 +3,7 @@
 //! The depth of a path is the number of its scattering events: 0 shows emission only, 1 adds direct
 //! light.
 
-use crate::schema::{above, at_least, between, choices, from, settings, with_extension};
+use crate::schema::{SettingType, above, at_least, between, choices, from, settings, with_extension};
 
 settings! {
     /// An algorithm with its settings.
@@ -47,6 +47,30 @@ settings! {
 }
 
 impl IntegratorDesc {
+    /// The files that it writes beside the picture.
+    pub fn files(&self) -> Vec<String> {
+        match self {
+            Self::Radiosity(RadiosityDesc { mesh_out, .. }) => mesh_out.iter().cloned().collect(),
+            Self::Function(function) => {
+                std::iter::once(function.error_file()).chain(function.image_filename.clone()).collect()
+            }
+            Self::RayCasting
+            | Self::Whitted(_)
+            | Self::AmbientOcclusion(_)
+            | Self::RandomWalk(_)
+            | Self::SimplePath(_)
+            | Self::Path(_)
+            | Self::VolPath(_)
+            | Self::SimpleVolPath(_)
+            | Self::LightTracing(_)
+            | Self::Bdpt(_)
+            | Self::Mlt(_)
+            | Self::PhotonMapping(_)
+            | Self::Sppm(_)
+            | Self::Vcm(_) => Vec::new(),
+        }
+    }
+
     /// Whether the algorithm draws participating media.
     pub fn knows_media(&self) -> bool {
         match self {
@@ -378,5 +402,12 @@ settings! {
         skip_bad: bool = true => ["skipbad"];
         /// A picture file for the function itself, at the film's resolution.
         image_filename: Option<String> = None => ["imagefilename"];
+    }
+}
+
+impl FunctionDesc {
+    /// The text file of the errors.
+    pub fn error_file(&self) -> String {
+        self.filename.clone().unwrap_or_else(|| format!("{}-mse.txt", self.function.to_value()))
     }
 }

@@ -8,7 +8,6 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-use description::schema::SettingType;
 use description::{Diagnostic, FunctionDesc, FunctionKind, Origin};
 use film::Film;
 use geometry::RayStats;
@@ -65,8 +64,8 @@ impl Function {
         value(self.settings.function, sampler.get_pixel_2d())
     }
 
-    /// Finds the errors after all numbers of samples up to the one after this pass: those of earlier
-    /// passes, too, which may have been done in another session.
+    /// Finds the errors after all numbers of samples up to the one after this pass: those of
+    /// earlier passes, too, which may have been done in another session.
     fn find_errors(&mut self, pass: u32, pixels: &Bounds2i, control: &Control) -> Result<(), Cancelled> {
         let (width, area) = (pixels.width() as usize, pixels.area());
         let mut sums = std::mem::take(&mut self.sums);
@@ -169,11 +168,15 @@ impl Integrator for Function {
     }
 
     fn files(&self) -> Vec<OutputFile> {
-        let FunctionDesc { function, filename, image_filename, .. } = &self.settings;
         let lines = (1..).zip(&self.errors).filter(|(samples, _)| self.is_listed(*samples));
         let errors: String = lines.map(|(samples, error)| format!("{samples} {error:e}\n")).collect();
-        let path = filename.clone().unwrap_or_else(|| format!("{}-mse.txt", function.to_value()));
-        let picture = image_filename.iter().zip([&self.picture]).filter(|(_, picture)| !picture.is_empty());
+        let path = self.settings.error_file();
+        let picture = self
+            .settings
+            .image_filename
+            .iter()
+            .zip([&self.picture])
+            .filter(|(_, picture)| !picture.is_empty());
         let errors = [(path, errors.into_bytes())].into_iter().filter(|(_, errors)| !errors.is_empty());
         let files = errors.chain(picture.map(|(path, picture)| (path.clone(), picture.clone())));
         files.map(|(path, contents)| OutputFile { path: path.into(), contents }).collect()
@@ -211,7 +214,7 @@ fn value(function: FunctionKind, p: Vec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use description::schema::{Kind, Value};
+    use description::schema::{Kind, SettingType, Value};
 
     fn functions() -> Vec<FunctionKind> {
         let Kind::Choice(names) = FunctionKind::KIND else { panic!("a choice") };

@@ -111,6 +111,17 @@ fn a_scene_that_names_an_impossible_output_is_wrong() {
 }
 
 #[test]
+fn a_function_is_integrated_beside_the_list_of_its_errors() {
+    let folder = Folder::new("function");
+    folder.write("scene.pbrt", SCENE);
+    let arguments = ["render", "scene.pbrt", "-o", "a.exr", "--integrator", "function", "--set"];
+    let err = folder.alhazen(&[&arguments[..], &["filename=no/such.txt"]].concat()).expect(1).err;
+    assert!(err.contains("no does not exist"), "{err}");
+    folder.alhazen(&[&arguments[..], &["function=disk"]].concat()).expect(0);
+    assert_eq!(folder.files(), ["a.exr", "disk-mse.txt", "scene.pbrt"]);
+}
+
+#[test]
 fn a_mesh_that_cannot_be_written_is_reported_before_the_render() {
     let folder = Folder::new("mesh-out");
     let scene = |file: &str| {

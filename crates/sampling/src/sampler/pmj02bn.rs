@@ -15,11 +15,11 @@
 //! and low frequencies of the error are weak.
 //!
 //! pbrt-v4 has tables of points that also keep their distance, and shifts them by the values of
-//! blue-noise textures, which breaks elementary intervals; its blue noise fades as samples increase.
+//! blue-noise textures, which moves them between elementary intervals.
 //!
 //! A number of samples that is no power of two is rounded up to one. Beyond it, each further round
-//! has a sequence of its own. Tiles, of 2¹⁶ pixels a side where there is one sample per pixel and of
-//! 2¹³ where there are 64, have their own sequences, too.
+//! has a sequence of its own. So have tiles, of 2¹⁶ pixels a side where there is one sample per
+//! pixel, and of 2¹³ where there are 64.
 
 use super::address::{Address, interleaved};
 use super::randomize::Randomize;

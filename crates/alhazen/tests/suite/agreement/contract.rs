@@ -143,7 +143,7 @@ impl Member {
 fn a_closed_furnace_has_every_path_up_to_a_depth_once() {
     let members = Member::all();
     // These have no interreflection.
-    let others = ["ray-casting", "whitted", "ambient-occlusion"];
+    let others = ["ray-casting", "whitted", "ambient-occlusion", "function"];
     for integrator in integrator_names() {
         let is_member = members.iter().any(|member| member.integrator == integrator);
         assert!(is_member != others.contains(&integrator), "{integrator}");
