@@ -9,7 +9,7 @@
 use super::cluster::{Cluster, NUMBERS};
 use super::infinite::{InfiniteLights, separated};
 use crate::light::{LightId, LightSampleContext, Lights};
-use lanes::{Int, Mask, Real};
+use lanes::{Callee, Int, Mask, Real};
 use std::sync::atomic::AtomicBool;
 
 /// Lights in proportion to importance.
@@ -54,9 +54,16 @@ impl ExhaustiveLightSampler {
     fn total<R: Real>(&self, context: &LightSampleContext<R>) -> R {
         let mut total = R::zero();
         for row in 0..self.clusters.len() {
-            total = total + self.importance(R::Int::splat(row as u32), context);
+            total += self.importance(R::Int::splat(row as u32), context);
         }
         total
+    }
+
+    /// The probability of a light of this importance.
+    #[inline(always)]
+    fn share<R: Real>(&self, importance: R, total: R) -> R {
+        let share = R::splat(1.0 - self.infinite.probability()) * (importance / total);
+        R::select(total.gt(R::zero()), share, R::zero())
     }
 
     /// See [`LightSampler::sample_lanes`](super::LightSampler::sample_lanes).
@@ -67,46 +74,7 @@ impl ExhaustiveLightSampler {
         u: R,
         active: R::Mask,
     ) -> (R::Int, R, R::Mask) {
-        let is_infinite = u.lt(R::splat(self.infinite.probability())) & active;
-        let (mut lights, mut pmf, mut valid) = (R::Int::splat(0), R::zero(), is_infinite);
-        if is_infinite.any() {
-            (lights, pmf) = (self.infinite.choose(u), R::splat(self.infinite.pmf()));
-        }
-        let is_bounded = active & !is_infinite;
-        if !is_bounded.any() {
-            return (lights, pmf, valid);
-        }
-        let zero = R::zero();
-        let total = self.total(context);
-        let threshold = self.infinite.rest(u) * total;
-        let (mut sum, mut importance, mut row) = (zero, zero, R::Int::splat(0));
-        let mut searches = is_bounded & total.gt(zero);
-        valid = valid | searches;
-        for candidate in 0..self.clusters.len() {
-            if !searches.any() {
-                break;
-            }
-            let candidate = R::Int::splat(candidate as u32);
-            let of_candidate = self.importance(candidate, context);
-            sum = sum + of_candidate;
-            // If rounding puts the threshold at the total, the last one is chosen.
-            let is_possible = searches & of_candidate.gt(zero);
-            importance = R::select(is_possible, of_candidate, importance);
-            row = R::Int::select(is_possible, candidate, row);
-            searches = searches & !threshold.lt(sum);
-        }
-        if !self.ids.is_empty() {
-            lights = R::Int::select(is_bounded, R::Int::gather(&self.ids, row), lights);
-        }
-        pmf = R::select(is_bounded, self.share(importance, total), pmf);
-        (lights, pmf, valid)
-    }
-
-    /// The probability of a light of this importance.
-    #[inline(always)]
-    fn share<R: Real>(&self, importance: R, total: R) -> R {
-        let share = R::splat(1.0 - self.infinite.probability()) * (importance / total);
-        R::select(total.gt(R::zero()), share, R::zero())
+        R::call(Choose { sampler: self, context, u, active })
     }
 
     pub(super) fn sample(&self, context: &LightSampleContext, u: f32) -> Option<(LightId, f32)> {
@@ -122,18 +90,85 @@ impl ExhaustiveLightSampler {
         lights: R::Int,
         active: R::Mask,
     ) -> R {
-        let zero = R::zero();
+        R::call(Probability { sampler: self, context, lights, active })
+    }
+}
+
+/// The choice of lights for the lanes of `active`. It is called, as loops over lights would make
+/// every caller long.
+struct Choose<'a, R: Real> {
+    sampler: &'a ExhaustiveLightSampler,
+    context: &'a LightSampleContext<R>,
+    u: R,
+    active: R::Mask,
+}
+
+impl<R: Real> Callee<R> for Choose<'_, R> {
+    type Output = (R::Int, R, R::Mask);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self { sampler, context, u, active } = self;
+        let infinite = &sampler.infinite;
+        let is_infinite = u.lt(R::splat(infinite.probability())) & active;
+        let (mut lights, mut pmf, mut valid) = (R::Int::splat(0), R::zero(), is_infinite);
+        if is_infinite.any() {
+            (lights, pmf) = (infinite.choose(u), R::splat(infinite.pmf()));
+        }
+        let is_bounded = active & !is_infinite;
+        if !is_bounded.any() || sampler.ids.is_empty() {
+            return (lights, pmf, valid);
+        }
+        let total = sampler.total(context);
+        let threshold = infinite.rest(u) * total;
+        let (mut sum, mut importance, mut row) = (R::zero(), R::zero(), R::Int::splat(0));
+        let mut searches = is_bounded & total.gt(R::zero());
+        valid = valid | searches;
+        for candidate in 0..sampler.ids.len() {
+            if !searches.any() {
+                break;
+            }
+            let candidate = R::Int::splat(candidate as u32);
+            let of_candidate = sampler.importance(candidate, context);
+            sum += of_candidate;
+            // If rounding puts the threshold at the total, the last one is chosen.
+            let is_possible = searches & of_candidate.gt(R::zero());
+            importance = R::select(is_possible, of_candidate, importance);
+            row = R::Int::select(is_possible, candidate, row);
+            searches = searches & !threshold.lt(sum);
+        }
+        lights = R::Int::select(is_bounded, R::Int::gather(&sampler.ids, row), lights);
+        pmf = R::select(is_bounded, sampler.share(importance, total), pmf);
+        (lights, pmf, valid)
+    }
+}
+
+/// The probabilities of `lights` for the lanes of `active`.
+struct Probability<'a, R: Real> {
+    sampler: &'a ExhaustiveLightSampler,
+    context: &'a LightSampleContext<R>,
+    lights: R::Int,
+    active: R::Mask,
+}
+
+impl<R: Real> Callee<R> for Probability<'_, R> {
+    type Output = R;
+
+    #[inline(always)]
+    fn run(self) -> R {
+        let Self { sampler, context, lights, active } = self;
+        let (zero, first) = (R::zero(), R::Int::splat(0));
         if !active.any() {
             return zero;
         }
-        let rows = R::Int::gather(&self.rows, R::Int::select(active, lights, R::Int::splat(0)));
+        let rows = R::Int::gather(&sampler.rows, R::Int::select(active, lights, first));
         let is_infinite = rows.eq(R::Int::splat(INFINITE));
-        let pmf = R::select(is_infinite, R::splat(self.infinite.pmf()), zero);
+        let pmf = R::select(is_infinite, R::splat(sampler.infinite.pmf()), zero);
         let is_bounded = active & rows.lt(R::Int::splat(INFINITE));
         if !is_bounded.any() {
             return pmf;
         }
-        let importance = self.importance(R::Int::select(is_bounded, rows, R::Int::splat(0)), context);
-        R::select(is_bounded, self.share(importance, self.total(context)), pmf)
+        let importance = sampler.importance(R::Int::select(is_bounded, rows, first), context);
+        R::select(is_bounded, sampler.share(importance, sampler.total(context)), pmf)
     }
 }
