@@ -22,6 +22,7 @@ mod light;
 mod material;
 mod medium;
 mod names;
+mod open_pbr;
 mod options;
 mod sampler;
 mod scene;
@@ -58,6 +59,7 @@ pub use material::{
 pub use medium::{
     CoefficientsDesc, GridDesc, MediumDesc, MediumInterface, MediumKind, MediumType, TemperatureDesc,
 };
+pub use open_pbr::{OpenPbrDesc, OpenPbrNumber};
 pub use options::{Engine, OptionsDesc, RenderSpace};
 pub use sampler::{HaltonRandomization, Randomization, SamplerDesc, SamplerKind};
 pub use scene::SceneDesc;

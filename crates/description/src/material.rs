@@ -5,7 +5,7 @@ use std::sync::Arc;
 use scattering::{MeasuredTable, SubsurfaceMethod};
 
 use crate::names::names;
-use crate::{FloatParameter, Handle, ImageDesc, SpectrumDesc, SpectrumParameter};
+use crate::{FloatParameter, Handle, ImageDesc, OpenPbrDesc, SpectrumDesc, SpectrumParameter};
 
 /// A material.
 #[derive(Clone, Debug)]
@@ -148,6 +148,8 @@ pub enum MaterialKind {
         /// The measurements.
         table: Arc<MeasuredTable>,
     },
+    /// A principled surface.
+    OpenPbr(Box<OpenPbrDesc>),
     /// One of two materials, chosen at random.
     Mix {
         /// The two materials.
@@ -172,6 +174,7 @@ names! {
         Hair = "hair",
         Subsurface = "subsurface",
         Measured = "measured",
+        OpenPbr = "openpbr",
         Mix = "mix",
         Interface = "interface",
     }
@@ -192,7 +195,8 @@ impl MaterialKind {
             | Self::CoatedConductor(_)
             | Self::Hair { .. }
             | Self::Subsurface { .. }
-            | Self::Measured { .. } => false,
+            | Self::Measured { .. }
+            | Self::OpenPbr(_) => false,
         }
     }
 }

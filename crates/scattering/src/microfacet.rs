@@ -104,6 +104,12 @@ impl<R: Real> TrowbridgeReitz<R> {
         self.d_visible(w, wm)
     }
 
+    /// The mean of both α.
+    #[inline(always)]
+    pub(crate) fn mean_alpha(&self) -> R {
+        (self.alpha_x + self.alpha_y) * R::splat(0.5)
+    }
+
     /// The distribution whose α² are larger by `scale` times those of `by`.
     #[inline(always)]
     pub(crate) fn widened(&self, by: &Self, scale: R) -> Self {

@@ -120,7 +120,10 @@ impl<'a> Batch<'a> {
             }
             let is_emitted = entry.first_light.is_none() || light.is_some();
             let is_last = self.paths.depth[row as usize] == max_depth;
-            if is_emitted && is_last && scene.materials()[entry.material.0 as usize].material.stops() {
+            if is_emitted
+                && is_last
+                && scene.materials()[entry.material.0 as usize].material.stops(scene.textures())
+            {
                 continue;
             }
             let shading = self.pass.materials.shading(entry.material, self.paths.has_differentials(row));
@@ -182,6 +185,7 @@ impl<'a> Batch<'a> {
                 Material::Hair(_)
                 | Material::Measured(_)
                 | Material::Subsurface(_)
+                | Material::OpenPbr(_)
                 | Material::Mix(_)
                 | Material::Interface => {
                     unreachable!("invariant: LaneMaterials has all others in no lanes")

@@ -43,6 +43,7 @@ impl LaneMaterials {
                 Material::Hair(_)
                 | Material::Measured(_)
                 | Material::Subsurface(_)
+                | Material::OpenPbr(_)
                 | Material::Mix(_)
                 | Material::Interface => (false, false),
             };

@@ -33,8 +33,8 @@ pub struct Dielectric<R = f32> {
 }
 
 /// What turns `wo` into `wi`: microfacets of normal `wm` in the upper hemisphere.
-struct Facet<R: Real> {
-    wm: Vector3<R>,
+pub(super) struct Facet<R: Real> {
+    pub wm: Vector3<R>,
     /// Whether the facet reflects; else it refracts.
     reflects: R::Mask,
     /// The relative index met from `wo` to `wi`; 1 where the facet reflects.
@@ -50,7 +50,7 @@ impl<R: Real> Dielectric<R> {
     /// The facets that turn `wo` into `wi`, and where there are any that are not those of a smooth
     /// surface and both directions are on their front side.
     #[inline(always)]
-    fn facet(&self, wo: Vector3<R>, wi: Vector3<R>) -> (Facet<R>, R::Mask) {
+    pub(super) fn facet(&self, wo: Vector3<R>, wi: Vector3<R>) -> (Facet<R>, R::Mask) {
         let reflects = same_hemisphere(wo, wi);
         let eta = R::select(wo.z.gt(R::zero()), self.eta, R::one() / self.eta);
         let eta = R::select(reflects, R::one(), eta);
@@ -62,7 +62,7 @@ impl<R: Real> Dielectric<R> {
 
     /// The value at `facet`, which reflects the share `fresnel`.
     #[inline(always)]
-    fn f_facet(
+    pub(super) fn f_facet(
         &self,
         wo: Vector3<R>,
         wi: Vector3<R>,

@@ -11,6 +11,7 @@ mod hair;
 mod layered;
 mod measured;
 mod normalized_fresnel;
+mod openpbr;
 mod scatter;
 mod subsurface;
 mod thin_dielectric;
@@ -23,6 +24,7 @@ pub use hair::Hair;
 pub use layered::{CoatedBase, Layered, inner_reflectance};
 pub use measured::{Measured, MeasuredData, MeasuredGrid, MeasuredTable};
 pub use normalized_fresnel::NormalizedFresnel;
+pub use openpbr::{OpenPbr, OpenPbrParameters};
 pub use scatter::{BsdfSample, Scatter};
 pub use subsurface::{Subsurface, SubsurfaceMethod};
 pub use thin_dielectric::ThinDielectric;
@@ -56,6 +58,8 @@ pub enum Bxdf<'a> {
     Subsurface(Subsurface<'a>),
     /// Light that enters such a body.
     NormalizedFresnel(NormalizedFresnel),
+    /// A principled surface.
+    OpenPbr(OpenPbr),
 }
 
 /// Evaluates an expression with the member of a [`Bxdf`](crate::Bxdf), whichever it is, under a
@@ -82,6 +86,7 @@ macro_rules! each_bxdf {
             $crate::Bxdf::Measured($member) => $body,
             $crate::Bxdf::Subsurface($member) => $body,
             $crate::Bxdf::NormalizedFresnel($member) => $body,
+            $crate::Bxdf::OpenPbr($member) => $body,
         }
     };
 }
@@ -149,4 +154,5 @@ into_bxdf! {
     Measured(Measured<'a>)
     Subsurface(Subsurface<'a>)
     NormalizedFresnel(NormalizedFresnel)
+    OpenPbr(OpenPbr)
 }

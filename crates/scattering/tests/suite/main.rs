@@ -5,4 +5,5 @@ mod hair;
 mod layers;
 mod measured;
 mod microfacets;
+mod openpbr;
 mod subsurface;

@@ -9,7 +9,7 @@ use crate::material::Material;
 use crate::medium::MediumInterface;
 use crate::scene::InstanceEntry;
 use crate::texture::FloatTextureId;
-use description::{AreaLightDesc, Origin, ShapeDesc, Span, Stated};
+use description::{AreaLightDesc, MaterialKind, Origin, ShapeDesc, Span, Stated};
 use geometry::{Geometry, GeometryId, GroupId, Instance, InstanceId, InstancePath, World};
 
 /// The maximum number of lights of a scene; each primitive of each instance counts. The tables of
@@ -48,6 +48,37 @@ impl Compiler<'_> {
             let emission = self.area_emission(light, &light.origin);
             self.area_emissions.push(emission);
         }
+        for (_, material) in desc.materials.iter() {
+            let emission = self.material_emission(&material.kind, &material.origin);
+            self.material_emissions
+                .push(emission.is_some().then(|| EmissionId(self.area_emissions.len() as u32)));
+            self.area_emissions.extend(emission.map(Some));
+        }
+    }
+
+    /// What shapes of a material emit without an area light of their own; `None` if nothing.
+    fn material_emission(&mut self, material: &MaterialKind, origin: &Origin) -> Option<AreaEmission> {
+        let MaterialKind::OpenPbr(desc) = material else { return None };
+        let (luminance, span) = (desc.emission_luminance, origin.parameter("emission_luminance"));
+        if luminance == 0.0 {
+            return None;
+        }
+        if !(luminance > 0.0 && luminance.is_finite()) {
+            let message = format!("a luminance is finite and not negative, as {luminance} is not");
+            self.error("invalid-value", message, span);
+        }
+        let radiance = self.emission(&desc.emission_color, luminance, origin.parameter("emission_color"));
+        Some(AreaEmission { radiance, image: None, two_sided: false })
+    }
+
+    /// The emission of a shape, and its power if the scene states it.
+    fn emission_of(&self, shape: &ShapeDesc) -> Option<(EmissionId, Option<f32>)> {
+        if let Some(handle) = shape.area_light {
+            self.area_emissions[handle.index()].as_ref()?;
+            return Some((EmissionId(handle.index() as u32), self.desc.area_lights[handle].power));
+        }
+        let id = self.material_emissions[shape.material?.index()]?;
+        Some((id, None))
     }
 
     fn area_emission(&mut self, desc: &AreaLightDesc, origin: &Origin) -> Option<AreaEmission> {
@@ -69,7 +100,7 @@ impl Compiler<'_> {
         geometry: &Geometry,
         alpha: Option<FloatTextureId>,
     ) -> Option<Emitter> {
-        let handle = shape.area_light?;
+        let (emission, power) = self.emission_of(shape)?;
         let span = shape.origin.span;
         if !shape.kind.traits().can_emit {
             let message = "solids and surfaces given by formulas do not emit; drawn without light";
@@ -81,7 +112,6 @@ impl Compiler<'_> {
             self.warn("light-ignored", "a shape of material `interface` does not emit", span);
             return None;
         }
-        self.area_emissions[handle.index()].as_ref()?;
         let Some(first) = geometry.shape(0) else {
             self.warn("light-ignored", "curves do not emit; drawn without light", span);
             return None;
@@ -92,13 +122,7 @@ impl Compiler<'_> {
             return None;
         }
         let invisible = alpha.and_then(|id| self.constant_alpha(id)).is_some_and(|alpha| alpha <= 0.0);
-        Some(Emitter {
-            emission: EmissionId(handle.index() as u32),
-            alpha,
-            invisible,
-            power: self.desc.area_lights[handle].power,
-            primitives: geometry.len() as u32,
-        })
+        Some(Emitter { emission, alpha, invisible, power, primitives: geometry.len() as u32 })
     }
 
     /// Adds the emitter of a geometry of a group. Returns the index of its first light in the

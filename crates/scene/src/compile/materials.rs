@@ -4,14 +4,14 @@ use super::Compiler;
 use crate::material::{
     BumpMap, Coat, CoatedConductorMaterial, CoatedDiffuseMaterial, ConductorIndex, ConductorMaterial,
     DielectricMaterial, DiffuseMaterial, DiffuseTransmissionMaterial, HairAbsorption, HairMaterial, Material,
-    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, Roughness, SubsurfaceMaterial,
-    ThinDielectricMaterial,
+    MaterialEntry, MaterialId, MeasuredMaterial, MixMaterial, NormalMap, OpenPbrMaterial, Roughness,
+    SubsurfaceMaterial, ThinDielectricMaterial,
 };
 use crate::texture::{SpectrumType, compile_spectrum};
 use crate::traits::Occurrence;
 use description::{
     ConductorDesc, ConductorReflectance, FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc,
-    MaterialKind, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
+    MaterialKind, OpenPbrDesc, Origin, RoughnessDesc, SpectrumDesc, SpectrumParameter, SubsurfaceScattering,
 };
 use scattering::inner_reflectance;
 use spectrum::Spectrum;
@@ -165,8 +165,29 @@ impl Compiler<'_> {
                 let roughness = self.roughness(roughness, "", origin);
                 Material::Subsurface(SubsurfaceMaterial { table, inside, roughness, method: *method })
             }
+            MaterialKind::OpenPbr(desc) => self.openpbr(desc, origin),
             MaterialKind::Measured { table } => Material::Measured(MeasuredMaterial { table: table.clone() }),
         }
+    }
+
+    fn openpbr(&mut self, desc: &OpenPbrDesc, origin: &Origin) -> Material {
+        let numbers = std::array::from_fn(|i| {
+            let (number, span) = (OpenPbrDesc::NUMBERS[i], origin.parameter(OpenPbrDesc::NUMBERS[i].name));
+            let texture = self.float_texture(&desc.numbers[i], span);
+            let [least, most] = number.range;
+            if let Some(value) = self.textures.textures().constant(texture)
+                && !(least..=most).contains(&value)
+            {
+                let message = match most {
+                    f32::MAX => format!("`{}` cannot be negative, as {value} is", number.name),
+                    _ => format!("`{}` lies between {least} and {most}, as {value} does not", number.name),
+                };
+                self.error("invalid-value", message, span);
+            }
+            texture
+        });
+        let colors = std::array::from_fn(|i| self.albedo(&desc.colors[i], OpenPbrDesc::COLORS[i].0, origin));
+        Material::OpenPbr(OpenPbrMaterial { numbers, colors })
     }
 
     pub(super) fn albedo(

@@ -16,7 +16,7 @@ mod spheres;
 mod subsurface;
 mod tessellation;
 
-use crate::light::{AreaEmission, LightTable, SceneSphere};
+use crate::light::{AreaEmission, EmissionId, LightTable, SceneSphere};
 use crate::material::MaterialEntry;
 use crate::medium::Medium;
 use crate::names::Names;
@@ -79,6 +79,7 @@ pub fn compile(mut desc: SceneDesc) -> Result<Compiled, Vec<Diagnostic>> {
         bssrdf_tables: Vec::new(),
         media: Vec::new(),
         area_emissions: Vec::new(),
+        material_emissions: Vec::new(),
         last_spectrum: None,
         emitters: vec![Emitters::default()],
         traits: SceneTraits::default(),
@@ -140,6 +141,8 @@ struct Compiler<'a> {
     media: Vec<Medium>,
     instances: Vec<InstanceEntry>,
     area_emissions: Vec<Option<AreaEmission>>,
+    /// What shapes emit by their material.
+    material_emissions: Vec<Option<EmissionId>>,
     /// The last light's spectrum, which lights of the same description share.
     last_spectrum: Option<(SpectrumDesc, Spectrum, f32)>,
     /// Indexed by group of the world.

@@ -16,6 +16,7 @@ mod hair;
 mod measured;
 mod mix;
 mod normal_map;
+mod openpbr;
 mod roughness;
 mod subsurface;
 mod thin_dielectric;
@@ -33,6 +34,7 @@ pub use hair::{HairAbsorption, HairMaterial};
 pub use measured::MeasuredMaterial;
 pub use mix::MixMaterial;
 pub use normal_map::NormalMap;
+pub use openpbr::OpenPbrMaterial;
 pub use roughness::Roughness;
 pub use subsurface::{SubsurfaceInside, SubsurfaceMaterial};
 pub use thin_dielectric::ThinDielectricMaterial;
@@ -81,6 +83,8 @@ pub enum Material {
     Measured(MeasuredMaterial),
     /// See [`SubsurfaceMaterial`].
     Subsurface(SubsurfaceMaterial),
+    /// See [`OpenPbrMaterial`].
+    OpenPbr(OpenPbrMaterial),
     /// See [`MixMaterial`].
     Mix(MixMaterial),
     /// Rays pass through; only the medium changes.
@@ -108,6 +112,7 @@ impl Material {
             Self::Hair(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Measured(m) => Some(m.bxdf(lambda).into()),
             Self::Subsurface(m) => Some(m.bxdf(textures, context, lambda).into()),
+            Self::OpenPbr(m) => Some(m.bxdf(textures, context, lambda).into()),
             Self::Mix(_) | Self::Interface => None,
         }
     }
@@ -119,6 +124,7 @@ impl Material {
             Self::Conductor(m) => m.roughness.may_be_smooth(textures),
             Self::Subsurface(m) => m.roughness.may_be_smooth(textures),
             Self::CoatedDiffuse(m) => m.coat.roughness.may_be_smooth(textures),
+            Self::OpenPbr(m) => m.may_be_specular(textures),
             Self::CoatedConductor(m) => m.coat.roughness.may_be_smooth(textures),
             Self::Dielectric(_) | Self::ThinDielectric(_) | Self::Mix(_) | Self::Interface => true,
         }
@@ -126,7 +132,7 @@ impl Material {
 
     /// Whether a path that does not scatter ends there with its wavelengths as they are: no ray
     /// passes through the material, and it is not dispersive.
-    pub fn stops(&self) -> bool {
+    pub fn stops(&self, textures: &Textures) -> bool {
         match self {
             Self::Diffuse(_)
             | Self::DiffuseTransmission(_)
@@ -134,6 +140,7 @@ impl Material {
             | Self::Hair(_)
             | Self::Measured(_)
             | Self::Subsurface(_) => true,
+            Self::OpenPbr(m) => !m.may_disperse(textures),
             Self::Dielectric(m) => !is_dispersive(&m.eta),
             Self::ThinDielectric(m) => !is_dispersive(&m.eta),
             Self::CoatedDiffuse(m) => !m.coat.is_dispersive(),

@@ -2,8 +2,8 @@
 
 use description::{
     Arena, CoatedConductorDesc, CoatedDiffuseDesc, ConductorDesc, ConductorReflectance, Diagnostic,
-    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, RoughnessDesc,
-    Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
+    FloatParameter, HairColor, Handle, LayersDesc, MaterialDesc, MaterialKind, MaterialType, OpenPbrDesc,
+    RoughnessDesc, Spanned, SpectrumDesc, Substance, SubsurfaceScattering,
 };
 use scattering::SubsurfaceMethod;
 
@@ -140,6 +140,7 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
             };
             MaterialKind::Measured { table: reader.builder.measured_file(&file)? }
         }
+        MaterialType::OpenPbr => MaterialKind::OpenPbr(Box::new(openpbr(reader))),
         MaterialType::Mix => mix(reader)?,
         MaterialType::Interface => MaterialKind::Interface,
     })
@@ -250,6 +251,31 @@ fn subsurface(reader: &mut Reader) -> Option<MaterialKind> {
         roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
         method: reader.choice("method", Diffusion, &[("diffusion", Diffusion), ("random-walk", RandomWalk)]),
     })
+}
+
+fn openpbr(reader: &mut Reader) -> OpenPbrDesc {
+    let numbers = OpenPbrDesc::NUMBERS.map(|number| reader.float_parameter(number.name, number.default));
+    let colors = OpenPbrDesc::COLORS.map(|(name, default)| reader.spectrum_parameter(name, default));
+    let emission_luminance = reader.float("emission_luminance", 0.0);
+    let emission_color = reader.spectrum("emission_color");
+    reader.note("white", "");
+    let unused = [
+        ("subsurface_radius", reader.optional_float_parameter("subsurface_radius").is_some()),
+        ("subsurface_radius_scale", reader.optional_spectrum_parameter("subsurface_radius_scale").is_some()),
+        (
+            "subsurface_scatter_anisotropy",
+            reader.optional_float_parameter("subsurface_scatter_anisotropy").is_some(),
+        ),
+    ];
+    for (name, _) in unused.into_iter().filter(|(_, is_given)| *is_given) {
+        reader.ignored(name, format!("`{name}` has no effect: light leaves where it entered"));
+    }
+    OpenPbrDesc {
+        numbers,
+        colors,
+        emission_luminance,
+        emission_color: emission_color.unwrap_or(SpectrumDesc::Illuminant(reader.color_space)),
+    }
 }
 
 /// The name of a substance, checked.

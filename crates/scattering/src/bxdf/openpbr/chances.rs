@@ -1,0 +1,136 @@
+//! The probabilities of lobes, about what each scatters from a direction, and their densities.
+
+use super::shares::glass_rest_below;
+use super::{OpenPbr, View, flip};
+use crate::{Directions, Scatter, TransportMode};
+use math::{Vector3, same_hemisphere};
+use sampling::warp::{cosine_hemisphere_pdf, uniform_hemisphere_pdf};
+use spectrum::SampledSpectrum;
+
+/// What a sample is drawn from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Lobe {
+    /// Fuzz, evenly over the hemisphere.
+    Fuzz,
+    /// The coat, by its facets.
+    Coat,
+    /// The reflection of opaque bases, by their facets.
+    Facets,
+    /// Glass, reflected or refracted by its facets.
+    Glass,
+    /// The rest, by its cosine.
+    Rest,
+    /// The rest of glass on its other side, by its cosine.
+    Through,
+}
+
+const LOBES: [Lobe; 6] = [Lobe::Fuzz, Lobe::Coat, Lobe::Facets, Lobe::Glass, Lobe::Rest, Lobe::Through];
+
+/// The probabilities of all lobes.
+pub(super) struct Chances([f32; 6]);
+
+impl Chances {
+    /// For light to `wo`, off the horizon. All are zero if nothing is scattered.
+    pub fn new(surface: &OpenPbr, view: &View, wo: Vector3, directions: Directions) -> Self {
+        let cosine = wo.z.abs();
+        let shares = &view.shares;
+        let weights = surface.weights(wo.z);
+        let opaque = surface.darkening * surface.absorbed(2.0 * surface.coat_length(cosine));
+        let tinted = surface.absorbed(surface.coat_length(cosine)) * surface.transmission_color;
+        let glass = surface.glass();
+        let rests = &surface.rests;
+
+        let fuzz = surface.fuzz_weight * shares.fuzz.upwards() * surface.fuzz_color.average();
+        let mut reflected = SampledSpectrum::ZERO;
+        let mut rest = SampledSpectrum::ZERO;
+        if weights.diffuse > 0.0 {
+            reflected += shares.dielectric * surface.specular_color * weights.diffuse;
+            rest += shares.diffuse_rest * surface.diffuse_color * weights.diffuse;
+        }
+        if weights.metal > 0.0 {
+            reflected += surface.facets.metal(cosine) * (shares.metal * weights.metal);
+            rest += rests.metal_color * (shares.metal_rest * weights.metal);
+        }
+        let mut rest = (rest * opaque).average();
+        let (mut facets, mut through) = (0.0, 0.0);
+        if glass > 0.0 {
+            let left;
+            if wo.z > 0.0 {
+                facets = (shares.dielectric * surface.specular_color + shares.refracted * tinted).average();
+                left = shares.glass_rest;
+            } else {
+                left = glass_rest_below(surface, &view.facing, cosine);
+                facets = 1.0 - left;
+            }
+            let side = usize::from(wo.z < 0.0);
+            rest += glass * left * (1.0 - rests.through[side]);
+            through = glass * left * rests.through[side] * tinted.average();
+        }
+        let mut chances = [
+            weights.layers * fuzz,
+            weights.layers * shares.coat,
+            (reflected * opaque).average(),
+            glass * facets,
+            rest,
+            through,
+        ];
+        match directions {
+            Directions::All => (),
+            Directions::Reflection => chances[5] = 0.0,
+            Directions::Transmission => [0, 1, 2, 4].into_iter().for_each(|i| chances[i] = 0.0),
+        }
+        let sum: f32 = chances.iter().sum();
+        if sum > 0.0 {
+            chances.iter_mut().for_each(|chance| *chance /= sum);
+        }
+        Self(chances)
+    }
+
+    /// A lobe, its probability, and a number in [0, 1) that is left to choose with; `None` if there
+    /// is no lobe.
+    pub fn choose(&self, u: f32) -> Option<(Lobe, f32, f32)> {
+        let mut left = u;
+        let mut last = None;
+        for (lobe, &chance) in LOBES.into_iter().zip(&self.0) {
+            if chance > 0.0 {
+                let rest = (left / chance).min(math::ONE_MINUS_EPSILON);
+                if left < chance {
+                    return Some((lobe, chance, rest));
+                }
+                last = Some((lobe, chance, rest));
+                left -= chance;
+            }
+        }
+        last
+    }
+
+    /// The density of `wi`, off the horizon.
+    pub fn pdf(
+        &self,
+        surface: &OpenPbr,
+        wo: Vector3,
+        wi: Vector3,
+        mode: TransportMode,
+        directions: Directions,
+    ) -> f32 {
+        let [fuzz, coat, facets, glass, rest, through] = self.0;
+        let boundary = surface.boundary();
+        let mut pdf = 0.0;
+        if glass > 0.0 {
+            pdf += glass * boundary.pdf(wo, wi, mode, directions);
+        }
+        let cosine = cosine_hemisphere_pdf(wi.z.abs());
+        if !same_hemisphere(wo, wi) {
+            return pdf + through * cosine;
+        }
+        let [wo, wi] = [wo, wi].map(|w| flip(wo.z < 0.0, w));
+        let reflection = Directions::Reflection;
+        if coat > 0.0 {
+            pdf += coat * surface.coat_boundary().pdf(wo, wi, mode, reflection);
+        }
+        if facets > 0.0 {
+            pdf += facets * boundary.pdf(wo, wi, mode, reflection);
+        }
+        pdf + rest * cosine + fuzz * uniform_hemisphere_pdf()
+    }
+}

@@ -1,0 +1,71 @@
+//! The nodes of the tables: roughnesses evenly from 0 to 1, and cosines that are squares, as
+//! everything is steep at grazing angles.
+
+use math::{safe_sqrt, sqr};
+
+/// Cosines, the squares of 0, 1/18, … 1.
+const COSINES: usize = 19;
+/// Roughnesses.
+const ROUGHNESSES: usize = 21;
+
+/// A value for each roughness and cosine.
+#[derive(Debug)]
+pub(super) struct Grid<T>(Vec<T>);
+
+impl<T> Grid<T> {
+    /// The values of a function of roughness and cosine.
+    pub fn new(value: impl Fn(f32, f32) -> T) -> Self {
+        let part = |i: usize, len: usize| i as f32 / (len - 1) as f32;
+        let node = |i: usize| value(part(i / COSINES, ROUGHNESSES), sqr(part(i % COSINES, COSINES)));
+        Self((0..ROUGHNESSES * COSINES).map(node).collect())
+    }
+
+    /// The four nodes around a roughness and a cosine, with their weights.
+    pub fn around(&self, roughness: f32, cosine: f32) -> [(f32, &T); 4] {
+        let [r, c] = [Place::new(roughness, ROUGHNESSES), Place::new(safe_sqrt(cosine), COSINES)];
+        let node = |i: usize, j: usize| {
+            let weight = r.weights()[i] * c.weights()[j];
+            (weight, &self.0[(r.index + i) * COSINES + c.index + j])
+        };
+        [node(0, 0), node(0, 1), node(1, 0), node(1, 1)]
+    }
+}
+
+/// An interval between nodes, and where in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// Its first node.
+    pub index: usize,
+    t: f32,
+}
+
+impl Place {
+    /// Of `x` in [0, 1] among `len` nodes.
+    pub fn new(x: f32, len: usize) -> Self {
+        let x = x.clamp(0.0, 1.0) * (len - 1) as f32;
+        let index = (x as usize).min(len - 2);
+        Self { index, t: x - index as f32 }
+    }
+
+    /// The weights of both nodes.
+    pub fn weights(self) -> [f32; 2] {
+        [1.0 - self.t, self.t]
+    }
+}
+
+/// ∫ 2μ f(μ) dμ from 0 to 1 by six nodes of Gauss in √μ: the mean of f over the directions of a
+/// hemisphere by their cosine.
+pub(super) fn mean(mut f: impl FnMut(f32) -> f32) -> f32 {
+    nodes().map(|(cosine, weight)| weight * f(cosine)).into_iter().sum()
+}
+
+/// The cosines and weights of [`mean`].
+pub(super) fn nodes() -> [(f32, f32); 6] {
+    const GAUSS: [(f32, f32); 3] =
+        [(0.238_619_19, 0.467_913_93), (0.661_209_4, 0.360_761_57), (0.932_469_5, 0.171_324_49)];
+    std::array::from_fn(|i| {
+        let (x, weight) = GAUSS[i / 2];
+        let root = 0.5 * (1.0 + if i % 2 == 0 { x } else { -x });
+        (sqr(root), 2.0 * root * sqr(root) * weight)
+    })
+}
