@@ -104,10 +104,10 @@ impl<R: Real> TrowbridgeReitz<R> {
         self.d_visible(w, wm)
     }
 
-    /// The mean of both α.
+    /// √(α_x α_y).
     #[inline(always)]
     pub(crate) fn mean_alpha(&self) -> R {
-        (self.alpha_x + self.alpha_y) * R::splat(0.5)
+        (self.alpha_x * self.alpha_y).sqrt()
     }
 
     /// The distribution whose α² are larger by `scale` times those of `by`.

@@ -73,6 +73,7 @@ fn exact_members() -> Vec<Bxdf> {
     members.extend([lossless_conductor(0.0), lossless_conductor(0.3), dielectric(1.0, 0.3, 0.3)]);
     members.extend(crate::layers::exact_members());
     members.extend(crate::subsurface::members());
+    members.extend(crate::openpbr::members());
     members
 }
 
@@ -183,11 +184,12 @@ impl Strips {
 
 /// The relative index of refraction for light from `wo`.
 fn met(bxdf: &Bxdf, wo: Vector3) -> f32 {
-    match bxdf {
-        Bxdf::Dielectric(glass) if wo.z > 0.0 => glass.eta,
-        Bxdf::Dielectric(glass) => 1.0 / glass.eta,
+    let eta = match bxdf {
+        Bxdf::Dielectric(glass) => glass.eta,
+        Bxdf::OpenPbr(surface) => surface.eta(),
         _ => 1.0,
-    }
+    };
+    if wo.z > 0.0 { eta } else { 1.0 / eta }
 }
 
 #[test]
@@ -305,8 +307,9 @@ fn specular_refraction_is_reversible() {
 #[test]
 fn no_sample_gains_energy() {
     let mut random = Random::new(5);
-    // The samples of bodies have one albedo only in the mean.
-    for bxdf in members().into_iter().filter(|bxdf| !matches!(bxdf, Bxdf::Subsurface(_))) {
+    // The samples of bodies and principled surfaces have one albedo only in the mean.
+    let is_exact = |bxdf: &Bxdf| !matches!(bxdf, Bxdf::Subsurface(_) | Bxdf::OpenPbr(_));
+    for bxdf in members().into_iter().filter(is_exact) {
         for wo in views() {
             for _ in 0..500 {
                 if let Some(sample) =

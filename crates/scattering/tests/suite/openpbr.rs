@@ -1,6 +1,9 @@
-//! The principled surface: energy, limits of its parameters.
+//! The principled surface: energy, and limits in which it is another member.
 
-use alhazen_scattering::{Bxdf, Directions, OpenPbr, OpenPbrParameters, Scatter, TransportMode};
+use alhazen_scattering::{
+    Bxdf, Dielectric, Directions, OpenPbr, OpenPbrParameters, Scatter, TransportMode, TrowbridgeReitz,
+    fr_dielectric,
+};
 use math::{Vec2, spherical_direction};
 use spectrum::{SampledSpectrum, SampledWavelengths};
 use testkit::Random;
@@ -16,72 +19,196 @@ fn lossless() -> OpenPbrParameters {
     OpenPbrParameters { base_color: WHITE, subsurface_color: WHITE, ..OpenPbrParameters::default() }
 }
 
-/// What is scattered from a direction, by samples.
-fn albedo(bxdf: &Bxdf, cosine: f32, phi: f32) -> f64 {
-    let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, phi);
-    let mut random = Random::new(7);
-    const COUNT: usize = 10_000;
-    let mut sum = 0.0;
-    for i in 0..COUNT {
-        let u = Vec2::new((i as f32 + random.get_1d()) / COUNT as f32, random.get_1d());
-        let uc = ((i * 7919) % COUNT) as f32 / COUNT as f32;
-        let s = bxdf.sample_f(wo, uc, u, TransportMode::Importance, Directions::All);
-        if s.valid && s.pdf > 0.0 {
-            sum += f64::from((s.f * (s.wi.z.abs() / s.pdf)).average());
-        }
+/// Parameters with all layers and colours.
+fn everything() -> OpenPbrParameters {
+    let color = |r, g, b, a| SampledSpectrum::new([r, g, b, a]);
+    OpenPbrParameters {
+        base_color: color(0.9, 0.5, 0.2, 0.1),
+        base_diffuse_roughness: 0.5,
+        base_metalness: 0.3,
+        specular_color: color(1.0, 0.8, 0.9, 0.7),
+        specular_roughness: 0.4,
+        transmission_weight: 0.5,
+        transmission_color: color(0.9, 1.0, 0.8, 0.7),
+        coat_weight: 0.8,
+        coat_color: color(0.9, 0.6, 0.7, 0.8),
+        coat_roughness: 0.3,
+        fuzz_weight: 0.6,
+        fuzz_color: color(0.8, 0.9, 0.4, 0.5),
+        thin_film_weight: 0.5,
+        ..OpenPbrParameters::default()
     }
-    sum / COUNT as f64
 }
 
+/// Opaque and transparent surfaces, smooth and rough, with and without layers.
+pub fn members() -> Vec<Bxdf<'static>> {
+    let base = OpenPbrParameters::default();
+    let metal = OpenPbrParameters { base_metalness: 1.0, ..base };
+    let glass = OpenPbrParameters { transmission_weight: 1.0, ..base };
+    vec![
+        surface(base),
+        surface(OpenPbrParameters { coat_weight: 1.0, specular_roughness: 0.7, ..metal }),
+        surface(OpenPbrParameters { specular_roughness: 0.0, ..metal }),
+        surface(OpenPbrParameters { specular_roughness: 0.6, specular_roughness_anisotropy: 0.5, ..metal }),
+        surface(OpenPbrParameters { specular_roughness: 0.6, ..glass }),
+        surface(OpenPbrParameters { specular_roughness: 0.0, ..glass }),
+        surface(OpenPbrParameters { fuzz_weight: 1.0, ..base }),
+        surface(everything()),
+    ]
+}
+
+/// What is scattered from a direction, by stratified samples.
+fn albedo(bxdf: &Bxdf, cosine: f32) -> SampledSpectrum {
+    const COUNT: usize = 4000;
+    let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, 0.4);
+    let mut random = Random::new(7);
+    let samples = (0..COUNT).map(|i| {
+        let u = Vec2::new((i as f32 + random.get_1d()) / COUNT as f32, random.get_1d());
+        let uc = ((i * 1471) % COUNT) as f32 / COUNT as f32;
+        let sample = bxdf.sample_f(wo, uc, u, TransportMode::Importance, Directions::All).into_option();
+        sample.map_or(SampledSpectrum::ZERO, |sample| sample.f * (sample.wi.z.abs() / sample.pdf))
+    });
+    samples.sum::<SampledSpectrum>() / COUNT as f32
+}
+
+const COSINES: [f32; 7] = [1.0, 0.6, 0.2, 0.05, -0.3, -0.7, -1.0];
+
 #[test]
-fn explore() {
-    println!("size {} openpbr {}", std::mem::size_of::<Bxdf>(), std::mem::size_of::<OpenPbr>());
-    let cases: Vec<(&str, OpenPbrParameters)> = vec![
-        ("diffuse", lossless()),
-        ("eon", OpenPbrParameters { base_diffuse_roughness: 1.0, ..lossless() }),
-        ("metal", OpenPbrParameters { base_metalness: 1.0, ..lossless() }),
-        ("glass", OpenPbrParameters { transmission_weight: 1.0, ..lossless() }),
-        ("glass2", OpenPbrParameters { transmission_weight: 1.0, specular_ior: 2.2, ..lossless() }),
-        ("coat diffuse", OpenPbrParameters { coat_weight: 1.0, ..lossless() }),
-        ("rough coat diffuse", OpenPbrParameters { coat_weight: 1.0, coat_roughness: 0.5, ..lossless() }),
-        ("coat metal", OpenPbrParameters { coat_weight: 1.0, base_metalness: 1.0, ..lossless() }),
-        (
-            "rough coat metal",
-            OpenPbrParameters { coat_weight: 1.0, coat_roughness: 0.4, base_metalness: 1.0, ..lossless() },
-        ),
-        ("coat glass", OpenPbrParameters { coat_weight: 1.0, transmission_weight: 1.0, ..lossless() }),
-        ("fuzz diffuse", OpenPbrParameters { fuzz_weight: 1.0, ..lossless() }),
-        ("fuzz metal", OpenPbrParameters { fuzz_weight: 1.0, base_metalness: 1.0, ..lossless() }),
-        ("film diffuse", OpenPbrParameters { thin_film_weight: 1.0, ..lossless() }),
-        ("film metal", OpenPbrParameters { thin_film_weight: 1.0, base_metalness: 1.0, ..lossless() }),
-        ("film glass", OpenPbrParameters { thin_film_weight: 1.0, transmission_weight: 1.0, ..lossless() }),
-        (
-            "fuzz coat mix",
-            OpenPbrParameters {
-                fuzz_weight: 0.7,
-                coat_weight: 0.5,
-                coat_roughness: 0.2,
-                base_metalness: 0.4,
-                transmission_weight: 0.3,
-                ..lossless()
-            },
-        ),
-        (
-            "aniso metal",
-            OpenPbrParameters { specular_roughness_anisotropy: 0.7, base_metalness: 1.0, ..lossless() },
-        ),
+fn what_absorbs_nothing_loses_nothing() {
+    let metal = OpenPbrParameters { base_metalness: 1.0, ..lossless() };
+    let glass = OpenPbrParameters { transmission_weight: 1.0, ..lossless() };
+    let cases = [
+        ("diffuse", lossless(), 0.012),
+        ("rough diffuse", OpenPbrParameters { base_diffuse_roughness: 1.0, ..lossless() }, 0.025),
+        ("metal", metal, 0.012),
+        ("glass", glass, 0.015),
+        ("dense glass", OpenPbrParameters { specular_ior: 2.2, ..glass }, 0.015),
+        ("clear coat", OpenPbrParameters { coat_weight: 1.0, ..lossless() }, 0.012),
+        ("rough coat", OpenPbrParameters { coat_weight: 1.0, coat_roughness: 0.5, ..lossless() }, 0.012),
+        ("coated metal", OpenPbrParameters { coat_weight: 1.0, ..metal }, 0.012),
+        ("half coated metal", OpenPbrParameters { coat_weight: 0.5, coat_roughness: 0.4, ..metal }, 0.012),
+        ("coated glass", OpenPbrParameters { coat_weight: 1.0, ..glass }, 0.06),
+        ("fuzz", OpenPbrParameters { fuzz_weight: 1.0, ..lossless() }, 0.012),
+        ("fuzzy metal", OpenPbrParameters { fuzz_weight: 1.0, fuzz_roughness: 0.2, ..metal }, 0.02),
+        ("film", OpenPbrParameters { thin_film_weight: 1.0, ..lossless() }, 0.012),
+        ("film on metal", OpenPbrParameters { thin_film_weight: 1.0, ..metal }, 0.012),
+        ("film on glass", OpenPbrParameters { thin_film_weight: 1.0, ..glass }, 0.015),
     ];
-    for (name, p) in cases {
-        println!("{name}");
-        for phi in if name.contains("aniso") { vec![0.0, 0.8, 1.57] } else { vec![0.4] } {
-            for roughness in [0.0, 0.1, 0.25, 0.5, 0.75, 1.0] {
-                let b = surface(OpenPbrParameters { specular_roughness: roughness, ..p });
-                print!("  {roughness:4} ");
-                for c in [1.0f32, 0.7, 0.4, 0.2, 0.05, -0.05, -0.2, -0.5, -0.75, -1.0] {
-                    print!(" {:.4}", albedo(&b, c, phi));
+    for (name, parameters, tolerance) in cases {
+        for specular_roughness in [0.0, 0.25, 0.5, 1.0] {
+            let bxdf = surface(OpenPbrParameters { specular_roughness, ..parameters });
+            for cosine in COSINES {
+                let albedo = albedo(&bxdf, cosine);
+                for share in albedo.0 {
+                    let message = format!("{name} of roughness {specular_roughness} at {cosine}: {albedo:?}");
+                    assert!((share - 1.0).abs() < tolerance, "{message}");
                 }
-                println!();
             }
         }
     }
+}
+
+#[test]
+fn nothing_gains_light() {
+    let mut random = Random::new(3);
+    for _ in 0..40 {
+        let mut weight = || if random.get_1d() < 0.3 { 0.0 } else { random.get_1d() };
+        let bxdf = surface(OpenPbrParameters {
+            base_metalness: weight(),
+            base_diffuse_roughness: weight(),
+            specular_weight: weight(),
+            specular_roughness: weight(),
+            specular_roughness_anisotropy: weight(),
+            specular_ior: 1.0 + weight(),
+            transmission_weight: weight(),
+            coat_weight: weight(),
+            coat_roughness: weight(),
+            coat_ior: 1.0 + weight(),
+            fuzz_weight: weight(),
+            fuzz_roughness: weight(),
+            thin_film_weight: weight(),
+            thin_film_thickness: weight(),
+            ..lossless()
+        });
+        for cosine in COSINES {
+            let albedo = albedo(&bxdf, cosine).max_component();
+            assert!(albedo < 1.04, "{bxdf:?} at {cosine}: {albedo}");
+        }
+    }
+}
+
+#[test]
+fn colours_absorb() {
+    for cosine in COSINES {
+        let [white, colored] =
+            [lossless(), everything()].map(|parameters| albedo(&surface(parameters), cosine));
+        assert!(colored.max_component() < white.min_component(), "{cosine}: {colored:?}");
+    }
+}
+
+/// Smooth and without layers, transparent bases are glass.
+#[test]
+fn smooth_glass_is_a_dielectric() {
+    let parameters = OpenPbrParameters { specular_roughness: 0.0, transmission_weight: 1.0, ..lossless() };
+    let surface = surface(parameters);
+    let glass = Dielectric { eta: 1.5, distribution: TrowbridgeReitz::new(0.0, 0.0) };
+    for cosine in [1.0f32, 0.6, 0.1, -0.3, -0.8, -1.0] {
+        let wo = spherical_direction((1.0 - cosine * cosine).sqrt(), cosine, 2.0);
+        for uc in [0.01, 0.3, 0.95] {
+            for mode in [TransportMode::Radiance, TransportMode::Importance] {
+                let sample = |bxdf: &dyn Fn() -> alhazen_scattering::BsdfSample| {
+                    let sample = bxdf();
+                    (sample.wi, sample.f[0] * sample.wi.z.abs() / sample.pdf, sample.eta)
+                };
+                let of_glass = sample(&|| glass.sample_f(wo, uc, Vec2::ZERO, mode, Directions::All));
+                let found = sample(&|| surface.sample_f(wo, uc, Vec2::ZERO, mode, Directions::All));
+                assert!((found.0 - of_glass.0).length() < 1e-3, "{cosine} {uc}: {found:?} {of_glass:?}");
+                assert!((found.1 - of_glass.1).abs() < 1e-3, "{cosine} {uc}: {found:?} {of_glass:?}");
+                assert_eq!(found.2, of_glass.2);
+            }
+        }
+    }
+}
+
+/// A smooth boundary over black reflects its Fresnel reflectance, scaled at normal incidence by
+/// the weight; smooth metal reflects its colour there, and its tint of it near grazing angles.
+#[test]
+fn smooth_boundaries_reflect_as_the_specification_says() {
+    let black = OpenPbrParameters { base_weight: 0.0, specular_roughness: 0.0, ..lossless() };
+    for cosine in [1.0f32, 0.5, 0.1] {
+        let found = albedo(&surface(black), cosine)[0];
+        assert!((found - fr_dielectric(cosine, 1.5)).abs() < 1e-3, "{cosine}: {found}");
+    }
+    let faint = surface(OpenPbrParameters { specular_weight: 0.25, ..black });
+    assert!((albedo(&faint, 1.0)[0] - 0.01).abs() < 1e-4);
+    let metal = OpenPbrParameters {
+        base_color: SampledSpectrum::splat(0.6),
+        specular_color: SampledSpectrum::splat(0.5),
+        base_metalness: 1.0,
+        specular_roughness: 0.0,
+        ..OpenPbrParameters::default()
+    };
+    assert!((albedo(&surface(metal), 1.0)[0] - 0.6).abs() < 1e-4);
+    let schlick = 0.6 + 0.4 * (6.0f32 / 7.0).powi(5);
+    assert!((albedo(&surface(metal), 1.0 / 7.0)[0] - 0.5 * schlick).abs() < 1e-3);
+}
+
+/// Light that crosses a coat along the normal, on the way in and out, has its colour.
+#[test]
+fn coats_absorb_along_the_path_in_them() {
+    let parameters = OpenPbrParameters {
+        base_metalness: 1.0,
+        specular_roughness: 0.0,
+        coat_weight: 1.0,
+        coat_color: SampledSpectrum::splat(0.5),
+        ..lossless()
+    };
+    let bxdf = surface(parameters);
+    let boundary = fr_dielectric(1.0, 1.6);
+    assert!((albedo(&bxdf, 1.0)[0] - (boundary + 0.5 * (1.0 - boundary))).abs() < 1e-3);
+    // The sine in the coat is that outside over the index.
+    let (cosine, inner) = (0.6f32, (1.0f32 - 0.64 / 2.56).sqrt());
+    let reflected = fr_dielectric(cosine, 1.6);
+    let expected = reflected + (1.0 - reflected) * 0.5f32.powf(1.0 / inner);
+    assert!((albedo(&bxdf, cosine)[0] - expected).abs() < 1e-3);
 }

@@ -1,6 +1,6 @@
 //! The probabilities of lobes, about what each scatters from a direction, and their densities.
 
-use super::shares::glass_rest_below;
+use super::shares::Inside;
 use super::{OpenPbr, View, flip};
 use crate::{Directions, Scatter, TransportMode};
 use math::{Vector3, same_hemisphere};
@@ -36,7 +36,6 @@ impl Chances {
         let shares = &view.shares;
         let weights = surface.weights(wo.z);
         let opaque = surface.darkening * surface.absorbed(2.0 * surface.coat_length(cosine));
-        let tinted = surface.absorbed(surface.coat_length(cosine)) * surface.transmission_color;
         let glass = surface.glass();
         let rests = &surface.rests;
 
@@ -51,29 +50,26 @@ impl Chances {
             reflected += surface.facets.metal(cosine) * (shares.metal * weights.metal);
             rest += rests.metal_color * (shares.metal_rest * weights.metal);
         }
+        let reflected = (reflected * opaque).average();
         let mut rest = (rest * opaque).average();
         let (mut facets, mut through) = (0.0, 0.0);
         if glass > 0.0 {
-            let left;
-            if wo.z > 0.0 {
-                facets = (shares.dielectric * surface.specular_color + shares.refracted * tinted).average();
-                left = shares.glass_rest;
-            } else {
-                left = glass_rest_below(surface, &view.facing, cosine);
-                facets = 1.0 - left;
-            }
+            let inside = match wo.z > 0.0 {
+                true => Inside {
+                    reflected: (shares.dielectric * surface.specular_color).average(),
+                    refracted: shares.refracted.average(),
+                    rest: shares.glass_rest,
+                },
+                false => Inside::new(surface, &view.facing, cosine),
+            };
             let side = usize::from(wo.z < 0.0);
-            rest += glass * left * (1.0 - rests.through[side]);
-            through = glass * left * rests.through[side] * tinted.average();
+            rest += glass * inside.rest * (1.0 - rests.through[side]);
+            let tint = glass * surface.transmission_color.average();
+            facets = glass * inside.reflected + tint * inside.refracted;
+            through = tint * inside.rest * rests.through[side];
         }
-        let mut chances = [
-            weights.layers * fuzz,
-            weights.layers * shares.coat,
-            (reflected * opaque).average(),
-            glass * facets,
-            rest,
-            through,
-        ];
+        let coat = weights.layers * shares.coat;
+        let mut chances = [weights.layers * fuzz, coat, reflected, facets, rest, through];
         match directions {
             Directions::All => (),
             Directions::Reflection => chances[5] = 0.0,
@@ -117,7 +113,7 @@ impl Chances {
         let boundary = surface.boundary();
         let mut pdf = 0.0;
         if glass > 0.0 {
-            pdf += glass * boundary.pdf(wo, wi, mode, directions);
+            pdf += glass * surface.pdf_glass(wo, wi, mode, directions);
         }
         let cosine = cosine_hemisphere_pdf(wi.z.abs());
         if !same_hemisphere(wo, wi) {

@@ -61,7 +61,7 @@ mod tests {
             let wi = spherical_direction(sine as f32, cosine as f32, phi as f32);
             f64::from(oren_nayar(SampledSpectrum::splat(reflectance), roughness, wo, wi)[0]) * cosine
         };
-        integrate(light, [[0.0, 1.0], [0.0, std::f64::consts::TAU]], 1e-4)
+        integrate(&light, [[0.0, 1.0], [0.0, std::f64::consts::TAU]], 1e-4)
     }
 
     #[test]

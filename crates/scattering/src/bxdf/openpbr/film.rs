@@ -81,8 +81,10 @@ impl Div for Complex {
 }
 
 /// The reflectance of a film of `thickness` wavelengths of vacuum and index `film`, between the
-/// indices `above` and `below`, for light from above with the cosine `cosine` > 0.
+/// indices `above` and `below`, for light from above with the cosine `cosine`.
 pub(super) fn film_reflectance(cosine: f32, above: f32, film: f32, below: Complex, thickness: f32) -> f32 {
+    // Nearer to the horizon both ratios tend to −1 and 1, and their sum over the difference to 0/0.
+    let cosine = cosine.max(1e-3);
     let indices = [Complex::real(above), Complex::real(film), below];
     let across2 = Complex::real(sqr(above) * (1.0 - sqr(cosine)));
     let squares = indices.map(|n| n * n);

@@ -35,9 +35,11 @@ mod diffuse;
 mod facets;
 mod film;
 mod fuzz;
+mod glass;
 mod grid;
 mod parameters;
 mod shares;
+mod value;
 
 pub use parameters::OpenPbrParameters;
 
@@ -46,14 +48,12 @@ use crate::fresnel::mean_fresnel;
 use crate::{BxdfFlags, Directions, TransportMode, TrowbridgeReitz};
 use albedo::{HATS, White, hat_cosines};
 use chances::{Chances, Lobe};
-use diffuse::oren_nayar;
 use facets::{Facets, Film};
 use grid::mean;
-use math::{Vec2, Vector3, same_hemisphere, sqr};
+use math::{Vec2, Vector3, sqr};
 use sampling::warp::{sample_cosine_hemisphere, sample_uniform_hemisphere};
-use shares::{Above, Facing, Shares, glass_rest_below};
+use shares::{Above, Facing, Inside, Shares};
 use spectrum::{SampledSpectrum, SampledWavelengths};
-use std::f32::consts::PI;
 
 /// Directions nearer to the horizon scatter nothing.
 const HORIZON: f32 = 1e-6;
@@ -191,6 +191,11 @@ impl OpenPbr {
         surface
     }
 
+    /// Index of refraction of the glass that it is or could be.
+    pub fn eta(&self) -> f32 {
+        self.index
+    }
+
     /// The share of light that reflections in the coat leave of an opaque base.
     fn darkened(&self) -> SampledSpectrum {
         let one = SampledSpectrum::ONE;
@@ -236,7 +241,7 @@ impl OpenPbr {
             self.rests.metal_color = reflected.map(|f| sqr(f) * kept / (1.0 - f * (1.0 - kept)));
         }
         if self.glass() > 0.0 {
-            let below = mean(|cosine| glass_rest_below(self, &facing, cosine));
+            let below = mean(|cosine| Inside::new(self, &facing, cosine).rest);
             self.rests.glass[1] = below;
             if glass > 0.0 && below > 0.0 {
                 let most = sqr(self.index) * below / glass;
@@ -289,194 +294,6 @@ impl OpenPbr {
             return Weights { layers: 1.0, metal: self.metalness, diffuse, glass };
         }
         Weights { layers: 1.0 - glass, metal: self.metalness, diffuse, glass: 0.0 }
-    }
-
-    /// Absorption in the coat on paths of these lengths, in units of its thickness.
-    fn absorbed(&self, lengths: f32) -> SampledSpectrum {
-        if self.coat_weight == 0.0 || self.coat_color == SampledSpectrum::ONE {
-            return SampledSpectrum::ONE;
-        }
-        SampledSpectrum::ONE.lerp(self.coat_color.powf(0.5 * lengths), self.coat_weight)
-    }
-
-    /// The length of a path through the coat.
-    fn coat_length(&self, cosine: f32) -> f32 {
-        1.0 / (1.0 - (1.0 - sqr(cosine)) / sqr(self.coat_ior)).sqrt().max(1e-3)
-    }
-
-    /// The reflectance of the facets of the base met from above at a cosine.
-    fn reflectance(&self, cosine: f32, weights: &Weights) -> SampledSpectrum {
-        let mut reflected = SampledSpectrum::ZERO;
-        if weights.metal > 0.0 {
-            reflected += self.facets.metal(cosine) * self.darkening * weights.metal;
-        }
-        if weights.diffuse + weights.glass > 0.0 {
-            let dielectric = self.facets.dielectric(cosine) * self.specular_color;
-            reflected +=
-                dielectric * (self.darkening * weights.diffuse + SampledSpectrum::splat(weights.glass));
-        }
-        reflected
-    }
-
-    /// The value for two directions above of what `weights` say.
-    fn reflected(&self, view: &View, wo: Vector3, wi: Vector3, weights: &Weights) -> SampledSpectrum {
-        let (o, i) = (&view.shares, Shares::new(self, &view.facing, wi.z));
-        let mode = TransportMode::Radiance;
-        let mut f = SampledSpectrum::ZERO;
-        if self.fuzz_weight > 0.0 {
-            let fibres = [o.fuzz, i.fuzz];
-            let fuzz = fuzz::value(self.fuzz_color, self.fuzz_roughness, self.rests.fuzz, [wo, wi], fibres);
-            f += fuzz * (self.fuzz_weight * weights.layers);
-        }
-        if self.coat_weight > 0.0 {
-            let coat = self.coat_boundary().f(wo, wi, mode) * o.below_fuzz.min(i.below_fuzz);
-            f += coat * (self.coat_weight * weights.layers);
-        }
-        let mut base = SampledSpectrum::ZERO;
-        let boundary = self.boundary();
-        let (facet, is_met) = boundary.facet(wo, wi);
-        if is_met {
-            let white = boundary.f_facet(wo, wi, &facet, 1.0, mode) * o.below_coat.min(i.below_coat);
-            base += self.reflectance(wo.dot(facet.wm), weights) * white;
-        }
-        if weights.diffuse > 0.0 {
-            let left = (o.diffuse_rest * i.diffuse_rest).safe_div(self.rests.diffuse);
-            let diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
-            base += diffuse * left * self.darkening * weights.diffuse;
-        }
-        if weights.metal > 0.0 && self.rests.metal > 0.0 {
-            let left = o.metal_rest * i.metal_rest / (PI * self.rests.metal);
-            base += self.rests.metal_color * self.darkening * (left * weights.metal);
-        }
-        if weights.glass > 0.0 && self.rests.glass[0] > 0.0 {
-            let left = o.glass_rest * i.glass_rest / (PI * self.rests.glass[0]);
-            base += SampledSpectrum::splat(left * (1.0 - self.rests.through[0]) * weights.glass);
-        }
-        f + base * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
-    }
-
-    /// The cosine outside of light that meets glass from inside at a cosine; `None` if all of it is
-    /// reflected.
-    fn outer_cosine(&self, cosine: f32) -> Option<f32> {
-        let squared = 1.0 - (1.0 - sqr(cosine)) * sqr(self.index);
-        (squared > 0.0).then(|| squared.sqrt())
-    }
-
-    /// The reflectance of facets of glass from inside: what the base reflects, and what the layers
-    /// outside do of the rest.
-    fn inner_reflectance(&self, cosine: f32, facing: &Facing) -> SampledSpectrum {
-        let Some(outer) = self.outer_cosine(cosine) else { return SampledSpectrum::ONE };
-        let reflected = self.facets.dielectric(outer);
-        if !self.has_layers() {
-            return reflected;
-        }
-        let kept = 1.0 - Shares::new(self, facing, outer.max(HORIZON)).below_coat;
-        reflected + (SampledSpectrum::ONE - reflected) * kept
-    }
-
-    /// The value of glass for two directions below.
-    fn reflected_inside(&self, view: &View, wo: Vector3, wi: Vector3) -> SampledSpectrum {
-        let boundary = self.boundary();
-        let (facet, is_met) = boundary.facet(wo, wi);
-        let mut f = SampledSpectrum::ZERO;
-        if is_met {
-            let white = boundary.f_facet(wo, wi, &facet, 1.0, TransportMode::Radiance);
-            f += self.inner_reflectance(wo.dot(facet.wm).abs(), &view.facing) * white;
-        }
-        if self.rests.glass[1] > 0.0 {
-            let [o, i] = [wo, wi].map(|w| glass_rest_below(self, &view.facing, -w.z));
-            let left = o * i;
-            f += SampledSpectrum::splat(left / (PI * self.rests.glass[1]) * (1.0 - self.rests.through[1]));
-        }
-        f * self.glass()
-    }
-
-    /// The value of glass for directions on both sides.
-    fn transmitted(&self, view: &View, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
-        let outside = if wo.z > 0.0 { wo } else { wi };
-        let inside = if wo.z > 0.0 { wi } else { wo };
-        let shares = match wo.z > 0.0 {
-            true => view.shares,
-            false => Shares::new(self, &view.facing, outside.z),
-        };
-        let boundary = self.boundary();
-        let (facet, is_met) = boundary.facet(wo, wi);
-        let mut f = SampledSpectrum::ZERO;
-        if is_met {
-            let white = boundary.f_facet(wo, wi, &facet, 0.0, mode) * shares.below_coat;
-            let reflected = self.facets.dielectric(outside.dot(facet.wm).abs());
-            f += (SampledSpectrum::ONE - reflected) * white;
-        }
-        if self.rests.glass[1] > 0.0 {
-            // The rest of one side to that of the other, as energy from above to below.
-            let left = shares.glass_rest * glass_rest_below(self, &view.facing, -inside.z);
-            let down = left * self.rests.through[0] / (PI * self.rests.glass[1]);
-            let scale = match (mode, wo.z > 0.0) {
-                (TransportMode::Importance, true) | (TransportMode::Radiance, false) => 1.0,
-                _ => 1.0 / sqr(self.index),
-            };
-            f += SampledSpectrum::splat(down * scale);
-        }
-        f * self.transmission_color * self.absorbed(self.coat_length(outside.z)) * self.glass()
-    }
-
-    /// The value for two directions off the horizon.
-    fn value(&self, view: &View, wo: Vector3, wi: Vector3, mode: TransportMode) -> SampledSpectrum {
-        let glass = self.glass() > 0.0;
-        match (same_hemisphere(wo, wi), wo.z > 0.0) {
-            (true, true) => self.reflected(view, wo, wi, &self.weights(1.0)),
-            (true, false) => {
-                let mut f = SampledSpectrum::ZERO;
-                if self.glass() < 1.0 {
-                    f += self.reflected(view, -wo, -wi, &self.weights(-1.0));
-                }
-                if glass { f + self.reflected_inside(view, wo, wi) } else { f }
-            }
-            (false, _) if glass => self.transmitted(view, wo, wi, mode),
-            (false, _) => SampledSpectrum::ZERO,
-        }
-    }
-
-    /// A specular sample with the value of the lobe that it chose.
-    fn specular(
-        &self,
-        View { facing, shares }: &View,
-        wo: Vector3,
-        (lobe, sample): (Lobe, BsdfSample),
-        mode: TransportMode,
-    ) -> BsdfSample {
-        let cosine = wo.z.abs();
-        let value = if lobe == Lobe::Glass && wo.z < 0.0 {
-            let reflected = self.inner_reflectance(cosine, facing);
-            let through = || self.absorbed(self.coat_length(sample.wi.z)) * self.transmission_color;
-            let share = match sample.flags.is_reflective() {
-                true => reflected,
-                false => (SampledSpectrum::ONE - reflected) * through(),
-            };
-            share * self.glass()
-        } else {
-            let weights = self.weights(wo.z);
-            let length = self.coat_length(cosine);
-            let base = |weights: Weights| self.reflectance(cosine, &weights) * self.absorbed(2.0 * length);
-            match lobe {
-                Lobe::Coat => {
-                    let coat = crate::fr_dielectric(cosine, self.coat_ior) * shares.below_fuzz;
-                    SampledSpectrum::splat(coat * self.coat_weight * weights.layers)
-                }
-                Lobe::Glass if sample.flags.is_transmissive() => {
-                    let refracted = SampledSpectrum::ONE - self.facets.dielectric(cosine);
-                    let tint = self.transmission_color * self.absorbed(length);
-                    refracted * tint * (shares.below_coat * weights.glass)
-                }
-                Lobe::Glass => base(Weights { metal: 0.0, diffuse: 0.0, ..weights }) * shares.below_coat,
-                _ => base(Weights { glass: 0.0, ..weights }) * shares.below_coat,
-            }
-        };
-        let scale = match mode {
-            TransportMode::Radiance => 1.0 / sqr(sample.eta),
-            TransportMode::Importance => 1.0,
-        };
-        BsdfSample { f: value * (scale / sample.wi.z.abs()), ..sample }
     }
 }
 
@@ -545,7 +362,7 @@ impl Scatter for OpenPbr {
         let facets = match lobe {
             Lobe::Coat => Some(boundary(self.coat_boundary(), flip(below, wo), uc, reflection)),
             Lobe::Facets => Some(boundary(self.boundary(), flip(below, wo), uc, reflection)),
-            Lobe::Glass => Some(boundary(self.boundary(), wo, uc, directions)),
+            Lobe::Glass => Some(self.sample_glass(wo, uc, u, mode, directions)),
             Lobe::Fuzz | Lobe::Rest | Lobe::Through => None,
         };
         let (wi, flags, eta) = match facets {
@@ -554,7 +371,7 @@ impl Scatter for OpenPbr {
                 let turned = if lobe == Lobe::Glass { sample.wi } else { flip(below, sample.wi) };
                 let sample = BsdfSample { wi: turned, pdf: sample.pdf * chance, ..sample };
                 if sample.flags.is_specular() {
-                    return self.specular(&view, wo, (lobe, sample), mode);
+                    return self.specular(&view.shares, wo, (lobe, sample), mode);
                 }
                 (sample.wi, sample.flags, sample.eta)
             }

@@ -71,18 +71,30 @@ fn albedo(white: &White, own: &Hats, at_hats: &Hats, here: f32) -> f32 {
     (here * white.albedo + correction).clamp(0.0, 1.0)
 }
 
-/// The light from below that glass neither reflects nor refracts, but scatters between its facets.
-pub(super) fn glass_rest_below(surface: &OpenPbr, facing: &Facing, cosine: f32) -> f32 {
-    if !surface.spreads() {
-        return 0.0;
+/// Shares of the light from one direction below, in glass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inside {
+    /// What facets reflect, with what the layers above send back.
+    pub reflected: f32,
+    /// What passes.
+    pub refracted: f32,
+    /// What is left for scattering between facets.
+    pub rest: f32,
+}
+
+impl Inside {
+    /// For the cosine to the normal that points down.
+    pub fn new(surface: &OpenPbr, facing: &Facing, cosine: f32) -> Self {
+        let table = Glass::at(1.0 / surface.index, surface.roughness(), cosine);
+        let (mut reflected, mut refracted) = (table.total, 0.0);
+        for k in 0..HATS {
+            let passed = (1.0 - facing.dielectric[k].average()) * surface.above.coat[k];
+            reflected += (1.0 - passed) * table.reflected[k];
+            refracted += passed * table.refracted[k];
+        }
+        let rest = if surface.spreads() { (1.0 - reflected - refracted).max(0.0) } else { 0.0 };
+        Self { reflected, refracted, rest }
     }
-    let table = Glass::at(1.0 / surface.index, surface.roughness(), cosine);
-    let mut left = 1.0 - table.total;
-    for k in 0..HATS {
-        let passed = (1.0 - facing.dielectric[k].average()) * surface.above.coat[k];
-        left -= (1.0 - passed) * table.reflected[k] + passed * table.refracted[k];
-    }
-    left.max(0.0)
 }
 
 impl Shares {

@@ -1,0 +1,144 @@
+//! Values of the lobes from above, and of specular ones.
+
+use super::chances::Lobe;
+use super::diffuse::oren_nayar;
+use super::shares::Shares;
+use super::{OpenPbr, View, Weights, fuzz};
+use crate::{BsdfSample, Scatter, TransportMode, fr_dielectric};
+use math::{Vector3, same_hemisphere, sqr};
+use spectrum::SampledSpectrum;
+use std::f32::consts::PI;
+
+impl OpenPbr {
+    /// Absorption in the coat on paths of these lengths, in units of its thickness.
+    pub(super) fn absorbed(&self, lengths: f32) -> SampledSpectrum {
+        if self.coat_weight == 0.0 || self.coat_color == SampledSpectrum::ONE {
+            return SampledSpectrum::ONE;
+        }
+        SampledSpectrum::ONE.lerp(self.coat_color.powf(0.5 * lengths), self.coat_weight)
+    }
+
+    /// The length of a path through the coat.
+    pub(super) fn coat_length(&self, cosine: f32) -> f32 {
+        1.0 / (1.0 - (1.0 - sqr(cosine)) / sqr(self.coat_ior)).sqrt().max(1e-3)
+    }
+
+    /// The reflectance of the facets of the base met from above at a cosine.
+    pub(super) fn reflectance(&self, cosine: f32, weights: &Weights) -> SampledSpectrum {
+        let mut reflected = SampledSpectrum::ZERO;
+        if weights.metal > 0.0 {
+            reflected += self.facets.metal(cosine) * self.darkening * weights.metal;
+        }
+        if weights.diffuse + weights.glass > 0.0 {
+            let dielectric = self.facets.dielectric(cosine) * self.specular_color;
+            reflected +=
+                dielectric * (self.darkening * weights.diffuse + SampledSpectrum::splat(weights.glass));
+        }
+        reflected
+    }
+
+    /// The value for two directions above of what `weights` say.
+    pub(super) fn reflected(
+        &self,
+        view: &View,
+        wo: Vector3,
+        wi: Vector3,
+        weights: &Weights,
+    ) -> SampledSpectrum {
+        let (o, i) = (&view.shares, Shares::new(self, &view.facing, wi.z));
+        let mode = TransportMode::Radiance;
+        let mut f = SampledSpectrum::ZERO;
+        if self.fuzz_weight > 0.0 {
+            let fibres = [o.fuzz, i.fuzz];
+            let fuzz = fuzz::value(self.fuzz_color, self.fuzz_roughness, self.rests.fuzz, [wo, wi], fibres);
+            f += fuzz * (self.fuzz_weight * weights.layers);
+        }
+        if self.coat_weight > 0.0 {
+            let coat = self.coat_boundary().f(wo, wi, mode) * o.below_fuzz.min(i.below_fuzz);
+            f += coat * (self.coat_weight * weights.layers);
+        }
+        let mut base = SampledSpectrum::ZERO;
+        let boundary = self.boundary();
+        let (facet, is_met) = boundary.facet(wo, wi);
+        if is_met {
+            let white = boundary.f_facet(wo, wi, &facet, 1.0, mode) * o.below_coat.min(i.below_coat);
+            base += self.reflectance(wo.dot(facet.wm), weights) * white;
+        }
+        if weights.diffuse > 0.0 {
+            let left = (o.diffuse_rest * i.diffuse_rest).safe_div(self.rests.diffuse);
+            let diffuse = oren_nayar(self.diffuse_color, self.diffuse_roughness, wo, wi);
+            base += diffuse * left * self.darkening * weights.diffuse;
+        }
+        if weights.metal > 0.0 && self.rests.metal > 0.0 {
+            let left = o.metal_rest * i.metal_rest / (PI * self.rests.metal);
+            base += self.rests.metal_color * self.darkening * (left * weights.metal);
+        }
+        if weights.glass > 0.0 && self.rests.glass[0] > 0.0 {
+            let left = o.glass_rest * i.glass_rest / (PI * self.rests.glass[0]);
+            base += SampledSpectrum::splat(left * (1.0 - self.rests.through[0]) * weights.glass);
+        }
+        f + base * self.absorbed(self.coat_length(wo.z) + self.coat_length(wi.z))
+    }
+
+    /// The value for two directions off the horizon.
+    pub(super) fn value(
+        &self,
+        view: &View,
+        wo: Vector3,
+        wi: Vector3,
+        mode: TransportMode,
+    ) -> SampledSpectrum {
+        let glass = self.glass() > 0.0;
+        match (same_hemisphere(wo, wi), wo.z > 0.0) {
+            (true, true) => self.reflected(view, wo, wi, &self.weights(1.0)),
+            (true, false) => {
+                let mut f = SampledSpectrum::ZERO;
+                if self.glass() < 1.0 {
+                    f += self.reflected(view, -wo, -wi, &self.weights(-1.0));
+                }
+                if glass { f + self.reflected_inside(view, wo, wi) } else { f }
+            }
+            (false, _) if glass => self.transmitted(view, wo, wi, mode),
+            (false, _) => SampledSpectrum::ZERO,
+        }
+    }
+
+    /// A specular sample with the value of the lobe that it chose.
+    pub(super) fn specular(
+        &self,
+        shares: &Shares,
+        wo: Vector3,
+        (lobe, sample): (Lobe, BsdfSample),
+        mode: TransportMode,
+    ) -> BsdfSample {
+        let cosine = wo.z.abs();
+        let weights = self.weights(wo.z);
+        let value = match lobe {
+            Lobe::Coat => {
+                let coat = fr_dielectric(cosine, self.coat_ior) * shares.below_fuzz;
+                SampledSpectrum::splat(coat * self.coat_weight * weights.layers)
+            }
+            Lobe::Glass if sample.flags.is_transmissive() => {
+                let outside = if wo.z > 0.0 { cosine } else { sample.wi.z };
+                let refracted = SampledSpectrum::ONE - self.facets.dielectric(outside);
+                let tint = self.transmission_color * self.absorbed(self.coat_length(outside));
+                let passed = if wo.z > 0.0 { shares.below_coat } else { self.passed(outside) };
+                refracted * tint * (passed * self.glass())
+            }
+            Lobe::Glass if wo.z < 0.0 => self.inner_reflectance(cosine) * self.glass(),
+            _ => {
+                let tint = self.absorbed(2.0 * self.coat_length(cosine)) * shares.below_coat;
+                let weights = match lobe {
+                    Lobe::Glass => Weights { metal: 0.0, diffuse: 0.0, ..weights },
+                    _ => Weights { glass: 0.0, ..weights },
+                };
+                self.reflectance(cosine, &weights) * tint
+            }
+        };
+        let scale = match mode {
+            TransportMode::Radiance => 1.0 / sqr(sample.eta),
+            TransportMode::Importance => 1.0,
+        };
+        BsdfSample { f: value * (scale / sample.wi.z.abs()), ..sample }
+    }
+}
