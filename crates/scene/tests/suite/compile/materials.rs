@@ -5,8 +5,8 @@ use crate::common::*;
 use alhazen_scene::material::{Material, MaterialId};
 use alhazen_scene::{Scene, compile};
 use description::{
-    AreaLightDesc, ConductorDesc, MaterialDesc, MaterialKind, RoughnessDesc, Severity, ShapeDesc,
-    SpectrumDesc, SubsurfaceScattering,
+    AreaLightDesc, ConductorDesc, MaterialDesc, MaterialKind, OpenPbrDesc, RoughnessDesc, Severity,
+    ShapeDesc, SpectrumDesc, SubsurfaceScattering,
 };
 use scattering::SubsurfaceMethod;
 
@@ -94,6 +94,45 @@ fn an_interface_does_not_emit() {
     });
     check(&desc, Severity::Warning, "light-ignored", "a shape of material `interface` does not emit", 2);
     assert!(compile(desc).unwrap().scene.lights().is_empty());
+}
+
+#[test]
+fn wrong_values_of_principled_materials_are_errors() {
+    let material = |change: &dyn Fn(&mut OpenPbrDesc), name| {
+        let mut openpbr = OpenPbrDesc::default();
+        change(&mut openpbr);
+        let kind = MaterialKind::OpenPbr(Box::new(openpbr));
+        with(|desc| desc.materials.push_stated(with_parameter(kind.into(), name, 4)))
+    };
+    let number = |name: &str| OpenPbrDesc::NUMBERS.iter().position(|number| number.name == name).unwrap();
+    for (name, value, message) in [
+        ("base_metalness", 1.5, "`base_metalness` lies between 0 and 1, as 1.5 does not"),
+        ("specular_ior", 0.7, "`specular_ior` lies between 1 and 3, as 0.7 does not"),
+        ("thin_film_thickness", -0.2, "`thin_film_thickness` cannot be negative, as -0.2 is"),
+    ] {
+        let desc = material(&|desc| desc.numbers[number(name)] = value.into(), name);
+        check(&desc, Severity::Error, "invalid-value", message, 4);
+    }
+    let message = "a luminance is finite and not negative, as -1 is not";
+    let desc = material(&|desc| desc.emission_luminance = -1.0, "emission_luminance");
+    check(&desc, Severity::Error, "invalid-value", message, 4);
+}
+
+/// Shapes without an area light emit what their material does, those with one what it does.
+#[test]
+fn principled_materials_emit() {
+    let desc = with(|desc| {
+        let openpbr = OpenPbrDesc { emission_luminance: 3.0, ..OpenPbrDesc::default() };
+        let area_light = Some(desc.area_lights.push(AreaLightDesc::new(SpectrumDesc::Constant(2.0))));
+        let material = Some(desc.materials.push(MaterialKind::OpenPbr(Box::new(openpbr)).into()));
+        desc.shapes.push(ShapeDesc { material, ..sphere(1.0).into() });
+        desc.shapes.push(ShapeDesc { material, area_light, ..sphere(2.0).into() });
+        desc.shapes.push(sphere(3.0).into());
+    });
+    let scene = compile(desc).unwrap().scene;
+    assert_eq!(scene.lights().len(), 2);
+    let lights = [0, 1, 2].map(|index| scene.geometries()[index].first_light);
+    assert!(lights[0].is_some() && lights[1].is_some() && lights[0] != lights[1] && lights[2].is_none());
 }
 
 #[test]
