@@ -3,8 +3,8 @@
 use alhazen_import::{Imported, MemoryAssets, import};
 use description::{
     CameraKind, ColorSpaceDesc, FilmKind, GBufferSpace, Handle, ImageChannel, IntegratorDesc, LightKind,
-    MaterialKind, MediumKind, Parameter, PathDesc, SamplerKind, SceneDesc, ShapeKind, SpectrumDesc,
-    TextureKind, TransformDesc,
+    MaterialKind, MediumKind, OpenPbrDesc, Parameter, PathDesc, SamplerKind, SceneDesc, ShapeKind,
+    SpectrumDesc, TextureKind, TransformDesc,
 };
 use math::{DMat4, DVec3, Vec3};
 
@@ -340,6 +340,37 @@ fn an_index_of_refraction_is_a_number_or_any_spectrum() {
     assert_eq!(index("\"float eta\" 1.3"), SpectrumDesc::Constant(1.3));
     assert_eq!(index("\"spectrum eta\" \"glass-BK7\""), SpectrumDesc::Named("glass-BK7".into()));
     assert_eq!(index("\"rgb eta\" [1.3 1.4 1.5]"), SpectrumDesc::rgb(1.3, 1.4, 1.5));
+}
+
+#[test]
+fn principled_materials_have_the_parameters_of_the_specification() {
+    let openpbr = |parameters: &str| {
+        let imported = read_with(
+            MemoryAssets::default(),
+            &format!("WorldBegin Material \"openpbr\" {parameters} Shape \"sphere\""),
+        );
+        let (_, material) = imported.desc.materials.iter().next().expect("there is a material");
+        let MaterialKind::OpenPbr(desc) = &material.kind else { panic!("{:?}", material.kind) };
+        let messages: Vec<String> = imported.diagnostics.iter().map(|found| found.message.clone()).collect();
+        (OpenPbrDesc::clone(desc), messages)
+    };
+    let defaults = OpenPbrDesc::default();
+    let (plain, messages) = openpbr("");
+    assert_eq!((&plain.numbers, &plain.colors, messages.len()), (&defaults.numbers, &defaults.colors, 0));
+    for (i, number) in OpenPbrDesc::NUMBERS.iter().enumerate() {
+        let (given, messages) = openpbr(&format!("\"float {}\" 0.625", number.name));
+        assert_eq!((&given.numbers[i], messages.len()), (&0.625.into(), 0), "{}", number.name);
+    }
+    for (i, (name, _)) in OpenPbrDesc::COLORS.iter().enumerate() {
+        let (given, messages) = openpbr(&format!("\"rgb {name}\" [0.1 0.2 0.3]"));
+        assert_eq!(given.colors[i], SpectrumDesc::rgb(0.1, 0.2, 0.3).into(), "{name}");
+        assert!(messages.is_empty(), "{messages:?}");
+    }
+    let (glowing, _) = openpbr("\"float emission_luminance\" 40 \"rgb emission_color\" [1 0.5 0]");
+    assert_eq!(glowing.emission_luminance, 40.0);
+    assert_eq!(glowing.emission_color, SpectrumDesc::rgb(1.0, 0.5, 0.0));
+    let (_, messages) = openpbr("\"float subsurface_radius\" 2");
+    assert_eq!(messages, ["`subsurface_radius` has no effect: light leaves where it entered"]);
 }
 
 #[test]

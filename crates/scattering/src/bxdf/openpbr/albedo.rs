@@ -12,7 +12,7 @@
 //! Facets that refract all light are expanded likewise, over the cosine in the thinner medium.
 //! Roughness is √α.
 
-use super::grid::{Grid, Place};
+use super::grid::{Grid, Place, nodes};
 use crate::{TrowbridgeReitz, reflect, refract};
 use math::{Vec2, Vec3, Vector3, safe_sqrt, sqr};
 use std::sync::LazyLock;
@@ -62,8 +62,29 @@ impl White {
     /// Of a roughness in [0, 1] and a cosine, from the table.
     pub fn at(roughness: f32, cosine: f32) -> Self {
         static TABLE: LazyLock<Grid<White>> = LazyLock::new(|| Grid::new(White::compute));
+        Self::sum(TABLE.around(roughness, cosine))
+    }
+
+    /// The mean over directions by their cosine.
+    pub fn mean(roughness: f32) -> Self {
+        const LEN: usize = 21;
+        static TABLE: LazyLock<[White; LEN]> = LazyLock::new(|| {
+            std::array::from_fn(|i| {
+                let roughness = i as f32 / (LEN - 1) as f32;
+                let nodes = nodes().map(|(cosine, weight)| (weight, White::at(roughness, cosine)));
+                White::sum(nodes.each_ref().map(|(weight, white)| (*weight, white)))
+            })
+        });
+        let place = Place::new(roughness, LEN);
+        let [lower, upper] = place.weights();
+        Self::sum([(lower, &TABLE[place.index]), (upper, &TABLE[place.index + 1])])
+    }
+
+    /// The sum of weighted nodes.
+    #[inline]
+    fn sum<const N: usize>(nodes: [(f32, &Self); N]) -> Self {
         let mut sum = Self { shares: [0.0; HATS], losses: [0.0; HATS], albedo: 0.0 };
-        for (weight, node) in TABLE.around(roughness, cosine) {
+        for (weight, node) in nodes {
             for k in 0..HATS {
                 sum.shares[k] += weight * node.shares[k];
                 sum.losses[k] += weight * node.losses[k];

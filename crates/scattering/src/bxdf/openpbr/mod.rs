@@ -219,21 +219,26 @@ impl OpenPbr {
             self.above.fuzz = cosines.map(|cosine| Shares::new(self, &facing, cosine).below_fuzz);
             self.above.coat = cosines.map(|cosine| Shares::new(self, &facing, cosine).below_coat);
         }
-        let (mut metal, mut glass, mut diffuse) = (0.0, 0.0, SampledSpectrum::ZERO);
-        for (cosine, weight) in grid::nodes() {
-            let shares = Shares::new(self, &facing, cosine);
-            metal += weight * shares.metal_rest;
-            glass += weight * shares.glass_rest;
-            diffuse += shares.diffuse_rest * weight;
+        let white = White::mean(self.roughness());
+        if self.has_layers() || self.glass() > 0.0 {
+            let mut rests =
+                Rests { metal: 0.0, diffuse: SampledSpectrum::ZERO, glass: [0.0; 2], ..self.rests };
+            for (cosine, weight) in grid::nodes() {
+                let shares = Shares::new(self, &facing, cosine);
+                rests.metal += weight * shares.metal_rest;
+                rests.glass[0] += weight * shares.glass_rest;
+                rests.diffuse += shares.diffuse_rest * weight;
+            }
+            self.rests = rests;
+        } else {
+            self.rests.metal = if self.spreads() { 1.0 - white.albedo } else { 0.0 };
+            self.rests.diffuse = facing.passed(&white);
         }
-        let rests = &mut self.rests;
-        (rests.metal, rests.diffuse, rests.glass[0]) = (metal, diffuse, glass);
         if self.fuzz_weight > 0.0 {
             self.rests.fuzz = fuzz::mean_scattered_again(self.fuzz_roughness);
         }
         if self.metalness > 0.0 && self.spreads() {
-            let roughness = self.roughness();
-            let kept = mean(|cosine| White::at(roughness, cosine).albedo);
+            let kept = white.albedo;
             let mut reflected = SampledSpectrum::ZERO;
             for (cosine, weight) in grid::nodes() {
                 reflected += self.facets.metal(cosine) * weight;
@@ -243,8 +248,9 @@ impl OpenPbr {
         if self.glass() > 0.0 {
             let below = mean(|cosine| Inside::new(self, &facing, cosine).rest);
             self.rests.glass[1] = below;
-            if glass > 0.0 && below > 0.0 {
-                let most = sqr(self.index) * below / glass;
+            let above = self.rests.glass[0];
+            if above > 0.0 && below > 0.0 {
+                let most = sqr(self.index) * below / above;
                 let through = (1.0 - mean_fresnel(self.index)).min(most);
                 self.rests.through = [through, through / most];
             }

@@ -54,6 +54,12 @@ impl Facing {
         };
         Self { coat, dielectric }
     }
+
+    /// What white facets of the base let pass.
+    pub fn passed(&self, white: &White) -> SampledSpectrum {
+        let reflected = |i: usize| dot(&white.shares, &self.dielectric.map(|f| f[i]));
+        SampledSpectrum::new(std::array::from_fn(|i| 1.0 - reflected(i)))
+    }
 }
 
 /// The layers over the base: what each passes on, at the cosines of hats.
@@ -116,12 +122,14 @@ impl Shares {
         }
         let white = White::at(surface.roughness(), cosine);
         let met = below_coat - dot(&white.losses, &surface.above.coat) / white.albedo;
-        let here = surface.facets.dielectric(cosine);
-        let mut reflected = here;
-        for i in 0..reflected.0.len() {
-            let at_hats = facing.dielectric.map(|f| f[i]);
-            reflected[i] = albedo(&white, &own, &at_hats, here[i]);
-        }
+        let here =
+            if surface.metalness == 1.0 { SampledSpectrum::ZERO } else { surface.facets.dielectric(cosine) };
+        let of = |i: usize| albedo(&white, &own, &facing.dielectric.map(|f| f[i]), here[i]);
+        // Only a film colours the reflection.
+        let reflected = match surface.facets.film.weight {
+            0.0 => SampledSpectrum::splat(of(0)),
+            _ => SampledSpectrum::new(std::array::from_fn(of)),
+        };
         let mut glass = SampledSpectrum::ZERO;
         if surface.glass() > 0.0 {
             let table = Glass::at(surface.index, surface.roughness(), cosine);
