@@ -37,6 +37,7 @@ impl Interaction {
 
 /// The law by which light is scattered at a vertex.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "most vertices are on surfaces")]
 pub(crate) enum Law<'a> {
     /// The BSDF of a surface.
     Surface(Bsdf<Bxdf<'a>>),

@@ -51,7 +51,7 @@ impl Compiler<'_> {
         for (_, material) in desc.materials.iter() {
             let emission = self.material_emission(&material.kind, &material.origin);
             self.material_emissions
-                .push(emission.is_some().then(|| EmissionId(self.area_emissions.len() as u32)));
+                .push(emission.is_some().then_some(EmissionId(self.area_emissions.len() as u32)));
             self.area_emissions.extend(emission.map(Some));
         }
     }

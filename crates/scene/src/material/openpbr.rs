@@ -1,8 +1,8 @@
 //! Metal, glass, plastic, car paint, velvet: a principled surface after OpenPBR Surface.
 //!
 //! Parameters and their defaults are those of [`OpenPbrDesc`]. With `transmission_depth` light is
-//! absorbed by the medium inside, if there is one, and not by the boundary. Glass that is dispersive
-//! has Cauchy's index of refraction n = A + B/λ² by its Abbe number.
+//! absorbed by the medium inside, if there is one, and not by the boundary. Dispersive glass has
+//! Cauchy's index of refraction n = A + B/λ² by its Abbe number.
 
 use crate::texture::{FloatTextureId, SpectrumTextureId, TextureContext, Textures};
 use description::OpenPbrDesc;

@@ -7,10 +7,10 @@
 //! r = (r₀₁ + r₁₂ e^{iφ})/(1 + r₀₁ r₁₂ e^{iφ})        φ = 4π q₁ d/λ
 //! ```
 //!
-//! for each polarisation, with r_ij = (q_i − q_j)/(q_i + q_j) across and (n_j² q_i − n_i² q_j)/(n_j²
-//! q_i + n_i² q_j) along the plane of incidence; unpolarised light is reflected by the mean of |r|².
-//! Complex indices and q, where the film reflects all light inside, need no other formula. Source:
-//! [Born 1999 §1.6.4].
+//! for each polarisation, with r_ij = (q_i − q_j)/(q_i + q_j) across the plane of incidence and
+//! (n_j² q_i − n_i² q_j)/(n_j² q_i + n_i² q_j) along it; unpolarised light is reflected by the mean
+//! of |r|². Complex indices and q, where the film reflects all light inside, need no other formula.
+//! Source: [Born 1999 §1.6.4].
 
 use math::sqr;
 use std::f32::consts::PI;

@@ -62,7 +62,7 @@ pub(super) fn mean(mut f: impl FnMut(f32) -> f32) -> f32 {
 /// The cosines and weights of [`mean`].
 pub(super) fn nodes() -> [(f32, f32); 6] {
     const GAUSS: [(f32, f32); 3] =
-        [(0.238_619_19, 0.467_913_93), (0.661_209_4, 0.360_761_57), (0.932_469_5, 0.171_324_49)];
+        [(0.238_619_2, 0.467_913_93), (0.661_209_4, 0.360_761_57), (0.932_469_5, 0.171_324_49)];
     std::array::from_fn(|i| {
         let (x, weight) = GAUSS[i / 2];
         let root = 0.5 * (1.0 + if i % 2 == 0 { x } else { -x });
