@@ -58,7 +58,7 @@ fn pixels_are_estimates_of_one() {
         let session = rendered(&desc(FunctionDesc { function, ..FunctionDesc::default() }, pmj02bn(), 64));
         let pixels = pixels(&session);
         for [r, g, b] in &pixels {
-            assert!((r / g - 1.0).abs() < 2e-3 && (b / g - 1.0).abs() < 2e-3, "{name}: {r} {g} {b}");
+            assert!((r / g - 1.0).abs() < 5e-3 && (b / g - 1.0).abs() < 5e-3, "{name}: {r} {g} {b}");
         }
         let greens = pixels.iter().map(|[_, g, _]| f64::from(*g));
         let mean = greens.clone().sum::<f64>() / pixels.len() as f64;
@@ -67,7 +67,7 @@ fn pixels_are_estimates_of_one() {
         let listed = errors(&session, &format!("{name}-mse.txt"));
         let samples: Vec<u32> = listed.iter().map(|line| line.0).collect();
         assert_eq!(samples, [1, 2, 4, 8, 16, 32, 64]);
-        // The white of the picture is exact to within a thousandth.
+        // The green of the picture's white is exact to within a thousandth.
         let rounding = 4e-3 * error.sqrt() + 4e-6;
         assert!((listed[6].1 - error).abs() < rounding, "{name}: {} and {error}", listed[6].1);
         assert!(listed[6].1 < listed[0].1 / 30.0, "{name}: {listed:?}");
