@@ -70,7 +70,8 @@ fn pixels_are_estimates_of_one() {
         // The green of the picture's white is exact to within a thousandth.
         let rounding = 4e-3 * error.sqrt() + 4e-6;
         assert!((listed[6].1 - error).abs() < rounding, "{name}: {} and {error}", listed[6].1);
-        assert!(listed[6].1 < listed[0].1 / 30.0, "{name}: {listed:?}");
+        // A scrambled net has at most e times the variance of independent samples.
+        assert!(listed[6].1 < listed[0].1 / 15.0, "{name}: {listed:?}");
     }
 }
 
