@@ -117,7 +117,7 @@ const MEMBERS: [Member; 7] = [
     },
 ];
 
-/// The same in media, where [`Member::can`] leaves out what takes many times as long.
+/// The same in media, without chains and `sppm`, which would take many times as long.
 const IN_MEDIA: [Member; 4] =
     [Member { name: "vol-path", integrator: "vol-path", ..MEMBERS[0] }, MEMBERS[1], MEMBERS[2], MEMBERS[5]];
 
@@ -209,7 +209,7 @@ fn means_agree_within_three_per_mille() {
 }
 
 #[test]
-#[ignore = "slow: an hour of one core; cargo test -p alhazen --profile checked --test suite means_in_media_agree -- --ignored --nocapture"]
+#[ignore = "slow: many minutes for each scene; cargo test -p alhazen --profile checked --test suite means_in_media_agree -- --ignored --nocapture"]
 fn means_in_media_agree_within_three_per_mille() {
     assert_means_agree(&MEDIA, &IN_MEDIA);
 }
