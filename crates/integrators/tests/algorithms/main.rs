@@ -14,7 +14,6 @@ mod layers;
 mod media;
 mod merging;
 mod mlt;
-mod openpbr;
 mod photon_mapping;
 
 mod session;
