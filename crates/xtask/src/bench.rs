@@ -5,7 +5,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::command::{cargo, succeed, target};
+use super::command::{cargo, python_environment, succeed, target};
 
 /// The package of PyPI that carries Embree's library.
 const EMBREE: &str = "embreex==4.4.*";
@@ -68,20 +68,6 @@ fn compilers_llvm(root: &Path) -> Option<PathBuf> {
     let output = Command::new("rustc").args(["--print", "sysroot"]).current_dir(root).output().ok()?;
     let folder = Path::new(String::from_utf8(output.stdout).ok()?.trim()).join("lib");
     find(&folder, "LLVM")
-}
-
-/// The interpreter of a Python environment with these packages, which is made if it is missing.
-fn python_environment(folder: &Path, packages: &[&str]) -> Result<PathBuf, String> {
-    let (python, programs) = if cfg!(windows) { ("python", "Scripts") } else { ("python3", "bin") };
-    let own = folder.join(programs).join(python);
-    let complete = folder.join("complete");
-    if !complete.exists() {
-        eprintln!("installing {} into {}", packages.join(", "), folder.display());
-        succeed(Command::new(python).args(["-m", "venv"]).arg(folder))?;
-        succeed(Command::new(&own).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
-        std::fs::write(&complete, packages.join("\n")).map_err(|error| error.to_string())?;
-    }
-    Ok(own)
 }
 
 /// The shared library somewhere under a folder whose name starts with `name`, but for `lib`.

@@ -23,3 +23,17 @@ pub fn succeed(command: &mut Command) -> Result<(), String> {
         Err(error) => Err(format!("{command:?} did not start: {error}")),
     }
 }
+
+/// The interpreter of a Python environment with these packages, which is made if it is missing.
+pub fn python_environment(folder: &Path, packages: &[&str]) -> Result<PathBuf, String> {
+    let (python, programs) = if cfg!(windows) { ("python", "Scripts") } else { ("python3", "bin") };
+    let own = folder.join(programs).join(python);
+    let complete = folder.join("complete");
+    if !complete.exists() {
+        eprintln!("installing {} into {}", packages.join(", "), folder.display());
+        succeed(Command::new(python).args(["-m", "venv"]).arg(folder))?;
+        succeed(Command::new(&own).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
+        std::fs::write(&complete, packages.join("\n")).map_err(|error| error.to_string())?;
+    }
+    Ok(own)
+}

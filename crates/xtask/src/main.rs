@@ -2,6 +2,7 @@
 
 mod bench;
 mod command;
+mod python;
 mod rgb_table;
 mod test;
 mod tidy;
@@ -18,6 +19,7 @@ usage: cargo xtask TASK
              the ray engine beside Embree, on a million triangles
   bench render [--help | OPTIONS]
              whole renders beside Mitsuba 3: CPU time and error
+  wheel      build the Python package, into target/wheels
   rgb-table  fit the tables that turn RGB into spectra, and write them into the spectrum crate";
 
 fn main() -> ExitCode {
@@ -28,6 +30,7 @@ fn main() -> ExitCode {
         ["tidy"] => tidy::run(workspace()),
         ["bench", "rays", ref arguments @ ..] => bench::rays(workspace(), arguments),
         ["bench", "render", ref arguments @ ..] => bench::render(workspace(), arguments),
+        ["wheel"] => python::wheel(workspace()),
         ["rgb-table"] => rgb_table::run().map_err(|error| error.to_string()),
         _ => {
             eprintln!("{USAGE}");

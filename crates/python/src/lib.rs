@@ -1,0 +1,26 @@
+//! The native part of the Python package `alhazen`.
+//!
+//! It wraps the façade: a `Scene` is loaded, `render` makes an `Image` of it. Python's lock is
+//! released while files are read and rays are traced. Pixels are moved into arrays of numpy, never
+//! copied.
+
+mod difference;
+mod picture;
+mod render;
+mod scene;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _alhazen(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("SceneError", module.py().get_type::<scene::SceneError>())?;
+    module.add_class::<scene::Scene>()?;
+    module.add_class::<picture::Picture>()?;
+    module.add_class::<render::Progress>()?;
+    module.add_class::<difference::Difference>()?;
+    module.add_function(wrap_pyfunction!(scene::load, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::integrators, module)?)?;
+    module.add_function(wrap_pyfunction!(render::render, module)?)?;
+    module.add_function(wrap_pyfunction!(difference::compare, module)?)
+}

@@ -1,0 +1,286 @@
+//! Pictures.
+
+use std::path::PathBuf;
+
+use alhazen::image::{
+    self, Attribute, DisplaySettings, DisplayView, DisplayWhite, Format, Image, ImageError, ImageMetadata,
+    PixelSource, Pixels, WriteOptions,
+};
+use alhazen::{InSrgb, write_picture};
+use numpy::ndarray::Array3;
+use numpy::{PyArray3, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyKeyError, PyMemoryError, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PySlice, PyTuple};
+
+/// A picture: linear light, and layers beside it.
+///
+/// numpy.asarray(picture) is height × width × 3 float32, red, green and blue, in the memory of the
+/// picture. picture["depth"] is a layer: height × width, or height × width × n if it has n
+/// channels.
+#[pyclass(frozen, name = "Image", module = "alhazen")]
+pub struct Picture {
+    /// Rows from the top, pixels from the left, channels.
+    pixels: Py<PyArray3<f32>>,
+    channels: Vec<String>,
+    metadata: ImageMetadata,
+}
+
+impl Picture {
+    /// Reads all rows of a picture.
+    pub fn collect(source: &dyn PixelSource) -> Result<Collected, ImageError> {
+        let channels: Vec<String> = source.channels().into_iter().map(|channel| channel.name).collect();
+        let shape = [source.height() as usize, source.width() as usize, channels.len()];
+        let count = shape.iter().product();
+        let mut values = Vec::new();
+        values
+            .try_reserve_exact(count)
+            .map_err(|_| ImageError::Limits(format!("there is no memory for a picture of {count} values")))?;
+        values.resize(count, 0.0);
+        for (y, row) in values.chunks_exact_mut(shape[1] * shape[2]).enumerate() {
+            source.row(y as u32, row);
+        }
+        Ok(Collected { shape, channels, values, metadata: source.metadata().clone() })
+    }
+
+    /// The picture with its values moved into an array of numpy.
+    pub fn new(py: Python, collected: Collected) -> PyResult<Self> {
+        let Collected { shape, channels, values, metadata } = collected;
+        let array =
+            Array3::from_shape_vec(shape, values).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        Ok(Self { pixels: PyArray3::from_owned_array(py, array).unbind(), channels, metadata })
+    }
+
+    /// A copy of the picture.
+    pub fn image(&self, py: Python) -> PyResult<Image> {
+        let pixels = self.pixels.bind(py);
+        let [height, width, _] = [0, 1, 2].map(|axis| pixels.shape()[axis] as u32);
+        let values = Pixels::F32(pixels.to_vec()?);
+        let mut image = Image::new(width, height, self.channels.clone(), values).map_err(image_error)?;
+        image.metadata = self.metadata.clone();
+        Ok(image)
+    }
+
+    /// A view of the channels with these indices, which follow each other.
+    fn view<'py>(&self, py: Python<'py>, first: usize, count: usize) -> PyResult<Bound<'py, PyAny>> {
+        let all = PySlice::full(py);
+        let pixels = self.pixels.bind(py);
+        if count == 1 {
+            return pixels.get_item((&all, &all, first));
+        }
+        let channels = PySlice::new(py, first as isize, (first + count) as isize, 1);
+        pixels.get_item((&all, &all, channels))
+    }
+
+    /// The first channel and the number of channels of a layer.
+    fn find(&self, layer: &str) -> Option<(usize, usize)> {
+        let first = self.channels.iter().position(|channel| layer_of(channel) == layer)?;
+        let count = self.channels[first..].iter().take_while(|channel| layer_of(channel) == layer).count();
+        Some((first, count))
+    }
+}
+
+/// The values of a picture.
+pub struct Collected {
+    shape: [usize; 3],
+    channels: Vec<String>,
+    values: Vec<f32>,
+    metadata: ImageMetadata,
+}
+
+/// The layer of a channel: what precedes the last dot; colours have none.
+fn layer_of(channel: &str) -> &str {
+    match channel.rsplit_once('.') {
+        Some((layer, _)) => layer,
+        None if matches!(channel, "R" | "G" | "B") => "RGB",
+        None => channel,
+    }
+}
+
+#[pymethods]
+impl Picture {
+    /// A picture of an array of height × width × 3 values of linear light.
+    #[staticmethod]
+    fn from_array(py: Python, array: PyReadonlyArray3<f32>) -> PyResult<Self> {
+        let shape = array.shape();
+        if shape[2] != 3 {
+            return Err(PyValueError::new_err(format!("expected three channels, not {}", shape[2])));
+        }
+        let shape = [shape[0], shape[1], 3];
+        let values = array.as_array().iter().copied().collect();
+        let channels = ["R", "G", "B"].map(str::to_owned).to_vec();
+        Self::new(py, Collected { shape, channels, values, metadata: ImageMetadata::default() })
+    }
+
+    /// Reads a picture from a file of any format that alhazen knows, such as .exr, .png or .hdr.
+    #[staticmethod]
+    fn open(py: Python, path: PathBuf) -> PyResult<Self> {
+        let collected = py.detach(|| Self::collect(&image::open(&path)?));
+        Self::new(py, collected.map_err(image_error)?)
+    }
+
+    /// The number of columns.
+    #[getter]
+    fn width(&self, py: Python) -> usize {
+        self.pixels.bind(py).shape()[1]
+    }
+
+    /// The number of rows.
+    #[getter]
+    fn height(&self, py: Python) -> usize {
+        self.pixels.bind(py).shape()[0]
+    }
+
+    /// The names of all channels.
+    #[getter]
+    fn channels(&self) -> Vec<String> {
+        self.channels.clone()
+    }
+
+    /// The names of the layers, in the order of their channels.
+    #[getter]
+    fn layers(&self) -> Vec<&str> {
+        let mut layers: Vec<&str> = self.channels.iter().map(|channel| layer_of(channel)).collect();
+        layers.dedup();
+        layers
+    }
+
+    /// The pixels of all channels: height × width × number of channels.
+    #[getter]
+    fn pixels(&self, py: Python) -> Py<PyArray3<f32>> {
+        self.pixels.clone_ref(py)
+    }
+
+    /// What is known about the picture, such as the integrator and the samples per pixel.
+    #[getter]
+    fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let metadata = PyDict::new(py);
+        for (name, attribute) in &self.metadata.attributes {
+            match attribute {
+                Attribute::Text(text) => metadata.set_item(name, text)?,
+                Attribute::TextList(list) => metadata.set_item(name, list)?,
+                Attribute::Integer(number) => metadata.set_item(name, number)?,
+                Attribute::Float(number) => metadata.set_item(name, number)?,
+                Attribute::Vector(vector) => metadata.set_item(name, vector)?,
+                Attribute::Matrix(matrix) => {
+                    metadata.set_item(name, matrix.transpose().to_cols_array_2d())?;
+                }
+            }
+        }
+        Ok(metadata)
+    }
+
+    #[pyo3(signature = (dtype=None, copy=None))]
+    fn __array__<'py>(
+        &self,
+        py: Python<'py>,
+        dtype: Option<Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let view = match self.find("RGB") {
+            Some((first, count)) => self.view(py, first, count)?,
+            None => self.pixels.bind(py).clone().into_any(),
+        };
+        let view = match dtype {
+            Some(dtype) => {
+                let arguments = PyDict::new(py);
+                arguments.set_item("copy", copy.unwrap_or(false))?;
+                view.call_method("astype", (dtype,), Some(&arguments))?
+            }
+            None => view,
+        };
+        if copy == Some(true) { view.call_method0("copy") } else { Ok(view) }
+    }
+
+    fn __getitem__<'py>(&self, py: Python<'py>, key: Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        if let Ok(name) = key.extract::<String>() {
+            if let Some(index) = self.channels.iter().position(|channel| *channel == name) {
+                return self.view(py, index, 1);
+            }
+            let Some((first, count)) = self.find(&name) else {
+                let known = self.layers().join(", ");
+                return Err(PyKeyError::new_err(format!("there is no layer {name:?}; there are {known}")));
+            };
+            return self.view(py, first, count);
+        }
+        self.__array__(py, None, None)?.get_item(key)
+    }
+
+    fn __repr__(&self, py: Python) -> String {
+        let layers = self.layers().join(", ");
+        format!("<alhazen.Image {} × {}: {layers}>", self.width(py), self.height(py))
+    }
+
+    /// Writes the picture to a file in the format of its extension. EXR files keep all channels and
+    /// stay linear; formats for displays, such as PNG, show colours through a view.
+    #[pyo3(signature = (path, *, view="standard", exposure=0.0, white_balance=None))]
+    fn write(
+        &self,
+        py: Python,
+        path: PathBuf,
+        view: &str,
+        exposure: f32,
+        white_balance: Option<f32>,
+    ) -> PyResult<()> {
+        let (image, display) = (self.image(py)?, display(view, exposure, white_balance)?);
+        py.detach(|| write_picture(&image, &path, &display)).map_err(image_error)
+    }
+
+    /// The bytes of a PNG file that shows the picture through a view.
+    #[pyo3(signature = (*, view="standard", exposure=0.0, white_balance=None))]
+    fn png<'py>(
+        &self,
+        py: Python<'py>,
+        view: &str,
+        exposure: f32,
+        white_balance: Option<f32>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let (image, display) = (self.image(py)?, display(view, exposure, white_balance)?);
+        let shown = InSrgb::new(&image, Format::Png, &display);
+        let bytes = py.detach(|| image::encode(&shown, Format::Png, &WriteOptions::default()));
+        Ok(PyBytes::new(py, &bytes.map_err(image_error)?))
+    }
+
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.png(py, "standard", 0.0, None)
+    }
+
+    /// For pickle.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let this = slf.get();
+        let make = slf.get_type().getattr("_from_channels")?;
+        PyTuple::new(
+            py,
+            [make, (this.pixels.clone_ref(py), this.channels.clone()).into_pyobject(py)?.into_any()],
+        )
+    }
+
+    #[staticmethod]
+    fn _from_channels(pixels: Py<PyArray3<f32>>, channels: Vec<String>) -> Self {
+        Self { pixels, channels, metadata: ImageMetadata::default() }
+    }
+}
+
+/// How a picture is shown.
+fn display(view: &str, exposure: f32, white_balance: Option<f32>) -> PyResult<DisplaySettings> {
+    let Some(view) = DisplayView::from_name(view) else {
+        let known = DisplayView::ALL.map(DisplayView::name).join(", ");
+        return Err(PyValueError::new_err(format!("there is no view {view:?}; there are {known}")));
+    };
+    let white = match white_balance {
+        Some(kelvin) if !(500.0..=100_000.0).contains(&kelvin) => {
+            return Err(PyValueError::new_err("white_balance is in kelvin, from 500 to 100000"));
+        }
+        other => other.map(DisplayWhite::Kelvin),
+    };
+    Ok(DisplaySettings { view, exposure, white })
+}
+
+/// The exception for an error of pictures.
+pub fn image_error(error: ImageError) -> PyErr {
+    match error {
+        ImageError::Io(error) => PyOSError::new_err(error),
+        ImageError::Limits(text) => PyMemoryError::new_err(text),
+        error => PyValueError::new_err(error.to_string()),
+    }
+}

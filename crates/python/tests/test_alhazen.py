@@ -1,0 +1,186 @@
+"""Tests of the package: arrays, errors, interruption, threads."""
+
+import _thread
+import pickle
+import threading
+import time
+
+import alhazen
+import numpy
+import pytest
+
+SCENE = """
+Film "rgb" "integer xresolution" 24 "integer yresolution" 16
+Sampler "independent" "integer pixelsamples" 4
+Camera "perspective" "float fov" 40
+WorldBegin
+LightSource "infinite" "rgb L" [1 0.5 0.25]
+Translate 0 0 5
+Material "diffuse"
+Shape "sphere"
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "ball.pbrt"
+    path.write_text(SCENE)
+    return alhazen.load(path)
+
+
+def test_a_render_is_an_array(scene):
+    image = alhazen.render(scene, resolution=(30, 20), spp=64)
+    array = numpy.asarray(image)
+    assert array.shape == (20, 30, 3) and array.dtype == numpy.float32
+    # The sky behind the ball.
+    assert numpy.allclose(array[:4, :4].mean((0, 1)), [1, 0.5, 0.25], rtol=0.05)
+    assert (image.width, image.height) == (30, 20)
+    assert image.metadata["samplesPerPixel"] == 64
+
+
+def test_arrays_share_the_memory_of_the_picture(scene):
+    image = alhazen.render(scene)
+    array = numpy.asarray(image)
+    assert numpy.shares_memory(array, image.pixels)
+    assert numpy.shares_memory(image["R"], array)
+    kept = array.copy()
+    del image
+    assert (array == kept).all()
+    assert numpy.array(array, copy=True).base is None
+
+
+def test_threads_and_paths_do_not_change_a_bit(scene):
+    one = numpy.asarray(alhazen.render(scene, threads=1))
+    two = numpy.asarray(alhazen.render(scene.path, threads=2))
+    assert (one == two).all()
+    assert (one != numpy.asarray(alhazen.render(scene, seed=1))).any()
+
+
+def test_layers(scene):
+    image = alhazen.render(scene, layers=["depth", "normal"])
+    assert image.layers == ["RGB", "Z", "N"]
+    assert image["Z"].shape == (16, 24) and image["N"].shape == (16, 24, 3)
+    # The ball is nearest in the middle.
+    assert image["Z"].min() == pytest.approx(4, abs=0.1)
+    with pytest.raises(KeyError, match="there is no layer"):
+        image["albedo"]
+
+
+def test_settings(scene):
+    image = alhazen.render(scene, integrator="ambient-occlusion", settings={"iso": 200, "cossample": False})
+    assert image.metadata["integrator"] == "ambient-occlusion"
+    with pytest.raises(ValueError, match="maxdept"):
+        alhazen.render(scene, settings={"integrator.maxdept": 3})
+    with pytest.raises(ValueError, match="no-such"):
+        alhazen.render(scene, integrator="no-such")
+    with pytest.raises(ValueError):
+        alhazen.render(scene, time=-1.0)
+
+
+def test_every_integrator_renders(scene):
+    names = alhazen.integrators()
+    assert "path" in names and "bdpt" in names
+    for name in ["path", "bdpt", "light-tracing"]:
+        mean = numpy.asarray(alhazen.render(scene, integrator=name, spp=16)).mean()
+        assert mean > 0
+
+
+def test_errors_have_places(tmp_path):
+    path = tmp_path / "wrong.pbrt"
+    path.write_text('WorldBegin\nShape "sphere" "float radios" 1\nShape "no-such"\n')
+    with pytest.raises(alhazen.SceneError, match=r"wrong\.pbrt:3:\d+: error\["):
+        alhazen.load(path)
+    with pytest.raises(alhazen.SceneError, match="missing"):
+        alhazen.render(tmp_path / "missing.pbrt")
+
+
+def test_warnings(tmp_path):
+    path = tmp_path / "odd.pbrt"
+    path.write_text('WorldBegin\nShape "sphere" "float radios" 1\n')
+    try:
+        warnings = alhazen.load(path).warnings
+    except alhazen.SceneError as error:
+        warnings = str(error).splitlines()
+    assert any("radios" in warning for warning in warnings)
+
+
+def test_an_interrupt_ends_a_render(scene):
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        alhazen.render(scene, spp=10_000_000)
+    assert time.monotonic() - begin < 20
+
+
+def test_callbacks(scene):
+    told = []
+    alhazen.render(scene, spp=8, progress=told.append)
+    assert told[-1].passes == told[-1].total == 8
+
+    def fail(progress):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        alhazen.render(scene, spp=10_000_000, progress=fail)
+
+
+def test_previews(scene):
+    shown = []
+    alhazen.render(scene, spp=10_000_000, time=1.5, preview=shown.append)
+    assert shown and numpy.asarray(shown[0]).shape == (16, 24, 3)
+
+
+def test_the_lock_is_released(scene):
+    count = 0
+    done = threading.Event()
+
+    def work():
+        nonlocal count
+        while not done.is_set():
+            count += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    alhazen.render(scene, spp=10_000_000, time=1.0)
+    done.set()
+    thread.join()
+    assert count > 50
+
+
+def test_renders_in_several_threads(scene):
+    pictures = [None] * 4
+
+    def work(i):
+        pictures[i] = numpy.asarray(alhazen.render(scene, threads=1))
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all((picture == pictures[0]).all() for picture in pictures)
+
+
+def test_files_and_comparison(scene, tmp_path):
+    image = alhazen.render(scene)
+    image.write(tmp_path / "ball.exr")
+    image.write(tmp_path / "ball.png", view="agx", exposure=1.0, white_balance=5000)
+    again = alhazen.Image.open(tmp_path / "ball.exr")
+    assert alhazen.compare(image, again).mse < 1e-6
+    brighter = alhazen.Image.from_array(numpy.asarray(image) * 1.5)
+    difference = alhazen.compare(image, brighter)
+    assert difference.mean[0] == pytest.approx(1.5 * difference.reference_mean[0])
+    assert image.png()[:4] == b"\x89PNG" == image._repr_png_()[:4]
+    with pytest.raises(OSError):
+        image.write(tmp_path / "nowhere" / "ball.exr")
+    with pytest.raises(ValueError, match="there is no view"):
+        image.png(view="sepia")
+    with pytest.raises(ValueError, match="three channels"):
+        alhazen.Image.from_array(numpy.zeros((2, 2, 4), numpy.float32))
+
+
+def test_pictures_are_pickled(scene):
+    image = alhazen.render(scene, layers=["depth"])
+    again = pickle.loads(pickle.dumps(image))
+    assert again.layers == image.layers and (again.pixels == image.pixels).all()

@@ -1,0 +1,50 @@
+//! The Python package: its wheel and its tests.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use super::command::{cargo, python_environment, succeed, target};
+
+/// What builds wheels.
+const BUILD: [&str; 1] = ["maturin==1.16.*"];
+/// What the tests need.
+const TEST: [&str; 2] = ["numpy", "pytest==9.*"];
+/// Where the package is.
+const FOLDER: &str = "crates/python";
+
+/// Builds the wheel of the workspace at `root` into `target/wheels`.
+pub fn wheel(root: &Path) -> Result<(), String> {
+    let python = python_environment(&target(root).join("maturin"), &BUILD)?;
+    let mut command = Command::new(python);
+    command.args(["-m", "maturin", "build", "--release", "--manifest-path"]);
+    command.arg(root.join(FOLDER).join("Cargo.toml")).arg("--out").arg(target(root).join("wheels"));
+    succeed(&mut command)
+}
+
+/// Tests the package, built as tests are, from a folder in which it is put together.
+pub fn test(root: &Path) -> Result<(), String> {
+    succeed(cargo(root).args(["build", "--quiet", "--profile", "checked", "--package", "alhazen-python"]))?;
+    let folder = target(root).join("python-package");
+    assemble(root, &folder.join("alhazen")).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let python = python_environment(&target(root).join("pytest"), &TEST)?;
+    let mut command = Command::new(python);
+    command.args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]).arg(root.join(FOLDER).join("tests"));
+    succeed(command.env("PYTHONPATH", &folder).env("PYTHONDONTWRITEBYTECODE", "1"))
+}
+
+/// Copies the sources of the package and its library to a folder.
+fn assemble(root: &Path, package: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(package)?;
+    for file in root.join(FOLDER).join("python/alhazen").read_dir()? {
+        let file = file?;
+        if file.file_type()?.is_file() {
+            fs::copy(file.path(), package.join(file.file_name()))?;
+        }
+    }
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let library = target(root).join("checked").join(format!("{prefix}_alhazen{suffix}"));
+    let extension = if cfg!(windows) { "pyd" } else { "abi3.so" };
+    fs::copy(library, package.join(format!("_alhazen.{extension}")))?;
+    Ok(())
+}
