@@ -14,6 +14,7 @@ mod layers;
 mod media;
 mod merging;
 mod mlt;
+mod openpbr;
 mod photon_mapping;
 
 mod session;
