@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use super::command::{cargo, python_environment, succeed, target};
+use super::command::{python_environment, succeed, target};
 
 /// What builds wheels.
 const BUILD: [&str; 1] = ["maturin==1.16.*"];
@@ -22,9 +22,9 @@ pub fn wheel(root: &Path) -> Result<(), String> {
     succeed(&mut command)
 }
 
-/// Tests the package, built as tests are, from a folder in which it is put together.
+/// Tests the package, whose library the tests of the workspace have built, from a folder in which
+/// it is put together.
 pub fn test(root: &Path) -> Result<(), String> {
-    succeed(cargo(root).args(["build", "--quiet", "--profile", "checked", "--package", "alhazen-python"]))?;
     let folder = target(root).join("python-package");
     assemble(root, &folder.join("alhazen")).map_err(|error| format!("{}: {error}", folder.display()))?;
     let python = python_environment(&target(root).join("pytest"), &TEST)?;
@@ -43,7 +43,7 @@ fn assemble(root: &Path, package: &Path) -> std::io::Result<()> {
         }
     }
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let library = target(root).join("checked").join(format!("{prefix}_alhazen{suffix}"));
+    let library = target(root).join("checked/deps").join(format!("{prefix}_alhazen{suffix}"));
     let extension = if cfg!(windows) { "pyd" } else { "abi3.so" };
     fs::copy(library, package.join(format!("_alhazen.{extension}")))?;
     Ok(())
