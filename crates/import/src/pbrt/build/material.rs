@@ -99,11 +99,11 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
         },
         MaterialType::Conductor => MaterialKind::Conductor(ConductorDesc {
             reflectance: conductor_reflectance(reader, ["eta", "k"]),
-            roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
+            roughness: roughness(reader, ["roughness", "uroughness", "vroughness"]),
         }),
         MaterialType::Dielectric => MaterialKind::Dielectric {
             eta: reader.index_of_refraction("eta", 1.5),
-            roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
+            roughness: roughness(reader, ["roughness", "uroughness", "vroughness"]),
         },
         MaterialType::ThinDielectric => {
             MaterialKind::ThinDielectric { eta: reader.index_of_refraction("eta", 1.5) }
@@ -111,26 +111,10 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
         MaterialType::CoatedDiffuse => MaterialKind::CoatedDiffuse(CoatedDiffuseDesc {
             reflectance: reader.spectrum_parameter("reflectance", 0.5),
             eta: reader.index_of_refraction("eta", 1.5),
-            roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
+            roughness: roughness(reader, ["roughness", "uroughness", "vroughness"]),
             layers: layers(reader),
         }),
-        MaterialType::CoatedConductor => MaterialKind::CoatedConductor(CoatedConductorDesc {
-            conductor: ConductorDesc {
-                reflectance: conductor_reflectance(reader, ["conductor.eta", "conductor.k"]),
-                roughness: roughness(
-                    reader,
-                    ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"],
-                    0.0,
-                ),
-            },
-            eta: reader.index_of_refraction("interface.eta", 1.5),
-            roughness: roughness(
-                reader,
-                ["interface.roughness", "interface.uroughness", "interface.vroughness"],
-                0.0,
-            ),
-            layers: layers(reader),
-        }),
+        MaterialType::CoatedConductor => coated_conductor(reader),
         MaterialType::Hair => hair(reader),
         MaterialType::Subsurface => subsurface(reader)?,
         MaterialType::Measured => {
@@ -147,13 +131,28 @@ fn kind(reader: &mut Reader) -> Option<MaterialKind> {
 }
 
 /// Roughness under the names of (both, u, v).
-fn roughness(reader: &mut Reader, [both, u, v]: [&'static str; 3], default: f32) -> RoughnessDesc {
-    let both = reader.float_parameter(both, default);
-    RoughnessDesc {
-        u: reader.optional_float_parameter(u).unwrap_or(both.clone()),
-        v: reader.optional_float_parameter(v).unwrap_or(both),
-        remap: reader.boolean("remaproughness", true),
-    }
+fn roughness(reader: &mut Reader, names: [&'static str; 3]) -> RoughnessDesc {
+    let [u, v] = roughness_axes(reader, names);
+    RoughnessDesc { u, v, remap: reader.boolean("remaproughness", true) }
+}
+
+fn roughness_axes(reader: &mut Reader, [both, u, v]: [&'static str; 3]) -> [FloatParameter; 2] {
+    let both = reader.float_parameter(both, 0.0);
+    [u, v].map(|name| reader.optional_float_parameter(name).unwrap_or(both.clone()))
+}
+
+/// One `remaproughness` is that of both surfaces.
+fn coated_conductor(reader: &mut Reader) -> MaterialKind {
+    let names = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];
+    let conductor = ConductorDesc {
+        reflectance: conductor_reflectance(reader, ["conductor.eta", "conductor.k"]),
+        roughness: roughness(reader, names),
+    };
+    let eta = reader.index_of_refraction("interface.eta", 1.5);
+    let names = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
+    let [u, v] = roughness_axes(reader, names);
+    let roughness = RoughnessDesc { u, v, remap: conductor.roughness.remap };
+    MaterialKind::CoatedConductor(CoatedConductorDesc { conductor, eta, roughness, layers: layers(reader) })
 }
 
 fn conductor_reflectance(reader: &mut Reader, [eta, k]: [&'static str; 2]) -> ConductorReflectance {
@@ -248,7 +247,7 @@ fn subsurface(reader: &mut Reader) -> Option<MaterialKind> {
         scale: reader.float("scale", 1.0),
         eta: reader.float("eta", 1.33),
         g: reader.float("g", 0.0),
-        roughness: roughness(reader, ["roughness", "uroughness", "vroughness"], 0.0),
+        roughness: roughness(reader, ["roughness", "uroughness", "vroughness"]),
         method: reader.choice("method", Diffusion, &[("diffusion", Diffusion), ("random-walk", RandomWalk)]),
     })
 }

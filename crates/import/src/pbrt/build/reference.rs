@@ -56,9 +56,9 @@ fn lookups(statement: &str, kind: &str, parameters: &str) -> Vec<Row> {
     let (_, asked) = recorded.unwrap_or_else(|| panic!("no statement was read: {text}"));
     let mut rows: Vec<Row> = Vec::new();
     for Asked { name, reference } in asked {
-        if rows.iter().all(|row| row.name != name) {
-            rows.push(Row { name, types: type_names(reference.types), reference, condition: String::new() });
-        }
+        // Values are taken out of a parameter when it is read.
+        assert!(rows.iter().all(|row| row.name != name), "{kind} reads `{name}` twice");
+        rows.push(Row { name, types: type_names(reference.types), reference, condition: String::new() });
     }
     rows
 }
